@@ -1,0 +1,18 @@
+# One interface target carries the flags of every target of ours.
+add_library(barchan_options INTERFACE)
+target_compile_options(barchan_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+if(BARCHAN_WERROR)
+  target_compile_options(barchan_options INTERFACE -Werror)
+endif()
+if(BARCHAN_ARCH)
+  target_compile_options(barchan_options INTERFACE -march=${BARCHAN_ARCH})
+endif()
+# Contraction is fixed by the compiler and the target alone, never by the data or the number of threads.
+target_compile_options(barchan_options INTERFACE -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(barchan_options INTERFACE -Wno-psabi)
+endif()
+if(BARCHAN_SANITIZE)
+  target_compile_options(barchan_options INTERFACE -fsanitize=${BARCHAN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(barchan_options INTERFACE -fsanitize=${BARCHAN_SANITIZE})
+endif()

@@ -1,0 +1,24 @@
+// The four ways in which a run ends badly, one type each. `main` turns them into the exit status of the contract.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace barchan {
+
+/// The scene or the command is wrong (exit status 2). The message holds file, line, column, key and what was expected.
+struct SceneError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The run broke down (exit status 3): non-finite value, escaped particle, collapsed time step.
+struct BreakdownError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Input or output failed (exit status 4): disk full, no permission.
+struct OutputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace barchan

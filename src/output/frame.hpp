@@ -1,0 +1,29 @@
+// A frame: a copy of what is to be written, made by the computation and owned by the writer from then on.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace barchan {
+
+struct FrameField {
+  std::string name;             // as in the table of fields
+  std::string unit;             // SI, "" for none
+  int components = 1;           // 1, 3 (vector) or 6 (symmetric tensor xx yy zz xy yz xz, ParaView's order)
+  std::vector<double> values;   // particle-major, n * components
+};
+
+struct Frame {
+  int index = 0;                // number in the series
+  long step = 0;
+  double time = 0.0;            // s
+  std::vector<double> points;   // m, 3 a particle
+  std::vector<std::int64_t> id; // stable from the first frame to the last
+  std::vector<std::int32_t> phase;
+  std::vector<std::string> phase_names;   // phase number -> name
+  std::vector<FrameField> fields;
+  std::size_t size() const { return id.size(); }
+};
+
+}  // namespace barchan

@@ -1,0 +1,25 @@
+// history.csv: one row a sampled step.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace barchan {
+
+/// Columns are named once, "time [s]" and so on; rows are flushed as they are written, so that a killed run keeps them.
+class History {
+ public:
+  /// Throws OutputError when the file cannot be opened. With `append` an existing file is continued: rows later than
+  /// `until` (s) are dropped first, which is what a restart needs.
+  History(const std::filesystem::path& file, std::vector<std::string> columns, bool append = false, double until = 0.0);
+  void row(const std::vector<double>& values);   ///< as many as there are columns; 17 significant digits
+
+ private:
+  std::ofstream stream_;
+  std::filesystem::path file_;
+  std::size_t columns_;
+};
+
+}  // namespace barchan

@@ -1,0 +1,70 @@
+// The one table of fields. Writers, readers, the checkpoint and the documentation all use it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace barchan {
+
+enum class Field : int {
+  position, velocity, density, pressure, acceleration, density_rate, velocity_gradient, stress, energy, energy_rate,
+  wall_normal, smoothing_length, count
+};
+inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
+
+enum class Rank { scalar, vector, symmetric, matrix };
+
+struct FieldInfo {
+  Field id;
+  std::string_view name;      // as written to files and in a scene's output.fields
+  std::string_view symbol;
+  std::string_view unit;
+  Rank rank;
+  bool is_state;              // part of the state: in a checkpoint, permuted by sorting
+  std::string_view meaning;
+};
+
+inline constexpr std::array<FieldInfo, field_count> field_table{{
+    {Field::position, "position", "x", "m", Rank::vector, true, "place of the particle"},
+    {Field::velocity, "velocity", "v", "m/s", Rank::vector, true, "velocity; between steps half a step behind the position"},
+    {Field::density, "density", "rho", "kg/m3", Rank::scalar, true, "density"},
+    {Field::pressure, "pressure", "p", "Pa", Rank::scalar, true, "pressure from the equation of state"},
+    {Field::acceleration, "acceleration", "a", "m/s2", Rank::vector, true, "total acceleration of the last pass"},
+    {Field::density_rate, "density_rate", "drho/dt", "kg/m3/s", Rank::scalar, false, "rate of change of the density"},
+    {Field::velocity_gradient, "velocity_gradient", "grad v", "1/s", Rank::matrix, false, "velocity gradient, row-major"},
+    {Field::stress, "stress", "s", "Pa", Rank::symmetric, true, "deviatoric stress, xx yy zz xy yz xz"},
+    {Field::energy, "energy", "e", "J/kg", Rank::scalar, true, "specific internal energy"},
+    {Field::energy_rate, "energy_rate", "de/dt", "W/kg", Rank::scalar, false, "rate of change of the internal energy"},
+    {Field::wall_normal, "wall_normal", "n", "1", Rank::vector, true, "unit normal of a wall particle, into the fluid"},
+    {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false, "half the kernel radius of the phase with itself"},
+}};
+
+constexpr const FieldInfo& info(Field f) { return field_table[static_cast<std::size_t>(f)]; }
+
+constexpr int components(Rank rank, int dimensions) {
+  switch (rank) {
+    case Rank::scalar: return 1;
+    case Rank::vector: return dimensions;
+    case Rank::symmetric: return 6;
+    case Rank::matrix: return dimensions * dimensions;
+  }
+  return 0;
+}
+
+/// The field of this name, if there is one.
+constexpr std::optional<Field> find_field(std::string_view name) {
+  for (const auto& f : field_table)
+    if (f.name == name) return f.id;
+  return std::nullopt;
+}
+
+constexpr bool table_is_in_order() {
+  for (std::size_t k = 0; k < field_count; ++k)
+    if (static_cast<std::size_t>(field_table[k].id) != k) return false;
+  return true;
+}
+static_assert(table_is_in_order(), "the table of fields must be in the order of enum Field");
+
+}  // namespace barchan
