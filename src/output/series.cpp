@@ -1,0 +1,172 @@
+// The writer's thread of a series, and the .pvd that lists what it has written.
+#include "output/series.hpp"
+
+#include <atomic>
+#include <cctype>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "base/errors.hpp"
+#include "output/pvd.hpp"
+#include "output/whole_file.hpp"
+
+namespace barchan {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Lock = std::unique_lock<std::mutex>;
+
+constexpr std::size_t most_waiting = 2;
+
+/// Adds the time of a scope to a counter that other threads may read.
+class Timed {
+ public:
+  explicit Timed(std::atomic<double>& seconds) : seconds_(seconds), begin_(Clock::now()) {}
+  ~Timed() { seconds_.fetch_add(std::chrono::duration<double>(Clock::now() - begin_).count()); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  std::atomic<double>& seconds_;
+  Clock::time_point begin_;
+};
+
+std::string frame_file(const std::string& name, int index, FrameFormat format) {
+  char number[16];
+  std::snprintf(number, sizeof number, "_%06d", index);
+  return name + number + (format == FrameFormat::vtp ? ".vtp" : ".vtu");
+}
+
+/// NAME_000000.vtp or .vtu, with any number of digits from six on; also while it is being written.
+bool is_frame_of(const std::string& name, std::string file) {
+  if (file.ends_with(WholeFile::suffix)) file.resize(file.size() - WholeFile::suffix.size());
+  if (!file.starts_with(name + "_") || !(file.ends_with(".vtp") || file.ends_with(".vtu"))) return false;
+  const std::string number = file.substr(name.size() + 1, file.size() - name.size() - 5);
+  return number.size() >= 6 && number.find_first_not_of("0123456789") == std::string::npos;
+}
+
+}  // namespace
+
+struct SeriesWriter::Work {
+  std::filesystem::path directory;
+  std::string name;
+  FrameFormat format;
+  bool compress;
+
+  std::vector<Entry> entries;      // of the .pvd; the writer's thread alone changes them
+  std::atomic<long> whole{0};      // how many they are
+  std::atomic<double> writing{0}, waiting{0};
+
+  std::mutex mutex;                // guards what follows
+  std::condition_variable changed;
+  std::deque<Frame> frames;        // the first is the one being written
+  std::exception_ptr error;        // the first one; nothing is written after it
+  bool ending = false;
+  std::thread thread;
+
+  std::filesystem::path pvd() const { return directory / (name + ".pvd"); }
+  void prepare();
+  void loop();
+  void write_first(const Frame& frame);
+};
+
+/// The directory exists and can be written, and holds no frame of an earlier run but those that are kept.
+void SeriesWriter::Work::prepare() {
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw OutputError("cannot create the directory '" + directory.string() + "': " + failed.message());
+  if (!std::filesystem::is_directory(directory, failed))
+    throw OutputError("cannot write into '" + directory.string() + "': it is not a directory");
+  WholeFile{pvd()};   // says now, not at the first frame, that nothing can be written here
+
+  // First the list, then the files that it no longer names: at no moment does it name one that is gone.
+  if (entries.empty()) std::filesystem::remove(pvd(), failed);
+  else write_pvd(pvd(), entries);
+  std::set<std::string> kept;
+  for (const auto& entry : entries) kept.insert(entry.file);
+  std::vector<std::filesystem::path> stale;
+  for (const auto& file : std::filesystem::directory_iterator(directory, failed))
+    if (const auto n = file.path().filename().string(); is_frame_of(name, n) && !kept.contains(n)) stale.push_back(file);
+  for (const auto& file : stale) std::filesystem::remove(file, failed);
+}
+
+void SeriesWriter::Work::write_first(const Frame& frame) {
+  const Timed timed(writing);
+  const std::string file = frame_file(name, frame.index, format);
+  write_frame(directory / file, frame, format, compress);
+  entries.push_back({frame.time, file});
+  write_pvd(pvd(), entries);
+  whole = static_cast<long>(entries.size());
+}
+
+void SeriesWriter::Work::loop() {
+  Lock lock(mutex);
+  while (true) {
+    changed.wait(lock, [&] { return ending || !frames.empty(); });
+    if (frames.empty()) return;
+    if (!error) {
+      const Frame& frame = frames.front();   // a deque's elements stay where they are when write() adds one
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        write_first(frame);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      error = failure;
+    }
+    frames.pop_front();
+    changed.notify_all();
+  }
+}
+
+SeriesWriter::SeriesWriter(std::filesystem::path directory, std::string name, FrameFormat format, bool compress,
+                           std::vector<Entry> kept)
+    : work_(std::make_unique<Work>()) {
+  work_->directory = std::move(directory);
+  work_->name = std::move(name);
+  work_->format = format;
+  work_->compress = compress;
+  work_->entries = std::move(kept);
+  work_->whole = static_cast<long>(work_->entries.size());
+  work_->prepare();
+  work_->thread = std::thread([work = work_.get()] { work->loop(); });
+}
+
+SeriesWriter::~SeriesWriter() {
+  {
+    const Lock lock(work_->mutex);
+    work_->ending = true;
+  }
+  work_->changed.notify_all();
+  work_->thread.join();
+}
+
+void SeriesWriter::write(Frame&& frame) {
+  const Timed timed(work_->waiting);
+  Lock lock(work_->mutex);
+  work_->changed.wait(lock, [&] { return work_->error || work_->frames.size() < most_waiting; });
+  if (work_->error) std::rethrow_exception(work_->error);
+  work_->frames.push_back(std::move(frame));
+  work_->changed.notify_all();
+}
+
+void SeriesWriter::finish() {
+  const Timed timed(work_->waiting);
+  Lock lock(work_->mutex);
+  work_->changed.wait(lock, [&] { return work_->frames.empty(); });
+  if (work_->error) std::rethrow_exception(work_->error);
+}
+
+double SeriesWriter::seconds_writing() const { return work_->writing; }
+double SeriesWriter::seconds_waiting() const { return work_->waiting; }
+long SeriesWriter::frames() const { return work_->whole; }
+
+}  // namespace barchan

@@ -1,0 +1,91 @@
+#include "output/whole_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "base/errors.hpp"
+
+namespace barchan {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, int error) {
+  throw OutputError("cannot write '" + file.string() + "': " + std::strerror(error));
+}
+
+/// 0 or errno. Writes that were interrupted or came out short go on where they stopped.
+int write_all(int descriptor, const char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t written = ::write(descriptor, bytes, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    bytes += written;
+    count -= static_cast<std::size_t>(written);
+  }
+  return 0;
+}
+
+}  // namespace
+
+WholeFile::WholeFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
+  temporary_ += suffix;
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(file_, errno);
+}
+
+WholeFile::~WholeFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void WholeFile::write(std::string_view bytes) {
+  if (const int error = write_all(descriptor_, bytes.data(), bytes.size())) fail(file_, error);
+}
+
+void WholeFile::publish() {
+  if (::fsync(descriptor_) != 0) fail(file_, errno);
+  if (std::rename(temporary_.c_str(), file_.c_str()) != 0) fail(file_, errno);
+  ::close(descriptor_);
+  descriptor_ = -1;
+  // The name itself lives in the directory. Some file systems cannot sync one; the file's content is safe even there.
+  const auto directory = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
+  if (const int d = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); d >= 0) {
+    ::fsync(d);
+    ::close(d);
+  }
+}
+
+std::string WholeFile::why_it_failed(const std::string& otherwise) {
+  // Our descriptor keeps the blocks of the file even if the other writer has removed its name, so the disk is as full
+  // as it was when that writer failed. A megabyte is more than what a file system hides in a last partial block.
+  const std::string trial(1 << 20, '\0');
+  if (::lseek(descriptor_, 0, SEEK_END) < 0) return std::strerror(errno);
+  if (const int error = write_all(descriptor_, trial.data(), trial.size())) return std::strerror(error);
+  if (::fsync(descriptor_) != 0) return std::strerror(errno);
+  return otherwise;
+}
+
+void write_whole_file(const std::filesystem::path& file, std::string_view text) {
+  WholeFile whole(file);
+  whole.write(text);
+  whole.publish();
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  if (stream) text.assign(std::istreambuf_iterator<char>(stream), {});
+  // Opening a directory succeeds and reading it fails, hence the second look at errno.
+  if (!stream || stream.bad() || (text.empty() && std::filesystem::is_directory(file)))
+    throw OutputError("cannot read '" + file.string() + "': " + std::strerror(errno != 0 ? errno : EIO));
+  return text;
+}
+
+}  // namespace barchan

@@ -1,0 +1,42 @@
+// A file that gets its name only when all of it is on the disk.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace barchan {
+
+/// Writes FILE.part; publish() puts it on the disk and renames it to FILE. A reader sees the old FILE or the whole new
+/// one, never half of one. Without publish() the destructor removes what was written and FILE stays what it was.
+class WholeFile {
+ public:
+  static constexpr std::string_view suffix = ".part";
+
+  /// Opens FILE.part for writing. Throws OutputError with the reason (no such directory, no permission, ...).
+  explicit WholeFile(std::filesystem::path file);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  /// Where another writer than write() puts its bytes.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  void write(std::string_view bytes);   ///< Appends. Throws OutputError.
+  void publish();                       ///< fsync, rename, fsync of the directory. Throws OutputError.
+
+  /// Says why another writer could not write temporary(): tries to write there itself and returns the system's words
+  /// ("No space left on device"), or `otherwise` if the trial succeeds.
+  std::string why_it_failed(const std::string& otherwise);
+
+ private:
+  std::filesystem::path file_, temporary_;
+  int descriptor_ = -1;
+};
+
+/// The whole of a small file at once. Throws OutputError.
+void write_whole_file(const std::filesystem::path& file, std::string_view text);
+
+/// The text of a file. Throws OutputError.
+std::string read_text(const std::filesystem::path& file);
+
+}  // namespace barchan
