@@ -92,7 +92,8 @@ void SeriesWriter::Work::prepare() {
   for (const auto& entry : entries) kept.insert(entry.file);
   std::vector<std::filesystem::path> stale;
   for (const auto& file : std::filesystem::directory_iterator(directory, failed))
-    if (const auto n = file.path().filename().string(); is_frame_of(name, n) && !kept.contains(n)) stale.push_back(file);
+    if (const auto n = file.path().filename().string(); file.is_regular_file() && is_frame_of(name, n) && !kept.contains(n))
+      stale.push_back(file);
   for (const auto& file : stale) std::filesystem::remove(file, failed);
 }
 

@@ -1,0 +1,42 @@
+// run.json: what ran, how fast, and how well the conserved quantities were kept.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace barchan {
+
+struct RunReport {
+  // the program
+  std::string version, commit, compiler, instruction_set, vtk;
+  int threads = 1;
+
+  // the scene and the plan
+  std::string scene_title, scene_file;
+  std::map<std::string, long> particles;                       // by phase
+  std::map<std::string, long> pairs;                           // by matrix entry, "air-sand": directed pairs of the last list
+  std::map<std::string, std::vector<std::string>> fields;      // by phase
+  std::vector<std::string> passes;                             // in the order of the step
+
+  // the run
+  long steps = 0;
+  double simulated_time = 0;                                   // s
+  std::vector<std::pair<std::string, double>> seconds;         // s of wall time by pass, in the order of the step
+  double wall_seconds = 0, cpu_seconds = 0;                    // s, in all
+  double particle_steps_per_second = 0;
+  double pair_interactions_per_second = 0;                     // directed pairs
+  std::map<std::string, long> time_step_limits;                // limit -> steps that it ruled
+  std::map<std::string, double> budgets;                       // momentum drift, largest density error, ...
+  std::string end_reason;                                      // "end", "breakdown: ...", "SIGINT", ...
+};
+
+/// The document that write_run_report writes. What is not finite becomes null.
+std::string to_json(const RunReport& report);
+
+/// Replaces `file` by rename. Throws OutputError.
+void write_run_report(const std::filesystem::path& file, const RunReport& report);
+
+}  // namespace barchan
