@@ -10,6 +10,7 @@
 #include <vtkCommand.h>
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
+#include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkIntArray.h>
@@ -58,6 +59,12 @@ class FirstError : public vtkCommand {
   bool happened = false;
   std::string message;
 };
+
+/// Errors of `algorithm` go to `error`. Its executive's only repeat that something failed, so they go nowhere.
+void listen(vtkAlgorithm* algorithm, FirstError* error) {
+  algorithm->AddObserver(vtkCommand::ErrorEvent, error);
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, vtkNew<FirstError>());
+}
 
 /// VTK's messages name a source file and an object's address on lines of their own; the last line says what happened.
 std::string last_line(std::string text) {
@@ -186,7 +193,7 @@ void run(vtkXMLWriter* writer, vtkPointSet* data, WholeFile& file, FrameFormat f
     writer->SetCompressionLevel(1);
   }
   vtkNew<FirstError> error;
-  writer->AddObserver(vtkCommand::ErrorEvent, error);
+  listen(writer, error);
   const bool written = writer->Write() != 0;
   if (written && !error->happened && writer->GetErrorCode() == vtkErrorCode::NoError && has_its_end(file.temporary()))
     return;
@@ -267,7 +274,7 @@ template <class Reader>
 Frame read_with(const std::filesystem::path& file) {
   vtkNew<Reader> reader;
   vtkNew<FirstError> error;
-  reader->AddObserver(vtkCommand::ErrorEvent, error);
+  listen(reader, error);
   reader->SetReaderErrorObserver(error);
   reader->SetParserErrorObserver(error);
   reader->SetFileName(file.c_str());
