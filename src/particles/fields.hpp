@@ -10,7 +10,7 @@ namespace barchan {
 
 enum class Field : int {
   position, velocity, density, pressure, acceleration, density_rate, velocity_gradient, stress, energy, energy_rate,
-  wall_normal, smoothing_length, count
+  shift_velocity, wall_normal, wall_depth, smoothing_length, count
 };
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
@@ -32,12 +32,14 @@ inline constexpr std::array<FieldInfo, field_count> field_table{{
     {Field::density, "density", "rho", "kg/m3", Rank::scalar, true, "density"},
     {Field::pressure, "pressure", "p", "Pa", Rank::scalar, true, "pressure from the equation of state"},
     {Field::acceleration, "acceleration", "a", "m/s2", Rank::vector, true, "total acceleration of the last pass"},
-    {Field::density_rate, "density_rate", "drho/dt", "kg/m3/s", Rank::scalar, false, "rate of change of the density"},
+    {Field::density_rate, "density_rate", "drho/dt", "kg/m3/s", Rank::scalar, true, "rate of change of the density"},
     {Field::velocity_gradient, "velocity_gradient", "grad v", "1/s", Rank::matrix, false, "velocity gradient, row-major"},
     {Field::stress, "stress", "s", "Pa", Rank::symmetric, true, "deviatoric stress, xx yy zz xy yz xz"},
     {Field::energy, "energy", "e", "J/kg", Rank::scalar, true, "specific internal energy"},
     {Field::energy_rate, "energy_rate", "de/dt", "W/kg", Rank::scalar, false, "rate of change of the internal energy"},
+    {Field::shift_velocity, "shift_velocity", "du", "m/s", Rank::vector, true, "transport velocity less the velocity (particle shifting)"},
     {Field::wall_normal, "wall_normal", "n", "1", Rank::vector, true, "unit normal of a wall particle, into the fluid"},
+    {Field::wall_depth, "wall_depth", "phi", "m", Rank::scalar, true, "distance of a wall particle behind the wall's surface, 0: unknown"},
     {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false, "half the kernel radius of the phase with itself"},
 }};
 

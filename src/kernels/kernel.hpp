@@ -1,0 +1,20 @@
+// Kernels W(r) of compact support. `radius` is where they end, the entry of the interaction matrix; h = radius / 2.
+//
+// Pair loops need the gradient factor F(r) = (1/r) dW/dr, so that grad_a W(r_ab) = F r_ab with r_ab = x_a - x_b; F < 0.
+// Both kernels give exactly zero beyond the radius without a branch.
+#pragma once
+
+#include "kernels/cubic_spline.hpp"
+#include "kernels/wendland_c2.hpp"
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+/// Calls f with the kernel of this kind; returns what f returns.
+template <class T, class F>
+auto with_kernel(KernelKind kind, double radius, int dimensions, F&& f) {
+  if (kind == KernelKind::wendland_c2) return f(WendlandC2<T>(radius, dimensions));
+  return f(CubicSpline<T>(radius, dimensions));
+}
+
+}  // namespace barchan

@@ -1,0 +1,101 @@
+// Cells of one phase: particles sorted by cell, periodic images as particles of their own.
+//
+// A padded grid of cells covers the domain and `halo` cells beyond it on every side. Cells divide a periodic side
+// exactly, so a halo cell there holds the shifted images of one interior cell, in the same order. Interior cells are
+// walked in strips `strip` cells wide, which keeps the neighbours of a particle near in memory in large scenes.
+// After sort() the particles of a cell are contiguous; images follow behind the last particle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned.hpp"
+#include "particles/particles.hpp"
+
+namespace barchan {
+
+/// Where particles may be, and which sides are periodic.
+struct Bounds {
+  int dimensions = 2;
+  Vec3 low{}, high{};                               // m; periodic sides: the period
+  std::array<bool, 3> periodic{false, false, false};
+};
+
+/// One periodic image: particle `source` of the phase, moved by `shift` periods.
+struct Image {
+  std::uint32_t source;
+  std::array<std::int8_t, 3> shift;
+};
+
+class CellGrid {
+ public:
+  static constexpr int strip = 16;                  // cells
+
+  /// `reach` (m): the largest search radius over this phase's particles, skin included. `cell` (m): wanted cell size.
+  CellGrid(const Bounds& bounds, double cell, double reach);
+
+  /// Wraps positions into the periodic domain, sorts the phase by cell and makes the images. Positions outside the
+  /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm.
+  void sort(PhaseParticles& particles);
+
+  std::size_t images() const { return images_.size(); }
+  const std::vector<Image>& image_list() const { return images_; }
+  const std::array<double, 3>& period() const { return period_; }
+
+  /// Single-precision positions less low(), particles then images, as the search reads them.
+  const float* search_position(int axis) const { return search_[static_cast<std::size_t>(axis)].data(); }
+
+  /// Calls f(begin, end) for runs of candidates (particles, then images) that cover a ball of radius `radius` about x.
+  template <class F>
+  void candidates(const std::array<float, 3>& x, float radius, F&& f) const {
+    std::array<int, 3> first{0, 0, 0}, last{0, 0, 0};
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      first[d] = cell_coordinate(x[d] - radius, d);
+      last[d] = cell_coordinate(x[d] + radius, d);
+    }
+    std::uint32_t begin = 0, end = 0;
+    for (int z = first[2]; z <= last[2]; ++z)
+      for (int y = first[1]; y <= last[1]; ++y) {
+        const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
+        for (int c = first[0]; c <= last[0]; ++c) {
+          const std::uint32_t b = begin_[row + static_cast<std::size_t>(c)], e = end_[row + static_cast<std::size_t>(c)];
+          if (b == e) continue;
+          if (b == end) {
+            end = e;
+          } else {
+            if (begin != end) f(begin, end);
+            begin = b;
+            end = e;
+          }
+        }
+      }
+    if (begin != end) f(begin, end);
+  }
+
+  std::size_t bytes() const;
+
+ private:
+  /// Cell of a position relative to low() in the padded grid, clamped to it.
+  int cell_coordinate(float x, std::size_t axis) const {
+    const int c = static_cast<int>(x * inverse_cell_[axis] + static_cast<float>(halo_[axis]));
+    const int last = static_cast<int>(count_[axis]) - 1;
+    return c < 0 || x * inverse_cell_[axis] < -static_cast<float>(halo_[axis]) ? 0 : (c > last ? last : c);
+  }
+  void order_interior();
+  void make_images(const PhaseParticles& particles);
+
+  std::size_t dimensions_;
+  Bounds bounds_;
+  std::array<double, 3> period_{};
+  std::array<int, 3> halo_{0, 0, 0};
+  std::array<std::size_t, 3> count_{1, 1, 1};       // cells of the padded grid
+  std::array<float, 3> inverse_cell_{};
+  std::vector<std::uint32_t> begin_, end_;          // by padded cell
+  std::vector<std::uint32_t> walk_;                 // interior cells in the order of the sort
+  std::vector<std::uint32_t> cell_of_, order_;
+  std::vector<Image> images_;
+  std::array<AlignedVector<float>, 3> search_;
+};
+
+}  // namespace barchan

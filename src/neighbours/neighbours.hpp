@@ -1,0 +1,45 @@
+// Who is whose neighbour: the grids of all phases and the lists of all entries, rebuilt exactly when they must be.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "neighbours/cell_grid.hpp"
+#include "neighbours/pair_list.hpp"
+
+namespace barchan {
+
+/// One direction of an entry of the matrix: the particles of `a` look for those of `b`.
+struct Direction {
+  std::size_t a = 0, b = 0;   // phase numbers
+  double radius = 0.0;        // m
+};
+
+class Neighbours {
+ public:
+  /// `skin`: lists reach this fraction beyond an entry's radius, so that they stay valid while particles move.
+  Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin);
+
+  /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it did;
+  /// then particles have new places. The decision depends on positions alone.
+  bool update(std::vector<PhaseParticles>& particles, bool force);
+
+  const PairList& list(std::size_t direction) const { return lists_[direction]; }
+  const CellGrid& grid(std::size_t phase) const { return *grids_[phase]; }
+  bool has_grid(std::size_t phase) const { return grids_[phase] != nullptr; }
+  long rebuilds() const { return rebuilds_; }
+  std::size_t bytes() const;
+
+ private:
+  bool still_valid(const std::vector<PhaseParticles>& particles) const;
+
+  Bounds bounds_;
+  std::vector<Direction> directions_;
+  std::vector<std::unique_ptr<CellGrid>> grids_;   // null for a phase without entries
+  std::vector<PairList> lists_;
+  double skin_;
+  long rebuilds_ = 0;
+};
+
+}  // namespace barchan

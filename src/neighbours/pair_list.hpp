@@ -1,0 +1,52 @@
+// The neighbours of one phase's particles among another's, for one entry of the matrix.
+//
+// A full list: a pair of two particles of one phase stands in both their rows. Rows are padded to whole SIMD vectors
+// with the index of a dummy record that contributes nothing, so pair loops have no tails and no masks. Rows are kept
+// in chunks of `chunk` particles, each in its own buffer: threads build chunks independently and the result does not
+// depend on how many there are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned.hpp"
+#include "neighbours/cell_grid.hpp"
+
+namespace barchan {
+
+class PairList {
+ public:
+  static constexpr std::size_t chunk = 1024;    // particles
+  static constexpr std::size_t padding = 8;     // row lengths are multiples of this
+
+  struct Row {
+    const std::uint32_t* begin;
+    const std::uint32_t* end;
+  };
+
+  /// Lists, for each particle of `a`, the particles and images of `grid_b` within `radius` (m), itself left out when
+  /// `same` says that both are one phase. `dummy` is the index used for padding.
+  void build(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
+             std::uint32_t dummy, int dimensions);
+
+  Row row(std::size_t k) const {
+    const auto& c = chunks_[k / chunk];
+    const std::size_t r = k % chunk;
+    return {c.index.data() + c.begin[r], c.index.data() + c.begin[r + 1]};
+  }
+  std::uint64_t entries() const;     ///< listed neighbours (those in the skin too, padding not)
+  std::size_t bytes() const;
+
+ private:
+  struct Chunk {
+    AlignedVector<std::uint32_t> index;
+    std::vector<std::uint32_t> begin;
+    std::uint64_t entries = 0;
+  };
+  template <int Dim>
+  void build_chunks(const CellGrid&, std::size_t, const CellGrid&, bool, double, std::uint32_t);
+
+  std::vector<Chunk> chunks_;
+};
+
+}  // namespace barchan

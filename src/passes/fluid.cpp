@@ -1,0 +1,214 @@
+#include "passes/fluid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/kernel.hpp"
+#include "laws/consistent_fluid.hpp"
+#include "laws/plain_fluid.hpp"
+
+namespace barchan {
+
+namespace {
+
+template <int Dim, template <int> class Law>
+BARCHAN_SIMD_INLINE typename Law<Dim>::template Own<Lanes> load_own(const double* record, const Vec3& weight, double mu,
+                                                                    bool diffuse) {
+  using R = MotionRecord<Dim>;
+  typename Law<Dim>::template Own<Lanes> own;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    own.x[d] = Lanes(record[R::position + d]);
+    own.v[d] = Lanes(record[R::velocity + d]);
+    own.weight[d] = Lanes(weight[d]);
+  }
+  own.p = Lanes(record[R::pressure]);
+  own.mu = Lanes(mu);
+  own.diffusive = Lanes(diffuse ? 1.0 : 0.0);
+  return own;
+}
+
+template <int Dim, template <int> class Law, class Kernel>
+BARCHAN_SIMD_INLINE void add_row(PairList::Row row, const RecordArray& records, const Kernel& kernel,
+                                 const typename Law<Dim>::template Own<Lanes>& own,
+                                 typename Law<Dim>::template Sums<Lanes>& sums) {
+  using R = MotionRecord<Dim>;
+  for_each_neighbour<R::size>(row, records, [&](const Lanes* b) __attribute__((always_inline)) {
+    std::array<Lanes, Dim> r;
+    const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+    Law<Dim>::add(own, r, kernel.gradient(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
+  });
+}
+
+/// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
+inline std::array<double, 4> inverse_symmetric(const std::array<double, 3>& m) {
+  const double det = m[0] * m[2] - m[1] * m[1], s = 1.0 / det;
+  return {m[2] * s, -m[1] * s, -m[1] * s, m[0] * s};
+}
+inline std::array<double, 9> inverse_symmetric(const std::array<double, 6>& m) {
+  const double xx = m[0], xy = m[1], yy = m[2], xz = m[3], yz = m[4], zz = m[5];
+  const double a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
+  const double s = 1.0 / (xx * a + xy * b + xz * c);
+  const double d = (xx * zz - xz * xz) * s, e = (xy * xz - xx * yz) * s, f = (xx * yy - xy * xy) * s;
+  return {a * s, b * s, c * s, b * s, d, e, c * s, e, f};
+}
+
+template <int Dim>
+struct Rates {
+  std::array<double, Dim> acceleration, shift;
+  double density;
+};
+
+template <int Dim>
+std::array<double, Dim> shift_of(const std::array<double, Dim>& concentration, const FluidParameters& q) {
+  std::array<double, Dim> du;
+  double speed2 = 0.0;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    du[d] = -q.shift_speed * q.smoothing_length * concentration[d];
+    speed2 += du[d] * du[d];
+  }
+  if (speed2 > q.shift_limit * q.shift_limit) {
+    const double s = q.shift_limit / std::sqrt(speed2);
+    for (auto& u : du) u *= s;
+  }
+  return du;
+}
+
+template <int Dim>
+Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, const double*, double rho,
+                  const FluidParameters& q) {
+  Rates<Dim> r;
+  r.shift = shift_of<Dim>(s.concentration, q);
+  for (std::size_t d = 0; d < Dim; ++d)
+    r.acceleration[d] = (2.0 * s.viscous[d] - s.pressure[d]) / rho + q.gravity[d] + q.acceleration[d];
+  r.density = rho * s.divergence + 2.0 * q.diffusivity / (q.sound_speed * q.sound_speed) * s.diffusion;
+  return r;
+}
+
+template <int Dim>
+Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s, const double* mu, double rho,
+                  const FluidParameters& q) {
+  Rates<Dim> r;
+  r.shift = shift_of<Dim>(s.concentration, q);
+  const auto inverse = inverse_symmetric(s.moment);
+  const double trace = Dim == 2 ? s.moment[0] + s.moment[2] : s.moment[0] + s.moment[2] + s.moment[5 % s.moment.size()];
+  const double laplace = 2.0 * Dim / trace, c2 = q.sound_speed * q.sound_speed;
+  std::array<double, Dim> grad_p{};
+  std::array<std::array<double, Dim>, Dim> grad_v{};
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e < Dim; ++e) {
+      grad_p[d] -= inverse[d * Dim + e] * s.pressure[e];
+      for (std::size_t f = 0; f < Dim; ++f) grad_v[d][e] -= s.velocity[d * Dim + f] * inverse[f * Dim + e];
+    }
+  double divergence = 0.0, along_p = 0.0, dynamic = s.diffusion;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    divergence += grad_v[d][d];
+    along_p += r.shift[d] * grad_p[d];
+    dynamic -= (grad_p[d] - q.reference_density * q.gravity[d]) * s.concentration[d];
+    double friction = s.viscous[d], transported = 0.0;
+    for (std::size_t e = 0; e < Dim; ++e) {
+      friction -= grad_v[d][e] * s.concentration[e];
+      transported += r.shift[e] * grad_v[d][e];
+    }
+    r.acceleration[d] =
+        (laplace * *mu * friction - grad_p[d]) / rho + q.gravity[d] + q.acceleration[d] + transported;
+  }
+  r.density = -rho * divergence + (q.diffusivity * laplace * dynamic + along_p) / c2;
+  return r;
+}
+
+template <class Sums, class Reduced, std::size_t... K>
+void reduce(const Sums& from, Reduced& to) {
+  // Both are plain aggregates of the same shape: arrays of vectors here, of numbers there.
+  constexpr std::size_t count = sizeof(Sums) / sizeof(Lanes);
+  static_assert(count == sizeof(Reduced) / sizeof(double));
+  const auto* v = reinterpret_cast<const Lanes*>(&from);
+  auto* x = reinterpret_cast<double*>(&to);
+  std::size_t k = 0;
+  for (; k + 4 <= count; k += 4) simd::sum(v[k], v[k + 1], v[k + 2], v[k + 3]).store(x + k);
+  for (; k < count; ++k) x[k] = simd::sum(v[k]);
+}
+
+template <int Dim, template <int> class Law>
+void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<const FluidNeighbour> neighbours,
+           const FluidParameters& q) {
+  using L = Law<Dim>;
+  const Vec3 weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
+                    q.reference_density * q.gravity[2]};
+  std::array<double*, Dim> a{}, du{};
+  for (int d = 0; d < Dim; ++d) {
+    a[static_cast<std::size_t>(d)] = fluid.column(Field::acceleration, d);
+    if (fluid.has(Field::shift_velocity)) du[static_cast<std::size_t>(d)] = fluid.column(Field::shift_velocity, d);
+  }
+  double* rate = fluid.column(Field::density_rate);
+  const double* rho = fluid.column(Field::density);
+  const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
+  const auto n = static_cast<std::int64_t>(fluid.size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    typename L::template Sums<Lanes> sums{};
+    for (const auto& e : neighbours) {
+      const auto row = e.list->row(k);
+      if (row.begin == row.end) continue;
+      const auto own = load_own<Dim, Law>(own_records[k], weight, e.viscosity, e.diffuse);
+      with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
+        add_row<Dim, Law>(row, *e.records, kernel, own, sums);
+      });
+    }
+    typename L::template Sums<double> s;
+    reduce(sums, s);
+    const auto r = finish<Dim>(s, &mu, rho[k], q);
+    for (std::size_t d = 0; d < Dim; ++d) {
+      a[d][k] = r.acceleration[d];
+      if (du[d]) du[d][k] = r.shift[d];
+    }
+    rate[k] = r.density;
+  }
+}
+
+template <int Dim>
+void reaction(PhaseParticles& solid, const RecordArray& own_records, const FluidNeighbour& e, bool pores) {
+  using R = MotionRecord<Dim>;
+  using L = PlainFluid<Dim>;
+  std::array<double*, Dim> a{};
+  for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = solid.column(Field::acceleration, d);
+  const double inverse_mass = 1.0 / solid.mass();
+  const auto n = static_cast<std::int64_t>(solid.size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto row = e.list->row(k);
+    if (row.begin == row.end) continue;
+    const double* record = own_records[k];
+    const auto own = load_own<Dim, PlainFluid>(record, {0, 0, 0}, e.viscosity, false);
+    typename L::template Sums<Lanes> sums{};
+    with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
+      add_row<Dim, PlainFluid>(row, *e.records, kernel, own, sums);
+    });
+    typename L::template Sums<double> s;
+    reduce(sums, s);
+    const double closing = pores ? 2.0 * record[R::pressure] : 0.0;
+    for (std::size_t d = 0; d < Dim; ++d)
+      a[d][k] += record[R::volume] * inverse_mass * (2.0 * s.viscous[d] - s.pressure[d] + closing * s.concentration[d]);
+  }
+}
+
+}  // namespace
+
+void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& q, FluidScheme scheme) {
+  const bool plain = scheme == FluidScheme::plain;
+  if (fluid.dimensions() == 2)
+    plain ? rates<2, PlainFluid>(fluid, own, neighbours, q) : rates<2, ConsistentFluid>(fluid, own, neighbours, q);
+  else
+    plain ? rates<3, PlainFluid>(fluid, own, neighbours, q) : rates<3, ConsistentFluid>(fluid, own, neighbours, q);
+}
+
+void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores) {
+  if (solid.dimensions() == 2)
+    reaction<2>(solid, own, fluid, pores);
+  else
+    reaction<3>(solid, own, fluid, pores);
+}
+
+}  // namespace barchan
