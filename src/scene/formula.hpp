@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "scene/scene.hpp"
 
@@ -24,5 +25,8 @@ class Formula {
   std::unique_ptr<Parser> parser_;
   double value_ = 0.0;
 };
+
+/// What is wrong with a formula that may use `variables` (one letter each, blanks between) only; empty when it is fine.
+std::string formula_problem(const std::string& formula, std::string_view variables = "x y z t");
 
 }  // namespace barchan

@@ -19,4 +19,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
 /// JSON schema (draft 2020-12) of a scene file, from the same table of keys that the reader checks against.
 std::string scene_schema();
 
+/// The keys of every section as Markdown tables: the second half of docs/scenes.md.
+std::string scene_tables();
+
 }  // namespace barchan

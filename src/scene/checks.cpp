@@ -1,0 +1,192 @@
+#include "scene/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "scene/keys.hpp"
+#include "scene/lattice.hpp"
+#include "scene/nearest.hpp"
+
+namespace barchan {
+
+const toml::node* Report::find(const std::string& dotted) const {
+  const toml::node* node = &document_;
+  std::size_t begin = 0;
+  while (node && begin <= dotted.size()) {
+    const std::size_t end = std::min(dotted.find('.', begin), dotted.size());
+    const std::string part = dotted.substr(begin, end - begin);
+    if (const toml::table* table = node->as_table())
+      node = table->get(part);
+    else if (const toml::array* array = node->as_array())
+      node = array->get(static_cast<std::size_t>(std::stoul(part)));
+    else
+      node = nullptr;
+    begin = end + 1;
+  }
+  return node;
+}
+
+bool Report::has(const std::string& dotted) const { return find(dotted) != nullptr; }
+
+bool Report::is_section(const std::string& dotted) const {
+  const toml::node* node = find(dotted);
+  return node && node->is_table();
+}
+
+void Report::operator()(const std::string& dotted, const std::string& what) const {
+  std::string place = dotted;
+  const toml::node* node = find(place);
+  while (!node && place.find('.') != std::string::npos) {
+    place = place.substr(0, place.rfind('.'));
+    node = find(place);
+  }
+  problems_.add(node ? node->source() : document_.source(), dotted, what);
+}
+
+namespace {
+
+std::vector<std::string> phase_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Phase& phase : scene.phases) names.push_back(phase.name);
+  return names;
+}
+
+const Phase* find_phase(const Scene& scene, const std::string& name) {
+  for (const Phase& phase : scene.phases)
+    if (phase.name == name) return &phase;
+  return nullptr;
+}
+
+std::string kind_word(PhaseKind kind) {
+  switch (kind) {
+    case PhaseKind::fluid: return "fluid";
+    case PhaseKind::elastic: return "elastic";
+    case PhaseKind::grains: return "grains";
+    case PhaseKind::wall: return "wall";
+  }
+  return "";
+}
+
+std::string unknown_phase(const std::string& name, const Scene& scene) {
+  const std::vector<std::string> names = phase_names(scene);
+  return "there is no phase \"" + name + "\"; expected " + (names.empty() ? "a phase of [phases]" : one_of(names)) +
+         did_you_mean(nearest(name, names));
+}
+
+/// A key of another kind of phase; and the density, which walls may leave out.
+void check_phases(const Scene& scene, const Report& report) {
+  if (scene.phases.empty() && !report.touched("phases")) report("phases", "no phase; expected at least one section [phases.NAME]");
+  for (const Phase& phase : scene.phases) {
+    const std::string dotted = "phases." + phase.name;
+    if (report.touched(dotted + ".kind")) continue;
+    const std::string kind = kind_word(phase.kind);
+    for (const Key* key : keys_of("phases")) {
+      const std::string here = dotted + "." + std::string(key->name);
+      if (belongs_to_kind(*key, kind) || !report.has(here)) continue;
+      std::string kinds;
+      for (const char c : key->kinds) kinds += c == '|' ? std::string(" or ") : std::string(1, c);
+      report(here, "not a key of a phase of kind " + kind + "; expected in a phase of kind " + kinds + " only");
+    }
+    if (phase.kind != PhaseKind::wall && !report.has(dotted + ".density"))
+      report(dotted + ".density", "missing; expected " + expected(*find_key("phases", "density"), scene.dimensions));
+    const bool filled = std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
+    if (!filled && !report.touched("fill"))
+      report(dotted, "no particle; expected a [[fill]] with phase = \"" + phase.name + "\"");
+  }
+}
+
+void check_interactions(const Scene& scene, const Report& report) {
+  if (scene.interactions.empty() && !report.touched("interactions"))
+    report("interactions", "no pair of phases; expected at least one, as in air-sand = 2.5");
+  std::vector<const Interaction*> seen;
+  for (const Interaction& pair : scene.interactions) {
+    const std::string name = pair.b.empty() ? pair.a : pair.a + "-" + pair.b;
+    const std::string dotted = "interactions." + name;
+    if (pair.b.empty() || pair.b.find('-') != std::string::npos) {
+      report(dotted, "not a pair of phases; expected two names with a dash between them, as in air-sand" +
+                         did_you_mean(nearest(name, {"kernel"})));
+      continue;
+    }
+    bool known = true;
+    for (const std::string& phase : {pair.a, pair.b}) {
+      if (find_phase(scene, phase)) continue;
+      if (known || pair.a != pair.b) report(dotted, unknown_phase(phase, scene));
+      known = false;
+    }
+    if (!known) continue;
+    for (const Interaction* other : seen)
+      if (other->a == pair.b && other->b == pair.a)
+        report(dotted, "the pair is given twice; expected either " + name + " or " + other->a + "-" + other->b);
+    seen.push_back(&pair);
+    const bool walls = find_phase(scene, pair.a)->kind == PhaseKind::wall && find_phase(scene, pair.b)->kind == PhaseKind::wall;
+    if (walls) report(dotted, "walls do not feel each other; expected at least one phase of another kind");
+  }
+  for (const Phase& phase : scene.phases) {
+    const bool alone = std::none_of(scene.interactions.begin(), scene.interactions.end(),
+                                    [&](const Interaction& pair) { return pair.a == phase.name || pair.b == phase.name; });
+    if (phase.kind == PhaseKind::wall && alone && !report.touched("interactions") && !report.touched("phases." + phase.name + ".kind"))
+      report("phases." + phase.name, "nothing feels this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
+  }
+}
+
+/// A whole number of spacings along a periodic axis, and room for two of the largest kernels.
+void check_domain(const Scene& scene, const Report& report) {
+  if (report.touched("domain.size") || report.touched("spacing") || report.touched("dimensions") || scene.spacing <= 0.0) return;
+  if (scene.dimensions == 2 && scene.domain.periodic[2]) report("domain.periodic", "there is no z in two dimensions; expected x or y");
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) cells *= scene.domain.size[axis] / scene.spacing;
+  if (cells > 1e9) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%.10g m makes room for %.3g particles in the domain; expected at most 10^9", scene.spacing, cells);
+    report("spacing", text);
+    return;
+  }
+  const Interaction* widest = nullptr;
+  for (const Interaction& pair : scene.interactions)
+    if (!widest || pair.radius > widest->radius) widest = &pair;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
+    if (!scene.domain.periodic[axis]) continue;
+    const std::string misfit = misfit_of_period(scene, axis);
+    if (!misfit.empty()) report("domain.size", misfit);
+    if (!widest || report.touched("interactions") || !(widest->radius > 0.0)) continue;
+    const double least = 2.0 * widest->radius * scene.spacing;
+    if (scene.domain.size[axis] > least) continue;
+    char numbers[160];
+    std::snprintf(numbers, sizeof numbers, "%.10g m along the periodic axis %c is too short for the kernel of ", scene.domain.size[axis],
+                  static_cast<char>('x' + axis));
+    char bound[64];
+    std::snprintf(bound, sizeof bound, "; expected more than two kernel radii, %.10g m", least);
+    report("domain.size", numbers + widest->a + "-" + widest->b + bound);
+  }
+}
+
+void check_forcings(const Scene& scene, const Report& report) {
+  for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
+    const std::string dotted = "forcing." + std::to_string(k) + ".phase";
+    if (report.touched(dotted) || !report.has(dotted)) continue;
+    const Phase* phase = find_phase(scene, scene.forcings[k].phase);
+    if (!phase)
+      report(dotted, unknown_phase(scene.forcings[k].phase, scene));
+    else if (phase->kind == PhaseKind::wall)
+      report(dotted, "a wall feels no force; expected a phase of another kind (phases." + phase->name + ".velocity moves the wall)");
+  }
+}
+
+}  // namespace
+
+void check(const toml::table& document, const Scene& scene, Problems& problems) {
+  const Report report(document, problems);
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const std::string dotted = "fill." + std::to_string(k) + ".phase";
+    if (report.has(dotted) && !report.touched(dotted) && !find_phase(scene, scene.fills[k].phase))
+      report(dotted, unknown_phase(scene.fills[k].phase, scene));
+  }
+  check_fills(scene, report);
+  check_phases(scene, report);
+  check_interactions(scene, report);
+  check_domain(scene, report);
+  check_forcings(scene, report);
+}
+
+}  // namespace barchan

@@ -1,0 +1,31 @@
+// What concerns several keys of a scene at once. Internal to src/scene.
+#pragma once
+
+#include "scene/document.hpp"
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+/// Adds every contradiction in the scene. Keys that already have a problem are left out, so that no mistake is told twice.
+void check(const toml::table& document, const Scene& scene, Problems& problems);
+
+/// Finds the place of a dotted key and tells what is wrong with it.
+class Report {
+ public:
+  Report(const toml::table& document, Problems& problems) : document_(document), problems_(problems) {}
+
+  void operator()(const std::string& dotted, const std::string& what) const;
+  bool touched(const std::string& dotted) const { return problems_.touch(dotted); }
+  bool has(const std::string& dotted) const;   ///< the document has this key
+  bool is_section(const std::string& dotted) const;
+
+ private:
+  const toml::node* find(const std::string& dotted) const;
+  const toml::table& document_;
+  Problems& problems_;
+};
+
+/// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
+void check_fills(const Scene& scene, const Report& report);
+
+}  // namespace barchan

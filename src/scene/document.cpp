@@ -1,0 +1,179 @@
+#include "scene/document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <tuple>
+
+#include "base/errors.hpp"
+
+namespace barchan {
+namespace {
+
+constexpr std::string_view override_mark = "--set ";
+
+bool is_override(const toml::source_region& source) {
+  return source.path && source.path->starts_with(override_mark);
+}
+
+}  // namespace
+
+void Problems::add(const toml::source_region& source, const std::string& dotted, const std::string& what) {
+  const unsigned line = std::max<unsigned>(source.begin.line, 1), column = std::max<unsigned>(source.begin.column, 1);
+  const bool from_override = is_override(source);
+  const std::string place =
+      from_override ? *source.path : file_ + ":" + std::to_string(line) + ":" + std::to_string(column);
+  list_.push_back({place, from_override, line, column, dotted, what});
+}
+
+bool Problems::touch(const std::string& dotted) const {
+  return std::any_of(list_.begin(), list_.end(), [&](const Problem& problem) {
+    return problem.dotted.starts_with(dotted) &&
+           (problem.dotted.size() == dotted.size() || problem.dotted[dotted.size()] == '.');
+  });
+}
+
+void Problems::throw_if_any() const {
+  if (list_.empty()) return;
+  std::vector<Problem> sorted = list_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Problem& a, const Problem& b) {
+    if (a.from_override || b.from_override) return a.from_override < b.from_override;
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  std::string message;
+  for (const Problem& problem : sorted) {
+    if (!message.empty()) message += '\n';
+    message += problem.place + ": " + (problem.dotted.empty() ? "" : problem.dotted + ": ") + problem.what;
+  }
+  throw SceneError(message);
+}
+
+void Problems::fail(const toml::source_region& source, const std::string& dotted, const std::string& what) {
+  add(source, dotted, what);
+  throw_if_any();
+  std::abort();  // not reached: the list is not empty
+}
+
+namespace {
+
+std::vector<std::string> split(const std::string& dotted) {
+  std::vector<std::string> parts(1);
+  for (const char c : dotted) {
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+/// TOML, or else a number as people write it (".5"), or else a bare word, which is a string. Null: malformed.
+std::unique_ptr<toml::node> parse_value(const std::string& text, const std::string& label) {
+  const auto take = [&](const std::string& source) -> std::unique_ptr<toml::node> {
+    toml::table parsed;
+    try {
+      parsed = toml::parse(std::string_view(source), std::string_view(label));
+    } catch (const toml::parse_error&) { return nullptr; }
+    if (parsed.size() != 1) return nullptr;
+    std::unique_ptr<toml::node> value;
+    parsed.get("value")->visit([&](auto& node) {
+      using Node = std::decay_t<decltype(node)>;
+      value = std::make_unique<Node>(std::move(node));
+    });
+    return value;
+  };
+  if (auto value = take("value = " + text)) return value;
+  if (text.empty() || std::string_view("[{\"'").find(text.front()) == std::string_view::npos) {
+    double number = 0.0;
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(begin, end, number);
+    toml::table holder = toml::parse(std::string_view("number = 0.0\nword = ''"), std::string_view(label));
+    if (!text.empty() && error == std::errc() && rest == end) {
+      *holder.get("number")->as_floating_point() = number;
+      return std::make_unique<toml::value<double>>(std::move(*holder.get("number")->as_floating_point()));
+    }
+    *holder.get("word")->as_string() = text;
+    return std::make_unique<toml::value<std::string>>(std::move(*holder.get("word")->as_string()));
+  }
+  return nullptr;
+}
+
+void put(toml::table& table, const std::string& name, toml::node& value, const toml::source_region& source) {
+  value.visit([&](auto& node) { table.insert_or_assign(toml::key(name, toml::source_region(source)), std::move(node)); });
+}
+
+/// "b-a" for "a-b": the two name the same entry of the matrix, so the override replaces the one in the file.
+std::string reversed_pair(const std::string& pair) {
+  const std::size_t dash = pair.find('-');
+  return dash == std::string::npos ? pair : pair.substr(dash + 1) + "-" + pair.substr(0, dash);
+}
+
+/// Replaces or adds one value. Sections that do not exist are made; whether the key is known is checked later.
+void apply(toml::table& document, const std::string& assignment, Problems& problems) {
+  const std::string label = std::string(override_mark) + assignment;
+  const toml::source_region here{{1, 1}, {1, 1}, std::make_shared<const std::string>(label)};
+  const std::size_t equals = assignment.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    problems.add(here, "", "not an override; expected KEY=VALUE, as in time.end=0.01");
+    return;
+  }
+  const std::string dotted = assignment.substr(0, equals);
+  auto value = parse_value(assignment.substr(equals + 1), label);
+  if (!value) {
+    problems.add(here, dotted, "the value is malformed; expected a value as in a scene file");
+    return;
+  }
+  const std::vector<std::string> parts = split(dotted);
+  toml::node* node = &document;
+  std::string so_far;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::string& part = parts[k];
+    const bool last = k + 1 == parts.size();
+    if (toml::table* table = node->as_table()) {
+      if (last && k == 1 && parts[0] == "interactions" && !table->contains(part)) table->erase(reversed_pair(part));
+      if (last) {
+        put(*table, part, *value, here);
+        return;
+      }
+      if (!table->contains(part)) {
+        auto section = parse_value("{}", label);
+        put(*table, part, *section, here);
+      }
+      node = table->get(part);
+    } else if (toml::array* array = node->as_array()) {
+      std::size_t index = 0;
+      const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+      if (error != std::errc() || rest != part.data() + part.size() || index >= array->size()) {
+        problems.add(here, dotted, "there is no " + so_far + "." + part + "; expected a number from 0 to " +
+                                       std::to_string(array->size() - 1) + " after \"" + so_far + "\"");
+        return;
+      }
+      if (last) {
+        value->visit([&](auto& replacement) { array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(replacement)); });
+        return;
+      }
+      node = array->get(index);
+    } else {
+      problems.add(here, dotted, so_far + " is a value, not a section");
+      return;
+    }
+    so_far += (so_far.empty() ? "" : ".") + part;
+  }
+}
+
+}  // namespace
+
+toml::table parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides,
+                           Problems& problems) {
+  toml::table document;
+  try {
+    document = toml::parse(std::string_view(text), std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    problems.fail(error.source(), "", "not TOML: " + std::string(error.description()));
+  }
+  for (const std::string& assignment : overrides) apply(document, assignment, problems);
+  return document;
+}
+
+}  // namespace barchan

@@ -1,0 +1,88 @@
+#include "scene/formula.hpp"
+
+#include <muParser.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/errors.hpp"
+
+namespace barchan {
+namespace {
+
+double modulo(double a, double b) { return std::fmod(a, b); }
+double floor_of(double a) { return std::floor(a); }
+
+/// What a scene's formulas know beside muParser's own functions and operators.
+void define_constants(mu::Parser& parser) {
+  parser.ClearConst();
+  parser.DefineConst("pi", std::numbers::pi);
+  parser.DefineConst("e", std::numbers::e);
+  parser.DefineFun("fmod", modulo);
+  parser.DefineFun("floor", floor_of);
+}
+
+/// muParser ends some of its messages with a full stop; the reader goes on with a semicolon.
+std::string without_full_stop(std::string text) {
+  while (!text.empty() && (text.back() == '.' || text.back() == ' ' || text.back() == '\n')) text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+struct Formula::Parser {
+  mu::Parser parser;
+  double x = 0.0, y = 0.0, z = 0.0, t = 0.0;
+};
+
+Formula::Formula(const Expression& expression) : value_(expression.value) {
+  if (!expression.is_formula()) return;
+  parser_ = std::make_unique<Parser>();
+  try {
+    define_constants(parser_->parser);
+    parser_->parser.DefineVar("x", &parser_->x);
+    parser_->parser.DefineVar("y", &parser_->y);
+    parser_->parser.DefineVar("z", &parser_->z);
+    parser_->parser.DefineVar("t", &parser_->t);
+    parser_->parser.SetExpr(expression.formula);
+    parser_->parser.Eval();  // compiles, so that later calls only evaluate
+  } catch (const mu::Parser::exception_type& error) {
+    throw SceneError("the formula \"" + expression.formula + "\" is malformed: " + without_full_stop(error.GetMsg()));
+  }
+}
+
+Formula::~Formula() = default;
+Formula::Formula(Formula&&) noexcept = default;
+Formula& Formula::operator=(Formula&&) noexcept = default;
+
+double Formula::operator()(const Vec3& x, double t) const {
+  if (!parser_) return value_;
+  parser_->x = x[0];
+  parser_->y = x[1];
+  parser_->z = x[2];
+  parser_->t = t;
+  return parser_->parser.Eval();
+}
+
+bool Formula::is_constant() const { return parser_ == nullptr; }
+
+double Formula::constant() const { return value_; }
+
+std::string formula_problem(const std::string& formula, std::string_view variables) {
+  if (formula.empty()) return "the formula is empty";
+  mu::Parser parser;
+  double somewhere = 0.37;
+  try {
+    define_constants(parser);
+    for (const char name : variables)
+      if (name != ' ') parser.DefineVar(std::string(1, name), &somewhere);
+    parser.SetExpr(formula);
+    parser.Eval();
+    if (parser.GetNumResults() != 1) return "\"" + formula + "\" is several formulas";
+  } catch (const mu::Parser::exception_type& error) {
+    return "the formula \"" + formula + "\" is malformed: " + without_full_stop(error.GetMsg());
+  }
+  return "";
+}
+
+}  // namespace barchan

@@ -1,0 +1,145 @@
+#include "scene/generate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/errors.hpp"
+#include "scene/formula.hpp"
+#include "scene/ground.hpp"
+#include "scene/lattice.hpp"
+#include "scene/places.hpp"
+#include "scene/random.hpp"
+#include "scene/shapes.hpp"
+
+namespace barchan {
+namespace {
+
+/// `FILE: fill.1: ... `: the mistakes that only show when the particles are there have no place in the file.
+[[noreturn]] void fail(const Scene& scene, std::size_t fill, const std::string& what) {
+  throw SceneError(scene.file + ": fill." + std::to_string(fill) + ": " + what);
+}
+
+std::string point_text(const Vec3& x, int dimensions) {
+  char text[120];
+  if (dimensions == 3)
+    std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
+  else
+    std::snprintf(text, sizeof text, "(%.6g, %.6g)", x[0], x[1]);
+  return text;
+}
+
+bool inside_domain(const Scene& scene, const Vec3& x) {
+  const double slack = 1e-6 * scene.spacing;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
+    const double s = x[axis] - scene.domain.origin[axis];
+    if (!scene.domain.periodic[axis] && (s < -slack || s > scene.domain.size[axis] + slack)) return false;
+  }
+  return true;
+}
+
+void perturb(std::vector<Vec3>& places, const Fill& fill, const Scene& scene) {
+  if (fill.perturb <= 0.0) return;
+  const PeriodicSpace space(scene.domain);
+  Random random(fill.seed);
+  const double most = fill.perturb * scene.spacing;
+  for (Vec3& x : places) {
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) x[axis] += random.uniform(-most, most);
+    x = space.wrapped(x);
+  }
+}
+
+/// eq. (18) of Halik et al. 2015 in SI units: u = (u*/kappa) ln(y/y0) over the ground.
+double log_wind(const LogProfile& log, double height) {
+  return height > log.roughness ? log.friction_velocity / log.kappa * std::log(height / log.roughness) : 0.0;
+}
+
+/// Initial velocities of a fill; formulas are evaluated at t = 0. Nothing else knows the wind profile.
+class InitialVelocity {
+ public:
+  InitialVelocity(const Fill& fill, const Scene& scene)
+      : log_(fill.log_profile),
+        bottom_(scene.domain.origin[1]),
+        ground_(scene),
+        components_{Formula(fill.velocity[0]), Formula(fill.velocity[1]), Formula(fill.velocity[2])} {}
+
+  Vec3 operator()(const Vec3& x) const {
+    Vec3 v{components_[0](x), components_[1](x), components_[2](x)};
+    if (log_) v[0] += log_wind(*log_, x[1] - bottom_ - (log_->over_ground ? ground_.height(x[0], x[2]) : 0.0));
+    return v;
+  }
+
+ private:
+  std::optional<LogProfile> log_;
+  double bottom_;
+  Ground ground_;
+  std::array<Formula, 3> components_;
+};
+
+void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind, const Occupied& occupied) {
+  const std::string phase = " of phase \"" + scene.fills[k].phase + "\"";
+  if (places.empty()) fail(scene, k, "no particle" + phase + "; expected a larger shape, a smaller spacing, or an earlier place in the file");
+  for (const Vec3& x : places) {
+    if (kind != PhaseKind::wall && !inside_domain(scene, x))
+      fail(scene, k, "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m lies outside the domain; expected a shape inside it");
+    const double least = (1.0 - 1e-6) * overlap_distance * scene.spacing;
+    const int other = std::max(occupied.inside.owner_near(x, least), occupied.outside.owner_near(x, least));
+    if (other < 0) continue;
+    fail(scene, k, "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
+                       " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +
+                       "\"; expected at least half a spacing between particles of different fills");
+  }
+}
+
+void check_values(const ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene) {
+  for (std::size_t i = first; i < block.position.size(); ++i) {
+    const Vec3& v = block.velocity[i];
+    const bool finite = std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]) &&
+                        (block.pressure.size() <= i || std::isfinite(block.pressure[i]));
+    if (!finite)
+      fail(scene, k, "a formula gives a velocity or pressure that is not a finite number at " +
+                         point_text(block.position[i], scene.dimensions) + " m");
+  }
+}
+
+void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& fill, const Scene& scene) {
+  const InitialVelocity velocity(fill, scene);
+  const bool gives_pressure = fill.pressure.is_formula() || fill.pressure.value != 0.0;
+  if (gives_pressure) block.pressure.resize(block.position.size(), 0.0);
+  const bool any_pressure = !block.pressure.empty() || gives_pressure;
+  const Formula pressure(fill.pressure);
+  for (const Vec3& x : places) {
+    block.position.push_back(x);
+    block.velocity.push_back(velocity(x));
+    if (any_pressure) block.pressure.push_back(pressure(x));
+  }
+}
+
+}  // namespace
+
+std::vector<ParticleBlock> generate(const Scene& scene) {
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
+    const std::string misfit = scene.domain.periodic[axis] ? misfit_of_period(scene, axis) : "";
+    if (!misfit.empty()) throw SceneError(scene.file + ": domain.size: " + misfit);
+  }
+  const PeriodicSpace space(scene.domain);
+  Occupied occupied{Places(space, scene.spacing), Places(space, scene.spacing)};
+  std::vector<ParticleBlock> blocks(scene.phases.size());
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const Fill& fill = scene.fills[k];
+    const auto phase = std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
+    if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
+    std::vector<Vec3> places = places_of(scene, k, occupied);
+    perturb(places, fill, scene);
+    check_places(places, k, scene, phase->kind, occupied);
+    if (k + 1 < scene.fills.size())
+      for (const Vec3& x : places) (inside_domain(scene, x) ? occupied.inside : occupied.outside).add(x, static_cast<int>(k));
+    ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
+    const std::size_t first = block.position.size();
+    append(block, places, fill, scene);
+    check_values(block, first, k, scene);
+  }
+  return blocks;
+}
+
+}  // namespace barchan

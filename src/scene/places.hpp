@@ -1,0 +1,49 @@
+// Which places are taken: a grid of cells over periodic space. Internal to src/scene.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+/// Periodic space of a scene: wraps points into the domain and measures the shortest way between two of them.
+class PeriodicSpace {
+ public:
+  explicit PeriodicSpace(const Domain& domain) : domain_(domain) {}
+  Vec3 wrapped(Vec3 x) const;
+  double distance(const Vec3& a, const Vec3& b) const;
+  const Domain& domain() const { return domain_; }
+
+ private:
+  Domain domain_;
+};
+
+/// Points that can be asked for neighbours within `reach`.
+class Places {
+ public:
+  Places(const PeriodicSpace& space, double reach);
+  void add(const Vec3& x, int owner);
+
+  /// The nearest point within `distance` (at most the reach) of x whose owner is not `except`; its owner, or -1.
+  int owner_near(const Vec3& x, double distance, int except = -1) const;
+
+ private:
+  using Cell = std::array<long, 3>;
+  struct Hash {
+    std::size_t operator()(const Cell& cell) const;
+  };
+  struct Point {
+    Vec3 x;
+    int owner;
+  };
+  Cell cell_of(const Vec3& x) const;
+
+  PeriodicSpace space_;
+  std::array<double, 3> width_{};
+  std::array<long, 3> cells_{};        // along periodic axes; 0: unlimited
+  std::unordered_map<Cell, std::vector<Point>, Hash> grid_;
+};
+
+}  // namespace barchan

@@ -1,0 +1,155 @@
+// The JSON schema of a scene file and the tables of docs/scenes.md, both from the table of keys.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scene/keys.hpp"
+#include "scene/reader.hpp"
+
+namespace barchan {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json section_schema(const std::string& section);
+
+void add_bounds(Json& number, const Bounds& bounds) {
+  if (std::isfinite(bounds.above)) number["exclusiveMinimum"] = bounds.above;
+  if (std::isfinite(bounds.at_least)) number["minimum"] = bounds.at_least;
+  if (std::isfinite(bounds.below)) number["exclusiveMaximum"] = bounds.below;
+  if (std::isfinite(bounds.at_most)) number["maximum"] = bounds.at_most;
+}
+
+Json array_of(Json items, int least, int most) {
+  Json array{{"type", "array"}, {"items", std::move(items)}};
+  if (least > 0) array["minItems"] = least;
+  if (most > 0) array["maxItems"] = most;
+  return array;
+}
+
+/// One schema for each form that the key's value may have.
+std::vector<Json> forms(const Key& key) {
+  const std::string path = key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
+  Json number{{"type", "number"}};
+  add_bounds(number, key.bounds);
+  Json formula{{"type", Json::array({"number", "string"})}};
+  Json words{{"enum", choices(key)}};
+  std::vector<Json> all;
+  if (key.accepts & as_number) all.push_back(number);
+  if (key.accepts & as_integer) {
+    all.push_back(number);
+    all.back()["type"] = "integer";
+  }
+  if (key.accepts & as_boolean) all.push_back({{"type", "boolean"}});
+  if (key.accepts & as_text) all.push_back({{"type", "string"}});
+  if (key.accepts & as_word) all.push_back(words);
+  if (key.accepts & as_words) {
+    all.push_back(array_of(words, 0, 0));
+    all.back()["uniqueItems"] = true;
+  }
+  if (key.accepts & as_vector) all.push_back(array_of(number, 2, 3));
+  if (key.accepts & as_formula) all.push_back(formula);
+  if (key.accepts & as_formulas) all.push_back(array_of(formula, 2, 3));
+  if (key.accepts & as_points) all.push_back(array_of(array_of(number, 2, 3), 1, 0));
+  if (key.accepts & as_corners) all.push_back(array_of(array_of(number, 2, 2), 3, 0));
+  if (key.accepts & as_section) all.push_back(section_schema(path));
+  if (key.accepts & as_sections) all.push_back(array_of(section_schema(path), 0, 0));
+  if (key.accepts & as_named_sections)
+    all.push_back({{"type", "object"}, {"propertyNames", {{"pattern", "^[A-Za-z][A-Za-z0-9_]*$"}}}, {"additionalProperties", section_schema(path)}});
+  return all;
+}
+
+/// Meaning, unit, kinds of phases and default in one sentence or two.
+std::string description(const Key& key) {
+  std::string text(key.meaning);
+  if (!key.unit.empty()) text += " Unit: " + std::string(key.unit) + ".";
+  if (!key.variables.empty()) text += " Formulas in " + std::string(key.variables) + ".";
+  if (!key.kinds.empty()) {
+    std::string kinds;
+    for (const char c : key.kinds) kinds += c == '|' ? std::string(", ") : std::string(1, c);
+    text += " Phases of kind " + kinds + ".";
+  }
+  if (!key.otherwise.empty() && !key.required()) text += " Default: " + std::string(key.otherwise) + ".";
+  return text;
+}
+
+Json key_schema(const Key& key) {
+  std::vector<Json> all = forms(key);
+  Json schema{{"description", description(key)}};
+  if (all.size() == 1)
+    schema.update(all.front());
+  else
+    schema["anyOf"] = all;
+  return schema;
+}
+
+Json section_schema(const std::string& section) {
+  Json schema{{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+  Json required = Json::array();
+  for (const Key* key : keys_of(section)) {
+    schema["properties"][std::string(key->name)] = key_schema(*key);
+    if (key->required() && key->kinds.empty()) required.push_back(key->name);
+  }
+  if (!required.empty()) schema["required"] = required;
+  if (section == "interactions") {
+    const Key& radius = *find_key("interactions.pair", "radius");
+    schema.erase("additionalProperties");
+    schema["patternProperties"]["^[A-Za-z][A-Za-z0-9_]*-[A-Za-z][A-Za-z0-9_]*$"] = {
+        {"description", description(radius)}, {"anyOf", Json::array({forms(radius).front(), section_schema("interactions.pair")})}};
+    schema["additionalProperties"] = false;
+  }
+  return schema;
+}
+
+/// `number (m), > 0` and the like, for the tables of docs/scenes.md.
+std::string table_row(const Key& key) {
+  std::string value = expected(key, 2);
+  for (std::size_t at; (at = value.find("of 2 ")) != std::string::npos;) value.erase(at, 5).insert(at, "of ");
+  for (std::size_t at; (at = value.find('|')) != std::string::npos;) value[at] = '/';
+  std::string meaning(key.meaning);
+  if (!key.kinds.empty()) {
+    std::string kinds;
+    for (const char c : key.kinds) kinds += c == '|' ? std::string(", ") : std::string(1, c);
+    meaning += " (" + kinds + ")";
+  }
+  return "| `" + std::string(key.name) + "` | " + value + " | " + std::string(key.otherwise) + " | " + meaning + " |\n";
+}
+
+}  // namespace
+
+std::string scene_schema() {
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", "Barchan scene"},
+              {"description", "A scene of the SPH simulator Barchan; SI units."}};
+  schema.update(section_schema(""));
+  return schema.dump(2) + "\n";
+}
+
+std::string scene_tables() {
+  const std::pair<const char*, const char*> sections[] = {
+      {"", "Top of the file"},
+      {"domain", "`[domain]`"},
+      {"phases", "`[phases.NAME]`"},
+      {"interactions", "`[interactions]`"},
+      {"interactions.pair", "`[interactions]` `a-b = { ... }`"},
+      {"fill", "`[[fill]]`"},
+      {"fill.shape", "`shape = { ... }` of a fill"},
+      {"fill.shape.dune", "`dune = { ... }` of a bed"},
+      {"fill.shape.box", "`box = { ... }`"},
+      {"fill.shape.disc", "`disc = { ... }`"},
+      {"fill.shape.sphere", "`sphere = { ... }`"},
+      {"fill.shape.ring", "`ring = { ... }`"},
+      {"fill.shape.cube", "`cube = { ... }`"},
+      {"fill.velocity", "`velocity = { ... }` of a fill"},
+      {"fill.velocity.log-profile", "`log-profile = { ... }`"},
+      {"forcing", "`[[forcing]]`"},
+      {"time", "`[time]`"},
+      {"output", "`[output]`"}};
+  std::string text;
+  for (const auto& [section, heading] : sections) {
+    text += "\n### " + std::string(heading) + "\n\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
+    for (const Key* key : keys_of(section)) text += table_row(*key);
+  }
+  return text;
+}
+
+}  // namespace barchan

@@ -1,0 +1,202 @@
+#include "scene/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "scene/formula.hpp"
+#include "scene/ground.hpp"
+#include "scene/lattice.hpp"
+#include "scene/random.hpp"
+
+namespace barchan {
+namespace {
+
+using Inside = std::function<bool(const Vec3&)>;
+
+struct Region {
+  Vec3 lower{}, upper{};     // m, of all places that could be inside
+  Vec3 anchor{};             // m, a place of the lattice
+  Inside inside;
+};
+
+bool in_polygon(const std::vector<std::array<double, 2>>& corners, double x, double y) {
+  bool inside = false;
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+    const auto& [xi, yi] = corners[i];
+    const auto& [xj, yj] = corners[j];
+    if ((yi > y) != (yj > y) && x < (xj - xi) * (y - yi) / (yj - yi) + xi) inside = !inside;
+  }
+  return inside;
+}
+
+/// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other packings
+/// keep half a spacing from sides that are not periodic.
+Region domain_region(const Scene& scene, Packing packing) {
+  Region region;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double dx = scene.spacing, low = scene.domain.origin[axis], size = scene.domain.size[axis];
+    region.anchor[axis] = low + 0.5 * dx;
+    region.lower[axis] = low;
+    region.upper[axis] = packing == Packing::square ? low + cells_along(scene, axis) * dx : low + size;
+    if (packing != Packing::square && !scene.domain.periodic[axis]) {
+      region.lower[axis] = low + 0.5 * dx;
+      region.upper[axis] = low + size - (0.5 - 1e-6) * dx;
+    }
+  }
+  region.inside = [](const Vec3&) { return true; };
+  return region;
+}
+
+/// Bounds of a shape that may stick out of the domain, but not once around a periodic axis.
+void bound(Region& region, const Scene& scene, const Vec3& lower, const Vec3& upper, std::size_t axes) {
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    const bool periodic = scene.domain.periodic[axis];
+    region.lower[axis] = periodic ? std::max(region.lower[axis], lower[axis]) : lower[axis];
+    region.upper[axis] = periodic ? std::min(region.upper[axis], upper[axis]) : upper[axis];
+  }
+}
+
+/// A round shape hangs on its centre, whatever the domain; `axes`: 2 for what goes through all of z.
+void bound_round(Region& region, const Vec3& centre, double radius, double spacing, std::size_t axes) {
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    region.anchor[axis] = centre[axis];
+    region.lower[axis] = centre[axis] - radius - spacing;
+    region.upper[axis] = centre[axis] + radius + spacing;
+  }
+}
+
+class RegionOf {
+ public:
+  RegionOf(const Scene& scene, const Fill& fill) : scene_(scene), region_(domain_region(scene, fill.packing)) {}
+  Region take() { return std::move(region_); }
+
+  void operator()(const BoxShape& box) {
+    bound(region_, scene_, box.min, box.max, scene_.dimensions == 3 ? 3 : 2);
+  }
+  void operator()(const DiscShape& disc) { round(disc.centre, -1.0, disc.radius, 2); }
+  void operator()(const RingShape& ring) { round(ring.centre, ring.inner, ring.outer, 2); }
+  void operator()(const SphereShape& sphere) { round(sphere.centre, -1.0, sphere.radius, 3); }
+  void operator()(const PolygonShape& polygon) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3 lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity};
+    for (const auto& corner : polygon.corners)
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        lower[axis] = std::min(lower[axis], corner[axis]);
+        upper[axis] = std::max(upper[axis], corner[axis]);
+      }
+    bound(region_, scene_, lower, upper, 2);
+    region_.inside = [corners = polygon.corners](const Vec3& x) { return in_polygon(corners, x[0], x[1]); };
+  }
+  void operator()(const FormulaShape& shape) {
+    region_.inside = [formula = std::make_shared<Formula>(shape.inside)](const Vec3& x) { return (*formula)(x) > 0.0; };
+  }
+  void operator()(const BedShape& bed) {
+    const double bottom = scene_.domain.origin[1], slack = 1e-9 * scene_.spacing;
+    if (!bed.dune || bed.dune->form != DuneShape::Form::formula)
+      region_.upper[1] = std::min(region_.upper[1], bottom + bed.depth + (bed.dune ? bed.dune->height : 0.0));
+    region_.inside = [=, ground = Ground(bed, scene_.domain)](const Vec3& x) {
+      return x[1] - bottom < ground.height(x[0], x[2]) - slack;
+    };
+  }
+  void operator()(const TheRestShape&) {}
+  void operator()(const CubeShape&) {}
+  void operator()(const PointsShape&) {}
+  void operator()(const SidesShape&) {}
+
+ private:
+  void round(const Vec3& centre, double inner, double outer, std::size_t axes) {
+    if (scene_.dimensions == 2) axes = 2;
+    const double slack = 1e-9 * scene_.spacing;
+    bound_round(region_, centre, outer, scene_.spacing, axes);
+    region_.inside = [=](const Vec3& x) {
+      Vec3 r = x - centre;
+      if (axes == 2) r[2] = 0.0;
+      return norm(r) <= outer + slack && norm(r) >= inner - slack;
+    };
+  }
+  const Scene& scene_;
+  Region region_;
+};
+
+std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spacing) {
+  std::vector<Vec3> places;
+  const auto offset = [&](int i) { return (i - 0.5 * (cube.count - 1)) * spacing; };
+  for (int j = 0; j < cube.count; ++j)
+    for (int k = 0; k < (dimensions == 3 ? cube.count : 1); ++k)
+      for (int i = 0; i < cube.count; ++i)
+        places.push_back(cube.centre + Vec3{offset(i), offset(j), dimensions == 3 ? offset(k) : 0.0});
+  return places;
+}
+
+/// Random sequential addition.
+std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, const Occupied& occupied) {
+  const PeriodicSpace space(scene.domain);
+  Random random(seed);
+  Places taken(space, scene.spacing);
+  std::vector<Vec3> places;
+  const long trials = static_cast<long>(std::ceil(200.0 * cells));
+  for (long trial = 0; trial < trials; ++trial) {
+    Vec3 x{};
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+      x[axis] = random.uniform(region.lower[axis], region.upper[axis]);
+    if (!region.inside(x)) continue;
+    x = space.wrapped(x);
+    if (taken.owner_near(x, scene.spacing) >= 0 || occupied.inside.owner_near(x, scene.spacing) >= 0) continue;
+    taken.add(x, 0);
+    places.push_back(x);
+  }
+  return places;
+}
+
+/// Lattice places over the ground that keep their distance from what is there.
+void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k, const Occupied& occupied) {
+  const bool over_ground =
+      std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
+                  [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
+  const Ground ground(scene);
+  const double slack = 1e-9 * scene.spacing;
+  std::erase_if(places, [&](const Vec3& x) {
+    if (over_ground && x[1] - scene.domain.origin[1] < ground.height(x[0], x[2]) - slack) return true;
+    return occupied.inside.owner_near(x, rest_distance * scene.spacing) >= 0;
+  });
+}
+
+}  // namespace
+
+std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {
+  const Fill& fill = scene.fills[k];
+  std::vector<Vec3> places;
+  if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
+    places = points->at;
+  } else if (const auto* cube = std::get_if<CubeShape>(&fill.shape)) {
+    places = cube_places(*cube, scene.dimensions, scene.spacing);
+  } else if (const auto* sides = std::get_if<SidesShape>(&fill.shape)) {
+    places = rows_outside(scene, *sides);
+    std::erase_if(places, [&](const Vec3& x) { return occupied.outside.owner_near(x, overlap_distance * scene.spacing) >= 0; });
+  } else {
+    RegionOf region_of(scene, fill);
+    std::visit(region_of, fill.shape);
+    const Region region = region_of.take();
+    double cells = 1.0;
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+      cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / scene.spacing;
+    if (!(cells <= 1e9))
+      throw SceneError(scene.file + ": fill." + std::to_string(k) + ": more than 10^9 particles of phase \"" + fill.phase +
+                       "\"; expected a larger spacing or a smaller shape");
+    if (fill.packing == Packing::random) {
+      places = random_places(scene, region, cells, fill.seed, occupied);
+    } else {
+      places = lattice(fill.packing, scene.dimensions, scene.spacing, region.anchor, region.lower, region.upper);
+      std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
+    }
+    if (std::holds_alternative<TheRestShape>(fill.shape)) keep_the_rest(places, scene, k, occupied);
+  }
+  const PeriodicSpace space(scene.domain);
+  for (Vec3& x : places) x = space.wrapped(x);
+  return places;
+}
+
+}  // namespace barchan

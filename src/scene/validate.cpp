@@ -1,0 +1,218 @@
+#include "scene/validate.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+#include "scene/formula.hpp"
+#include "scene/keys.hpp"
+#include "scene/nearest.hpp"
+
+namespace barchan {
+namespace {
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+/// What a person sees in the file, shortened: for "found ...".
+std::string shown(const toml::node& node) {
+  if (const auto* text = node.as_string()) return '"' + text->get() + '"';
+  if (const auto number = node.as_integer()) return std::to_string(number->get());
+  if (const auto number = node.as_floating_point()) return number_text(number->get());
+  if (const auto truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  if (const auto* array = node.as_array()) return "an array of " + std::to_string(array->size());
+  if (node.is_table()) return "a section";
+  return "a date or time";
+}
+
+class Validator {
+ public:
+  Validator(int dimensions, Problems& problems) : dimensions_(dimensions), problems_(problems) {}
+
+  void section(const toml::table& table, const std::string& section, const std::string& dotted) {
+    const std::string kind = section == "phases" ? table["kind"].value_or(std::string()) : "";
+    for (const auto& [name, node] : table) {
+      const std::string here = dotted.empty() ? std::string(name.str()) : dotted + "." + std::string(name.str());
+      if (section == "interactions" && name.str() != "kernel")
+        pair(node, here);
+      else if (const Key* key = find_key(section, name.str()))
+        value(*key, node, here);
+      else
+        unknown(name, section, dotted, here);
+    }
+    for (const Key* key : keys_of(section)) {
+      const bool needed = key->required() && (kind.empty() || belongs_to_kind(*key, kind));
+      if (needed && (key->kinds.empty() || !kind.empty()) && !table.contains(key->name))
+        problems_.add(table.source(), dotted.empty() ? std::string(key->name) : dotted + "." + std::string(key->name),
+                      "missing; expected " + expected(*key, dimensions_));
+    }
+  }
+
+ private:
+  void unknown(const toml::key& name, const std::string& section, const std::string& dotted, const std::string& here) {
+    std::vector<std::string> names;
+    for (const Key* key : keys_of(section)) names.emplace_back(key->name);
+    std::string meant = nearest(name.str(), names);
+    if (meant.empty())
+      for (const Key& key : all_keys())
+        if (key.name == name.str() && key.section.find('.') == std::string_view::npos) {
+          meant = key.section.empty() ? std::string(key.name)
+                                      : std::string(key.section) + (key.section == "phases" ? ".NAME." : ".") + std::string(key.name);
+          break;
+        }
+    std::string all;
+    for (const std::string& candidate : names) all += (all.empty() ? "" : ", ") + candidate;
+    problems_.add(name.source(), here,
+                  "unknown key; expected " +
+                      (meant.empty() ? "one of " + all : "a key of " + (dotted.empty() ? "the scene" : "[" + dotted + "]")) +
+                      did_you_mean(meant));
+  }
+
+  void pair(const toml::node& node, const std::string& here) {
+    static const Key& radius = *find_key("interactions.pair", "radius");
+    if (const auto* table = node.as_table())
+      section(*table, "interactions.pair", here);
+    else
+      value(radius, node, here);
+  }
+
+  /// True when the value has one of the forms that the key accepts; then its contents were checked too.
+  void value(const Key& key, const toml::node& node, const std::string& here) {
+    const std::string path = key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
+    const unsigned a = key.accepts;
+    if (const auto* table = node.as_table()) {
+      if (a & as_section) return section(*table, path, here);
+      if (a & as_named_sections) return named_sections(*table, path, here);
+    } else if (const auto* array = node.as_array()) {
+      if (a & as_sections) return sections(key, *array, path, here);
+      if (a & (as_vector | as_formulas)) return vector(key, *array, here, dimensions_);
+      if (a & as_points) return points(key, *array, here, dimensions_, 1);
+      if (a & as_corners) return points(key, *array, here, 2, 3);
+      if (a & as_words) return words(key, *array, here);
+    } else if (const auto* text = node.as_string()) {
+      if (a & as_text) return;
+      if ((a & as_word) && word_fits(key, text->get())) return;
+      if (a & as_formula) return formula(key, *text, here);
+      if (a & as_word) return unknown_word(key, *text, here);
+    } else if (node.is_number()) {
+      if (a & (as_number | as_formula)) return number(key, node, here);
+      if ((a & as_integer) && node.is_integer()) return number(key, node, here);
+    } else if (node.is_boolean() && (a & as_boolean)) {
+      return;
+    }
+    problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+  }
+
+  void named_sections(const toml::table& table, const std::string& path, const std::string& here) {
+    for (const auto& [name, node] : table) {
+      const std::string inner = here + "." + std::string(name.str());
+      const std::string_view text = name.str();
+      const bool letter_first = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0]));
+      bool good = letter_first;
+      for (const char c : text) good = good && (std::isalnum(static_cast<unsigned char>(c)) || c == '_');
+      if (!good)
+        problems_.add(name.source(), inner,
+                      "not a name of a phase; expected a letter followed by letters, digits and underscores");
+      if (const auto* entry = node.as_table())
+        section(*entry, path, inner);
+      else
+        problems_.add(node.source(), inner, "found " + shown(node) + "; expected a section");
+    }
+  }
+
+  void sections(const Key& key, const toml::array& array, const std::string& path, const std::string& here) {
+    std::size_t index = 0;
+    for (const toml::node& node : array) {
+      const std::string inner = here + "." + std::to_string(index++);
+      if (const auto* entry = node.as_table())
+        section(*entry, path, inner);
+      else
+        problems_.add(node.source(), inner, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+    }
+  }
+
+  void number(const Key& key, const toml::node& node, const std::string& here) {
+    const double number = node.value_or(0.0);
+    if (!std::isfinite(number))
+      problems_.add(node.source(), here, "found " + shown(node) + "; expected a finite number");
+    else if (!key.bounds.hold(number))
+      problems_.add(node.source(), here, shown(node) + " is out of range; expected " + expected(key, dimensions_));
+  }
+
+  void vector(const Key& key, const toml::array& array, const std::string& here, int components) {
+    if (array.size() != static_cast<std::size_t>(components))
+      return problems_.add(array.source(), here,
+                           "found " + std::to_string(array.size()) + (array.size() == 1 ? " component" : " components") +
+                               "; expected " + expected(key, dimensions_));
+    for (const toml::node& node : array) {
+      if (node.is_number())
+        number(key, node, here);
+      else if (const auto* text = node.as_string(); text && (key.accepts & as_formulas))
+        formula(key, *text, here);
+      else
+        problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+    }
+  }
+
+  void points(const Key& key, const toml::array& array, const std::string& here, int components, std::size_t least) {
+    if (array.size() < least)
+      return problems_.add(array.source(), here, "found " + shown(array) + "; expected " + expected(key, dimensions_));
+    for (const toml::node& node : array) {
+      if (const auto* point = node.as_array())
+        vector(key, *point, here, components);
+      else
+        problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+    }
+  }
+
+  static bool word_fits(const Key& key, const std::string& word) {
+    for (const std::string& choice : choices(key))
+      if (choice == word) return true;
+    return false;
+  }
+
+  void unknown_word(const Key& key, const toml::value<std::string>& text, const std::string& here) {
+    problems_.add(text.source(), here, "\"" + text.get() + "\" is not known; expected " + expected(key, dimensions_) +
+                                           did_you_mean(nearest(text.get(), choices(key))));
+  }
+
+  void words(const Key& key, const toml::array& array, const std::string& here) {
+    std::vector<std::string> seen;
+    for (const toml::node& node : array) {
+      const auto* text = node.as_string();
+      if (!text)
+        problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+      else if (!word_fits(key, text->get()))
+        unknown_word(key, *text, here);
+      else if (std::find(seen.begin(), seen.end(), text->get()) != seen.end())
+        problems_.add(node.source(), here, "\"" + text->get() + "\" is given twice");
+      else
+        seen.push_back(text->get());
+    }
+  }
+
+  void formula(const Key& key, const toml::value<std::string>& text, const std::string& here) {
+    const std::string problem = formula_problem(text.get(), key.variables);
+    if (problem.empty()) return;
+    std::string hint;
+    if (key.accepts & as_word) hint = did_you_mean(nearest(text.get(), choices(key)));
+    problems_.add(text.source(), here, problem + "; expected " + expected(key, dimensions_) + hint);
+  }
+
+  int dimensions_;
+  Problems& problems_;
+};
+
+}  // namespace
+
+int dimensions_of(const toml::table& document) { return document["dimensions"].value_or(2) == 3 ? 3 : 2; }
+
+void validate(const toml::table& document, Problems& problems) {
+  Validator(dimensions_of(document), problems).section(document, "", "");
+}
+
+}  // namespace barchan

@@ -1,0 +1,355 @@
+// The reader: the design's example, every key, overrides, the schema.
+#include "scene/reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "base/errors.hpp"
+#include "scene/keys.hpp"
+#include "scene/nearest.hpp"
+#include "unit/scene_texts.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::dune_text;
+using testing::square_text;
+using testing::with;
+
+std::string problem_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    parse_scene(text, "s.toml", overrides);
+  } catch (const SceneError& error) { return error.what(); }
+  return "";
+}
+
+TEST(SceneReader, ReadsTheDesignsExample) {
+  const Scene scene = parse_scene(dune_text, "some/where/dune.toml");
+  EXPECT_EQ(scene.file, "some/where/dune.toml");
+  EXPECT_EQ(scene.name, "dune");
+  EXPECT_EQ(scene.title, "Wind over a small dune");
+  EXPECT_EQ(scene.dimensions, 2);
+  EXPECT_DOUBLE_EQ(scene.spacing, 1e-3);
+  EXPECT_EQ(scene.domain.size, (Vec3{0.4, 0.1, 0.0}));
+  EXPECT_EQ(scene.domain.periodic, (std::array<bool, 3>{true, false, false}));
+  EXPECT_EQ(scene.domain.gravity, (Vec3{0.0, -9.81, 0.0}));
+  ASSERT_EQ(scene.phases.size(), 2u);
+  EXPECT_EQ(scene.phases[0].name, "air");
+  EXPECT_EQ(scene.phases[0].kind, PhaseKind::fluid);
+  EXPECT_DOUBLE_EQ(scene.phases[0].viscosity, 1.48e-5);
+  EXPECT_EQ(scene.phases[0].turbulence, "mixing-length");
+  EXPECT_FALSE(scene.phases[0].sound_speed.has_value());
+  EXPECT_EQ(scene.phases[1].kind, PhaseKind::grains);
+  EXPECT_DOUBLE_EQ(scene.phases[1].density, 2650);
+  EXPECT_DOUBLE_EQ(scene.phases[1].restitution, 0.7);
+  ASSERT_EQ(scene.interactions.size(), 3u);
+  EXPECT_EQ(scene.interactions[1].a, "air");
+  EXPECT_EQ(scene.interactions[1].b, "sand");
+  EXPECT_DOUBLE_EQ(scene.interactions[1].radius, 2.5);
+  EXPECT_EQ(scene.interactions[1].kernel, KernelKind::cubic_spline);
+  ASSERT_EQ(scene.fills.size(), 2u);
+  const auto& bed = std::get<BedShape>(scene.fills[0].shape);
+  EXPECT_DOUBLE_EQ(bed.depth, 0.01);
+  ASSERT_TRUE(bed.dune.has_value());
+  EXPECT_DOUBLE_EQ(bed.dune->height, 0.02);
+  EXPECT_DOUBLE_EQ(bed.dune->length, 0.12);
+  EXPECT_DOUBLE_EQ(bed.dune->at, 0.15);
+  EXPECT_TRUE(std::holds_alternative<TheRestShape>(scene.fills[1].shape));
+  ASSERT_TRUE(scene.fills[1].log_profile.has_value());
+  EXPECT_DOUBLE_EQ(scene.fills[1].log_profile->friction_velocity, 0.4);
+  EXPECT_DOUBLE_EQ(scene.fills[1].log_profile->roughness, 8.3e-6);
+  EXPECT_TRUE(scene.fills[1].log_profile->over_ground);
+  EXPECT_DOUBLE_EQ(scene.time.end, 0.07);
+  EXPECT_DOUBLE_EQ(scene.output.every, 1e-3);
+  EXPECT_EQ(scene.output.fields, (std::vector<std::string>{"velocity", "phase", "smoothing_length"}));
+}
+
+TEST(SceneReader, KeepsTheOrderOfPhasesAndPairsInTheFile) {
+  const std::string text = with(with(square_text, "[phases.air]", "[phases.zinc]\nkind = \"grains\"\ndensity = 7\n[phases.air]"),
+                                "air-air = 3.0", "zinc-zinc = 1.1\nair-zinc = 2\nair-air = 3.0") +
+                           "[[fill]]\nphase = \"zinc\"\nshape = { points = [[0.5, 0.5]] }\n";
+  const Scene scene = parse_scene(text, "s.toml");
+  ASSERT_EQ(scene.phases.size(), 2u);
+  EXPECT_EQ(scene.phases[0].name, "zinc");
+  EXPECT_EQ(scene.interactions[0].a, "zinc");
+  EXPECT_EQ(scene.interactions[2].b, "air");
+}
+
+/// A three-dimensional scene that sets every key of every section but the shapes, each to something else than its default.
+const std::string every_key = R"toml(
+title = "All keys"
+state = "dune"
+dimensions = 3
+spacing = 0.1
+precision = "mixed"
+[domain]
+origin = [-1, 0, 0.5]
+size = [2, 1, 1]
+periodic = ["x", "z"]
+gravity = [0.5, -9, 0.25]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-6
+sound-speed = 20
+equation-of-state = "tait"
+tait-exponent = 6
+artificial-viscosity = 0.02
+artificial-viscosity-beta = 0.03
+density-diffusion = 0.2
+shifting = 0.5
+background-pressure = 0.05
+scheme = "consistent"
+turbulence = "mixing-length"
+energy = true
+[phases.steel]
+kind = "elastic"
+density = 7870
+young = 206e9
+poisson = 0.3
+artificial-stress = 0.3
+artificial-viscosity = 1
+artificial-viscosity-beta = 2
+energy = true
+[phases.sand]
+kind = "grains"
+density = 2650
+restitution = 0.8
+contact-speed = 12
+[phases.floor]
+kind = "wall"
+law = "repulsive"
+slip = "free-slip"
+velocity = [0.25, 0, "sin(t)"]
+[interactions]
+kernel = "wendland-c2"
+water-water = 3
+water-steel = { radius = 2, kernel = "cubic-spline" }
+floor-water = { radius = 2.5 }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom", "top"], layers = 2 }
+[[fill]]
+phase = "sand"
+shape = { points = [[0, 0.5, 1], [0.5, 0.5, 1]] }
+[[fill]]
+phase = "steel"
+shape = { cube = { centre = [0.25, 0.25, 0.75], count = 2 } }
+velocity = [1, 2, 3]
+[[fill]]
+phase = "water"
+shape = "the-rest"
+packing = "rows"
+perturb = 0.2
+seed = 7
+velocity = { log-profile = { friction-velocity = 0.5, roughness = 1e-5, over-ground = false } }
+pressure = "1000*y"
+[[forcing]]
+phase = "water"
+acceleration = [0.1, "t", "x*y*z"]
+[time]
+end = 2
+step = 1e-4
+safety = 0.5
+largest-speed = 3
+[output]
+every = 0.25
+history-every = 0.125
+fields = ["density_rate"]
+format = "vtu"
+compress = false
+checkpoint-every = 60
+walls = false
+)toml";
+
+TEST(SceneReader, TakesEveryKey) {
+  const Scene scene = parse_scene(every_key, "all.toml");
+  EXPECT_EQ(scene.state, "dune");
+  EXPECT_EQ(scene.dimensions, 3);
+  EXPECT_EQ(scene.precision, Precision::mixed);
+  EXPECT_EQ(scene.domain.origin, (Vec3{-1, 0, 0.5}));
+  EXPECT_EQ(scene.domain.gravity, (Vec3{0.5, -9, 0.25}));
+  EXPECT_EQ(scene.domain.periodic, (std::array<bool, 3>{true, false, true}));
+  const Phase& water = scene.phases.at(0);
+  EXPECT_EQ(water.sound_speed, 20);
+  EXPECT_EQ(water.equation_of_state, EquationOfState::tait);
+  EXPECT_EQ(water.tait_exponent, 6);
+  EXPECT_EQ(water.artificial_viscosity, 0.02);
+  EXPECT_EQ(water.artificial_viscosity_beta, 0.03);
+  EXPECT_EQ(water.density_diffusion, 0.2);
+  EXPECT_EQ(water.shifting, 0.5);
+  EXPECT_EQ(water.background_pressure, 0.05);
+  EXPECT_EQ(water.scheme, FluidScheme::consistent);
+  EXPECT_TRUE(water.energy);
+  const Phase& steel = scene.phases.at(1);
+  EXPECT_EQ(steel.young, 206e9);
+  EXPECT_EQ(steel.poisson, 0.3);
+  EXPECT_EQ(steel.artificial_stress, 0.3);
+  EXPECT_EQ(steel.artificial_viscosity, 1);
+  const Phase& sand = scene.phases.at(2);
+  EXPECT_EQ(sand.restitution, 0.8);
+  EXPECT_EQ(sand.contact_speed, 12);
+  const Phase& floor = scene.phases.at(3);
+  EXPECT_EQ(floor.wall_law, WallLaw::repulsive);
+  EXPECT_EQ(floor.slip, Slip::free_slip);
+  EXPECT_EQ(floor.wall_velocity[0].value, 0.25);
+  EXPECT_EQ(floor.wall_velocity[2].formula, "sin(t)");
+  EXPECT_EQ(floor.density, 1000) << "a wall without a density has that of the phase it interacts with";
+  EXPECT_EQ(scene.interactions.at(0).kernel, KernelKind::wendland_c2);
+  EXPECT_EQ(scene.interactions.at(1).kernel, KernelKind::cubic_spline);
+  EXPECT_EQ(scene.interactions.at(1).radius, 2);
+  EXPECT_EQ(scene.interactions.at(2).kernel, KernelKind::wendland_c2);
+  EXPECT_EQ(std::get<SidesShape>(scene.fills.at(0).shape).layers, 2);
+  EXPECT_EQ(std::get<PointsShape>(scene.fills.at(1).shape).at.at(1), (Vec3{0.5, 0.5, 1}));
+  EXPECT_EQ(std::get<CubeShape>(scene.fills.at(2).shape).count, 2);
+  EXPECT_EQ(scene.fills.at(2).velocity[2].value, 3);
+  EXPECT_EQ(scene.fills.at(3).perturb, 0.2);
+  EXPECT_EQ(scene.fills.at(3).seed, 7u);
+  EXPECT_FALSE(scene.fills.at(3).log_profile->over_ground);
+  EXPECT_EQ(scene.fills.at(3).pressure.formula, "1000*y");
+  EXPECT_EQ(scene.forcings.at(0).phase, "water");
+  EXPECT_EQ(scene.forcings.at(0).acceleration[1].formula, "t");
+  EXPECT_EQ(scene.time.fixed_step, 1e-4);
+  EXPECT_EQ(scene.time.safety, 0.5);
+  EXPECT_EQ(scene.time.largest_speed, 3);
+  EXPECT_EQ(scene.output.history_every, 0.125);
+  EXPECT_EQ(scene.output.format, FrameFormat::vtu);
+  EXPECT_FALSE(scene.output.compress);
+  EXPECT_EQ(scene.output.checkpoint_every, 60);
+  EXPECT_FALSE(scene.output.walls);
+}
+
+TEST(SceneReader, TheTestAboveNamesEveryKeyOfTheTable) {
+  for (const Key& key : all_keys()) {
+    if (key.section.starts_with("fill.shape")) continue;
+    const std::string name(key.name);
+    const bool named = every_key.find(name + " =") != std::string::npos || every_key.find("[" + name) != std::string::npos;
+    EXPECT_TRUE(named) << key.section << "." << name;
+  }
+}
+
+TEST(SceneReader, TakesEveryShape) {
+  const auto shape = [](const std::string& text) {
+    return parse_scene(with(square_text, "\"the-rest\"", text), "s.toml").fills.at(0).shape;
+  };
+  EXPECT_EQ(std::get<BoxShape>(shape("{ box = { min = [0, 0.1], max = [1, 0.5] } }")).max, (Vec3{1, 0.5, 0}));
+  EXPECT_EQ(std::get<DiscShape>(shape("{ disc = { centre = [0.5, 0.4], radius = 0.2 } }")).radius, 0.2);
+  EXPECT_EQ(std::get<SphereShape>(shape("{ sphere = { centre = [0.5, 0.4], radius = 0.2 } }")).centre, (Vec3{0.5, 0.4, 0}));
+  EXPECT_EQ(std::get<RingShape>(shape("{ ring = { centre = [0.5, 0.4], inner = 0.2, outer = 0.3 } }")).outer, 0.3);
+  EXPECT_EQ(std::get<PolygonShape>(shape("{ polygon = [[0, 0], [1, 0], [0, 1]] }")).corners.at(2), (std::array<double, 2>{0, 1}));
+  EXPECT_EQ(std::get<CubeShape>(shape("{ cube = { centre = [0.5, 0.5], count = 3 } }")).count, 3);
+  EXPECT_EQ(std::get<PointsShape>(shape("{ points = [[0.5, 0.5]] }")).at.size(), 1u);
+  EXPECT_EQ(std::get<FormulaShape>(shape("{ formula = \"x - y\" }")).inside.formula, "x - y");
+  EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25 }")).depth, 0.25);
+  const auto dune = [&](const std::string& text) { return *std::get<BedShape>(shape("{ bed = 0.25, dune = " + text + " }")).dune; };
+  EXPECT_EQ(dune("{ form = \"gaussian\", height = 0.1, length = 0.3, at = 0.5 }").form, DuneShape::Form::gaussian);
+  EXPECT_EQ(dune("{ form = \"asymmetric\", height = 0.1, length = 0.5, at = 0.5 }").slip_face_angle, 33);
+  EXPECT_EQ(dune("{ form = \"asymmetric\", height = 0.1, length = 0.5, at = 0.5, slip-face-angle = 30 }").slip_face_angle, 30);
+  EXPECT_EQ(dune("{ form = \"formula\", formula = \"0.1*sin(x)\" }").formula.formula, "0.1*sin(x)");
+}
+
+TEST(SceneReader, OverridesReplaceAddAndMake) {
+  const Scene scene = parse_scene(dune_text, "dune.toml",
+                                  {"time.end=0.01", "spacing=5e-4", "title=Calm", "phases.air.scheme=consistent", "output.format=vtu",
+                                   "fill.0.shape.dune.height=0.03", "fill.1.velocity=[1, 0]", "time.safety=.5", "domain.periodic=[\"x\"]",
+                                   "output.walls=false", "fill.1.pressure=100*y", "interactions.kernel=wendland-c2"});
+  EXPECT_EQ(scene.time.end, 0.01);
+  EXPECT_EQ(scene.spacing, 5e-4);
+  EXPECT_EQ(scene.title, "Calm");
+  EXPECT_EQ(scene.phases.at(0).scheme, FluidScheme::consistent);
+  EXPECT_EQ(scene.output.format, FrameFormat::vtu);
+  EXPECT_EQ(std::get<BedShape>(scene.fills.at(0).shape).dune->height, 0.03);
+  EXPECT_FALSE(scene.fills.at(1).log_profile.has_value());
+  EXPECT_EQ(scene.fills.at(1).velocity[0].value, 1.0);
+  EXPECT_EQ(scene.fills.at(1).pressure.formula, "100*y");
+  EXPECT_EQ(scene.time.safety, 0.5);
+  EXPECT_FALSE(scene.output.walls);
+  EXPECT_EQ(scene.interactions.at(0).kernel, KernelKind::wendland_c2);
+}
+
+TEST(SceneReader, AnOverrideMakesASectionAndTurnsAPairRound) {
+  EXPECT_EQ(parse_scene(square_text, "s.toml", {"output.every=0.5"}).output.every, 0.5);
+  const Scene scene = parse_scene(dune_text, "s.toml", {"interactions.sand-air=2.0"});
+  ASSERT_EQ(scene.interactions.size(), 3u);
+  EXPECT_EQ(scene.interactions.back().a, "sand");
+  EXPECT_EQ(scene.interactions.back().b, "air");
+}
+
+TEST(SceneReader, TellsWhatIsWrongWithAnOverride) {
+  EXPECT_EQ(problem_of(square_text, {"time.edn=2"}), "--set time.edn=2: time.edn: unknown key; expected a key of [time]; did you mean \"end\"?");
+  EXPECT_EQ(problem_of(square_text, {"time.end=-2"}), "--set time.end=-2: time.end: -2 is out of range; expected a number > 0 (s)");
+  EXPECT_EQ(problem_of(square_text, {"time.end"}), "--set time.end: not an override; expected KEY=VALUE, as in time.end=0.01");
+  EXPECT_EQ(problem_of(square_text, {"fill.3.seed=1"}),
+            "--set fill.3.seed=1: fill.3.seed: there is no fill.3; expected a number from 0 to 0 after \"fill\"");
+  EXPECT_EQ(problem_of(square_text, {"spacing.x=1"}), "--set spacing.x=1: spacing.x: spacing is a value, not a section");
+  EXPECT_EQ(problem_of(square_text, {"domain.size=[1, 2"}),
+            "--set domain.size=[1, 2: domain.size: the value is malformed; expected a value as in a scene file");
+}
+
+TEST(SceneReader, CollectsAllProblemsInTheOrderOfTheFile) {
+  const std::string text = with(with(with(square_text, "spacing = 0.1", "spacing = 0"), "density = 1", "denisty = 1"), "end = 1", "end = \"x\"");
+  EXPECT_EQ(problem_of(text, {"output.evry=1"}),
+            "s.toml:1:11: spacing: 0 is out of range; expected a number > 0 (m)\n"
+            "s.toml:4:1: phases.air.density: missing; expected a number > 0 (kg/m3)\n"
+            "s.toml:6:1: phases.air.denisty: unknown key; expected a key of [phases.air]; did you mean \"density\"?\n"
+            "s.toml:13:7: time.end: found \"x\"; expected a number > 0 (s)\n"
+            "--set output.evry=1: output.evry: unknown key; expected a key of [output]; did you mean \"every\"?");
+}
+
+TEST(SceneReader, FileThatIsNotThere) {
+  try {
+    read_scene("/nowhere/at/all.toml");
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_STREQ(error.what(), "/nowhere/at/all.toml: cannot be read: No such file or directory; expected a scene file (.toml)");
+  }
+}
+
+TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
+  const auto schema = nlohmann::json::parse(scene_schema());
+  EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_EQ(schema["properties"]["spacing"]["exclusiveMinimum"], 0.0);
+  EXPECT_NE(schema["properties"]["spacing"]["description"].get<std::string>().find("Unit: m."), std::string::npos);
+  EXPECT_EQ(schema["required"], (nlohmann::json{"spacing", "domain", "phases", "interactions", "fill", "time"}));
+  const auto& phase = schema["properties"]["phases"]["additionalProperties"];
+  EXPECT_EQ(phase["properties"]["kind"]["enum"], (nlohmann::json{"fluid", "elastic", "grains", "wall"}));
+  EXPECT_EQ(phase["additionalProperties"], false);
+  for (const Key& key : all_keys()) {
+    EXPECT_FALSE(key.meaning.empty()) << key.name;
+    EXPECT_NE(scene_schema().find("\"" + std::string(key.name) + "\""), std::string::npos) << key.name;
+  }
+}
+
+/// docs/scenes.md ends with the tables of the keys. BARCHAN_WRITE_DOCS=1 brings the page up to date.
+TEST(SceneSchema, TheDocumentationHasTheSameWords) {
+  const std::filesystem::path page = std::filesystem::path(BARCHAN_SOURCE_DIR) / "docs" / "scenes.md";
+  std::ostringstream stream;
+  stream << std::ifstream(page).rdbuf();
+  std::string text = stream.str();
+  const std::string heading = "## Keys\n";
+  const std::size_t at = text.find(heading);
+  ASSERT_NE(at, std::string::npos);
+  if (std::getenv("BARCHAN_WRITE_DOCS")) {
+    text = text.substr(0, at) + heading + scene_tables();
+    std::ofstream(page) << text;
+  }
+  EXPECT_EQ(text.substr(at), heading + scene_tables()) << "BARCHAN_WRITE_DOCS=1 test_unit brings docs/scenes.md up to date";
+}
+
+TEST(Nearest, FindsWhatWasMeant) {
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+  EXPECT_EQ(edit_distance("desnity", "density"), 1);
+  EXPECT_EQ(edit_distance("sound_speed", "sound-speed"), 0);
+  EXPECT_EQ(nearest("viscocity", {"density", "viscosity"}), "viscosity");
+  EXPECT_EQ(nearest("banana", {"density", "viscosity"}), "");
+}
+
+}  // namespace
+}  // namespace barchan
