@@ -28,6 +28,19 @@ std::string without_full_stop(std::string text) {
   return text;
 }
 
+/// muParser would let a formula assign to its variables; `=` is only meant in ==, !=, <= and >=.
+bool assigns(const std::string& formula) {
+  for (std::size_t k = 0; k < formula.size(); ++k) {
+    if (formula[k] != '=') continue;
+    if (k + 1 < formula.size() && formula[k + 1] == '=') {
+      ++k;
+      continue;
+    }
+    if (k == 0 || std::string_view("!<>").find(formula[k - 1]) == std::string_view::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 struct Formula::Parser {
@@ -70,6 +83,7 @@ double Formula::constant() const { return value_; }
 
 std::string formula_problem(const std::string& formula, std::string_view variables) {
   if (formula.empty()) return "the formula is empty";
+  if (assigns(formula)) return "the formula \"" + formula + "\" assigns a value";
   mu::Parser parser;
   double somewhere = 0.37;
   try {
