@@ -162,11 +162,11 @@ class Series:
         return self._from_run("title") or self.name.replace("_", " ").replace("-", " ").capitalize()
 
     def _from_run(self, key):
-        """A value of the run's run.json, None when there is none."""
+        """What the run's run.json says of its scene (title, spacing), None when it does not."""
         try:
             with open(os.path.join(os.path.dirname(self.path), "run.json"), encoding="utf-8") as file:
-                return json.load(file).get(key)
-        except (OSError, ValueError, AttributeError):
+                return json.load(file)["scene"].get(key)
+        except (OSError, ValueError, LookupError, TypeError, AttributeError):
             return None
 
     # -- phases

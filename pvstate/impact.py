@@ -24,7 +24,7 @@ low, high = step * math.floor(low / step + 1e-6), step * math.ceil(high / step -
 shown = [figure.particles(phase, radius=0.5, array="velocity", component="XYZ"[axis]) for phase in bodies]
 if shown:
     figure.colours(shown, "velocity", low, high, f"velocity along {'xyz'[axis]} (m/s)",
-                   preset="Cool to Warm (Extended)")
+                   preset="Cool to Warm")
 for phase in series.phases("fluid", "grains"):
     if phase not in bodies:
         figure.particles(phase, radius=0.2, colour=FAINT_AIR if series.phase_kinds[phase] == "fluid" else SAND)

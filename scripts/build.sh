@@ -21,8 +21,12 @@ build() {
     if [[ ! -f $directory/build.ninja || CMakePresets.json -nt $directory/CMakeCache.txt ]]; then
       cmake --preset "$preset" >"$log" 2>&1 || { cat "$log" >&2; echo "configuring '$preset' failed" >&2; exit 1; }
     fi
-    if [[ $(ninja -C "$directory" -n "$@" 2>&1) == *"no work to do"* ]]; then exit 0; fi
-    echo "building $(realpath --relative-to="$PWD" "$directory") ..."
-    ninja -C "$directory" "$@" >"$log" 2>&1 || { cat "$log" >&2; echo "building '$preset' failed" >&2; exit 1; }
+    # Says that it builds once something was compiled, all else goes to the log.
+    # shellcheck disable=SC2016
+    ninja -C "$directory" "$@" 2>&1 | awk -v log_file="$log" -v what="${directory#"$root"/}" '
+      BEGIN { printf "" > log_file }
+      { print > log_file }
+      /Building/ && !said { said = 1; print "building " what " ..."; fflush() }' ||
+      { cat "$log" >&2; echo "building '$preset' failed" >&2; exit 1; }
   ) 9>"$directory/.lock"
 }
