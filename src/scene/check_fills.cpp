@@ -8,7 +8,8 @@
 namespace barchan {
 namespace {
 
-const char* const shape_names[] = {"bed", "box", "disc", "sphere", "ring", "polygon", "cube", "points", "formula", "sides", "mesh"};
+const char* const shape_names[] = {"bed",  "box",    "disc",    "sphere", "ring", "polygon",
+                                   "cube", "points", "formula", "sides",  "mesh"};
 
 std::string number_text(double value) {
   char text[32];
@@ -29,16 +30,19 @@ void check_shape_keys(const std::string& shape, const Report& report) {
   }
   if (report.has(shape + ".mesh"))
     report(shape + ".mesh", "meshes are not available yet; expected another shape, as polygon or formula");
-  if (report.has(shape + ".dune") && first != "bed") report(shape + ".dune", "a dune without a bed; expected bed = DEPTH beside it");
+  if (report.has(shape + ".dune") && first != "bed")
+    report(shape + ".dune", "a dune without a bed; expected bed = DEPTH beside it");
   if (report.has(shape + ".layers") && first != "sides")
     report(shape + ".layers", "layers without sides; expected sides = [...] beside it");
   const bool nothing = first.empty() && !report.has(shape + ".dune") && !report.has(shape + ".layers");
   if (nothing && !report.touched(shape))
-    report(shape, "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, cube, points, formula, sides");
+    report(shape,
+           "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, cube, points, formula, "
+           "sides");
 }
 
 void check_dune(const DuneShape& dune, const std::string& dotted, const Scene& scene, const Report& report) {
-  const bool by_formula = dune.form == DuneShape::Form::formula;
+  const bool by_formula = dune.form == DuneShape::Form::formula, clean = !report.touched(dotted);
   if (report.touched(dotted + ".form")) return;
   if (by_formula && !report.has(dotted + ".formula"))
     report(dotted + ".formula", "missing; expected a number (m) or a formula in x, z");
@@ -48,21 +52,24 @@ void check_dune(const DuneShape& dune, const std::string& dotted, const Scene& s
     report(dotted + ".slip-face-angle", "only the asymmetric dune has a slip face; expected form = \"asymmetric\"");
   for (const char* name : {"height", "length", "at"}) {
     const std::string here = dotted + "." + name;
-    if (!by_formula && !report.has(here))
+    if (clean && !by_formula && !report.has(here))
       report(here, "missing; expected a number" + std::string(std::string_view(name) == "at" ? "" : " > 0") + " (m)");
-    if (by_formula && report.has(here)) report(here, "a dune by formula has no " + std::string(name) + "; expected only its formula");
+    if (by_formula && report.has(here))
+      report(here, "a dune by formula has no " + std::string(name) + "; expected only its formula");
   }
   if (by_formula || report.touched(dotted)) return;
   const double lee = dune.height / std::tan(dune.slip_face_angle * std::numbers::pi / 180.0);
   if (dune.form == DuneShape::Form::asymmetric && lee >= dune.length)
-    report(dotted + ".length", number_text(dune.length) + " m is shorter than the slip face of " + number_text(dune.height) + " m at " +
-                                   number_text(dune.slip_face_angle) + " degrees; expected more than " + number_text(lee) + " m");
+    report(dotted + ".length", number_text(dune.length) + " m is shorter than the slip face of " +
+                                   number_text(dune.height) + " m at " + number_text(dune.slip_face_angle) +
+                                   " degrees; expected more than " + number_text(lee) + " m");
   if (scene.domain.periodic[0] && !report.touched("domain") && dune.length > scene.domain.size[0])
     report(dotted + ".length", number_text(dune.length) + " m is longer than the periodic domain; expected at most " +
                                    number_text(scene.domain.size[0]) + " m");
 }
 
-void check_sides(const SidesShape& sides, const Phase* phase, const std::string& dotted, const Scene& scene, const Report& report) {
+void check_sides(const SidesShape& sides, const Phase* phase, const std::string& dotted, const Scene& scene,
+                 const Report& report) {
   if (sides.sides.empty() && !report.touched(dotted)) report(dotted, "no side; expected at least one");
   for (const std::string& side : sides.sides) {
     const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
@@ -72,22 +79,26 @@ void check_sides(const SidesShape& sides, const Phase* phase, const std::string&
       report(dotted, "\"" + side + "\" lies on the periodic axis " + std::string(1, static_cast<char>('x' + axis)) +
                          "; expected a side of an axis that is not periodic");
   }
-  if (phase && phase->kind != PhaseKind::wall) report(dotted, "only walls lie outside the domain; expected a phase of kind wall");
+  if (phase && phase->kind != PhaseKind::wall)
+    report(dotted, "only walls lie outside the domain; expected a phase of kind wall");
 }
 
 void check_sizes(const Fill& fill, const std::string& shape, const Scene& scene, const Report& report) {
   if (const auto* box = std::get_if<BoxShape>(&fill.shape); box && !report.touched(shape))
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       if (!(box->max[axis] > box->min[axis])) {
-        report(shape + ".box.max", "the box is empty along " + std::string(1, static_cast<char>('x' + axis)) + "; expected more than " +
-                                       number_text(box->min[axis]) + " m");
+        report(shape + ".box.max", "the box is empty along " + std::string(1, static_cast<char>('x' + axis)) +
+                                       "; expected more than " + number_text(box->min[axis]) + " m");
         break;
       }
-  if (const auto* ring = std::get_if<RingShape>(&fill.shape); ring && !report.touched(shape) && ring->inner >= ring->outer)
-    report(shape + ".ring.outer", "the ring is empty; expected more than its inner radius, " + number_text(ring->inner) + " m");
+  if (const auto* ring = std::get_if<RingShape>(&fill.shape);
+      ring && !report.touched(shape) && ring->inner >= ring->outer)
+    report(shape + ".ring.outer",
+           "the ring is empty; expected more than its inner radius, " + number_text(ring->inner) + " m");
 }
 
-/// What the kind of the phase forbids: walls are moved by their phase, only fluids have a pressure, only loose things pack closely.
+/// What the kind of the phase forbids: walls are moved by their phase, only fluids have a pressure, only loose things
+/// pack closely.
 void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dotted, const Report& report) {
   const bool wall = phase.kind == PhaseKind::wall;
   if (wall && report.has(dotted + ".velocity"))
@@ -98,8 +109,8 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   const bool close = fill.packing != Packing::square;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
-  const bool placed = std::holds_alternative<CubeShape>(fill.shape) || std::holds_alternative<PointsShape>(fill.shape) ||
-                      std::holds_alternative<SidesShape>(fill.shape);
+  const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
+                      std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   if (close && !continuous && placed)
     report(dotted + ".packing", "cube, points and sides place their particles themselves; expected \"rows\"");
 }
@@ -111,12 +122,15 @@ void check_fills(const Scene& scene, const Report& report) {
     const Fill& fill = scene.fills[k];
     const std::string dotted = "fill." + std::to_string(k);
     const std::string shape = dotted + ".shape";
-    const auto found = std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
-    const Phase* phase = found == scene.phases.end() || report.touched("phases." + fill.phase + ".kind") ? nullptr : &*found;
+    const auto found =
+        std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
+    const Phase* phase =
+        found == scene.phases.end() || report.touched("phases." + fill.phase + ".kind") ? nullptr : &*found;
     if (report.is_section(shape)) check_shape_keys(shape, report);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && bed->dune)
       check_dune(*bed->dune, shape + ".dune", scene, report);
-    if (const auto* sides = std::get_if<SidesShape>(&fill.shape)) check_sides(*sides, phase, shape + ".sides", scene, report);
+    if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
+      check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);
     if (phase) check_phase_of(fill, *phase, dotted, report);
   }

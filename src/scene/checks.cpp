@@ -16,12 +16,9 @@ const toml::node* Report::find(const std::string& dotted) const {
   while (node && begin <= dotted.size()) {
     const std::size_t end = std::min(dotted.find('.', begin), dotted.size());
     const std::string part = dotted.substr(begin, end - begin);
-    if (const toml::table* table = node->as_table())
-      node = table->get(part);
-    else if (const toml::array* array = node->as_array())
-      node = array->get(static_cast<std::size_t>(std::stoul(part)));
-    else
-      node = nullptr;
+    if (const toml::table* table = node->as_table()) node = table->get(part);
+    else if (const toml::array* array = node->as_array()) node = array->get(static_cast<std::size_t>(std::stoul(part)));
+    else node = nullptr;
     begin = end + 1;
   }
   return node;
@@ -74,9 +71,10 @@ std::string unknown_phase(const std::string& name, const Scene& scene) {
          did_you_mean(nearest(name, names));
 }
 
-/// A key of another kind of phase; and the density, which walls may leave out.
+/// A key of another kind of phase; a phase that no fill mentions.
 void check_phases(const Scene& scene, const Report& report) {
-  if (scene.phases.empty() && !report.touched("phases")) report("phases", "no phase; expected at least one section [phases.NAME]");
+  if (scene.phases.empty() && !report.touched("phases"))
+    report("phases", "no phase; expected at least one section [phases.NAME]");
   for (const Phase& phase : scene.phases) {
     const std::string dotted = "phases." + phase.name;
     if (report.touched(dotted + ".kind")) continue;
@@ -88,9 +86,8 @@ void check_phases(const Scene& scene, const Report& report) {
       for (const char c : key->kinds) kinds += c == '|' ? std::string(" or ") : std::string(1, c);
       report(here, "not a key of a phase of kind " + kind + "; expected in a phase of kind " + kinds + " only");
     }
-    if (phase.kind != PhaseKind::wall && !report.has(dotted + ".density"))
-      report(dotted + ".density", "missing; expected " + expected(*find_key("phases", "density"), scene.dimensions));
-    const bool filled = std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
+    const bool filled =
+        std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
     if (!filled && !report.touched("fill"))
       report(dotted, "no particle; expected a [[fill]] with phase = \"" + phase.name + "\"");
   }
@@ -119,26 +116,35 @@ void check_interactions(const Scene& scene, const Report& report) {
       if (other->a == pair.b && other->b == pair.a)
         report(dotted, "the pair is given twice; expected either " + name + " or " + other->a + "-" + other->b);
     seen.push_back(&pair);
-    const bool walls = find_phase(scene, pair.a)->kind == PhaseKind::wall && find_phase(scene, pair.b)->kind == PhaseKind::wall;
+    const bool walls =
+        find_phase(scene, pair.a)->kind == PhaseKind::wall && find_phase(scene, pair.b)->kind == PhaseKind::wall;
     if (walls) report(dotted, "walls do not feel each other; expected at least one phase of another kind");
   }
   for (const Phase& phase : scene.phases) {
-    const bool alone = std::none_of(scene.interactions.begin(), scene.interactions.end(),
-                                    [&](const Interaction& pair) { return pair.a == phase.name || pair.b == phase.name; });
-    if (phase.kind == PhaseKind::wall && alone && !report.touched("interactions") && !report.touched("phases." + phase.name + ".kind"))
-      report("phases." + phase.name, "nothing feels this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
+    const bool alone = std::none_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
+      return pair.a == phase.name || pair.b == phase.name;
+    });
+    if (phase.kind == PhaseKind::wall && alone && !report.touched("interactions") &&
+        !report.touched("phases." + phase.name + ".kind"))
+      report("phases." + phase.name,
+             "nothing feels this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
   }
 }
 
 /// A whole number of spacings along a periodic axis, and room for two of the largest kernels.
 void check_domain(const Scene& scene, const Report& report) {
-  if (report.touched("domain.size") || report.touched("spacing") || report.touched("dimensions") || scene.spacing <= 0.0) return;
-  if (scene.dimensions == 2 && scene.domain.periodic[2]) report("domain.periodic", "there is no z in two dimensions; expected x or y");
+  if (report.touched("domain.size") || report.touched("spacing") || report.touched("dimensions") ||
+      scene.spacing <= 0.0)
+    return;
+  if (scene.dimensions == 2 && scene.domain.periodic[2])
+    report("domain.periodic", "there is no z in two dimensions; expected x or y");
   double cells = 1.0;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) cells *= scene.domain.size[axis] / scene.spacing;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+    cells *= scene.domain.size[axis] / scene.spacing;
   if (cells > 1e9) {
     char text[160];
-    std::snprintf(text, sizeof text, "%.10g m makes room for %.3g particles in the domain; expected at most 10^9", scene.spacing, cells);
+    std::snprintf(text, sizeof text, "%.10g m makes room for %.3g particles in the domain; expected at most 10^9",
+                  scene.spacing, cells);
     report("spacing", text);
     return;
   }
@@ -153,8 +159,8 @@ void check_domain(const Scene& scene, const Report& report) {
     const double least = 2.0 * widest->radius * scene.spacing;
     if (scene.domain.size[axis] > least) continue;
     char numbers[160];
-    std::snprintf(numbers, sizeof numbers, "%.10g m along the periodic axis %c is too short for the kernel of ", scene.domain.size[axis],
-                  static_cast<char>('x' + axis));
+    std::snprintf(numbers, sizeof numbers, "%.10g m along the periodic axis %c is too short for the kernel of ",
+                  scene.domain.size[axis], static_cast<char>('x' + axis));
     char bound[64];
     std::snprintf(bound, sizeof bound, "; expected more than two kernel radii, %.10g m", least);
     report("domain.size", numbers + widest->a + "-" + widest->b + bound);
@@ -166,10 +172,10 @@ void check_forcings(const Scene& scene, const Report& report) {
     const std::string dotted = "forcing." + std::to_string(k) + ".phase";
     if (report.touched(dotted) || !report.has(dotted)) continue;
     const Phase* phase = find_phase(scene, scene.forcings[k].phase);
-    if (!phase)
-      report(dotted, unknown_phase(scene.forcings[k].phase, scene));
+    if (!phase) report(dotted, unknown_phase(scene.forcings[k].phase, scene));
     else if (phase->kind == PhaseKind::wall)
-      report(dotted, "a wall feels no force; expected a phase of another kind (phases." + phase->name + ".velocity moves the wall)");
+      report(dotted, "a wall feels no force; expected a phase of another kind (phases." + phase->name +
+                         ".velocity moves the wall)");
   }
 }
 

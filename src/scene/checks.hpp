@@ -6,7 +6,8 @@
 
 namespace barchan {
 
-/// Adds every contradiction in the scene. Keys that already have a problem are left out, so that no mistake is told twice.
+/// Adds every contradiction in the scene. Keys that already have a problem are left out, so that no mistake is told
+/// twice.
 void check(const toml::table& document, const Scene& scene, Problems& problems);
 
 /// Finds the place of a dotted key and tells what is wrong with it.
@@ -16,7 +17,7 @@ class Report {
 
   void operator()(const std::string& dotted, const std::string& what) const;
   bool touched(const std::string& dotted) const { return problems_.touch(dotted); }
-  bool has(const std::string& dotted) const;   ///< the document has this key
+  bool has(const std::string& dotted) const;  ///< the document has this key
   bool is_section(const std::string& dotted) const;
 
  private:

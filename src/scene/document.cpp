@@ -12,9 +12,7 @@ namespace {
 
 constexpr std::string_view override_mark = "--set ";
 
-bool is_override(const toml::source_region& source) {
-  return source.path && source.path->starts_with(override_mark);
-}
+bool is_override(const toml::source_region& source) { return source.path && source.path->starts_with(override_mark); }
 
 }  // namespace
 
@@ -59,10 +57,8 @@ namespace {
 std::vector<std::string> split(const std::string& dotted) {
   std::vector<std::string> parts(1);
   for (const char c : dotted) {
-    if (c == '.')
-      parts.emplace_back();
-    else
-      parts.back() += c;
+    if (c == '.') parts.emplace_back();
+    else parts.back() += c;
   }
   return parts;
 }
@@ -100,7 +96,8 @@ std::unique_ptr<toml::node> parse_value(const std::string& text, const std::stri
 }
 
 void put(toml::table& table, const std::string& name, toml::node& value, const toml::source_region& source) {
-  value.visit([&](auto& node) { table.insert_or_assign(toml::key(name, toml::source_region(source)), std::move(node)); });
+  value.visit(
+      [&](auto& node) { table.insert_or_assign(toml::key(name, toml::source_region(source)), std::move(node)); });
 }
 
 /// "b-a" for "a-b": the two name the same entry of the matrix, so the override replaces the one in the file.
@@ -145,12 +142,15 @@ void apply(toml::table& document, const std::string& assignment, Problems& probl
       std::size_t index = 0;
       const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), index);
       if (error != std::errc() || rest != part.data() + part.size() || index >= array->size()) {
-        problems.add(here, dotted, "there is no " + so_far + "." + part + "; expected a number from 0 to " +
-                                       std::to_string(array->size() - 1) + " after \"" + so_far + "\"");
+        problems.add(here, dotted,
+                     "there is no " + so_far + "." + part + "; expected a number from 0 to " +
+                         std::to_string(array->size() - 1) + " after \"" + so_far + "\"");
         return;
       }
       if (last) {
-        value->visit([&](auto& replacement) { array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(replacement)); });
+        value->visit([&](auto& replacement) {
+          array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(replacement));
+        });
         return;
       }
       node = array->get(index);

@@ -20,12 +20,12 @@ class Problems {
   bool touch(const std::string& dotted) const;
 
   bool empty() const { return list_.empty(); }
-  void throw_if_any() const;                       ///< throws SceneError
+  void throw_if_any() const;  ///< throws SceneError
   [[noreturn]] void fail(const toml::source_region& source, const std::string& dotted, const std::string& what);
 
  private:
   struct Problem {
-    std::string place;      // FILE:LINE:COLUMN or --set KEY=VALUE
+    std::string place;  // FILE:LINE:COLUMN or --set KEY=VALUE
     bool from_override;
     unsigned line, column;
     std::string dotted, what;
@@ -34,7 +34,8 @@ class Problems {
   std::vector<Problem> list_;
 };
 
-/// Parses the text and carries out the overrides. Throws SceneError for malformed TOML; problems with overrides are added.
+/// Parses the text and carries out the overrides. Throws SceneError for malformed TOML; problems with overrides are
+/// added.
 toml::table parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides,
                            Problems& problems);
 

@@ -9,7 +9,8 @@
 
 namespace barchan {
 
-/// Compiles once, evaluates often; not to be shared between threads. Constants: pi, e. Throws SceneError when malformed.
+/// Compiles once, evaluates often; not to be shared between threads. Constants: pi, e. Throws SceneError when
+/// malformed.
 class Formula {
  public:
   explicit Formula(const Expression& expression);
@@ -17,8 +18,8 @@ class Formula {
   Formula(Formula&&) noexcept;
   Formula& operator=(Formula&&) noexcept;
   double operator()(const Vec3& x, double t = 0.0) const;
-  bool is_constant() const;   ///< a plain number: no evaluation needed
-  double constant() const;    ///< its value when is_constant()
+  bool is_constant() const;  ///< a plain number: no evaluation needed
+  double constant() const;   ///< its value when is_constant()
 
  private:
   struct Parser;

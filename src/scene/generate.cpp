@@ -22,10 +22,8 @@ namespace {
 
 std::string point_text(const Vec3& x, int dimensions) {
   char text[120];
-  if (dimensions == 3)
-    std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
-  else
-    std::snprintf(text, sizeof text, "(%.6g, %.6g)", x[0], x[1]);
+  if (dimensions == 3) std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
+  else std::snprintf(text, sizeof text, "(%.6g, %.6g)", x[0], x[1]);
   return text;
 }
 
@@ -44,7 +42,8 @@ void perturb(std::vector<Vec3>& places, const Fill& fill, const Scene& scene) {
   Random random(fill.seed);
   const double most = fill.perturb * scene.spacing;
   for (Vec3& x : places) {
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) x[axis] += random.uniform(-most, most);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+      x[axis] += random.uniform(-most, most);
     x = space.wrapped(x);
   }
 }
@@ -76,18 +75,24 @@ class InitialVelocity {
   std::array<Formula, 3> components_;
 };
 
-void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind, const Occupied& occupied) {
+void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind,
+                  const Occupied& occupied) {
   const std::string phase = " of phase \"" + scene.fills[k].phase + "\"";
-  if (places.empty()) fail(scene, k, "no particle" + phase + "; expected a larger shape, a smaller spacing, or an earlier place in the file");
+  if (places.empty())
+    fail(scene, k,
+         "no particle" + phase + "; expected a larger shape, a smaller spacing, or an earlier place in the file");
   for (const Vec3& x : places) {
     if (kind != PhaseKind::wall && !inside_domain(scene, x))
-      fail(scene, k, "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m lies outside the domain; expected a shape inside it");
+      fail(scene, k,
+           "a particle" + phase + " at " + point_text(x, scene.dimensions) +
+               " m lies outside the domain; expected a shape inside it");
     const double least = (1.0 - 1e-6) * overlap_distance * scene.spacing;
     const int other = std::max(occupied.inside.owner_near(x, least), occupied.outside.owner_near(x, least));
     if (other < 0) continue;
-    fail(scene, k, "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
-                       " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +
-                       "\"; expected at least half a spacing between particles of different fills");
+    fail(scene, k,
+         "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
+             " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +
+             "\"; expected at least half a spacing between particles of different fills");
   }
 }
 
@@ -97,8 +102,9 @@ void check_values(const ParticleBlock& block, std::size_t first, std::size_t k, 
     const bool finite = std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]) &&
                         (block.pressure.size() <= i || std::isfinite(block.pressure[i]));
     if (!finite)
-      fail(scene, k, "a formula gives a velocity or pressure that is not a finite number at " +
-                         point_text(block.position[i], scene.dimensions) + " m");
+      fail(scene, k,
+           "a formula gives a velocity or pressure that is not a finite number at " +
+               point_text(block.position[i], scene.dimensions) + " m");
   }
 }
 
@@ -127,13 +133,15 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
   std::vector<ParticleBlock> blocks(scene.phases.size());
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     const Fill& fill = scene.fills[k];
-    const auto phase = std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
+    const auto phase =
+        std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
     std::vector<Vec3> places = places_of(scene, k, occupied);
     perturb(places, fill, scene);
     check_places(places, k, scene, phase->kind, occupied);
     if (k + 1 < scene.fills.size())
-      for (const Vec3& x : places) (inside_domain(scene, x) ? occupied.inside : occupied.outside).add(x, static_cast<int>(k));
+      for (const Vec3& x : places)
+        (inside_domain(scene, x) ? occupied.inside : occupied.outside).add(x, static_cast<int>(k));
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);

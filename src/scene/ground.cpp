@@ -19,7 +19,8 @@ Ground::Ground(const Scene& scene) {
 
 Ground::Ground(const BedShape& bed, const Domain& domain) : exists_(true), bed_(bed) {
   if (domain.periodic[0]) period_ = domain.size[0];
-  if (bed.dune && bed.dune->form == DuneShape::Form::formula) formula_ = std::make_shared<const Formula>(bed.dune->formula);
+  if (bed.dune && bed.dune->form == DuneShape::Form::formula)
+    formula_ = std::make_shared<const Formula>(bed.dune->formula);
 }
 
 double Ground::height(double x, double z) const {

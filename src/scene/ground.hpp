@@ -10,16 +10,16 @@ namespace barchan {
 
 class Ground {
  public:
-  explicit Ground(const Scene& scene);              ///< of the first fill that is a bed; none: height 0
+  explicit Ground(const Scene& scene);  ///< of the first fill that is a bed; none: height 0
   Ground(const BedShape& bed, const Domain& domain);
   bool exists() const { return exists_; }
-  double height(double x, double z) const;          ///< m over the bottom of the domain
+  double height(double x, double z) const;  ///< m over the bottom of the domain
 
  private:
   double profile(double s) const;
   bool exists_ = false;
   BedShape bed_;
-  double period_ = 0.0;                             // m; 0: the profile does not repeat itself
+  double period_ = 0.0;  // m; 0: the profile does not repeat itself
   std::shared_ptr<const Formula> formula_;
 };
 

@@ -11,7 +11,9 @@ namespace {
 constexpr Bounds positive{.above = 0.0};
 constexpr Bounds not_negative{.at_least = 0.0};
 
-// Columns: section, name, what it accepts, unit, default, meaning; then bounds, words, variables and kinds where they apply.
+// Columns: section, name, what it accepts, unit, default, meaning; then bounds, words, variables and kinds where they
+// apply.
+// clang-format off
 constexpr Key table[] = {
     {"", "title", as_text, "", "the file's name", "What the scene shows, in a few words."},
     {"", "state", as_text, "", "none", "Name of the ParaView state (in pvstate/) that renders this scene."},
@@ -39,7 +41,7 @@ constexpr Key table[] = {
 
     {"phases", "kind", as_word, "", "required", "What the phase is made of.", {}, "fluid|elastic|grains|wall"},
     {"phases", "density", as_number, "kg/m3", "required; of a wall: that of a phase it interacts with",
-     "Density at rest. Of grains: that of the grain's material.", positive},
+     "Density at rest. Of grains: that of the grain's material.", positive, "", "", "", "wall"},
     {"phases", "viscosity", as_number, "m2/s", "0", "Kinematic viscosity.", not_negative, "", "", "fluid"},
     {"phases", "sound-speed", as_number, "m/s", "10 times the largest speed",
      "Numerical speed of sound; ten times the largest speed keeps the density within a percent.", positive, "", "", "fluid"},
@@ -148,6 +150,7 @@ constexpr Key table[] = {
     {"output", "checkpoint-every", as_number, "s", "none", "Wall-clock time between checkpoints.", not_negative},
     {"output", "walls", as_boolean, "", "true", "Write wall particles too."},
 };
+// clang-format on
 
 bool listed(std::string_view list, std::string_view word) {
   while (!list.empty()) {
@@ -226,12 +229,19 @@ std::string expected(const Key& key, int dimensions) {
   if (key.accepts & as_text) ways.emplace_back("a string");
   if (key.accepts & as_vector) ways.push_back("an array of " + count + " numbers" + bounds + unit);
   if (key.accepts & as_formula) ways.push_back("a number" + unit + " or a formula in " + variables);
-  if (key.accepts & as_formulas) ways.push_back("an array of " + count + " numbers" + unit + " or formulas in " + variables);
+  if (key.accepts & as_formulas)
+    ways.push_back("an array of " + count + " numbers" + unit + " or formulas in " + variables);
   if (key.accepts & as_points) ways.push_back("an array of points of " + count + " numbers" + unit);
   if (key.accepts & as_corners) ways.push_back("an array of three or more corners [x, y]" + unit);
   if (key.accepts & as_words) ways.push_back("an array of " + one_of(choices(key)));
   if (key.accepts & as_word) ways.push_back(one_of(choices(key)));
-  if (key.accepts & (as_section | as_named_sections)) ways.emplace_back("a section");
+  if (key.accepts & (as_section | as_named_sections)) {
+    const std::string path = std::string(key.section) + "." + std::string(key.name);
+    const auto inner = ways.empty() ? std::vector<const Key*>{} : keys_of(path);
+    if (inner.empty()) ways.emplace_back("a section");
+    else
+      ways.push_back("{ " + std::string(inner.front()->name) + " = ... }" + (inner.size() > 1 ? " and the like" : ""));
+  }
   if (key.accepts & as_sections) ways.push_back("sections [[" + std::string(key.name) + "]]");
   std::string text;
   for (const std::string& way : ways) text += (text.empty() ? "" : " or ") + way;

@@ -1,4 +1,5 @@
-// The one table of the keys of a scene file. The reader checks against it, the schema and docs/scenes.md are made from it.
+// The one table of the keys of a scene file. The reader checks against it, the schema and docs/scenes.md are made from
+// it.
 #pragma once
 
 #include <limits>
@@ -37,7 +38,7 @@ struct Bounds {
 };
 
 struct Key {
-  std::string_view section;         // "" for the top of the file; "phases", "fill.shape.disc", ...
+  std::string_view section;  // "" for the top of the file; "phases", "fill.shape.disc", ...
   std::string_view name;
   unsigned accepts = 0;
   std::string_view unit = "";       // SI; "" for a pure number or a word
@@ -47,16 +48,18 @@ struct Key {
   std::string_view words = "";      // choices, '|' between them; "@fields": the names of particles/fields.hpp
   std::string_view variables = "";  // of a formula
   std::string_view kinds = "";      // phases only: the kinds that have this key; "" for all
-  bool required() const { return otherwise == "required"; }
+  std::string_view spared = "";     // phases only: kinds that may leave out what the others must give
+  bool required() const { return otherwise == "required" || !spared.empty(); }
 };
 
 std::span<const Key> all_keys();
-const Key* find_key(std::string_view section, std::string_view name);   ///< null when there is none
-std::vector<const Key*> keys_of(std::string_view section);              ///< in the order of the table
+const Key* find_key(std::string_view section, std::string_view name);  ///< null when there is none
+std::vector<const Key*> keys_of(std::string_view section);             ///< in the order of the table
 std::vector<std::string> choices(const Key& key);
 bool belongs_to_kind(const Key& key, std::string_view kind);
 
-/// What the key takes, for messages: `a number > 0 (m)`, `"rows", "staggered" or "random"`, `an array of 2 numbers (m)`.
+/// What the key takes, for messages: `a number > 0 (m)`, `"rows", "staggered" or "random"`, `an array of 2 numbers
+/// (m)`.
 std::string expected(const Key& key, int dimensions);
 
 }  // namespace barchan

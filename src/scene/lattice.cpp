@@ -7,9 +7,9 @@
 namespace barchan {
 namespace {
 
-const double row_pitch = std::sqrt(3.0) / 2.0;        // of a close-packed layer, in spacings
-const double layer_pitch = std::sqrt(2.0 / 3.0);      // between close-packed layers, in spacings
-constexpr double round_off = 1e-9;                    // in spacings
+const double row_pitch = std::sqrt(3.0) / 2.0;    // of a close-packed layer, in spacings
+const double layer_pitch = std::sqrt(2.0 / 3.0);  // between close-packed layers, in spacings
+constexpr double round_off = 1e-9;                // in spacings
 
 /// Whole numbers k with lower <= anchor + k pitch < upper, round-off apart: [first, end).
 struct Range {
@@ -17,14 +17,16 @@ struct Range {
 };
 Range range(double anchor, double pitch, double lower, double upper, double spacing) {
   const double slack = round_off * spacing / pitch;
-  return {static_cast<long>(std::ceil((lower - anchor) / pitch - slack)), static_cast<long>(std::ceil((upper - anchor) / pitch - slack))};
+  return {static_cast<long>(std::ceil((lower - anchor) / pitch - slack)),
+          static_cast<long>(std::ceil((upper - anchor) / pitch - slack))};
 }
 
 bool odd(long k) { return k % 2 != 0; }
 
 }  // namespace
 
-std::vector<Vec3> lattice(Packing packing, int dimensions, double spacing, const Vec3& anchor, const Vec3& lower, const Vec3& upper) {
+std::vector<Vec3> lattice(Packing packing, int dimensions, double spacing, const Vec3& anchor, const Vec3& lower,
+                          const Vec3& upper) {
   const bool close = packing == Packing::hexagonal;
   const bool solid = dimensions == 3;
   const double pitch_y = spacing * (!close ? 1.0 : solid ? layer_pitch : row_pitch);
@@ -70,11 +72,10 @@ std::string misfit_of_period(const Scene& scene, std::size_t axis) {
     if (std::round(count) >= 1.0 && std::abs(count - std::round(count)) <= 1e-9 * count) return "";
     const double below = std::floor(count) * period, above = std::ceil(count) * period;
     char text[256], nearest[64];
-    if (below > 0.0)
-      std::snprintf(nearest, sizeof nearest, "%.15g or %.15g m", below, above);
-    else
-      std::snprintf(nearest, sizeof nearest, "%.15g m", above);
-    std::snprintf(text, sizeof text, "%.15g m along the periodic axis %c is not a whole number of %s (%.15g m); expected %s", size,
+    if (below > 0.0) std::snprintf(nearest, sizeof nearest, "%.15g or %.15g m", below, above);
+    else std::snprintf(nearest, sizeof nearest, "%.15g m", above);
+    std::snprintf(text, sizeof text,
+                  "%.15g m along the periodic axis %c is not a whole number of %s (%.15g m); expected %s", size,
                   static_cast<char>('x' + axis), whole, period, nearest);
     return text;
   };
@@ -92,11 +93,13 @@ int cells_along(const Scene& scene, std::size_t axis) {
 
 std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides) {
   struct Axis {
-    int cells = 1, first = 0, end = 1;          // cells of the domain; range with the layers outside
-    bool below = false, above = false;          // which of its two sides are asked for
+    int cells = 1, first = 0, end = 1;  // cells of the domain; range with the layers outside
+    bool below = false, above = false;  // which of its two sides are asked for
   };
   std::array<Axis, 3> axes;
-  const auto asked = [&](const char* name) { return std::find(sides.sides.begin(), sides.sides.end(), name) != sides.sides.end(); };
+  const auto asked = [&](const char* name) {
+    return std::find(sides.sides.begin(), sides.sides.end(), name) != sides.sides.end();
+  };
   const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const int layers = scene.domain.periodic[axis] ? 0 : sides.layers;

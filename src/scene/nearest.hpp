@@ -11,7 +11,8 @@ namespace barchan {
 /// string alignment). Capitals and small letters are the same, and so are '_' and '-'.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The candidate with the least edit distance; empty when none is close (more than a third of the letters differ).
+/// The candidate that begins as the word does (or the other way round), or else the one with the least edit distance;
+/// empty when none is close (more than a third of the letters differ).
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// "a", "b" or "c", for messages.

@@ -10,7 +10,7 @@ Vec3 PeriodicSpace::wrapped(Vec3 x) const {
     if (!domain_.periodic[axis]) continue;
     const double low = domain_.origin[axis], size = domain_.size[axis];
     x[axis] -= size * std::floor((x[axis] - low) / size);
-    if (x[axis] >= low + size) x[axis] = low;   // round-off of a tiny negative number
+    if (x[axis] >= low + size) x[axis] = low;  // round-off of a tiny negative number
   }
   return x;
 }

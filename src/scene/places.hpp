@@ -42,7 +42,7 @@ class Places {
 
   PeriodicSpace space_;
   std::array<double, 3> width_{};
-  std::array<long, 3> cells_{};        // along periodic axes; 0: unlimited
+  std::array<long, 3> cells_{};  // along periodic axes; 0: unlimited
   std::unordered_map<Cell, std::vector<Point>, Hash> grid_;
 };
 

@@ -47,7 +47,10 @@ Phase take_phase(const toml::table& table, const std::string& name) {
   Phase phase;
   phase.name = name;
   phase.kind = take_choice(table, "kind", phase.kind,
-                           {{"fluid", PhaseKind::fluid}, {"elastic", PhaseKind::elastic}, {"grains", PhaseKind::grains}, {"wall", PhaseKind::wall}});
+                           {{"fluid", PhaseKind::fluid},
+                            {"elastic", PhaseKind::elastic},
+                            {"grains", PhaseKind::grains},
+                            {"wall", PhaseKind::wall}});
   take_number(table, "density", phase.density);
   take_number(table, "viscosity", phase.viscosity);
   phase.sound_speed = table["sound-speed"].value<double>();
@@ -68,7 +71,8 @@ Phase take_phase(const toml::table& table, const std::string& name) {
   phase.energy = table["energy"].value_or(phase.energy);
   take_number(table, "restitution", phase.restitution);
   phase.contact_speed = table["contact-speed"].value<double>();
-  phase.wall_law = take_choice(table, "law", phase.wall_law, {{"adami", WallLaw::adami}, {"repulsive", WallLaw::repulsive}});
+  phase.wall_law =
+      take_choice(table, "law", phase.wall_law, {{"adami", WallLaw::adami}, {"repulsive", WallLaw::repulsive}});
   phase.slip = take_choice(table, "slip", phase.slip, {{"no-slip", Slip::no_slip}, {"free-slip", Slip::free_slip}});
   phase.wall_velocity = take_vector_expression(table, "velocity");
   return phase;
@@ -191,7 +195,9 @@ Scene read_scene(const std::string& file, const std::vector<std::string>& overri
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
-  if (!stream) throw SceneError(file + ": cannot be read: " + std::strerror(errno ? errno : EIO) + "; expected a scene file (.toml)");
+  if (!stream)
+    throw SceneError(file + ": cannot be read: " + std::strerror(errno ? errno : EIO) +
+                     "; expected a scene file (.toml)");
   return parse_scene(text.str(), file, overrides);
 }
 

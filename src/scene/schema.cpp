@@ -28,7 +28,8 @@ Json array_of(Json items, int least, int most) {
 
 /// One schema for each form that the key's value may have.
 std::vector<Json> forms(const Key& key) {
-  const std::string path = key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
+  const std::string path =
+      key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
   Json number{{"type", "number"}};
   add_bounds(number, key.bounds);
   Json formula{{"type", Json::array({"number", "string"})}};
@@ -54,7 +55,9 @@ std::vector<Json> forms(const Key& key) {
   if (key.accepts & as_section) all.push_back(section_schema(path));
   if (key.accepts & as_sections) all.push_back(array_of(section_schema(path), 0, 0));
   if (key.accepts & as_named_sections)
-    all.push_back({{"type", "object"}, {"propertyNames", {{"pattern", "^[A-Za-z][A-Za-z0-9_]*$"}}}, {"additionalProperties", section_schema(path)}});
+    all.push_back({{"type", "object"},
+                   {"propertyNames", {{"pattern", "^[A-Za-z][A-Za-z0-9_]*$"}}},
+                   {"additionalProperties", section_schema(path)}});
   return all;
 }
 
@@ -75,10 +78,8 @@ std::string description(const Key& key) {
 Json key_schema(const Key& key) {
   std::vector<Json> all = forms(key);
   Json schema{{"description", description(key)}};
-  if (all.size() == 1)
-    schema.update(all.front());
-  else
-    schema["anyOf"] = all;
+  if (all.size() == 1) schema.update(all.front());
+  else schema["anyOf"] = all;
   return schema;
 }
 
@@ -87,14 +88,15 @@ Json section_schema(const std::string& section) {
   Json required = Json::array();
   for (const Key* key : keys_of(section)) {
     schema["properties"][std::string(key->name)] = key_schema(*key);
-    if (key->required() && key->kinds.empty()) required.push_back(key->name);
+    if (key->required() && key->kinds.empty() && key->spared.empty()) required.push_back(key->name);
   }
   if (!required.empty()) schema["required"] = required;
   if (section == "interactions") {
     const Key& radius = *find_key("interactions.pair", "radius");
     schema.erase("additionalProperties");
     schema["patternProperties"]["^[A-Za-z][A-Za-z0-9_]*-[A-Za-z][A-Za-z0-9_]*$"] = {
-        {"description", description(radius)}, {"anyOf", Json::array({forms(radius).front(), section_schema("interactions.pair")})}};
+        {"description", description(radius)},
+        {"anyOf", Json::array({forms(radius).front(), section_schema("interactions.pair")})}};
     schema["additionalProperties"] = false;
   }
   return schema;
@@ -125,25 +127,24 @@ std::string scene_schema() {
 }
 
 std::string scene_tables() {
-  const std::pair<const char*, const char*> sections[] = {
-      {"", "Top of the file"},
-      {"domain", "`[domain]`"},
-      {"phases", "`[phases.NAME]`"},
-      {"interactions", "`[interactions]`"},
-      {"interactions.pair", "`[interactions]` `a-b = { ... }`"},
-      {"fill", "`[[fill]]`"},
-      {"fill.shape", "`shape = { ... }` of a fill"},
-      {"fill.shape.dune", "`dune = { ... }` of a bed"},
-      {"fill.shape.box", "`box = { ... }`"},
-      {"fill.shape.disc", "`disc = { ... }`"},
-      {"fill.shape.sphere", "`sphere = { ... }`"},
-      {"fill.shape.ring", "`ring = { ... }`"},
-      {"fill.shape.cube", "`cube = { ... }`"},
-      {"fill.velocity", "`velocity = { ... }` of a fill"},
-      {"fill.velocity.log-profile", "`log-profile = { ... }`"},
-      {"forcing", "`[[forcing]]`"},
-      {"time", "`[time]`"},
-      {"output", "`[output]`"}};
+  const std::pair<const char*, const char*> sections[] = {{"", "Top of the file"},
+                                                          {"domain", "`[domain]`"},
+                                                          {"phases", "`[phases.NAME]`"},
+                                                          {"interactions", "`[interactions]`"},
+                                                          {"interactions.pair", "`[interactions]` `a-b = { ... }`"},
+                                                          {"fill", "`[[fill]]`"},
+                                                          {"fill.shape", "`shape = { ... }` of a fill"},
+                                                          {"fill.shape.dune", "`dune = { ... }` of a bed"},
+                                                          {"fill.shape.box", "`box = { ... }`"},
+                                                          {"fill.shape.disc", "`disc = { ... }`"},
+                                                          {"fill.shape.sphere", "`sphere = { ... }`"},
+                                                          {"fill.shape.ring", "`ring = { ... }`"},
+                                                          {"fill.shape.cube", "`cube = { ... }`"},
+                                                          {"fill.velocity", "`velocity = { ... }` of a fill"},
+                                                          {"fill.velocity.log-profile", "`log-profile = { ... }`"},
+                                                          {"forcing", "`[[forcing]]`"},
+                                                          {"time", "`[time]`"},
+                                                          {"output", "`[output]`"}};
   std::string text;
   for (const auto& [section, heading] : sections) {
     text += "\n### " + std::string(heading) + "\n\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";

@@ -17,8 +17,8 @@ namespace {
 using Inside = std::function<bool(const Vec3&)>;
 
 struct Region {
-  Vec3 lower{}, upper{};     // m, of all places that could be inside
-  Vec3 anchor{};             // m, a place of the lattice
+  Vec3 lower{}, upper{};  // m, of all places that could be inside
+  Vec3 anchor{};          // m, a place of the lattice
   Inside inside;
 };
 
@@ -32,8 +32,8 @@ bool in_polygon(const std::vector<std::array<double, 2>>& corners, double x, dou
   return inside;
 }
 
-/// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other packings
-/// keep half a spacing from sides that are not periodic.
+/// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other
+/// packings keep half a spacing from sides that are not periodic.
 Region domain_region(const Scene& scene, Packing packing) {
   Region region;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -73,9 +73,7 @@ class RegionOf {
   RegionOf(const Scene& scene, const Fill& fill) : scene_(scene), region_(domain_region(scene, fill.packing)) {}
   Region take() { return std::move(region_); }
 
-  void operator()(const BoxShape& box) {
-    bound(region_, scene_, box.min, box.max, scene_.dimensions == 3 ? 3 : 2);
-  }
+  void operator()(const BoxShape& box) { bound(region_, scene_, box.min, box.max, scene_.dimensions == 3 ? 3 : 2); }
   void operator()(const DiscShape& disc) { round(disc.centre, -1.0, disc.radius, 2); }
   void operator()(const RingShape& ring) { round(ring.centre, ring.inner, ring.outer, 2); }
   void operator()(const SphereShape& sphere) { round(sphere.centre, -1.0, sphere.radius, 3); }
@@ -132,7 +130,8 @@ std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spac
 }
 
 /// Random sequential addition.
-std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, const Occupied& occupied) {
+std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed,
+                                const Occupied& occupied) {
   const PeriodicSpace space(scene.domain);
   Random random(seed);
   Places taken(space, scene.spacing);
@@ -153,9 +152,8 @@ std::vector<Vec3> random_places(const Scene& scene, const Region& region, double
 
 /// Lattice places over the ground that keep their distance from what is there.
 void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k, const Occupied& occupied) {
-  const bool over_ground =
-      std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
-                  [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
+  const bool over_ground = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
+                                       [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
   const Ground ground(scene);
   const double slack = 1e-9 * scene.spacing;
   std::erase_if(places, [&](const Vec3& x) {
@@ -175,7 +173,8 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     places = cube_places(*cube, scene.dimensions, scene.spacing);
   } else if (const auto* sides = std::get_if<SidesShape>(&fill.shape)) {
     places = rows_outside(scene, *sides);
-    std::erase_if(places, [&](const Vec3& x) { return occupied.outside.owner_near(x, overlap_distance * scene.spacing) >= 0; });
+    std::erase_if(places,
+                  [&](const Vec3& x) { return occupied.outside.owner_near(x, overlap_distance * scene.spacing) >= 0; });
   } else {
     RegionOf region_of(scene, fill);
     std::visit(region_of, fill.shape);
@@ -184,8 +183,8 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / scene.spacing;
     if (!(cells <= 1e9))
-      throw SceneError(scene.file + ": fill." + std::to_string(k) + ": more than 10^9 particles of phase \"" + fill.phase +
-                       "\"; expected a larger spacing or a smaller shape");
+      throw SceneError(scene.file + ": fill." + std::to_string(k) + ": more than 10^9 particles of phase \"" +
+                       fill.phase + "\"; expected a larger spacing or a smaller shape");
     if (fill.packing == Packing::random) {
       places = random_places(scene, region, cells, fill.seed, occupied);
     } else {

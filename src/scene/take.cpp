@@ -30,17 +30,16 @@ std::vector<std::string> take_words(const toml::table& table, std::string_view n
 Expression take_expression(const toml::node* node) {
   Expression expression;
   if (!node) return expression;
-  if (const auto* text = node->as_string())
-    expression.formula = text->get();
-  else
-    expression.value = node->value_or(0.0);
+  if (const auto* text = node->as_string()) expression.formula = text->get();
+  else expression.value = node->value_or(0.0);
   return expression;
 }
 
 VectorExpression take_vector_expression(const toml::table& table, std::string_view name) {
   VectorExpression vector;
   if (const toml::array* array = table[name].as_array())
-    for (std::size_t k = 0; k < std::min<std::size_t>(array->size(), 3); ++k) vector[k] = take_expression(array->get(k));
+    for (std::size_t k = 0; k < std::min<std::size_t>(array->size(), 3); ++k)
+      vector[k] = take_expression(array->get(k));
   return vector;
 }
 
@@ -86,7 +85,8 @@ Shape take_shape(const toml::table& table) {
     if (const toml::table* dune = table["dune"].as_table()) bed.dune = take_dune(*dune);
     return bed;
   }
-  if (const toml::table* box = table["box"].as_table()) return BoxShape{take_vector(*box, "min"), take_vector(*box, "max")};
+  if (const toml::table* box = table["box"].as_table())
+    return BoxShape{take_vector(*box, "min"), take_vector(*box, "max")};
   if (const toml::table* disc = table["disc"].as_table())
     return DiscShape{take_vector(*disc, "centre"), number(*disc, "radius")};
   if (const toml::table* sphere = table["sphere"].as_table())
@@ -98,7 +98,8 @@ Shape take_shape(const toml::table& table) {
     return CubeShape{take_vector(*cube, "centre"), (*cube)["count"].value_or(0)};
   if (const toml::array* points = table["points"].as_array()) return take_points(*points);
   if (table.contains("formula")) return FormulaShape{take_expression(table.get("formula"))};
-  if (table.contains("sides")) return SidesShape{take_words(table, "sides"), table["layers"].value_or(SidesShape{}.layers)};
+  if (table.contains("sides"))
+    return SidesShape{take_words(table, "sides"), table["layers"].value_or(SidesShape{}.layers)};
   return TheRestShape{};
 }
 
@@ -109,8 +110,9 @@ Fill take_fill(const toml::table& table) {
   fill.phase = table["phase"].value_or(std::string());
   fill.shape = TheRestShape{};
   if (const toml::table* shape = table["shape"].as_table()) fill.shape = take_shape(*shape);
-  fill.packing = take_choice(table, "packing", fill.packing,
-                             {{"rows", Packing::square}, {"staggered", Packing::hexagonal}, {"random", Packing::random}});
+  fill.packing =
+      take_choice(table, "packing", fill.packing,
+                  {{"rows", Packing::square}, {"staggered", Packing::hexagonal}, {"random", Packing::random}});
   take_number(table, "perturb", fill.perturb);
   fill.seed = table["seed"].value_or(fill.seed);
   fill.velocity = take_vector_expression(table, "velocity");

@@ -17,7 +17,7 @@ void take_number(const toml::table& table, std::string_view name, double& value)
 Vec3 take_vector(const toml::table& table, std::string_view name);
 Vec3 take_vector(const toml::array& array);
 std::vector<std::string> take_words(const toml::table& table, std::string_view name);
-Expression take_expression(const toml::node* node);      ///< null: zero
+Expression take_expression(const toml::node* node);  ///< null: zero
 VectorExpression take_vector_expression(const toml::table& table, std::string_view name);
 Fill take_fill(const toml::table& table);
 

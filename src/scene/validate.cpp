@@ -35,54 +35,60 @@ class Validator {
 
   void section(const toml::table& table, const std::string& section, const std::string& dotted) {
     const std::string kind = section == "phases" ? table["kind"].value_or(std::string()) : "";
+    std::vector<std::string> misspelt;  // keys that an unknown key probably means: not missing as well
     for (const auto& [name, node] : table) {
       const std::string here = dotted.empty() ? std::string(name.str()) : dotted + "." + std::string(name.str());
-      if (section == "interactions" && name.str() != "kernel")
-        pair(node, here);
-      else if (const Key* key = find_key(section, name.str()))
-        value(*key, node, here);
-      else
-        unknown(name, section, dotted, here);
+      if (section == "interactions" && name.str() != "kernel") pair(node, here);
+      else if (const Key* key = find_key(section, name.str())) value(*key, node, here);
+      else misspelt.push_back(unknown(name, section, dotted, here));
     }
     for (const Key* key : keys_of(section)) {
-      const bool needed = key->required() && (kind.empty() || belongs_to_kind(*key, kind));
-      if (needed && (key->kinds.empty() || !kind.empty()) && !table.contains(key->name))
+      if (!key->required() || table.contains(key->name)) continue;
+      const bool of_this_kind = key->kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
+      const bool spared = !kind.empty() && key->spared == kind;
+      const bool meant = std::find(misspelt.begin(), misspelt.end(), key->name) != misspelt.end();
+      if (of_this_kind && !spared && !meant)
         problems_.add(table.source(), dotted.empty() ? std::string(key->name) : dotted + "." + std::string(key->name),
                       "missing; expected " + expected(*key, dimensions_));
     }
   }
 
  private:
-  void unknown(const toml::key& name, const std::string& section, const std::string& dotted, const std::string& here) {
+  /// Returns the key of the same section that was probably meant, if any.
+  std::string unknown(const toml::key& name, const std::string& section, const std::string& dotted,
+                      const std::string& here) {
     std::vector<std::string> names;
     for (const Key* key : keys_of(section)) names.emplace_back(key->name);
-    std::string meant = nearest(name.str(), names);
+    const std::string near = nearest(name.str(), names);
+    std::string meant = near;
     if (meant.empty())
       for (const Key& key : all_keys())
         if (key.name == name.str() && key.section.find('.') == std::string_view::npos) {
-          meant = key.section.empty() ? std::string(key.name)
-                                      : std::string(key.section) + (key.section == "phases" ? ".NAME." : ".") + std::string(key.name);
+          meant = key.section.empty()
+                      ? std::string(key.name)
+                      : std::string(key.section) + (key.section == "phases" ? ".NAME." : ".") + std::string(key.name);
           break;
         }
     std::string all;
     for (const std::string& candidate : names) all += (all.empty() ? "" : ", ") + candidate;
-    problems_.add(name.source(), here,
-                  "unknown key; expected " +
-                      (meant.empty() ? "one of " + all : "a key of " + (dotted.empty() ? "the scene" : "[" + dotted + "]")) +
-                      did_you_mean(meant));
+    problems_.add(
+        name.source(), here,
+        "unknown key; expected " +
+            (meant.empty() ? "one of " + all : "a key of " + (dotted.empty() ? "the scene" : "[" + dotted + "]")) +
+            did_you_mean(meant));
+    return near;
   }
 
   void pair(const toml::node& node, const std::string& here) {
     static const Key& radius = *find_key("interactions.pair", "radius");
-    if (const auto* table = node.as_table())
-      section(*table, "interactions.pair", here);
-    else
-      value(radius, node, here);
+    if (const auto* table = node.as_table()) section(*table, "interactions.pair", here);
+    else value(radius, node, here);
   }
 
   /// True when the value has one of the forms that the key accepts; then its contents were checked too.
   void value(const Key& key, const toml::node& node, const std::string& here) {
-    const std::string path = key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
+    const std::string path =
+        key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
     const unsigned a = key.accepts;
     if (const auto* table = node.as_table()) {
       if (a & as_section) return section(*table, path, here);
@@ -117,10 +123,8 @@ class Validator {
       if (!good)
         problems_.add(name.source(), inner,
                       "not a name of a phase; expected a letter followed by letters, digits and underscores");
-      if (const auto* entry = node.as_table())
-        section(*entry, path, inner);
-      else
-        problems_.add(node.source(), inner, "found " + shown(node) + "; expected a section");
+      if (const auto* entry = node.as_table()) section(*entry, path, inner);
+      else problems_.add(node.source(), inner, "found " + shown(node) + "; expected a section");
     }
   }
 
@@ -128,10 +132,8 @@ class Validator {
     std::size_t index = 0;
     for (const toml::node& node : array) {
       const std::string inner = here + "." + std::to_string(index++);
-      if (const auto* entry = node.as_table())
-        section(*entry, path, inner);
-      else
-        problems_.add(node.source(), inner, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+      if (const auto* entry = node.as_table()) section(*entry, path, inner);
+      else problems_.add(node.source(), inner, "found " + shown(node) + "; expected " + expected(key, dimensions_));
     }
   }
 
@@ -146,15 +148,13 @@ class Validator {
   void vector(const Key& key, const toml::array& array, const std::string& here, int components) {
     if (array.size() != static_cast<std::size_t>(components))
       return problems_.add(array.source(), here,
-                           "found " + std::to_string(array.size()) + (array.size() == 1 ? " component" : " components") +
-                               "; expected " + expected(key, dimensions_));
+                           "found " + std::to_string(array.size()) +
+                               (array.size() == 1 ? " component" : " components") + "; expected " +
+                               expected(key, dimensions_));
     for (const toml::node& node : array) {
-      if (node.is_number())
-        number(key, node, here);
-      else if (const auto* text = node.as_string(); text && (key.accepts & as_formulas))
-        formula(key, *text, here);
-      else
-        problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+      if (node.is_number()) number(key, node, here);
+      else if (const auto* text = node.as_string(); text && (key.accepts & as_formulas)) formula(key, *text, here);
+      else problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
     }
   }
 
@@ -162,10 +162,8 @@ class Validator {
     if (array.size() < least)
       return problems_.add(array.source(), here, "found " + shown(array) + "; expected " + expected(key, dimensions_));
     for (const toml::node& node : array) {
-      if (const auto* point = node.as_array())
-        vector(key, *point, here, components);
-      else
-        problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+      if (const auto* point = node.as_array()) vector(key, *point, here, components);
+      else problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
     }
   }
 
@@ -176,8 +174,9 @@ class Validator {
   }
 
   void unknown_word(const Key& key, const toml::value<std::string>& text, const std::string& here) {
-    problems_.add(text.source(), here, "\"" + text.get() + "\" is not known; expected " + expected(key, dimensions_) +
-                                           did_you_mean(nearest(text.get(), choices(key))));
+    problems_.add(text.source(), here,
+                  "\"" + text.get() + "\" is not known; expected " + expected(key, dimensions_) +
+                      did_you_mean(nearest(text.get(), choices(key))));
   }
 
   void words(const Key& key, const toml::array& array, const std::string& here) {
@@ -186,12 +185,10 @@ class Validator {
       const auto* text = node.as_string();
       if (!text)
         problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
-      else if (!word_fits(key, text->get()))
-        unknown_word(key, *text, here);
+      else if (!word_fits(key, text->get())) unknown_word(key, *text, here);
       else if (std::find(seen.begin(), seen.end(), text->get()) != seen.end())
         problems_.add(node.source(), here, "\"" + text->get() + "\" is given twice");
-      else
-        seen.push_back(text->get());
+      else seen.push_back(text->get());
     }
   }
 

@@ -11,7 +11,9 @@
 namespace barchan {
 namespace {
 
-double value(const std::string& formula, const Vec3& x = {}, double t = 0.0) { return Formula(Expression{formula, 0.0})(x, t); }
+double value(const std::string& formula, const Vec3& x = {}, double t = 0.0) {
+  return Formula(Expression{formula, 0.0})(x, t);
+}
 
 TEST(Formula, IsANumberOrAFormula) {
   const Formula number(Expression{"", 2.5});
@@ -23,7 +25,8 @@ TEST(Formula, IsANumberOrAFormula) {
 
 TEST(Formula, KnowsPlaceTimeAndConstants) {
   EXPECT_EQ(value("x + 10*y + 100*z + 1000*t", {1, 2, 3}, 4), 4321);
-  EXPECT_DOUBLE_EQ(value("sin(2*pi*x)*cos(2*pi*y)", {0.1, 0.2, 0}), std::sin(0.2 * std::numbers::pi) * std::cos(0.4 * std::numbers::pi));
+  EXPECT_DOUBLE_EQ(value("sin(2*pi*x)*cos(2*pi*y)", {0.1, 0.2, 0}),
+                   std::sin(0.2 * std::numbers::pi) * std::cos(0.4 * std::numbers::pi));
   EXPECT_DOUBLE_EQ(value("ln(e)"), 1.0);
   EXPECT_EQ(value("2^3^2"), 512);
   EXPECT_EQ(value("x > 0.5 ? 7 : 8", {1, 0, 0}), 7);

@@ -49,12 +49,14 @@ std::string problem_of(const Scene& scene) {
 
 /// A unit square of grains with the given shape and packing; periodic in x unless told otherwise.
 Scene grains(const std::string& shape, const std::string& more = "", const std::string& size = "[1, 1]") {
-  std::string text = with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"", shape + "\n" + more);
+  std::string text =
+      with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"", shape + "\n" + more);
   return parse_scene(with(text, "size = [1, 1]", "size = " + size + "\nperiodic = [\"x\"]"), "s.toml");
 }
 
 TEST(Generate, RowsStartHalfASpacingInsideAndArePeriodic) {
-  const Scene scene = parse_scene(with(square_text, "size = [1, 1]", "origin = [-3, 2]\nsize = [1, 2]\nperiodic = [\"x\", \"y\"]"), "s.toml");
+  const Scene scene = parse_scene(
+      with(square_text, "size = [1, 1]", "origin = [-3, 2]\nsize = [1, 2]\nperiodic = [\"x\", \"y\"]"), "s.toml");
   const auto blocks = generate(scene);
   ASSERT_EQ(blocks.size(), 1u);
   const auto& x = blocks[0].position;
@@ -67,7 +69,8 @@ TEST(Generate, RowsStartHalfASpacingInsideAndArePeriodic) {
     std::vector<Vec3> others = x;
     std::erase(others, place);
     EXPECT_NEAR(nearest_to(place, others, space), 0.1, 1e-13);
-    EXPECT_NEAR(nearest_to(place + Vec3{0.1, 0, 0}, x, space), 0.0, 1e-13) << "every particle has a neighbour on its right";
+    EXPECT_NEAR(nearest_to(place + Vec3{0.1, 0, 0}, x, space), 0.0, 1e-13)
+        << "every particle has a neighbour on its right";
     EXPECT_NEAR(nearest_to(place + Vec3{0, 0.1, 0}, x, space), 0.0, 1e-13);
   }
   EXPECT_TRUE(blocks[0].pressure.empty());
@@ -77,7 +80,9 @@ TEST(Generate, SpacingsThatBinaryNumbersCannotHoldGiveTheRightCount) {
   for (const int n : {7, 10, 30, 49, 100, 333}) {
     char spacing[64];
     std::snprintf(spacing, sizeof spacing, "spacing = %.17g", 1.0 / n);
-    const Scene scene = parse_scene(with(with(square_text, "spacing = 0.1", spacing), "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\"]"), "s.toml");
+    const Scene scene = parse_scene(
+        with(with(square_text, "spacing = 0.1", spacing), "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\"]"),
+        "s.toml");
     EXPECT_EQ(generate(scene)[0].position.size(), static_cast<std::size_t>(n * n)) << n;
   }
 }
@@ -98,7 +103,8 @@ TEST(Generate, ClosePackingInThreeDimensionsTouchesTwelveNeighbours) {
   const double depth = std::sqrt(3.0);
   char size[64];
   std::snprintf(size, sizeof size, "[1, 1, %.17g]\nperiodic = [\"x\", \"z\"]", depth * 0.5);
-  std::string text = with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"", "{ bed = 0.6 }\npacking = \"staggered\"");
+  std::string text = with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"",
+                          "{ bed = 0.6 }\npacking = \"staggered\"");
   const Scene scene = parse_scene("dimensions = 3\n" + with(text, "[1, 1]", size), "s.toml");
   const auto x = generate(scene)[0].position;
   const PeriodicSpace space(scene.domain);
@@ -110,13 +116,15 @@ TEST(Generate, ClosePackingInThreeDimensionsTouchesTwelveNeighbours) {
 }
 
 TEST(Generate, APeriodThatStaggeredRowsDoNotFitIsRefusedWithTheNearestThatDo) {
-  const std::string text = with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"", "\"the-rest\"\npacking = \"staggered\"");
+  const std::string text = with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"",
+                                "\"the-rest\"\npacking = \"staggered\"");
   EXPECT_EQ(problem_of([&] {
               Scene scene = parse_scene(text, "s.toml");
               scene.domain.periodic[1] = true;
               return scene;
             }()),
-            "s.toml: domain.size: 1 m along the periodic axis y is not a whole number of staggered double rows (0.173205080756888 m); expected "
+            "s.toml: domain.size: 1 m along the periodic axis y is not a whole number of staggered double rows "
+            "(0.173205080756888 m); expected "
             "0.866025403784439 or 1.03923048454133 m");
   EXPECT_EQ(problem_of([&] {
               Scene scene = parse_scene(square_text, "s.toml");
@@ -124,7 +132,8 @@ TEST(Generate, APeriodThatStaggeredRowsDoNotFitIsRefusedWithTheNearestThatDo) {
               scene.domain.periodic[0] = true;
               return scene;
             }()),
-            "s.toml: domain.size: 1.03 m along the periodic axis x is not a whole number of spacings (0.1 m); expected 1 or 1.1 m");
+            "s.toml: domain.size: 1.03 m along the periodic axis x is not a whole number of spacings (0.1 m); expected "
+            "1 or 1.1 m");
 }
 
 TEST(Generate, RandomGrainsDoNotTouchAndAreTheSameEveryTime) {
@@ -142,8 +151,10 @@ TEST(Generate, RandomGrainsDoNotTouchAndAreTheSameEveryTime) {
 }
 
 TEST(Generate, RandomNumbersDoNotDependOnTheLibrary) {
-  const Scene scene = parse_scene(with(square_text, "\"the-rest\"", "{ points = [[0.5, 0.5]] }\nperturb = 0.2\nseed = 1234567"), "s.toml");
-  // splitmix64 with seed 1234567 begins 6457827717110365317, 3203168211198807973 (reference values of its authors' code).
+  const Scene scene = parse_scene(
+      with(square_text, "\"the-rest\"", "{ points = [[0.5, 0.5]] }\nperturb = 0.2\nseed = 1234567"), "s.toml");
+  // splitmix64 with seed 1234567 begins 6457827717110365317, 3203168211198807973 (reference values of its authors'
+  // code).
   const auto uniform = [](double bits) { return -0.02 + 0.04 * std::floor(bits / 2048.0) * 0x1p-53; };
   const Vec3 x = generate(scene)[0].position.at(0);
   EXPECT_NEAR(x[0], 0.5 + uniform(6457827717110365317.0), 1e-15);
@@ -163,7 +174,8 @@ TEST(Generate, PerturbMovesByAtMostItsSizeAndKeepsThePeriod) {
     EXPECT_LE(std::abs(moved[i][1] - regular[i][1]), 0.02);
     mean += space.distance(moved[i], regular[i]) / static_cast<double>(moved.size());
   }
-  EXPECT_NEAR(mean, 0.02 * 0.7652, 0.0015) << "mean distance of a uniform point of a square of half side 1 from its centre: 0.7652";
+  EXPECT_NEAR(mean, 0.02 * 0.7652, 0.0015)
+      << "mean distance of a uniform point of a square of half side 1 from its centre: 0.7652";
 }
 
 TEST(Generate, AirOverADuneOfRowsNeitherOverlapsNorLeavesGaps) {
@@ -184,10 +196,11 @@ TEST(Generate, AirOverAStaggeredOrShapelessDuneKeepsItsDistance) {
     const PeriodicSpace space(scene.domain);
     const auto all = all_positions(blocks);
     EXPECT_GE(least_distance(blocks[0].position, blocks[1].position, space), 0.75 * 2e-3) << packing;
-    if (std::string(packing) == "random") continue;   // loose sand has holes of its own
+    if (std::string(packing) == "random") continue;  // loose sand has holes of its own
     double largest_hole = 0.0;
     for (double x = 0; x < 0.4; x += 2.3e-3)
-      for (double y = 1e-3; y < 0.05; y += 1.1e-3) largest_hole = std::max(largest_hole, nearest_to({x, y, 0}, all, space));
+      for (double y = 1e-3; y < 0.05; y += 1.1e-3)
+        largest_hole = std::max(largest_hole, nearest_to({x, y, 0}, all, space));
     EXPECT_LT(2.0 * largest_hole, 2.0 * 1.5 * 2e-3) << "no point is farther than 1.5 spacings from a particle";
     EXPECT_LT(largest_hole, 1.1 * 2e-3);
   }
@@ -223,9 +236,12 @@ TEST(Generate, WindIsLogarithmicOverTheGround) {
   const double height[] = {1e-3, 5e-3, 10e-3, 50e-3, 100e-3}, wind[] = {4.788, 6.397, 7.090, 8.700, 9.393};
   std::string points, text = with(square_text, "size = [1, 1]", "size = [4, 4]");
   for (const double y : height) points += (points.empty() ? "[1, " : ", [1, ") + std::to_string(0.5 + y) + "]";
-  text = with(text, "[[fill]]", "[phases.ground]\nkind = \"grains\"\ndensity = 1\n[[fill]]\nphase = \"ground\"\nshape = { bed = 0.5 }\n[[fill]]");
-  text = with(text, "\"the-rest\"", "{ points = [[3, 0.6000001], " + points +
-                                        "] }\nvelocity = { log-profile = { friction-velocity = 0.4, roughness = 8.333e-6 } }");
+  text = with(
+      text, "[[fill]]",
+      "[phases.ground]\nkind = \"grains\"\ndensity = 1\n[[fill]]\nphase = \"ground\"\nshape = { bed = 0.5 }\n[[fill]]");
+  text = with(text, "\"the-rest\"",
+              "{ points = [[3, 0.6000001], " + points +
+                  "] }\nvelocity = { log-profile = { friction-velocity = 0.4, roughness = 8.333e-6 } }");
   Scene scene = parse_scene(text, "s.toml");
   const auto blocks = generate(scene);
   for (std::size_t k = 0; k < 5; ++k) {
@@ -242,7 +258,9 @@ TEST(Generate, WindIsLogarithmicOverTheGround) {
 }
 
 TEST(Generate, FormulasGiveVelocityAndPressure) {
-  const Scene scene = parse_scene(with(square_text, "\"the-rest\"", "\"the-rest\"\nvelocity = [\"sin(2*pi*x)\", \"-y\"]\npressure = \"x + y\""), "s.toml");
+  const Scene scene = parse_scene(
+      with(square_text, "\"the-rest\"", "\"the-rest\"\nvelocity = [\"sin(2*pi*x)\", \"-y\"]\npressure = \"x + y\""),
+      "s.toml");
   const auto block = generate(scene)[0];
   ASSERT_EQ(block.pressure.size(), block.position.size());
   for (std::size_t i = 0; i < block.position.size(); ++i) {
@@ -260,7 +278,9 @@ TEST(Generate, FormulasGiveVelocityAndPressure) {
 Scene walled(const std::string& sides, const std::string& domain = "size = [1, 1]", const std::string& more = "") {
   std::string text = with(square_text, "size = [1, 1]", domain);
   text = with(text, "[interactions]", "[phases.wall]\nkind = \"wall\"\n[interactions]\nair-wall = 3.0");
-  return parse_scene(with(text, "[[fill]]", "[[fill]]\nphase = \"wall\"\nshape = { sides = " + sides + " }\n" + more + "[[fill]]"), "s.toml");
+  return parse_scene(
+      with(text, "[[fill]]", "[[fill]]\nphase = \"wall\"\nshape = { sides = " + sides + " }\n" + more + "[[fill]]"),
+      "s.toml");
 }
 
 TEST(Generate, WallLayersCloseTheCorners) {
@@ -286,14 +306,17 @@ TEST(Generate, AnEarlierWallKeepsTheCorner) {
 TEST(Generate, WallsInThreeDimensions) {
   std::string text = with(square_text, "size = [1, 1]", "size = [1, 1, 1]\nperiodic = [\"x\"]");
   text = with(text, "[interactions]", "[phases.wall]\nkind = \"wall\"\n[interactions]\nair-wall = 3.0");
-  text = "dimensions = 3\n" + text + "[[fill]]\nphase = \"wall\"\nshape = { sides = [\"bottom\", \"back\"], layers = 2 }\n";
+  text = "dimensions = 3\n" + text +
+         "[[fill]]\nphase = \"wall\"\nshape = { sides = [\"bottom\", \"back\"], layers = 2 }\n";
   const auto blocks = generate(parse_scene(text, "s.toml"));
   EXPECT_EQ(blocks[0].position.size(), 1000u);
   EXPECT_EQ(blocks[1].position.size(), 10u * (14u * 14u - 12u * 12u));
 }
 
 TEST(Generate, BodiesSitOnTheirCentres) {
-  const auto places = [](const std::string& shape) { return generate(parse_scene(with(square_text, "\"the-rest\"", shape), "s.toml"))[0].position; };
+  const auto places = [](const std::string& shape) {
+    return generate(parse_scene(with(square_text, "\"the-rest\"", shape), "s.toml"))[0].position;
+  };
   const auto mean = [](const std::vector<Vec3>& x) {
     Vec3 sum{};
     for (const Vec3& place : x) sum = sum + (1.0 / static_cast<double>(x.size())) * place;
@@ -330,7 +353,8 @@ TEST(Generate, BoxesThatMeetNeitherShareNorMissParticles) {
 
 TEST(Generate, ADomainThatIsNoWholeNumberOfSpacingsKeepsItsLastRowInside) {
   for (const double size : {0.96, 1.0, 1.04}) {
-    const auto x = generate(parse_scene(square_text, "s.toml", {"domain.size=[" + std::to_string(size) + ", 1]"}))[0].position;
+    const auto x =
+        generate(parse_scene(square_text, "s.toml", {"domain.size=[" + std::to_string(size) + ", 1]"}))[0].position;
     EXPECT_EQ(x.size(), 100u);
     for (const Vec3& place : x) EXPECT_LE(place[0], size);
   }
@@ -339,14 +363,18 @@ TEST(Generate, ADomainThatIsNoWholeNumberOfSpacingsKeepsItsLastRowInside) {
 TEST(Generate, TellsOfOverlapsEmptyFillsAndParticlesOutside) {
   const std::string second = "[[fill]]\nphase = \"air\"\nshape = { points = [[0.47, 0.45]] }\n";
   EXPECT_EQ(problem_of(parse_scene(square_text + second, "s.toml")),
-            "s.toml: fill.1: a particle of phase \"air\" at (0.47, 0.45) m overlaps fill.0 of phase \"air\"; expected at least half a spacing "
+            "s.toml: fill.1: a particle of phase \"air\" at (0.47, 0.45) m overlaps fill.0 of phase \"air\"; expected "
+            "at least half a spacing "
             "between particles of different fills");
   EXPECT_EQ(problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ formula = \"-1\" }"), "s.toml")),
-            "s.toml: fill.0: no particle of phase \"air\"; expected a larger shape, a smaller spacing, or an earlier place in the file");
+            "s.toml: fill.0: no particle of phase \"air\"; expected a larger shape, a smaller spacing, or an earlier "
+            "place in the file");
   EXPECT_EQ(problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ points = [[0.5, 1.5]] }"), "s.toml")),
-            "s.toml: fill.0: a particle of phase \"air\" at (0.5, 1.5) m lies outside the domain; expected a shape inside it");
+            "s.toml: fill.0: a particle of phase \"air\" at (0.5, 1.5) m lies outside the domain; expected a shape "
+            "inside it");
   const std::string periodic = with(square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\"]");
-  const std::string across = with(periodic, "\"the-rest\"", "{ points = [[0.01, 0.5]] }") + "[[fill]]\nphase = \"air\"\nshape = { points = [[0.99, 0.5]] }\n";
+  const std::string across = with(periodic, "\"the-rest\"", "{ points = [[0.01, 0.5]] }") +
+                             "[[fill]]\nphase = \"air\"\nshape = { points = [[0.99, 0.5]] }\n";
   EXPECT_NE(problem_of(parse_scene(across, "s.toml")), "") << "overlap across the period";
 }
 

@@ -1,0 +1,88 @@
+// Malformed scenes, each with its exact message: from the library, and from the program, which must leave nothing
+// behind.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/errors.hpp"
+#include "scene/generate.hpp"
+#include "scene/keys.hpp"
+#include "scene/nearest.hpp"
+#include "scene/reader.hpp"
+#include "unit/scene_texts.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::dune_text;
+using testing::square_text;
+using testing::with;
+
+struct Malformed {
+  const char* name;
+  std::string text;
+  std::string message;  // FILE stands for the scene's file, FIELDS for the names of all fields
+};
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string message_of(const Malformed& scene, const std::string& file) {
+  return replaced(replaced(scene.message, "FILE", file), "FIELDS", one_of(choices(*find_key("output", "fields"))));
+}
+
+/// The dune with one thing changed.
+std::string dune(const std::string& from, const std::string& to) { return with(dune_text, from, to); }
+/// The square with one thing changed.
+std::string square(const std::string& from, const std::string& to) { return with(square_text, from, to); }
+
+const std::vector<Malformed>& malformed_scenes() {
+  static const std::vector<Malformed> scenes = {
+#include "malformed_scenes.inc"
+  };
+  return scenes;
+}
+
+class MalformedScene : public ::testing::TestWithParam<Malformed> {};
+
+TEST_P(MalformedScene, LibraryTellsExactlyWhatIsWrong) {
+  ASSERT_EQ(GetParam().text.find("NOT FOUND"), std::string::npos) << GetParam().text;
+  try {
+    generate(parse_scene(GetParam().text, "s.toml"));
+    ADD_FAILURE() << "accepted";
+  } catch (const SceneError& error) { EXPECT_EQ(error.what(), message_of(GetParam(), "s.toml")); }
+}
+
+TEST_P(MalformedScene, ProgramSaysTheSameAndWritesNothing) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(BARCHAN_PROGRAM)) GTEST_SKIP() << "no program at " BARCHAN_PROGRAM;
+  const fs::path place = fs::path(::testing::TempDir()) / ("barchan_malformed_" + std::to_string(getpid()));
+  fs::remove_all(place);
+  fs::create_directories(place);
+  const fs::path scene = place / "scene.toml", out = place / "out", errors = place / "stderr";
+  std::ofstream(scene, std::ios::binary) << GetParam().text;
+  const std::string command = "'" BARCHAN_PROGRAM "' run '" + scene.string() + "' --out '" + out.string() +
+                              "' > /dev/null 2> '" + errors.string() + "'";
+  const int status = std::system(command.c_str());
+  std::ostringstream said;
+  said << std::ifstream(errors).rdbuf();
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_EQ(said.str(), "barchan: " + message_of(GetParam(), scene.string()) + "\n");
+  fs::remove_all(place);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, MalformedScene, ::testing::ValuesIn(malformed_scenes()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace barchan
