@@ -10,7 +10,7 @@ endif()
 # Contraction is fixed by the compiler and the target alone, never by the data or the number of threads.
 target_compile_options(barchan_options INTERFACE -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(barchan_options INTERFACE -Wno-psabi)
+  target_compile_options(barchan_options INTERFACE -Wno-psabi -Wno-restrict)  # both are false alarms of g++ 12
 endif()
 if(BARCHAN_SANITIZE)
   target_compile_options(barchan_options INTERFACE -fsanitize=${BARCHAN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

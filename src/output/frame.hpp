@@ -22,6 +22,7 @@ struct Frame {
   std::vector<std::int64_t> id; // stable from the first frame to the last
   std::vector<std::int32_t> phase;
   std::vector<std::string> phase_names;   // phase number -> name
+  std::vector<std::string> phase_kinds;   // phase number -> fluid, elastic, grains, wall
   std::vector<FrameField> fields;
   std::size_t size() const { return id.size(); }
 };

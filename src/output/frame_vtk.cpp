@@ -22,6 +22,7 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
+#include <vtkTypeTraits.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
@@ -162,6 +163,7 @@ void fill(vtkPointSet* data, const Frame& frame, FrameFormat format) {
   add_value<vtkTypeInt64Array>(about, "step", static_cast<vtkTypeInt64>(frame.step));
   add_value<vtkIntArray>(about, "frame", frame.index);
   add_lines(about, "phase_names", frame.phase_names, format);
+  add_lines(about, "phase_kinds", frame.phase_kinds, format);
   add_lines(about, "units", unit_lines(frame), format);
 }
 
@@ -204,20 +206,23 @@ void run(vtkXMLWriter* writer, vtkPointSet* data, WholeFile& file, FrameFormat f
 
 // ---- reading --------------------------------------------------------------------------------------------------------
 
+bool is_64_bit_integer(vtkDataArray* array) {
+  const int type = array->GetDataType();
+  return array->GetDataTypeSize() == 8 && (type == VTK_ID_TYPE || type == VTK_LONG || type == VTK_LONG_LONG);
+}
+
+/// The numbers of an array bit for bit where it has the type T, converted (through double) where another program wrote
+/// another type. The three names that VTK has for a 64-bit integer are one type here.
 template <class T>
 std::vector<T> values_of(vtkDataArray* array) {
-  const vtkIdType n = array->GetNumberOfTuples();
-  const int components = array->GetNumberOfComponents();
-  std::vector<T> values(static_cast<std::size_t>(n * components));
-  if (auto* same = vtkArrayDownCast<vtkAOSDataArrayTemplate<T>>(array)) {
-    std::copy_n(same->GetPointer(0), values.size(), values.begin());
-  } else if (auto* ids = vtkArrayDownCast<vtkIdTypeArray>(array)) {
-    std::transform(ids->GetPointer(0), ids->GetPointer(0) + values.size(), values.begin(),
-                   [](vtkIdType id) { return static_cast<T>(id); });
+  std::vector<T> values(static_cast<std::size_t>(array->GetNumberOfValues()));
+  if (array->GetDataType() == vtkTypeTraits<T>::VTK_TYPE_ID ||
+      (std::is_same_v<T, std::int64_t> && is_64_bit_integer(array))) {
+    std::copy_n(static_cast<const T*>(array->GetVoidPointer(0)), values.size(), values.begin());
   } else {
-    std::size_t k = 0;
-    for (vtkIdType i = 0; i < n; ++i)
-      for (int c = 0; c < components; ++c) values[k++] = static_cast<T>(array->GetComponent(i, c));
+    const auto components = static_cast<std::size_t>(array->GetNumberOfComponents());
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = static_cast<T>(array->GetComponent(static_cast<vtkIdType>(k / components), static_cast<int>(k % components)));
   }
   return values;
 }
@@ -248,9 +253,10 @@ Frame frame_of(vtkPointSet* data) {
   Frame frame;
   vtkFieldData* about = data->GetFieldData();
   if (auto* time = about->GetArray("TimeValue")) frame.time = time->GetComponent(0, 0);
-  if (auto* step = about->GetArray("step")) frame.step = values_of<long>(step).at(0);
+  if (auto* step = about->GetArray("step")) frame.step = values_of<std::int64_t>(step).at(0);
   if (auto* index = about->GetArray("frame")) frame.index = values_of<int>(index).at(0);
   frame.phase_names = lines_of(about, "phase_names");
+  frame.phase_kinds = lines_of(about, "phase_kinds");
   const Lines units = lines_of(about, "units");
 
   const vtkIdType n = data->GetNumberOfPoints();

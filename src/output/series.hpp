@@ -41,8 +41,9 @@ class SeriesWriter {
 std::vector<SeriesWriter::Entry> read_pvd(const std::filesystem::path& pvd);
 
 /// Writes one frame to a .vtp or .vtu (by format): appended data, compressed on request, vertices for every particle,
-/// point arrays id (Int64, also set as global ids), phase (Int32) and the fields; field data TimeValue, phase_names
-/// (string array) and one string array "units" with lines "name unit". Throws OutputError.
+/// point arrays id (Int64, also set as global ids), phase (Int32) and the fields; field data TimeValue, step, frame (its
+/// index) and phase_names, phase_kinds, units (lines "name unit") as arrays of strings, which a .vtu holds as UInt8 text
+/// with a newline between, because meshio reads no strings. Throws OutputError.
 void write_frame(const std::filesystem::path& file, const Frame& frame, FrameFormat format, bool compress);
 
 /// Reads a frame back (.vtp or .vtu). Throws OutputError.

@@ -8,8 +8,8 @@
 namespace barchan {
 namespace {
 
-constexpr Bounds positive{.above = 0.0};
-constexpr Bounds not_negative{.at_least = 0.0};
+constexpr NumberBounds positive{.above = 0.0};
+constexpr NumberBounds not_negative{.at_least = 0.0};
 
 // Columns: section, name, what it accepts, unit, default, meaning; then bounds, words, variables and kinds where they
 // apply.
@@ -168,7 +168,7 @@ std::string number_text(double value) {
   return text;
 }
 
-std::string bounds_text(const Bounds& b) {
+std::string bounds_text(const NumberBounds& b) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::string text;
   const auto add = [&](const char* sign, double value, double absent) {

@@ -28,8 +28,8 @@ enum Accepts : unsigned {
   as_named_sections = 1u << 13,  // a table of tables whose names the user chooses
 };
 
-/// Bounds of a number; `above` and `below` exclude the bound itself.
-struct Bounds {
+/// NumberBounds of a number; `above` and `below` exclude the bound itself.
+struct NumberBounds {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   double above = -std::numeric_limits<double>::infinity();
@@ -44,7 +44,7 @@ struct Key {
   std::string_view unit = "";       // SI; "" for a pure number or a word
   std::string_view otherwise = "";  // the default in words; "required" when there is none
   std::string_view meaning = "";
-  Bounds bounds{};
+  NumberBounds bounds{};
   std::string_view words = "";      // choices, '|' between them; "@fields": the names of particles/fields.hpp
   std::string_view variables = "";  // of a formula
   std::string_view kinds = "";      // phases only: the kinds that have this key; "" for all

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 Json section_schema(const std::string& section);
 
-void add_bounds(Json& number, const Bounds& bounds) {
+void add_bounds(Json& number, const NumberBounds& bounds) {
   if (std::isfinite(bounds.above)) number["exclusiveMinimum"] = bounds.above;
   if (std::isfinite(bounds.at_least)) number["minimum"] = bounds.at_least;
   if (std::isfinite(bounds.below)) number["exclusiveMaximum"] = bounds.below;

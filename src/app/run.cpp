@@ -1,0 +1,192 @@
+// barchan run: integrate a scene and write its series.
+#include <omp.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "base/errors.hpp"
+#include "base/version.hpp"
+#include "output/history.hpp"
+#include "output/run_report.hpp"
+#include "output/series.hpp"
+#include "scene/reader.hpp"
+#include "time/simulation.hpp"
+
+namespace barchan {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+volatile std::sig_atomic_t caught_signal = 0;
+void on_signal(int number) { caught_signal = number; }
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// All that a run writes, and where it stands.
+class Run {
+ public:
+  Run(const Scene& scene, const Plan& plan, Simulation& simulation, const fs::path& directory, bool quiet)
+      : scene_(scene), simulation_(simulation), directory_(directory),
+        series_(directory, scene.name, scene.output.format, scene.output.compress),
+        history_(directory / "history.csv", Simulation::history_columns(plan)),
+        progress_(scene.time.end, plan.particles(), quiet) {}
+
+  int go() {
+    int status = 0;
+    try {
+      status = loop();
+    } catch (const BreakdownError& e) {
+      reason_ = std::string("breakdown: ") + e.what();
+      finish();
+      progress_.end(reason_);
+      throw;
+    }
+    finish();
+    progress_.end(reason_);
+    return status;
+  }
+
+ private:
+  int loop() {
+    const double end = scene_.time.end;
+    const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
+    const double row_every = scene_.output.history_every > 0 ? scene_.output.history_every : end / 100.0;
+    long frames_due = 1, rows_due = 1;
+    write_frame();
+    write_row();
+    while (simulation_.time() < end * (1.0 - 1e-12)) {
+      const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
+      const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
+      simulation_.step(std::min(next_frame, next_row) - simulation_.time());
+      const double now = simulation_.time() * (1.0 + 1e-12);
+      if (now >= next_row) {
+        simulation_.check();
+        write_row();
+        ++rows_due;
+      }
+      if (now >= next_frame) {
+        write_frame();
+        ++frames_due;
+      }
+      progress_.step(simulation_);
+      if (simulation_.steps() % 16 == 0 || caught_signal != 0) {
+        if (caught_signal != 0) return stop(caught_signal == SIGINT ? "SIGINT" : "SIGTERM", 128 + caught_signal);
+        if (fs::exists(directory_ / "TERMINATE")) return stop("TERMINATE", 0);
+      }
+    }
+    reason_ = "end";
+    return 0;
+  }
+
+  int stop(const char* why, int status) {
+    reason_ = why;
+    std::cerr << "barchan: stopped by " << why << " at t = " << simulation_.time() << " s after " << simulation_.steps()
+              << " steps; the last frame is written\n";
+    return status;
+  }
+
+  void write_frame() {
+    series_.write(simulation_.frame(frames_++));
+    last_frame_step_ = simulation_.steps();
+  }
+  void write_row() { history_.row(simulation_.history_row()); }
+
+  /// The last state, the series and the report.
+  void finish() {
+    if (last_frame_step_ != simulation_.steps()) write_frame();
+    series_.finish();
+    const Plan& plan = simulation_.plan();
+    RunReport r;
+    r.version = version();
+    r.commit = commit();
+    r.compiler = compiler();
+    r.instruction_set = instruction_set();
+    r.vtk = vtk_version();
+    r.threads = omp_get_max_threads();
+    r.scene_title = scene_.title;
+    r.scene_file = scene_.file;
+    double pairs = 0;
+    for (const auto& p : plan.phases) {
+      r.particles[p.name] = static_cast<long>(p.count);
+      for (const Field f : p.fields) r.fields[p.name].emplace_back(info(f).name);
+    }
+    for (const auto& e : plan.entries) {
+      r.pairs[e.name] = static_cast<long>(simulation_.pairs(e));
+      pairs += static_cast<double>(simulation_.pairs(e));
+    }
+    r.passes = plan.passes;
+    r.steps = simulation_.steps();
+    r.simulated_time = simulation_.time();
+    double stepping = 0;
+    for (const auto& [name, seconds] : simulation_.seconds()) {
+      stepping += seconds;
+      for (const auto& planned : plan.passes)
+        if (planned == name) r.seconds.emplace_back(name, seconds);
+    }
+    r.seconds.emplace_back("output (waiting)", series_.seconds_waiting());
+    r.seconds.emplace_back("output (behind)", series_.seconds_writing());
+    r.wall_seconds = progress_.seconds();
+    r.cpu_seconds = cpu_seconds();
+    const double steps = static_cast<double>(std::max(simulation_.steps(), 1L));
+    r.particle_steps_per_second = plan.particles() * steps / std::max(stepping, 1e-9);
+    r.pair_interactions_per_second = pairs * steps / std::max(stepping, 1e-9);
+    for (const auto& [limit, count] : simulation_.limit_counts())
+      if (count > 0) r.time_step_limits[limit] = count;
+    const auto columns = Simulation::history_columns(plan);
+    const auto row = simulation_.history_row();
+    for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
+    r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.neighbours().rebuilds());
+    r.budgets["bytes_per_particle"] = static_cast<double>(simulation_.bytes()) / std::max(plan.particles(), 1.0);
+    r.end_reason = reason_;
+    write_run_report(directory_ / "run.json", r);
+  }
+
+  const Scene& scene_;
+  Simulation& simulation_;
+  fs::path directory_;
+  SeriesWriter series_;
+  History history_;
+  Progress progress_;
+  int frames_ = 0;
+  long last_frame_step_ = -1;
+  std::string reason_;
+};
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const Scene scene = read_scene(options.scene, options.overrides);
+  if (!options.restart.empty()) {
+    if (options.restart != "latest")
+      throw SceneError("--restart " + options.restart + ": checkpoints are not there yet; only \"latest\" is accepted, "
+                       "which starts at the beginning when there is none");
+    std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
+  }
+  const auto blocks = generate(scene);
+  const Plan plan = make_plan(scene, blocks);
+  const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
+  if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
+  Simulation simulation(scene, plan, blocks);
+  simulation.check();
+  struct sigaction action{};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::error_code ignored;
+  fs::remove(directory / "TERMINATE", ignored);   // one that an earlier run left
+  return Run(scene, plan, simulation, directory, options.quiet).go();
+}
+
+}  // namespace barchan

@@ -1,0 +1,25 @@
+#include <cmath>
+
+#include "kernels/kernel.hpp"
+#include "plan/plan.hpp"
+
+namespace barchan {
+
+Consistency lattice_consistency(KernelKind kind, double radius, int dimensions) {
+  Consistency c;
+  with_kernel<double>(kind, radius, dimensions, [&](const auto& kernel) {
+    const int n = static_cast<int>(std::ceil(radius)), nz = dimensions == 3 ? n : 0;
+    for (int z = -nz; z <= nz; ++z)
+      for (int y = -n; y <= n; ++y)
+        for (int x = -n; x <= n; ++x) {
+          const double r = std::sqrt(double(x * x + y * y + z * z));
+          c.volume_sum += kernel.value(r);
+          if (r == 0.0 || r >= radius * (1.0 - 1e-12)) continue;
+          ++c.neighbours;
+          c.gradient_sum -= kernel.derivative(r) * x * x / r;
+        }
+  });
+  return c;
+}
+
+}  // namespace barchan

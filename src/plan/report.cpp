@@ -1,0 +1,127 @@
+// The plan as a person reads it, and as JSON.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "plan/estimate.hpp"
+#include "time/simulation.hpp"
+
+namespace barchan {
+
+namespace {
+
+template <class... A>
+std::string line(const char* format, A... a) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, a...);
+  return text;
+}
+
+const char* kind_name(PhaseKind k) {
+  switch (k) {
+    case PhaseKind::fluid: return "fluid";
+    case PhaseKind::elastic: return "elastic";
+    case PhaseKind::grains: return "grains";
+    case PhaseKind::wall: return "wall";
+  }
+  return "";
+}
+
+const char* kernel_name(KernelKind k) { return k == KernelKind::wendland_c2 ? "wendland-c2" : "cubic-spline"; }
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const auto& w : words) all += (all.empty() ? "" : ", ") + w;
+  return all.empty() ? "none" : all;
+}
+
+}  // namespace
+
+std::string to_text(const Plan& plan, const Scene& scene) {
+  std::string t = scene.title.empty() ? scene.name + "\n" : scene.title + "\n";
+  t += line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, plan.spacing, plan.particles(), scene.time.end);
+  t += line("%-12s %-8s %10s %12s %10s  %s\n", "phase", "kind", "particles", "mass [kg]", "c [m/s]", "fields");
+  for (const auto& p : plan.phases) {
+    std::vector<std::string> names;
+    for (const Field f : p.fields) names.emplace_back(info(f).name);
+    t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), kind_name(p.kind), p.count, p.mass, p.sound_speed);
+    t += joined(names) + "\n";
+  }
+  t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW", "gradient",
+            "(on a lattice; the truth is 1 and 1)");
+  for (const auto& e : plan.entries)
+    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), to_string(e.law).c_str(),
+              kernel_name(e.kernel), e.radius / plan.spacing, e.consistency.neighbours, e.consistency.volume_sum,
+              e.consistency.gradient_sum, e.consistency.consistent() ? "consistent" : "a contact law, not an approximation");
+  t += "\npasses  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n\n";
+  if (plan.fixed_step > 0) t += line("step    %.4g s, fixed by the scene\n", plan.fixed_step);
+  for (const auto& l : plan.limits)
+    t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value, l.name.c_str(),
+              l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
+  return t + "\n";
+}
+
+Estimate measure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks) {
+  Estimate e;
+  Simulation simulation(scene, plan, blocks);
+  const auto start = std::chrono::steady_clock::now();
+  double seconds = 0;
+  while (simulation.steps() < 200 && seconds < 2.0 && simulation.time() < scene.time.end * (1 - 1e-12)) {
+    simulation.step(scene.time.end - simulation.time());
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  const double steps = static_cast<double>(std::max(simulation.steps(), 1L));
+  e.particle_steps_per_second = plan.particles() * steps / seconds;
+  e.steps = scene.time.end / simulation.last_step();
+  e.seconds = e.steps * seconds / steps;
+  e.bytes = static_cast<double>(simulation.bytes());
+  for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
+  return e;
+}
+
+std::string to_text(const Estimate& e) {
+  std::string t = "pairs  ";
+  for (const auto& [name, count] : e.pairs) t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
+  t += line("\nmemory  %.1f MB\nrun     about %.0f steps, %.0f s at %.2f M particle-steps/s (measured on the first steps)\n",
+            e.bytes * 1e-6, e.steps, e.seconds, e.particle_steps_per_second * 1e-6);
+  return t;
+}
+
+std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estimate) {
+  nlohmann::ordered_json j;
+  j["title"] = scene.title;
+  j["dimensions"] = plan.dimensions;
+  j["spacing"] = plan.spacing;
+  j["end"] = scene.time.end;
+  for (const auto& p : plan.phases) {
+    nlohmann::ordered_json q;
+    q["kind"] = kind_name(p.kind);
+    q["particles"] = p.count;
+    q["mass"] = p.mass;
+    q["sound_speed"] = p.sound_speed;
+    q["smoothing_length"] = p.smoothing_length;
+    q["fields"] = nlohmann::ordered_json::array();
+    for (const Field f : p.fields) q["fields"].push_back(info(f).name);
+    j["phases"][p.name] = q;
+  }
+  for (const auto& e : plan.entries) {
+    nlohmann::ordered_json q;
+    q["law"] = to_string(e.law);
+    q["kernel"] = kernel_name(e.kernel);
+    q["radius"] = e.radius;
+    q["neighbours"] = e.consistency.neighbours;
+    q["volume_sum"] = e.consistency.volume_sum;
+    q["gradient_sum"] = e.consistency.gradient_sum;
+    q["consistent"] = e.consistency.consistent();
+    j["interactions"][e.name] = q;
+  }
+  for (const auto& [name, count] : estimate.pairs) j["interactions"][name]["pairs"] = count;
+  j["passes"] = plan.passes;
+  j["skipped"] = plan.skipped;
+  j["step"] = plan.step();
+  for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
+  j["estimate"] = {{"steps", estimate.steps}, {"seconds", estimate.seconds},
+                   {"particle_steps_per_second", estimate.particle_steps_per_second}, {"bytes", estimate.bytes}};
+  return j.dump(2) + "\n";
+}
+
+}  // namespace barchan

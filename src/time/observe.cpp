@@ -1,0 +1,206 @@
+// What a Simulation tells: frames, rows of history.csv, checks.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/errors.hpp"
+#include "time/wiring.hpp"
+
+namespace barchan {
+
+namespace {
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+/// Sum of f(k) in an order that only n decides.
+template <class F>
+double ordered_sum(std::size_t n, F&& f) {
+  constexpr std::size_t block = 1024;
+  double total = 0.0;
+  for (std::size_t first = 0; first < n; first += block) {
+    double part = 0.0;
+    for (std::size_t k = first; k < std::min(first + block, n); ++k) part += f(k);
+    total += part;
+  }
+  return total;
+}
+
+}  // namespace
+
+std::uint64_t Simulation::pairs(const PlanEntry& e) const {
+  std::uint64_t n = 0;
+  if (e.forward >= 0) n += neighbours_.list(static_cast<std::size_t>(e.forward)).entries();
+  if (e.backward >= 0) n += neighbours_.list(static_cast<std::size_t>(e.backward)).entries();
+  return n;
+}
+
+std::size_t Simulation::bytes() const {
+  std::size_t total = neighbours_.bytes();
+  for (const auto& p : particles_) total += p.bytes();
+  for (const auto* set : {&motion_, &extended_, &stress_})
+    for (const auto& r : *set) total += r.bytes();
+  return total;
+}
+
+Frame Simulation::frame(int index) const {
+  Frame f;
+  f.index = index;
+  f.step = steps_;
+  f.time = time_;
+  std::size_t n = 0;
+  std::vector<std::size_t> written;
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    f.phase_names.push_back(particles_[k].name());
+    f.phase_kinds.push_back(particles_[k].kind() == PhaseKind::fluid     ? "fluid"
+                            : particles_[k].kind() == PhaseKind::elastic ? "elastic"
+                            : particles_[k].kind() == PhaseKind::grains  ? "grains"
+                                                                         : "wall");
+    if (particles_[k].kind() == PhaseKind::wall && !scene_.output.walls) continue;
+    written.push_back(k);
+    n += particles_[k].size();
+  }
+  f.points.reserve(3 * n);
+  f.id.reserve(n);
+  f.phase.reserve(n);
+  for (const std::size_t k : written) {
+    const auto& p = particles_[k];
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      for (int d = 0; d < 3; ++d) f.points.push_back(d < plan_.dimensions ? p.column(Field::position, d)[i] : 0.0);
+      f.id.push_back(p.id()[i]);
+      f.phase.push_back(static_cast<std::int32_t>(k));
+    }
+  }
+  std::vector<Field> fields{Field::velocity, Field::density, Field::pressure, Field::smoothing_length};
+  for (const auto& name : scene_.output.fields) {
+    const auto field = find_field(name);
+    if (field && *field != Field::position && std::find(fields.begin(), fields.end(), *field) == fields.end())
+      fields.push_back(*field);
+  }
+  for (const Field field : fields) {
+    const FieldInfo& about = info(field);
+    FrameField out;
+    out.name = about.name;
+    out.unit = about.unit;
+    const int width = components(about.rank, plan_.dimensions);
+    out.components = about.rank == Rank::scalar ? 1 : about.rank == Rank::vector ? 3 : about.rank == Rank::symmetric ? 6 : width;
+    out.values.reserve(n * static_cast<std::size_t>(out.components));
+    for (const std::size_t k : written) {
+      const auto& p = particles_[k];
+      for (std::size_t i = 0; i < p.size(); ++i)
+        for (int c = 0; c < out.components; ++c) {
+          double value = 0.0;
+          if (field == Field::smoothing_length)
+            value = plan_.phases[k].smoothing_length;
+          else if (field == Field::density && !p.has(field))
+            value = scene_.phases[k].density;
+          else if (p.has(field) && c < width)
+            value = p.column(field, c)[i];
+          out.values.push_back(value);
+        }
+    }
+    f.fields.push_back(std::move(out));
+  }
+  return f;
+}
+
+std::vector<std::string> Simulation::history_columns(const Plan& plan) {
+  std::vector<std::string> c{"time [s]", "step", "dt [s]", "momentum_x [kg m/s]", "momentum_y [kg m/s]",
+                             "momentum_z [kg m/s]", "largest_speed [m/s]", "largest_density_error"};
+  for (const auto& p : plan.phases) {
+    if (p.kind == PhaseKind::wall) continue;
+    c.push_back(p.name + "_kinetic_energy [J]");
+    c.push_back(p.name + "_largest_speed [m/s]");
+    c.push_back(p.name + "_mean_vx [m/s]");
+    if (p.kind == PhaseKind::fluid) {
+      c.push_back(p.name + "_mean_pressure [Pa]");
+      c.push_back(p.name + "_density_error_rms");
+    }
+  }
+  return c;
+}
+
+std::vector<double> Simulation::history_row() const {
+  std::vector<double> row{time_, static_cast<double>(steps_), dt_, 0, 0, 0, 0, 0};
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    const auto& p = particles_[k];
+    if (p.kind() == PhaseKind::wall) continue;
+    const std::size_t n = p.size();
+    std::array<const double*, 3> v{};
+    for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
+    double fastest = 0.0;
+    const double square = ordered_sum(n, [&](std::size_t i) {
+      double s = 0;
+      for (int d = 0; d < plan_.dimensions; ++d) s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
+      fastest = std::max(fastest, s);
+      return s;
+    });
+    std::array<double, 3> mean{};
+    for (int d = 0; d < plan_.dimensions; ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      const double total = ordered_sum(n, [&](std::size_t i) { return v[c][i]; });
+      row[3 + c] += p.mass() * total;
+      mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
+    }
+    fastest = std::sqrt(fastest);
+    row[6] = std::max(row[6], fastest);
+    row.push_back(0.5 * p.mass() * square);
+    row.push_back(fastest);
+    row.push_back(mean[0]);
+    if (p.kind() == PhaseKind::fluid) {
+      const double* rho = p.column(Field::density);
+      const double* pressure = p.column(Field::pressure);
+      const double rho0 = scene_.phases[k].density;
+      double worst = 0.0;
+      const double squares = ordered_sum(n, [&](std::size_t i) {
+        const double e = std::abs(rho[i] / rho0 - 1.0);
+        worst = std::max(worst, e);
+        return e * e;
+      });
+      row[7] = std::max(row[7], worst);
+      row.push_back(n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / static_cast<double>(n) : 0.0);
+      row.push_back(n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0.0);
+    }
+  }
+  return row;
+}
+
+void Simulation::check() const {
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    const auto& p = particles_[k];
+    if (p.kind() == PhaseKind::wall) continue;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      std::string place;
+      for (int d = 0; d < plan_.dimensions; ++d) place += (d ? ", " : "") + number(p.column(Field::position, d)[i]);
+      const auto who = [&] {
+        return "particle " + std::to_string(p.id()[i]) + " of phase \"" + p.name() + "\" at (" + place + ") m, t = " +
+               number(time_) + " s, step " + std::to_string(steps_);
+      };
+      for (int d = 0; d < plan_.dimensions; ++d) {
+        const auto c = static_cast<std::size_t>(d);
+        const double x = p.column(Field::position, d)[i];
+        for (const Field f : {Field::position, Field::velocity, Field::acceleration})
+          if (!std::isfinite(p.column(f, d)[i]))
+            throw BreakdownError(who() + ": " + std::string(info(f).name) +
+                                 " is not finite; the step was too long or particles overlap: lower time.safety, raise "
+                                 "sound-speed or density-diffusion of the phase");
+        const double margin = 0.5 * plan_.spacing;
+        if (!plan_.bounds.periodic[c] && (x < plan_.bounds.low[c] - margin || x > plan_.bounds.high[c] + margin))
+          throw BreakdownError(who() + " escaped through the " + (x < plan_.bounds.low[c] ? "lower" : "upper") + " side of " +
+                               "xyz"[d] + "; there is no wall that holds it, or it moves too fast for the contact: add a "
+                               "wall on that side, enlarge domain.size, or raise contact-speed or sound-speed");
+      }
+      if (p.has(Field::density)) {
+        const double rho = p.column(Field::density)[i];
+        if (!(rho > 0.0) || !std::isfinite(rho))
+          throw BreakdownError(who() + ": density " + number(rho) + " kg/m3 is impossible; the pressure ran away: raise "
+                               "sound-speed, or lower time.safety");
+      }
+    }
+  }
+}
+
+}  // namespace barchan

@@ -1,0 +1,140 @@
+// The verbs of a step that evaluate forces and rates.
+#include <algorithm>
+#include <cmath>
+
+#include "time/wiring.hpp"
+
+namespace barchan {
+
+namespace {
+
+template <int Dim>
+void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressure, double volume) {
+  using R = MotionRecord<Dim>;
+  const auto n = static_cast<std::int64_t>(p.size());
+  std::array<const double*, Dim> x{}, v{};
+  for (int d = 0; d < Dim; ++d) {
+    x[static_cast<std::size_t>(d)] = p.column(Field::position, d);
+    v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
+  }
+  const double* pressure = with_pressure ? p.column(Field::pressure) : nullptr;
+  const double* rho = with_pressure ? p.column(Field::density) : nullptr;
+  const double mass = p.mass();
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    double* r = records[k];
+    for (std::size_t d = 0; d < Dim; ++d) {
+      r[R::position + d] = x[d][k];
+      r[R::velocity + d] = v[d][k];
+    }
+    r[R::pressure] = pressure ? pressure[k] : 0.0;
+    r[R::volume] = rho ? mass / rho[k] : volume;
+  }
+}
+
+}  // namespace
+
+void Simulation::pack() {
+  const double volume = std::pow(plan_.spacing, plan_.dimensions);
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    if (!neighbours_.has_grid(k)) continue;
+    const auto& p = particles_[k];
+    const bool fluid = p.kind() == PhaseKind::fluid;
+    const auto fill = [&](RecordArray& records) {
+      plan_.dimensions == 2 ? pack_motion<2>(p, records, fluid, volume) : pack_motion<3>(p, records, fluid, volume);
+      records.fill_images(neighbours_.grid(k), plan_.dimensions);
+    };
+    fill(motion_[k]);
+    if (extended_[k].stride() > 0) fill(extended_[k]);
+    if (stress_[k].stride() > 0) {
+      pack_stress(p, stress_[k]);
+      stress_[k].fill_images(neighbours_.grid(k), plan_.dimensions);
+    }
+  }
+  // Accelerations are gathered from several laws; extension into a solid still needs the last ones.
+}
+
+void Simulation::extend_into_walls() {
+  for (auto& x : extensions_) {
+    if (particles_[x.phase].kind() != PhaseKind::wall) continue;
+    extend_into_solid(particles_[x.phase], extended_[x.phase], x.sources, scene_.domain.gravity,
+                      scene_.phases[x.phase].slip);
+    extended_[x.phase].fill_images(neighbours_.grid(x.phase), plan_.dimensions);
+  }
+}
+
+void Simulation::extend_into_grains() {
+  for (auto& x : extensions_) {
+    if (particles_[x.phase].kind() == PhaseKind::wall) continue;
+    extend_into_solid(particles_[x.phase], extended_[x.phase], x.sources, scene_.domain.gravity, Slip::no_slip);
+    extended_[x.phase].fill_images(neighbours_.grid(x.phase), plan_.dimensions);
+  }
+}
+
+void Simulation::rate_fluids() {
+  for (auto& f : fluids_) {
+    auto& q = f.parameters;
+    const Phase& s = scene_.phases[f.phase];
+    // c^2 dt makes the one-pass step the leapfrog that its velocities, half a step old, would miss; the rest is
+    // delta-SPH's own diffusion.
+    q.diffusivity = 1.0 * q.sound_speed * q.sound_speed * dt_ +
+                    s.density_diffusion * q.smoothing_length * q.sound_speed;
+    q.acceleration = {0, 0, 0};
+    bool varies = false;
+    for (const auto& force : forcings_) {
+      if (force.phase != f.phase) continue;
+      for (std::size_t d = 0; d < 3; ++d)
+        if (force.acceleration[d].is_constant())
+          q.acceleration[d] += force.acceleration[d].constant();
+        else
+          varies = true;
+    }
+    auto& p = particles_[f.phase];
+    fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
+    if (!varies) continue;
+    for (const auto& force : forcings_) {
+      if (force.phase != f.phase) continue;
+      for (int d = 0; d < plan_.dimensions; ++d) {
+        const Formula& formula = force.acceleration[static_cast<std::size_t>(d)];
+        if (formula.is_constant()) continue;
+        double* a = p.column(Field::acceleration, d);
+        for (std::size_t k = 0; k < p.size(); ++k) {
+          Vec3 x{};
+          for (int e = 0; e < plan_.dimensions; ++e) x[static_cast<std::size_t>(e)] = p.column(Field::position, e)[k];
+          a[k] += formula(x, time_);
+        }
+      }
+    }
+  }
+}
+
+void Simulation::repel_from_walls() {
+  for (const auto& c : contacts_)
+    if (c.is_repulsion)
+      contact_forces(particles_[c.a], motion_[c.a], *c.list, motion_[c.b], c.kernel, c.radius, c.law);
+}
+
+void Simulation::stress_bodies() {
+  for (auto& b : bodies_) elastic_forces(particles_[b.phase], stress_[b.phase], b.neighbours, b.parameters);
+}
+
+void Simulation::touch() {
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    auto& p = particles_[k];
+    if (p.kind() != PhaseKind::grains) continue;
+    for (int d = 0; d < plan_.dimensions; ++d)
+      std::fill_n(p.column(Field::acceleration, d), p.size(), scene_.domain.gravity[static_cast<std::size_t>(d)]);
+  }
+  for (const auto& c : contacts_)
+    if (!c.is_repulsion)
+      contact_forces(particles_[c.a], motion_[c.a], *c.list, motion_[c.b], c.kernel, c.radius, c.law);
+}
+
+void Simulation::react() {
+  for (auto& x : extensions_)
+    for (const auto& fluid : x.felt)
+      fluid_reaction(particles_[x.phase], extended_[x.phase], fluid, scene_.phases[x.phase].kind == PhaseKind::grains);
+}
+
+}  // namespace barchan

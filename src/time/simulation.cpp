@@ -1,0 +1,223 @@
+#include "time/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "kernels/kernel.hpp"
+#include "time/limits.hpp"
+#include "time/wiring.hpp"
+
+namespace barchan {
+
+namespace {
+enum Pass : std::size_t {
+  pass_kick_and_drift, pass_strain, pass_walls, pass_neighbours, pass_pack, pass_extend_walls, pass_extend_solids,
+  pass_fluid, pass_repel, pass_elastic, pass_contacts, pass_reaction, pass_kick, pass_count
+};
+constexpr std::array<const char*, pass_count> pass_names{
+    "kick and drift", "elastic strain", "wall motion", "neighbours", "pack", "extension into walls",
+    "extension into solids", "fluid rates", "wall repulsion", "elastic forces", "contacts", "reaction on solids", "kick"};
+}  // namespace
+
+template <class F>
+void Simulation::timed(std::size_t pass, F&& verb) {
+  const auto start = std::chrono::steady_clock::now();
+  verb();
+  seconds_[pass].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks)
+    : scene_(scene), plan_(plan), neighbours_(plan.bounds, plan.directions, plan.phases.size(), plan.skin) {
+  for (const char* name : pass_names) seconds_.emplace_back(name, 0.0);
+  make_state(blocks);
+  wire();
+  for (const auto& l : plan_.limits) limit_counts_[l.name] = 0;
+  for (const char* name : {"force", "output", "fixed"}) limit_counts_[name] = 0;
+  dt_ = plan_.step();
+  rates(true);
+}
+
+Simulation::~Simulation() = default;
+
+void Simulation::step(double largest) {
+  choose_step(largest);
+  timed(pass_kick_and_drift, [&] { kick_and_drift(); });
+  time_ += dt_;
+  ++steps_;
+  rates(false);
+  timed(pass_kick, [&] { kick(); });
+}
+
+/// Everything that is evaluated at the new positions.
+void Simulation::rates(bool first) {
+  if (!first && !bodies_.empty()) timed(pass_strain, [&] { strain_bodies(); });
+  timed(pass_walls, [&] { move_walls(); });
+  timed(pass_neighbours, [&] { find_neighbours(first); });
+  timed(pass_pack, [&] { pack(); });
+  timed(pass_extend_walls, [&] { extend_into_walls(); });
+  timed(pass_extend_solids, [&] { extend_into_grains(); });
+  timed(pass_fluid, [&] { rate_fluids(); });
+  timed(pass_repel, [&] { repel_from_walls(); });
+  timed(pass_elastic, [&] { stress_bodies(); });
+  timed(pass_contacts, [&] { touch(); });
+  timed(pass_reaction, [&] { react(); });
+}
+
+void Simulation::choose_step(double largest) {
+  double dt = 1e300;
+  ruling_.clear();
+  const auto limit = [&](const std::string& name, double value) {
+    if (value < dt) {
+      dt = value;
+      ruling_ = name;
+    }
+  };
+  if (plan_.fixed_step > 0) {
+    limit("fixed", plan_.fixed_step);
+  } else {
+    for (const auto& l : plan_.limits) limit(l.name, l.value);
+    double shortest = 1e300;
+    for (const auto& p : plan_.phases)
+      if (p.kind != PhaseKind::wall) shortest = std::min(shortest, p.smoothing_length);
+    if (largest_acceleration_ > 0)
+      limit("force", scene_.time.safety * StepConstants::force * std::sqrt(shortest / largest_acceleration_));
+    if (dt < 1e-6 * plan_.step())
+      throw BreakdownError("the time step collapsed to " + std::to_string(dt) + " s at t = " + std::to_string(time_) +
+                           " s, ruled by " + ruling_ + "; a particle feels an enormous force: lower time.safety, raise "
+                           "the sound speed or look for overlapping bodies");
+  }
+  // The last steps before an output share what is left, so that none is tiny.
+  const double left = std::ceil(largest / dt * (1.0 - 1e-9));
+  if (left * dt > largest) {
+    const double share = largest / left;
+    if (left <= 1.0) ruling_ = "output";
+    dt = share;
+  }
+  dt_ = dt;
+  ++limit_counts_[ruling_];
+}
+
+// ---- kick, drift, kick -----------------------------------------------------------------------------------------------
+
+void Simulation::kick_phase(PhaseParticles& p, double dt) {
+  const auto n = static_cast<std::int64_t>(p.size());
+  for (int d = 0; d < p.dimensions(); ++d) {
+    double* v = p.column(Field::velocity, d);
+    const double* a = p.column(Field::acceleration, d);
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t k = 0; k < n; ++k) v[k] += dt * a[k];
+  }
+}
+
+void Simulation::drift_phase(PhaseParticles& p, double dt) {
+  const auto n = static_cast<std::int64_t>(p.size());
+  const bool shifted = p.has(Field::shift_velocity);
+  for (int d = 0; d < p.dimensions(); ++d) {
+    double* x = p.column(Field::position, d);
+    const double* v = p.column(Field::velocity, d);
+    if (shifted) {
+      const double* du = p.column(Field::shift_velocity, d);
+#pragma omp parallel for simd schedule(static)
+      for (std::int64_t k = 0; k < n; ++k) x[k] += dt * (v[k] + du[k]);
+    } else {
+#pragma omp parallel for simd schedule(static)
+      for (std::int64_t k = 0; k < n; ++k) x[k] += dt * v[k];
+    }
+  }
+}
+
+void Simulation::update_pressure(std::size_t phase) {
+  auto& p = particles_[phase];
+  const Phase& s = scene_.phases[phase];
+  const double rho0 = s.density, c = plan_.phases[phase].sound_speed, background = s.background_pressure * rho0 * c * c;
+  double* rho = p.column(Field::density);
+  double* pressure = p.column(Field::pressure);
+  const auto n = static_cast<std::int64_t>(p.size());
+  if (s.equation_of_state == EquationOfState::linear) {
+    const double stiffness = c * c;
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t k = 0; k < n; ++k) pressure[k] = stiffness * (rho[k] - rho0) + background;
+  } else {
+    const double b = rho0 * c * c / s.tait_exponent, inverse = 1.0 / rho0;
+#pragma omp parallel for schedule(static)
+    for (std::int64_t k = 0; k < n; ++k)
+      pressure[k] = b * (std::pow(rho[k] * inverse, s.tait_exponent) - 1.0) + background;
+  }
+}
+
+void Simulation::kick_and_drift() {
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    auto& p = particles_[k];
+    if (p.kind() == PhaseKind::wall) continue;
+    kick_phase(p, 0.5 * dt_);
+    // Bodies stop half-way: their strain is taken there (see strain_bodies).
+    drift_phase(p, p.kind() == PhaseKind::elastic ? 0.5 * dt_ : dt_);
+    if (p.kind() != PhaseKind::fluid) continue;
+    double* rho = p.column(Field::density);
+    const double* rate = p.column(Field::density_rate);
+    const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) rho[i] += dt_ * rate[i];
+    update_pressure(k);
+  }
+}
+
+void Simulation::strain_bodies() {
+  for (auto& b : bodies_) pack_stress(particles_[b.phase], stress_[b.phase]);
+  for (auto& b : bodies_) stress_[b.phase].fill_images(neighbours_.grid(b.phase), plan_.dimensions);
+  for (auto& b : bodies_) {
+    elastic_strain(particles_[b.phase], stress_[b.phase], b.neighbours, b.parameters, dt_);
+    drift_phase(particles_[b.phase], 0.5 * dt_);
+  }
+}
+
+void Simulation::move_walls() {
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    if (particles_[k].kind() != PhaseKind::wall) continue;
+    for (int d = 0; d < plan_.dimensions; ++d) {
+      const Formula& u = wall_velocity_[k][static_cast<std::size_t>(d)];
+      if (u.is_constant() && steps_ > 0) continue;
+      const double value = u({0, 0, 0}, time_);
+      double* v = particles_[k].column(Field::velocity, d);
+      std::fill(v, v + particles_[k].size(), value);
+    }
+  }
+}
+
+void Simulation::find_neighbours(bool force) {
+  if (!neighbours_.update(particles_, force)) return;
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    if (!neighbours_.has_grid(k)) continue;
+    const std::size_t images = neighbours_.grid(k).images();
+    motion_[k].resize(particles_[k].size(), images);
+    if (extended_[k].stride() > 0) extended_[k].resize(particles_[k].size(), images);
+    if (stress_[k].stride() > 0) stress_[k].resize(particles_[k].size(), images);
+  }
+}
+
+void Simulation::kick() {
+  double largest = 0.0, sum = 0.0;
+  for (auto& p : particles_) {
+    if (p.kind() == PhaseKind::wall) continue;
+    kick_phase(p, 0.5 * dt_);
+    const auto n = static_cast<std::int64_t>(p.size());
+    for (int d = 0; d < p.dimensions(); ++d) {
+      const double* a = p.column(Field::acceleration, d);
+      double most = 0.0;
+      bool finite = true;
+#pragma omp parallel for schedule(static) reduction(max : most) reduction(&& : finite)
+      for (std::int64_t k = 0; k < n; ++k) {
+        const double size = std::abs(a[k]);
+        finite = finite && size < 1e300;
+        most = size > most ? size : most;
+      }
+      if (!finite) sum = std::nan("");
+      largest = std::max(largest, most);
+    }
+  }
+  largest_acceleration_ = largest;
+  if (std::isnan(sum)) check();
+}
+
+}  // namespace barchan

@@ -1,0 +1,113 @@
+// A run in progress: particles, neighbours and the step.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "neighbours/neighbours.hpp"
+#include "output/frame.hpp"
+#include "passes/elastic.hpp"
+#include "passes/fluid.hpp"
+#include "passes/grains.hpp"
+#include "passes/walls.hpp"
+#include "plan/plan.hpp"
+#include "scene/formula.hpp"
+
+namespace barchan {
+
+class Simulation {
+ public:
+  /// Makes the planned fields and carries the initial state over; evaluates the first rates.
+  Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Advances by one step of at most `largest` seconds. Throws BreakdownError when the state is no longer usable: the
+  /// message names particle, phase, time, likely cause and remedy.
+  void step(double largest);
+
+  double time() const { return time_; }
+  long steps() const { return steps_; }
+  double last_step() const { return dt_; }
+  const std::string& ruling_limit() const { return ruling_; }
+  const std::map<std::string, long>& limit_counts() const { return limit_counts_; }
+
+  const std::vector<PhaseParticles>& phases() const { return particles_; }
+  std::vector<PhaseParticles>& phases() { return particles_; }
+  const Plan& plan() const { return plan_; }
+  const Scene& scene() const { return scene_; }
+  const Neighbours& neighbours() const { return neighbours_; }
+
+  /// Directed pairs of an entry in its current lists (those in the skin too).
+  std::uint64_t pairs(const PlanEntry& entry) const;
+  /// Seconds of wall time by pass, in the order of the step.
+  const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
+  std::size_t bytes() const;
+
+  /// A copy of the state for the writer.
+  Frame frame(int index) const;
+  /// Names and values of one row of history.csv.
+  static std::vector<std::string> history_columns(const Plan& plan);
+  std::vector<double> history_row() const;
+  /// Throws BreakdownError if a value is not finite or a particle left the domain.
+  void check() const;
+
+ private:
+  struct Fluid;
+  struct Extension;
+  struct Contact;
+  struct Body;
+
+  // the verbs of a step, in order
+  void choose_step(double largest);
+  void kick_and_drift();
+  void strain_bodies();
+  void move_walls();
+  void find_neighbours(bool force);
+  void pack();
+  void extend_into_walls();
+  void extend_into_grains();
+  void rate_fluids();
+  void repel_from_walls();
+  void stress_bodies();
+  void touch();
+  void react();
+  void kick();
+
+  void rates(bool first);
+  void make_state(const std::vector<ParticleBlock>& blocks);
+  void wire();
+  void kick_phase(PhaseParticles& p, double dt);
+  void drift_phase(PhaseParticles& p, double dt);
+  void update_pressure(std::size_t phase);
+
+  template <class F>
+  void timed(std::size_t pass, F&& verb);
+
+  Scene scene_;
+  Plan plan_;
+  std::vector<PhaseParticles> particles_;
+  Neighbours neighbours_;
+  std::vector<RecordArray> motion_, extended_, stress_;   // by phase; extended: a solid as the fluid sees it
+
+  std::vector<Fluid> fluids_;
+  std::vector<Extension> extensions_;
+  std::vector<Contact> contacts_;
+  std::vector<Body> bodies_;
+  std::vector<std::array<Formula, 3>> wall_velocity_;     // by phase
+  struct Force { std::size_t phase; std::array<Formula, 3> acceleration; };
+  std::vector<Force> forcings_;
+
+  double time_ = 0, dt_ = 0;
+  long steps_ = 0;
+  double largest_acceleration_ = 0;
+  std::string ruling_;
+  std::map<std::string, long> limit_counts_;
+  std::vector<std::pair<std::string, double>> seconds_;
+};
+
+}  // namespace barchan

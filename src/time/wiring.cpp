@@ -1,0 +1,220 @@
+#include "time/wiring.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "kernels/kernel.hpp"
+
+namespace barchan {
+
+namespace {
+
+std::array<Formula, 3> compile(const VectorExpression& e) { return {Formula(e[0]), Formula(e[1]), Formula(e[2])}; }
+
+/// Distance behind the domain's sides and the direction back, for a wall particle outside the domain.
+void set_wall_geometry(PhaseParticles& wall, const Bounds& bounds) {
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    double depth2 = 0;
+    std::array<double, 3> out{};
+    for (int d = 0; d < wall.dimensions(); ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      if (bounds.periodic[c]) continue;
+      const double x = wall.column(Field::position, d)[k];
+      out[c] = x < bounds.low[c] ? x - bounds.low[c] : x > bounds.high[c] ? x - bounds.high[c] : 0.0;
+      depth2 += out[c] * out[c];
+    }
+    const double depth = std::sqrt(depth2);
+    wall.column(Field::wall_depth)[k] = depth;
+    if (depth > 0)
+      for (int d = 0; d < wall.dimensions(); ++d)
+        wall.column(Field::wall_normal, d)[k] = -out[static_cast<std::size_t>(d)] / depth;
+  }
+}
+
+/// Kernel contact for an entry: stiffness from the softer speed, damping from the restitution.
+KernelContact contact_law(const Scene& scene, const Plan& plan, const PlanEntry& e, double strength) {
+  const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
+  const bool a_moves = a.kind != PhaseKind::wall, b_moves = b.kind != PhaseKind::wall;
+  const PlanPhase& soft = a.kind == PhaseKind::grains ? plan.phases[e.a] : plan.phases[e.b];
+  const double d = scene.spacing;
+  const double m_a = plan.phases[e.a].mass, m_b = plan.phases[e.b].mass;
+  const double reduced = a_moves && b_moves ? m_a * m_b / (m_a + m_b) : (a_moves ? m_a : m_b);
+  double restitution = 1.0;
+  if (a.kind == PhaseKind::grains) restitution = std::min(restitution, a.restitution);
+  if (b.kind == PhaseKind::grains) restitution = std::min(restitution, b.restitution);
+  KernelContact law{};
+  with_kernel<double>(e.kernel, e.radius, plan.dimensions, [&](const auto& kernel) {
+    law.rest_value = kernel.value(d);
+    const double slope = std::abs(kernel.derivative(d));
+    if (slope <= 0)
+      throw SceneError("interactions." + e.name + ": a contact needs a radius beyond one spacing (1.1 in eq. 16 of "
+                       "Halik et al. 2015), so that touching grains feel each other");
+    law.inverse_slope = 1.0 / slope;
+  });
+  law.stiffness = strength * soft.mass / (d * d) * soft.sound_speed * soft.sound_speed;
+  const double zeta = KernelContact::damping_ratio(restitution);
+  law.damping = 2.0 * zeta * std::sqrt(law.stiffness * reduced);
+  return law;
+}
+
+}  // namespace
+
+void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
+  std::int64_t first = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const PlanPhase& q = plan_.phases[k];
+    const Phase& s = scene_.phases[k];
+    const ParticleBlock& block = blocks[k];
+    PhaseParticles p(q.name, q.kind, plan_.dimensions, q.count, q.mass, first);
+    first += static_cast<std::int64_t>(q.count);
+    for (const Field f : q.fields) p.add(f);
+    for (int d = 0; d < plan_.dimensions; ++d)
+      for (std::size_t i = 0; i < q.count; ++i) {
+        p.column(Field::position, d)[i] = block.position[i][static_cast<std::size_t>(d)];
+        p.column(Field::velocity, d)[i] = block.velocity[i][static_cast<std::size_t>(d)];
+      }
+    if (p.has(Field::density)) std::fill_n(p.column(Field::density), q.count, s.density);
+    if (q.kind == PhaseKind::fluid) {
+      bool hydrostatic = false;
+      for (const auto& f : scene_.fills) hydrostatic = hydrostatic || (f.phase == s.name && f.hydrostatic);
+      const Vec3& g = scene_.domain.gravity;
+      double top = 1e300;   // the smallest g.x in the domain is the surface
+      for (std::size_t i = 0; i < q.count; ++i) top = std::min(top, dot(g, block.position[i]));
+      top -= 0.5 * scene_.spacing * norm(g);
+      const double c2 = q.sound_speed * q.sound_speed;
+      for (std::size_t i = 0; i < q.count; ++i) {
+        double pressure = block.pressure.empty() ? 0.0 : block.pressure[i];
+        double rho = s.density;
+        if (s.equation_of_state == EquationOfState::linear) {
+          // The compressible column: rho = rho0 exp(depth g / c^2).
+          rho = hydrostatic ? s.density * std::exp((dot(g, block.position[i]) - top) / c2) : s.density + pressure / c2;
+        } else {
+          if (hydrostatic) pressure = s.density * (dot(g, block.position[i]) - top);
+          rho = s.density * std::pow(1.0 + s.tait_exponent * pressure / (s.density * c2), 1.0 / s.tait_exponent);
+        }
+        p.column(Field::density)[i] = rho;
+      }
+    }
+    if (q.kind == PhaseKind::wall) set_wall_geometry(p, plan_.bounds);
+    particles_.push_back(std::move(p));
+    if (q.kind == PhaseKind::fluid) update_pressure(k);
+  }
+}
+
+void Simulation::wire() {
+  const std::size_t phases = particles_.size();
+  const int motion = plan_.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
+  const int stress = plan_.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size;
+  std::vector<bool> seen(phases, false);
+  for (const auto& e : plan_.entries)
+    if (e.law == Law::boundary || e.law == Law::coupling)
+      seen[scene_.phases[e.a].kind == PhaseKind::fluid ? e.b : e.a] = true;
+  for (std::size_t k = 0; k < phases; ++k) {
+    motion_.emplace_back(motion);
+    extended_.emplace_back(seen[k] ? motion : 0);
+    stress_.emplace_back(particles_[k].kind() == PhaseKind::elastic ? stress : 0);
+    wall_velocity_.push_back(compile(scene_.phases[k].wall_velocity));
+  }
+  for (const auto& f : scene_.forcings)
+    for (std::size_t k = 0; k < phases; ++k)
+      if (particles_[k].name() == f.phase) forcings_.push_back({k, compile(f.acceleration)});
+
+  const auto viscosity = [&](std::size_t a, std::size_t b) {
+    const auto of = [&](std::size_t k) {
+      const Phase& s = scene_.phases[k];
+      const PlanPhase& p = plan_.phases[k];
+      const double artificial = s.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (plan_.dimensions + 2));
+      return s.density * (s.viscosity + artificial);
+    };
+    const bool a_fluid = particles_[a].kind() == PhaseKind::fluid, b_fluid = particles_[b].kind() == PhaseKind::fluid;
+    if (a_fluid && b_fluid) return a == b ? of(a) : 2.0 * of(a) * of(b) / std::max(of(a) + of(b), 1e-300);
+    return of(a_fluid ? a : b);
+  };
+  for (std::size_t k = 0; k < phases; ++k) {
+    const auto& p = particles_[k];
+    const Phase& s = scene_.phases[k];
+    const PlanPhase& q = plan_.phases[k];
+    if (p.kind() == PhaseKind::fluid) {
+      Fluid f;
+      f.phase = k;
+      f.parameters.reference_density = s.density;
+      f.parameters.sound_speed = q.sound_speed;
+      f.parameters.smoothing_length = q.smoothing_length;
+      const double speed = plan_.largest_speed > 0 ? plan_.largest_speed : 0.1 * q.sound_speed;
+      f.parameters.shift_speed = 2.0 * s.shifting * speed;
+      f.parameters.shift_limit = 0.2 * speed;
+      f.parameters.gravity = scene_.domain.gravity;
+      for (const auto& e : plan_.entries) {
+        if ((e.a != k && e.b != k) || e.law == Law::repulsive) continue;
+        const std::size_t other = e.a == k ? e.b : e.a;
+        const int direction = e.a == k ? e.forward : e.backward;
+        const bool solid = particles_[other].kind() != PhaseKind::fluid;
+        FluidNeighbour n{&neighbours_.list(static_cast<std::size_t>(direction)),
+                         solid ? &extended_[other] : &motion_[other], e.kernel, e.radius, viscosity(k, other),
+                         solid || other == k};
+        // The phase's own entry comes first: its viscosity is the phase's.
+        if (other == k)
+          f.neighbours.insert(f.neighbours.begin(), n);
+        else
+          f.neighbours.push_back(n);
+      }
+      fluids_.push_back(std::move(f));
+    } else if (seen[k]) {
+      Extension x;
+      x.phase = k;
+      for (const auto& e : plan_.entries) {
+        if ((e.a != k && e.b != k) || (e.law != Law::boundary && e.law != Law::coupling)) continue;
+        const std::size_t fluid = e.a == k ? e.b : e.a;
+        const PairList* list = &neighbours_.list(static_cast<std::size_t>(e.a == k ? e.forward : e.backward));
+        x.sources.push_back({list, &motion_[fluid], e.kernel, e.radius, scene_.phases[fluid].density});
+        if (e.law == Law::coupling)
+          x.felt.push_back({list, &motion_[fluid], e.kernel, e.radius, viscosity(k, fluid), false});
+      }
+      extensions_.push_back(std::move(x));
+    }
+    if (p.kind() == PhaseKind::elastic) {
+      Body b;
+      b.phase = k;
+      const double shear = s.young / (2.0 * (1.0 + s.poisson)), bulk = s.young / (3.0 * (1.0 - 2.0 * s.poisson));
+      b.parameters = {s.density, shear, bulk, s.artificial_viscosity, s.artificial_viscosity_beta,
+                      std::sqrt(bulk / s.density), scene_.domain.gravity};
+      for (const auto& e : plan_.entries) {
+        if ((e.a != k && e.b != k) || e.law != Law::elastic) continue;
+        const std::size_t other = e.a == k ? e.b : e.a;
+        b.neighbours.push_back({&neighbours_.list(static_cast<std::size_t>(e.a == k ? e.forward : e.backward)),
+                                &stress_[other], e.kernel, e.radius, plan_.phases[other].mass});
+      }
+      bodies_.push_back(std::move(b));
+    }
+  }
+  for (const auto& e : plan_.entries) {
+    if (e.law != Law::contact && e.law != Law::repulsive) continue;
+    const auto law = [&] {
+      if (e.law == Law::contact) return contact_law(scene_, plan_, e, 1.0);
+      // Ghosts push a fluid as hard as its sound speed times the largest speed, K = m c u / d^2, without damping.
+      KernelContact k = contact_law(scene_, plan_, e, 1.0);
+      const std::size_t fluid = scene_.phases[e.a].kind == PhaseKind::fluid ? e.a : e.b;
+      const PlanPhase& p = plan_.phases[fluid];
+      k.stiffness = p.mass / (scene_.spacing * scene_.spacing) * p.sound_speed * 0.1 * p.sound_speed;
+      k.damping = 0.0;
+      return k;
+    }();
+    const auto direction = [&](std::size_t a, std::size_t b, int number) {
+      if (number < 0 || particles_[a].kind() == PhaseKind::wall) return;
+      Contact c;
+      c.a = a;
+      c.b = b;
+      c.list = &neighbours_.list(static_cast<std::size_t>(number));
+      c.kernel = e.kernel;
+      c.radius = e.radius;
+      c.law = law;
+      c.is_repulsion = e.law == Law::repulsive;
+      contacts_.push_back(c);
+    };
+    direction(e.a, e.b, e.forward);
+    if (e.a != e.b) direction(e.b, e.a, e.backward);
+  }
+}
+
+}  // namespace barchan

@@ -1,0 +1,39 @@
+// How a Simulation's phases are joined: what each verb walks over, made once from the plan.
+#pragma once
+
+#include "time/simulation.hpp"
+
+namespace barchan {
+
+/// A fluid phase: its entries and parameters.
+struct Simulation::Fluid {
+  std::size_t phase = 0;
+  std::vector<FluidNeighbour> neighbours;
+  FluidParameters parameters{};
+};
+
+/// A solid that some fluid sees: the fluids about it, and whether it feels them.
+struct Simulation::Extension {
+  std::size_t phase = 0;
+  std::vector<ExtensionSource> sources;
+  std::vector<FluidNeighbour> felt;      // for the reaction; empty for walls
+};
+
+/// One direction of a contact entry.
+struct Simulation::Contact {
+  std::size_t a = 0, b = 0;
+  const PairList* list = nullptr;
+  KernelKind kernel{};
+  double radius = 0;
+  KernelContact law{};
+  bool is_repulsion = false;             // the paper's repulsive wall for a fluid
+};
+
+/// An elastic phase.
+struct Simulation::Body {
+  std::size_t phase = 0;
+  std::vector<ElasticNeighbour> neighbours;
+  ElasticParameters parameters{};
+};
+
+}  // namespace barchan
