@@ -267,7 +267,7 @@ class Figure:
 
     def __init__(self, series, title, window=None, walls=True):
         self.series = series
-        self.view = GetActiveViewOrCreate("RenderView")
+        self.view = self._empty_view()
         self.size = self._size(window, walls)
         self.scale = min(max(self.size[0] / 1600.0, 0.35), 2.5)   # of letters and lines
         view = self.view
@@ -285,6 +285,17 @@ class Figure:
             self._camera_3d()
 
     # -- layout
+
+    @staticmethod
+    def _empty_view():
+        """The active view, or a new one in a new tab when that already shows something."""
+        view = GetActiveView()
+        if view is None or not hasattr(view, "CameraParallelScale") or any(r.Visibility for r in view.Representations):
+            busy = view is not None
+            view = CreateRenderView()
+            if busy:
+                AssignViewToLayout(view=view, layout=CreateLayout(name="Barchan"))
+        return view
 
     def _size(self, window, walls):
         series = self.series

@@ -23,7 +23,7 @@ def run(scene, out, end):
     return [PROGRAM, "run", SOURCE / "scenes" / f"{scene}.toml", "--out", out, "--quiet", "--set", f"time.end={end}"]
 
 
-WIND, IMPACT = "dune", "impact"            # the scenes: air over sand; two bodies, one fast and one at rest
+WIND, IMPACT = "dune", "impact_cubes"            # the scenes: air over sand; two bodies, one fast and one at rest
 
 
 SAND = np.array([0.86, 0.66, 0.34])        # as in pvstate/barchan_view.py
