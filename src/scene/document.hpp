@@ -1,10 +1,10 @@
 // A TOML document with its overrides, and the list of what is wrong with it. Internal to src/scene.
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <string>
 #include <vector>
+
+#include "scene/toml.hpp"
 
 namespace barchan {
 

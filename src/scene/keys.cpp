@@ -91,6 +91,7 @@ constexpr Key table[] = {
      "Initial pressure of a fluid; \"hydrostatic\": the weight of what lies above.", {}, "hydrostatic", "x y z"},
 
     {"fill.shape", "bed", as_number, "m", "", "Depth of a bed on the bottom of the domain.", not_negative},
+    {"fill.shape", "from", as_number, "m", "0", "Only with bed: nothing below this height, where another fill made a floor.", not_negative},
     {"fill.shape", "dune", as_section, "", "none", "Only with bed: a dune on it."},
     {"fill.shape", "box", as_section, "", "", "Box."},
     {"fill.shape", "disc", as_section, "", "", "Disc; in 3D a cylinder along z."},

@@ -102,6 +102,7 @@ struct DuneShape {
 };
 struct BedShape {
   double depth = 0;                            // m, from the domain's bottom
+  double from = 0;                             // m over the bottom: nothing below it (a floor that another fill made)
   std::optional<DuneShape> dune;
 };
 

@@ -95,8 +95,8 @@ class RegionOf {
     const double bottom = scene_.domain.origin[1], slack = 1e-9 * scene_.spacing;
     if (!bed.dune || bed.dune->form != DuneShape::Form::formula)
       region_.upper[1] = std::min(region_.upper[1], bottom + bed.depth + (bed.dune ? bed.dune->height : 0.0));
-    region_.inside = [=, ground = Ground(bed, scene_.domain)](const Vec3& x) {
-      return x[1] - bottom < ground.height(x[0], x[2]) - slack;
+    region_.inside = [=, from = bed.from, ground = Ground(bed, scene_.domain)](const Vec3& x) {
+      return x[1] - bottom < ground.height(x[0], x[2]) - slack && x[1] - bottom > from;
     };
   }
   void operator()(const TheRestShape&) {}

@@ -81,7 +81,9 @@ PointsShape take_points(const toml::array& array) {
 Shape take_shape(const toml::table& table) {
   const auto number = [](const toml::table& t, std::string_view name) { return t[name].value_or(0.0); };
   if (table.contains("bed")) {
-    BedShape bed{number(table, "bed"), {}};
+    BedShape bed;
+    bed.depth = number(table, "bed");
+    if (table.contains("from")) bed.from = number(table, "from");
     if (const toml::table* dune = table["dune"].as_table()) bed.dune = take_dune(*dune);
     return bed;
   }

@@ -1,8 +1,6 @@
 // Values out of a document, lenient: what is absent or wrong keeps its default. Internal to src/scene.
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "scene/toml.hpp"
 
 namespace barchan {
 
