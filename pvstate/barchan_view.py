@@ -64,11 +64,11 @@ def kind_of(name):
 
 
 def nice_ceiling(value):
-    """The next of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10 times a power of ten."""
+    """The next of 1, 1.2, 1.6, 2, 2.4, 3, 3.6, 4, 5, ... 10 times a power of ten."""
     if not (value > 0 and math.isfinite(value)):
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))
-    return next(m * power for m in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12) if m * power >= value * (1 - 1e-6))
+    return next(m * power for m in (1, 1.2, 1.6, 2, 2.4, 3, 3.6, 4, 5, 6, 7, 8, 9, 10, 12) if m * power >= value * (1 - 1e-6))
 
 
 def ticks(low, high, count=6):
@@ -348,7 +348,8 @@ class Figure:
         shown.Position = [left / width, 1 - 0.68 * top / height]
 
         end = abs(self.series.times[-1])
-        factor, unit, digits = (1e6, "µs", 0) if end < 2e-3 else (1e3, "ms", 1) if end < 10 else (1.0, "s", 2)
+        factor, unit = (1e6, "µs") if end < 2e-3 else (1e3, "ms") if end < 10 else (1.0, "s")
+        digits = min(max(2 - math.floor(math.log10(end * factor)), 0), 3) if end > 0 else 0   # three figures
         time = AnnotateTimeFilter(registrationName="time", Input=self.series.reader)
         time.Scale = factor
         time.Format = "t = {time:." + str(digits) + "f} " + unit

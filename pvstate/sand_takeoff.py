@@ -12,9 +12,13 @@ series = start(__file__)
 figure = Figure(series, series.title + ": grains taking off", window=series.close_up() if series.two_dimensional else None)
 flat = series.two_dimensional
 grains = series.phases("grains")
+# The top of the scale, also the speed of the longest arrows: what nearly all moving grains stay below, but no less than what
+# lifts a grain by its own size, so that a bed at rest looks at rest.
+lift = math.sqrt(2 * 9.81 * series.spacing)
 moving = series.values("velocity", grains)
 speeds = np.linalg.norm(moving, axis=1) if len(moving) else np.zeros(1)
-top = nice_ceiling(np.percentile(speeds[speeds > 0.01 * speeds.max()], 98)) if speeds.max() > 0 else 1.0
+speeds = speeds[np.isfinite(speeds) & (speeds > 0.1 * lift)]
+top = nice_ceiling(max(lift, np.percentile(speeds, 98) if len(speeds) else 0.0))
 
 if flat:
     for phase in series.phases("fluid"):

@@ -51,7 +51,7 @@ if flat and "id" in first:
             continue
         place = np.array([x0 + (0.30 + 0.2 * number) * (x1 - x0), (y0 + y1) / 2])
         one = mine[((first["points"][mine, :2] - place) ** 2).sum(axis=1).argmin()]
-        chosen = Threshold(registrationName="one of " + series.phase_names[phase], Input=series.source(phase))
+        chosen = Threshold(registrationName="one of " + series.phase_names[phase], Input=series.reader)
         chosen.Scalars = ["POINTS", "id"]
         chosen.LowerThreshold = chosen.UpperThreshold = float(first["id"][one])
         figure.reach(chosen, colour=MARK)
