@@ -1,9 +1,12 @@
 // Weakly compressible fluid, corrected operators: exact for linear fields on any particle arrangement, in one pass.
 //
 // Every operator is a local combination of raw sums over the neighbours (r = x_a - x_b, F = W'/r, V volume):
-//   M = -sum V F r (x) r,   B = sum V F r,   P = sum V F (p_a - p_b) r,   U = sum V F v_ab (x) r
-//   grad p = -M^-1 P ... (renormalised gradient: Randles & Libersky 1996; Bonet & Lok 1999)
-//   lap f  = 2 (Dim/tr M) [ L_f - grad f . B ],  L_f = sum V F (f_a - f_b)      (after Basic et al. 2018)
+//   M = sum V F r (x) r,   B = sum V F r,   P = sum V F (p_a - p_b) r,   U = sum V F v_ab (x) r    (M tends to -1)
+//   w = 1 + r.A.r/r^2,     C = sum V F w r,   L_v = sum V F w v_ab,         L_p = sum V F p_ab
+//   grad p = M^-1 P,  grad v = U M^-1     (renormalised gradient: Randles & Libersky 1996; Bonet & Lok 1999)
+//   lap v  = -2 Dim [L_v - grad v . C] / (tr M + A:M)
+//   A      = -(Dim+2)/2 (Dim M/tr M - 1), of the step before: weights that make the second moment isotropic, so that the
+//            Laplacian is exact for quadratic fields too (first-order correction after Basic et al. 2018)
 // The second-order scheme of Negi & Ramachandran 2022 uses the same gradient; taking the corrections out of the sums is
 // what saves its extra passes. The form is not antisymmetric: momentum is conserved to the order of the scheme only.
 #pragma once
@@ -24,7 +27,7 @@ struct ConsistentFluid {
     std::array<T, moments> moment{};                 // sum V F r r: xx xy yy | xx xy yy xz yz zz
     std::array<T, Dim> concentration{}, pressure{};  // B, P
     std::array<T, Dim * Dim> velocity{};             // U, row: component of v, column: of r
-    std::array<T, Dim> viscous{};                    // L_v
+    std::array<T, Dim> viscous{}, weighted{};        // L_v, C
     T diffusion{};                                   // sum V F (p_ab - rho0 g.r)
   };
 
@@ -32,12 +35,19 @@ struct ConsistentFluid {
   struct Own {
     std::array<T, Dim> x, v, weight;
     T p, mu, diffusive;
+    std::array<T, moments> anisotropy;               // A, the order of the moment
   };
 
   template <class T>
-  static void add(const Own<T>& a, const std::array<T, Dim>& r, T f, const T* v_b, T p_b, T volume_b, Sums<T>& s) {
+  static void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, T p_b, T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T dp = a.p - p_b;
+    T lopsided(0.0);                                 // r.A.r
+    std::size_t q = 0;
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e <= d; ++e, ++q)
+        lopsided = fma(a.anisotropy[q] * r[d], e == d ? r[e] : r[e] + r[e], lopsided);
+    const T wvf = fma(vf, lopsided / r2, vf);
     std::array<T, Dim> g;
     for (std::size_t d = 0; d < Dim; ++d) {
       g[d] = vf * r[d];
@@ -51,7 +61,8 @@ struct ConsistentFluid {
     for (std::size_t d = 0; d < Dim; ++d) {
       const T dv = a.v[d] - v_b[d];
       for (std::size_t e = 0; e < Dim; ++e) s.velocity[d * Dim + e] = fma(dv, g[e], s.velocity[d * Dim + e]);
-      s.viscous[d] = fma(vf, dv, s.viscous[d]);
+      s.viscous[d] = fma(wvf, dv, s.viscous[d]);
+      s.weighted[d] = fma(wvf, r[d], s.weighted[d]);
       dynamic = fnma(a.weight[d], r[d], dynamic);
     }
     s.diffusion = fma(vf, dynamic, s.diffusion);

@@ -35,7 +35,7 @@ struct PlainFluid {
 
   /// Adds the pair: r = x_a - x_b, F the gradient factor of the kernel, b the neighbour.
   template <class T>
-  static void add(const Own<T>& a, const std::array<T, Dim>& r, T f, const T* v_b, T p_b, T volume_b, Sums<T>& s) {
+  static void add(const Own<T>& a, const std::array<T, Dim>& r, T, T f, const T* v_b, T p_b, T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T pressure = vf * (a.p + p_b);
     const T friction = vf * a.mu;

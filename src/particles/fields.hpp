@@ -10,11 +10,11 @@ namespace barchan {
 
 enum class Field : int {
   position, velocity, density, pressure, acceleration, density_rate, velocity_gradient, stress, energy, energy_rate,
-  shift_velocity, wall_normal, wall_depth, smoothing_length, count
+  shift_velocity, anisotropy, wall_normal, wall_depth, smoothing_length, count
 };
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
-enum class Rank { scalar, vector, symmetric, matrix };
+enum class Rank { scalar, vector, deviator, symmetric, matrix };   // deviator: symmetric, traceless (2 or 6 numbers)
 
 struct FieldInfo {
   Field id;
@@ -38,6 +38,7 @@ inline constexpr std::array<FieldInfo, field_count> field_table{{
     {Field::energy, "energy", "e", "J/kg", Rank::scalar, true, "specific internal energy"},
     {Field::energy_rate, "energy_rate", "de/dt", "W/kg", Rank::scalar, false, "rate of change of the internal energy"},
     {Field::shift_velocity, "shift_velocity", "du", "m/s", Rank::vector, true, "transport velocity less the velocity (particle shifting)"},
+    {Field::anisotropy, "anisotropy", "A", "1", Rank::deviator, true, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz"},
     {Field::wall_normal, "wall_normal", "n", "1", Rank::vector, true, "unit normal of a wall particle, into the fluid"},
     {Field::wall_depth, "wall_depth", "phi", "m", Rank::scalar, true, "distance of a wall particle behind the wall's surface, 0: unknown"},
     {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false, "half the kernel radius of the phase with itself"},
@@ -49,6 +50,7 @@ constexpr int components(Rank rank, int dimensions) {
   switch (rank) {
     case Rank::scalar: return 1;
     case Rank::vector: return dimensions;
+    case Rank::deviator: return dimensions == 2 ? 2 : 6;
     case Rank::symmetric: return 6;
     case Rank::matrix: return dimensions * dimensions;
   }

@@ -35,7 +35,7 @@ BARCHAN_SIMD_INLINE void add_row(PairList::Row row, const RecordArray& records, 
   for_each_neighbour<R::size>(row, records, [&](const Lanes* b) __attribute__((always_inline)) {
     std::array<Lanes, Dim> r;
     const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-    Law<Dim>::add(own, r, kernel.gradient(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
+    Law<Dim>::add(own, r, r2, kernel.gradient(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
   });
 }
 
@@ -74,8 +74,8 @@ std::array<double, Dim> shift_of(const std::array<double, Dim>& concentration, c
 }
 
 template <int Dim>
-Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, const double*, double rho,
-                  const FluidParameters& q) {
+Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, double, double rho,
+                  const FluidParameters& q, std::span<double>) {
   Rates<Dim> r;
   r.shift = shift_of<Dim>(s.concentration, q);
   for (std::size_t d = 0; d < Dim; ++d)
@@ -84,35 +84,53 @@ Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, cons
   return r;
 }
 
+/// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
+constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
+  return d >= e ? d * (d + 1) / 2 + e : e * (e + 1) / 2 + d;
+}
+
 template <int Dim>
-Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s, const double* mu, double rho,
-                  const FluidParameters& q) {
+Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s, double mu, double rho,
+                  const FluidParameters& q, std::span<double> anisotropy) {
   Rates<Dim> r;
   r.shift = shift_of<Dim>(s.concentration, q);
   const auto inverse = inverse_symmetric(s.moment);
-  const double trace = Dim == 2 ? s.moment[0] + s.moment[2] : s.moment[0] + s.moment[2] + s.moment[5 % s.moment.size()];
-  const double laplace = 2.0 * Dim / trace, c2 = q.sound_speed * q.sound_speed;
+  double trace = 0.0, weighted_trace = 0.0;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    trace += s.moment[moment_index(d, d)];
+    for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * s.moment[moment_index(d, e)];
+  }
+  weighted_trace += trace;
+  const double laplace_v = -2.0 * Dim / weighted_trace, laplace_p = -2.0 * Dim / trace;
+  const double c2 = q.sound_speed * q.sound_speed;
   std::array<double, Dim> grad_p{};
   std::array<std::array<double, Dim>, Dim> grad_v{};
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e < Dim; ++e) {
-      grad_p[d] -= inverse[d * Dim + e] * s.pressure[e];
-      for (std::size_t f = 0; f < Dim; ++f) grad_v[d][e] -= s.velocity[d * Dim + f] * inverse[f * Dim + e];
+      grad_p[d] += inverse[d * Dim + e] * s.pressure[e];
+      for (std::size_t f = 0; f < Dim; ++f) grad_v[d][e] += s.velocity[d * Dim + f] * inverse[f * Dim + e];
     }
-  double divergence = 0.0, along_p = 0.0, dynamic = s.diffusion;
+  double divergence = 0.0, along_p = 0.0, dynamic = s.diffusion, squared = 0.0;
   for (std::size_t d = 0; d < Dim; ++d) {
     divergence += grad_v[d][d];
     along_p += r.shift[d] * grad_p[d];
     dynamic -= (grad_p[d] - q.reference_density * q.gravity[d]) * s.concentration[d];
     double friction = s.viscous[d], transported = 0.0;
     for (std::size_t e = 0; e < Dim; ++e) {
-      friction -= grad_v[d][e] * s.concentration[e];
+      friction -= grad_v[d][e] * s.weighted[e];
       transported += r.shift[e] * grad_v[d][e];
+      squared += grad_v[d][e] * grad_v[e][d];
     }
     r.acceleration[d] =
-        (laplace * *mu * friction - grad_p[d]) / rho + q.gravity[d] + q.acceleration[d] + transported;
+        (laplace_v * mu * friction - grad_p[d]) / rho + q.gravity[d] + q.acceleration[d] + transported;
   }
-  r.density = -rho * divergence + (q.diffusivity * laplace * dynamic + along_p) / c2;
+  // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
+  r.density = -rho * divergence + q.diffusivity / c2 * laplace_p * dynamic +
+              q.source_diffusivity / c2 * q.reference_density * squared + along_p / c2;
+  const double scale = -0.5 * (Dim + 2) * Dim / trace;
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e)
+      anisotropy[moment_index(d, e)] = scale * s.moment[moment_index(d, e)] + (d == e ? 0.5 * (Dim + 2) : 0.0);
   return r;
 }
 
@@ -142,22 +160,38 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
   double* rate = fluid.column(Field::density_rate);
   const double* rho = fluid.column(Field::density);
   const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
+  constexpr std::size_t moments = Dim * (Dim + 1) / 2;
+  std::array<double*, moments> skew{};   // 2D: xx xy, and yy = -xx
+  if constexpr (L::corrected)
+    for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c)
+      skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
   const auto n = static_cast<std::int64_t>(fluid.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     typename L::template Sums<Lanes> sums{};
+    std::array<double, moments> anisotropy{};
+    if constexpr (L::corrected) {
+      if constexpr (Dim == 2)
+        anisotropy = {skew[0][k], skew[1][k], -skew[0][k]};
+      else
+        for (std::size_t c = 0; c < moments; ++c) anisotropy[c] = skew[c][k];
+    }
     for (const auto& e : neighbours) {
       const auto row = e.list->row(k);
       if (row.begin == row.end) continue;
-      const auto own = load_own<Dim, Law>(own_records[k], weight, e.viscosity, e.diffuse);
+      auto own = load_own<Dim, Law>(own_records[k], weight, e.viscosity, e.diffuse);
+      if constexpr (L::corrected)
+        for (std::size_t c = 0; c < moments; ++c) own.anisotropy[c] = Lanes(anisotropy[c]);
       with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
         add_row<Dim, Law>(row, *e.records, kernel, own, sums);
       });
     }
     typename L::template Sums<double> s;
     reduce(sums, s);
-    const auto r = finish<Dim>(s, &mu, rho[k], q);
+    const auto r = finish<Dim>(s, mu, rho[k], q, anisotropy);
+    if constexpr (L::corrected)
+      for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c) skew[c][k] = anisotropy[c];
     for (std::size_t d = 0; d < Dim; ++d) {
       a[d][k] = r.acceleration[d];
       if (du[d]) du[d][k] = r.shift[d];

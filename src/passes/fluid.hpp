@@ -24,6 +24,7 @@ struct FluidParameters {
   double reference_density;        // kg/m3
   double sound_speed;              // m/s
   double diffusivity;              // m2/s, of the density: theta c^2 dt + delta h c
+  double source_diffusivity;       // m2/s, consistent scheme: of the part of lap p that the flow itself makes
   double shift_speed;              // m/s: du = -shift_speed * h * B, at most `shift_limit`
   double shift_limit;              // m/s
   double smoothing_length;         // m, of the phase with itself

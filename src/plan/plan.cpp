@@ -75,6 +75,7 @@ std::vector<Field> fields_of(const Phase& phase) {
     case PhaseKind::fluid: {
       std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
       if (phase.shifting > 0) f.push_back(shift_velocity);
+      if (phase.scheme == FluidScheme::consistent) f.push_back(anisotropy);
       return f;
     }
     case PhaseKind::elastic: return {position, velocity, density, pressure, acceleration, stress};

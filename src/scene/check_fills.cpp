@@ -32,9 +32,12 @@ void check_shape_keys(const std::string& shape, const Report& report) {
     report(shape + ".mesh", "meshes are not available yet; expected another shape, as polygon or formula");
   if (report.has(shape + ".dune") && first != "bed")
     report(shape + ".dune", "a dune without a bed; expected bed = DEPTH beside it");
+  if (report.has(shape + ".from") && first != "bed")
+    report(shape + ".from", "a lower bound without a bed; expected bed = DEPTH beside it");
   if (report.has(shape + ".layers") && first != "sides")
     report(shape + ".layers", "layers without sides; expected sides = [...] beside it");
-  const bool nothing = first.empty() && !report.has(shape + ".dune") && !report.has(shape + ".layers");
+  const bool nothing =
+      first.empty() && !report.has(shape + ".dune") && !report.has(shape + ".from") && !report.has(shape + ".layers");
   if (nothing && !report.touched(shape))
     report(shape,
            "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, cube, points, formula, "

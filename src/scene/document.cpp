@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::string_view override_mark = "--set ";
 
+/// A value with line breaks or control characters must not spoil the list of one problem a line.
+std::string on_one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
 bool is_override(const toml::source_region& source) { return source.path && source.path->starts_with(override_mark); }
 
 }  // namespace
@@ -41,7 +48,7 @@ void Problems::throw_if_any() const {
   std::string message;
   for (const Problem& problem : sorted) {
     if (!message.empty()) message += '\n';
-    message += problem.place + ": " + (problem.dotted.empty() ? "" : problem.dotted + ": ") + problem.what;
+    message += on_one_line(problem.place + ": " + (problem.dotted.empty() ? "" : problem.dotted + ": ") + problem.what);
   }
   throw SceneError(message);
 }

@@ -60,6 +60,7 @@ Phase take_phase(const toml::table& table, const std::string& name) {
   take_number(table, "artificial-viscosity", phase.artificial_viscosity);
   take_number(table, "artificial-viscosity-beta", phase.artificial_viscosity_beta);
   take_number(table, "density-diffusion", phase.density_diffusion);
+  phase.enclosed = table["enclosed"].value_or(phase.enclosed);
   take_number(table, "shifting", phase.shifting);
   take_number(table, "background-pressure", phase.background_pressure);
   phase.scheme = take_choice(table, "scheme", phase.scheme,

@@ -44,10 +44,11 @@ struct Phase {
   double tait_exponent = 7.0;
   double artificial_viscosity = 0.0;           // Monaghan's alpha
   double artificial_viscosity_beta = 0.0;      // Monaghan's beta
-  double density_diffusion = 0.1;              // delta of delta-SPH, 0 switches it off
+  double density_diffusion = 0.05;             // delta of delta-SPH, 0 switches it off
   double shifting = 1.0;                       // strength of particle shifting, 0 switches it off
   double background_pressure = 0.0;            // in rho0 c^2
   FluidScheme scheme = FluidScheme::plain;
+  bool enclosed = false;                       // fills a closed space: its mean density is kept
   std::string turbulence = "none";             // "none"; others come with the air work
 
   // elastic

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "time/limits.hpp"
 #include "time/wiring.hpp"
 
 namespace barchan {
@@ -9,7 +10,7 @@ namespace barchan {
 namespace {
 
 template <int Dim>
-void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressure, double volume) {
+void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressure, bool fixed_volume, double volume) {
   using R = MotionRecord<Dim>;
   const auto n = static_cast<std::int64_t>(p.size());
   std::array<const double*, Dim> x{}, v{};
@@ -18,7 +19,7 @@ void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressu
     v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
   }
   const double* pressure = with_pressure ? p.column(Field::pressure) : nullptr;
-  const double* rho = with_pressure ? p.column(Field::density) : nullptr;
+  const double* rho = with_pressure && !fixed_volume ? p.column(Field::density) : nullptr;
   const double mass = p.mass();
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
@@ -33,6 +34,28 @@ void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressu
   }
 }
 
+/// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of the
+/// divergence must not pump it up. Sums in blocks, in an order that the number of particles decides.
+void keep_mean_density(PhaseParticles& p) {
+  constexpr std::int64_t block = 4096;
+  static std::vector<double> parts;
+  double* rate = p.column(Field::density_rate);
+  const auto n = static_cast<std::int64_t>(p.size());
+  const std::int64_t blocks = (n + block - 1) / block;
+  if (static_cast<std::int64_t>(parts.size()) < blocks) parts.resize(static_cast<std::size_t>(blocks));
+#pragma omp parallel for schedule(static)
+  for (std::int64_t b = 0; b < blocks; ++b) {
+    double sum = 0.0;
+    for (std::int64_t k = b * block; k < std::min((b + 1) * block, n); ++k) sum += rate[k];
+    parts[static_cast<std::size_t>(b)] = sum;
+  }
+  double mean = 0.0;
+  for (std::int64_t b = 0; b < blocks; ++b) mean += parts[static_cast<std::size_t>(b)];
+  mean /= static_cast<double>(n);
+#pragma omp parallel for simd schedule(static)
+  for (std::int64_t k = 0; k < n; ++k) rate[k] -= mean;
+}
+
 }  // namespace
 
 void Simulation::pack() {
@@ -42,7 +65,10 @@ void Simulation::pack() {
     const auto& p = particles_[k];
     const bool fluid = p.kind() == PhaseKind::fluid;
     const auto fill = [&](RecordArray& records) {
-      plan_.dimensions == 2 ? pack_motion<2>(p, records, fluid, volume) : pack_motion<3>(p, records, fluid, volume);
+      // The consistent operators weigh neighbours by the spacing's volume: what they sum is exact for any weights.
+      const bool fixed = fluid && scene_.phases[k].scheme == FluidScheme::consistent;
+      plan_.dimensions == 2 ? pack_motion<2>(p, records, fluid, fixed, volume)
+                            : pack_motion<3>(p, records, fluid, fixed, volume);
       records.fill_images(neighbours_.grid(k), plan_.dimensions);
     };
     fill(motion_[k]);
@@ -78,8 +104,10 @@ void Simulation::rate_fluids() {
     const Phase& s = scene_.phases[f.phase];
     // c^2 dt makes the one-pass step the leapfrog that its velocities, half a step old, would miss; the rest is
     // delta-SPH's own diffusion.
-    q.diffusivity = 1.0 * q.sound_speed * q.sound_speed * dt_ +
-                    s.density_diffusion * q.smoothing_length * q.sound_speed;
+    const double centring = q.sound_speed * q.sound_speed * dt_;
+    const double delta = s.density_diffusion * q.smoothing_length * q.sound_speed;
+    q.diffusivity = StepConstants::theta * centring + delta;
+    q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
     q.acceleration = {0, 0, 0};
     bool varies = false;
     for (const auto& force : forcings_) {
@@ -92,6 +120,7 @@ void Simulation::rate_fluids() {
     }
     auto& p = particles_[f.phase];
     fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
+    if (s.enclosed) keep_mean_density(p);
     if (!varies) continue;
     for (const auto& force : forcings_) {
       if (force.phase != f.phase) continue;

@@ -36,6 +36,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   for (const char* name : {"force", "output", "fixed"}) limit_counts_[name] = 0;
   dt_ = plan_.step();
   rates(true);
+  rates(true);    // the weights of the consistent Laplacian are those of the pass before
 }
 
 Simulation::~Simulation() = default;
