@@ -206,6 +206,14 @@ TEST(Generate, AirOverAStaggeredOrShapelessDuneKeepsItsDistance) {
   }
 }
 
+TEST(Generate, ABedMayStartAboveAFloor) {
+  const std::string two = "{ bed = 0.2 }\n[[fill]]\nphase = \"air\"\nshape = { bed = 0.5, from = 0.2 }";
+  const Scene scene = grains(two);
+  const auto x = generate(scene)[0].position;
+  EXPECT_EQ(x.size(), 50u);
+  EXPECT_NEAR(least_distance(x, x, PeriodicSpace(scene.domain)), 0.1, 1e-13);
+}
+
 TEST(Generate, DuneShapes) {
   Scene scene = parse_scene(dune_text, "dune.toml");
   auto& dune = *std::get<BedShape>(scene.fills[0].shape).dune;

@@ -108,6 +108,7 @@ artificial-viscosity-beta = 0.03
 density-diffusion = 0.2
 shifting = 0.5
 background-pressure = 0.05
+enclosed = true
 scheme = "consistent"
 turbulence = "mixing-length"
 energy = true
@@ -190,6 +191,7 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(water.background_pressure, 0.05);
   EXPECT_EQ(water.scheme, FluidScheme::consistent);
   EXPECT_TRUE(water.energy);
+  EXPECT_TRUE(water.enclosed);
   const Phase& steel = scene.phases.at(1);
   EXPECT_EQ(steel.young, 206e9);
   EXPECT_EQ(steel.poisson, 0.3);
@@ -253,6 +255,7 @@ TEST(SceneReader, TakesEveryShape) {
   EXPECT_EQ(std::get<PointsShape>(shape("{ points = [[0.5, 0.5]] }")).at.size(), 1u);
   EXPECT_EQ(std::get<FormulaShape>(shape("{ formula = \"x - y\" }")).inside.formula, "x - y");
   EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25 }")).depth, 0.25);
+  EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25, from = 0.125 }")).from, 0.125);
   const auto dune = [&](const std::string& text) {
     return *std::get<BedShape>(shape("{ bed = 0.25, dune = " + text + " }")).dune;
   };
