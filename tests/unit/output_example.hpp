@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <initializer_list>
 #include <limits>
 #include <random>
 #include <string>
@@ -62,6 +63,7 @@ inline Frame frame(std::size_t n, int index = 3, unsigned seed = 1) {
   f.step = 1234567890123L + index;
   f.time = 0.1 * index;
   f.phase_names = {"air", "sand grains", "Wände"};
+  f.phase_kinds = {"fluid", "grains", "wall"};
   f.fields = {{"velocity", "m/s", 3, {}}, {"density", "kg/m3", 1, {}}, {"stress", "Pa", 6, {}}, {"marker", "", 1, {}}};
   for (std::size_t k = 0; k < n; ++k) {
     for (int c = 0; c < 3; ++c) f.points.push_back(normal(random));
@@ -90,6 +92,7 @@ inline void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(a.id, b.id);
   EXPECT_EQ(a.phase, b.phase);
   EXPECT_EQ(a.phase_names, b.phase_names);
+  EXPECT_EQ(a.phase_kinds, b.phase_kinds);
   ASSERT_EQ(a.fields.size(), b.fields.size());
   for (std::size_t k = 0; k < a.fields.size(); ++k) {
     EXPECT_EQ(a.fields[k].name, b.fields[k].name);

@@ -154,8 +154,9 @@ TEST(Series, CarriesAnErrorToTheCallerAndKeepsTheFramesBefore) {
   series.write(frame(100, 1));
   series.finish();
   series.write(frame(20'000, 2));
+  series.write(frame(100, 3));   // waits while the large one fails
   expect_output_error([&] { series.finish(); }, {"dune_000002.vtp", "File too large"});
-  expect_output_error([&] { series.write(frame(100, 3)); }, {"dune_000002.vtp", "File too large"});
+  expect_output_error([&] { series.write(frame(100, 4)); }, {"dune_000002.vtp", "File too large"});
   EXPECT_EQ(series.frames(), 2);
   EXPECT_EQ(files_in(directory.path), (Names{"dune.pvd", "dune_000000.vtp", "dune_000001.vtp"}));
   EXPECT_EQ(read_pvd(directory / "dune.pvd").size(), 2u);
