@@ -49,12 +49,14 @@ Places::Cell Places::cell_of(const Vec3& x) const {
 void Places::add(const Vec3& x, int owner) { grid_[cell_of(x)].push_back({x, owner}); }
 
 int Places::owner_near(const Vec3& x, double distance, int except) const {
+  if (grid_.empty()) return -1;
   const Cell centre = cell_of(x);
   int owner = -1;
   double nearest = distance;
-  for (int k = 0; k < 27; ++k) {
+  const bool flat = !(space_.domain().size[2] > 0.0);
+  for (int k = 0; k < (flat ? 9 : 27); ++k) {
     Cell cell = centre;
-    const std::array<int, 3> step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+    const std::array<int, 3> step{k % 3 - 1, k / 3 % 3 - 1, flat ? 0 : k / 9 - 1};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       cell[axis] += step[axis];
       if (cells_[axis] > 0) cell[axis] = (cell[axis] + cells_[axis]) % cells_[axis];
