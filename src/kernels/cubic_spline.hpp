@@ -39,12 +39,18 @@ class CubicSpline {
   }
   template <int W>
   simd::Vec<T, W> gradient(simd::Vec<T, W> r2) const {
+    return simd::Vec<T, W>(gradient_) * slope(r2);
+  }
+  /// F without its constant factor: F = slope * slope_factor(). Sums over pairs take the factor out.
+  template <int W>
+  simd::Vec<T, W> slope(simd::Vec<T, W> r2) const {
     using V = simd::Vec<T, W>;
-    const V inverse_r = simd::inverse_sqrt(r2);
+    const V inverse_r = V(T(1)) / simd::sqrt(r2);
     const V q = r2 * inverse_r * V(inverse_h_);
     const V outer = simd::max(V(T(2)) - q, V(T(0))), inner = simd::max(V(T(1)) - q, V(T(0)));
-    return V(gradient_) * inverse_r * (V(T(3)) * inner * inner - V(T(0.75)) * outer * outer);
+    return inverse_r * simd::fnma(V(T(0.75)) * outer, outer, V(T(3)) * inner * inner);
   }
+  T slope_factor() const { return gradient_; }
 
   /// W at distance r (scalar, for set-up and tests).
   T value(T r) const {

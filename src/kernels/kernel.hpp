@@ -17,4 +17,21 @@ auto with_kernel(KernelKind kind, double radius, int dimensions, F&& f) {
   return f(CubicSpline<T>(radius, dimensions));
 }
 
+/// A kernel ready for a pair loop: made once a pass, chosen once a row.
+class ReadyKernel {
+ public:
+  ReadyKernel(KernelKind kind, double radius, int dimensions)
+      : kind_(kind), spline_(radius, dimensions), wendland_(radius, dimensions) {}
+  template <class F>
+  BARCHAN_SIMD_INLINE auto operator()(F&& f) const {
+    if (kind_ == KernelKind::wendland_c2) return f(wendland_);
+    return f(spline_);
+  }
+
+ private:
+  KernelKind kind_;
+  CubicSpline<double> spline_;
+  WendlandC2<double> wendland_;
+};
+
 }  // namespace barchan

@@ -38,10 +38,16 @@ class WendlandC2 {
   }
   template <int W>
   simd::Vec<T, W> gradient(simd::Vec<T, W> r2) const {
+    return simd::Vec<T, W>(gradient_) * slope(r2);
+  }
+  /// F without its constant factor: F = slope * slope_factor(). Sums over pairs take the factor out.
+  template <int W>
+  simd::Vec<T, W> slope(simd::Vec<T, W> r2) const {
     using V = simd::Vec<T, W>;
     const V t = simd::max(simd::fnma(simd::sqrt(r2), V(inverse_radius_), V(T(1))), V(T(0)));
-    return V(gradient_) * t * t * t;
+    return t * t * t;
   }
+  T slope_factor() const { return gradient_; }
 
   /// W at distance r (scalar, for set-up and tests).
   T value(T r) const {

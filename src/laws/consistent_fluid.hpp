@@ -28,44 +28,61 @@ struct ConsistentFluid {
     std::array<T, Dim> concentration{}, pressure{};  // B, P
     std::array<T, Dim * Dim> velocity{};             // U, row: component of v, column: of r
     std::array<T, Dim> viscous{}, weighted{};        // L_v, C
-    T diffusion{};                                   // sum V F (p_ab - rho0 g.r)
+    T diffusion{};                                   // L_p less its hydrostatic part
+
+    /// Adds the sums of one entry; see PlainFluid. The viscosity is the phase's, not the entry's.
+    BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double, double, const std::array<double, 3>& weight) {
+      const T k(scale);
+      for (std::size_t m = 0; m < moments; ++m) moment[m] = fma(k, s.moment[m], moment[m]);
+      for (std::size_t m = 0; m < Dim * Dim; ++m) velocity[m] = fma(k, s.velocity[m], velocity[m]);
+      T hydrostatic(0.0);
+      for (std::size_t d = 0; d < Dim; ++d) {
+        concentration[d] = fma(k, s.concentration[d], concentration[d]);
+        pressure[d] = fma(k, s.pressure[d], pressure[d]);
+        viscous[d] = fma(k, s.viscous[d], viscous[d]);
+        weighted[d] = fma(k, s.weighted[d], weighted[d]);
+        hydrostatic = fma(T(weight[d]), s.concentration[d], hydrostatic);
+      }
+      diffusion = fma(k, s.diffusion - hydrostatic, diffusion);
+    }
   };
 
   template <class T>
   struct Own {
-    std::array<T, Dim> x, v, weight;
-    T p, mu, diffusive;
-    std::array<T, moments> anisotropy;               // A, the order of the moment
+    std::array<T, Dim> x, v;
+    T p;
+    std::array<T, moments> anisotropy;               // A, the order of the moment; off the diagonal doubled
   };
 
   template <class T>
-  static void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, T p_b, T volume_b, Sums<T>& s) {
+  static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, T p_b,
+                                      T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T dp = a.p - p_b;
     T lopsided(0.0);                                 // r.A.r
     std::size_t q = 0;
-    for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e <= d; ++e, ++q)
-        lopsided = fma(a.anisotropy[q] * r[d], e == d ? r[e] : r[e] + r[e], lopsided);
+    for (std::size_t d = 0; d < Dim; ++d) {
+      T along(0.0);
+      for (std::size_t e = 0; e <= d; ++e, ++q) along = e == 0 ? a.anisotropy[q] * r[e] : fma(a.anisotropy[q], r[e], along);
+      lopsided = d == 0 ? along * r[d] : fma(along, r[d], lopsided);
+    }
     const T wvf = fma(vf, lopsided / r2, vf);
     std::array<T, Dim> g;
     for (std::size_t d = 0; d < Dim; ++d) {
       g[d] = vf * r[d];
       s.concentration[d] = s.concentration[d] + g[d];
       s.pressure[d] = fma(dp, g[d], s.pressure[d]);
+      s.weighted[d] = fma(wvf, r[d], s.weighted[d]);
     }
     std::size_t m = 0;
     for (std::size_t d = 0; d < Dim; ++d)
       for (std::size_t e = 0; e <= d; ++e, ++m) s.moment[m] = fma(g[d], r[e], s.moment[m]);
-    T dynamic = dp;
     for (std::size_t d = 0; d < Dim; ++d) {
       const T dv = a.v[d] - v_b[d];
       for (std::size_t e = 0; e < Dim; ++e) s.velocity[d * Dim + e] = fma(dv, g[e], s.velocity[d * Dim + e]);
       s.viscous[d] = fma(wvf, dv, s.viscous[d]);
-      s.weighted[d] = fma(wvf, r[d], s.weighted[d]);
-      dynamic = fnma(a.weight[d], r[d], dynamic);
     }
-    s.diffusion = fma(vf, dynamic, s.diffusion);
+    s.diffusion = fma(vf, dp, s.diffusion);
   }
 };
 

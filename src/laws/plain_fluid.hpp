@@ -22,34 +22,49 @@ struct PlainFluid {
   /// Sums over neighbours. T: a SIMD vector in the loop, a number after it.
   template <class T>
   struct Sums {
-    std::array<T, Dim> pressure{}, viscous{}, concentration{};   // sum V F (p_a+p_b) r, sum mu V F v_ab, sum V F r
-    T divergence{}, diffusion{};                                 // sum V F v_ab.r, sum V F (p_ab - rho0 g.r)
+    std::array<T, Dim> pressure{}, viscous{}, concentration{};   // sum V F (p_a+p_b) r, sum V F v_ab, sum V F r
+    T divergence{}, diffusion{};                                 // sum V F v_ab.r, sum V F p_ab
+
+    /// Adds the sums of one entry: `scale` its kernel's constant factor, `mu` its viscosity [Pa s]; `diffuse` 0 or 1
+    /// switches density diffusion. `weight` is rho0 g [Pa/m].
+    BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double mu, double diffuse,
+                                  const std::array<double, 3>& weight) {
+      const T k(scale), viscosity(scale * mu), kd(scale * diffuse);
+      T hydrostatic(0.0);
+      for (std::size_t d = 0; d < Dim; ++d) {
+        pressure[d] = fma(k, s.pressure[d], pressure[d]);
+        viscous[d] = fma(viscosity, s.viscous[d], viscous[d]);
+        concentration[d] = fma(k, s.concentration[d], concentration[d]);
+        hydrostatic = fma(T(weight[d]), s.concentration[d], hydrostatic);
+      }
+      divergence = fma(k, s.divergence, divergence);
+      diffusion = fma(kd, s.diffusion - hydrostatic, diffusion);
+    }
   };
 
-  /// The first particle and what the entry fixes, broadcast.
+  /// The first particle, broadcast.
   template <class T>
   struct Own {
-    std::array<T, Dim> x, v, weight;   // weight: rho0 g [Pa/m]
-    T p, mu, diffusive;                // mu: viscosity of the entry [Pa s]; diffusive: 1, or 0 to switch diffusion off
+    std::array<T, Dim> x, v;
+    T p;
   };
 
-  /// Adds the pair: r = x_a - x_b, F the gradient factor of the kernel, b the neighbour.
+  /// Adds the pair: r = x_a - x_b, f the gradient factor of the kernel (up to a constant), b the neighbour.
   template <class T>
-  static void add(const Own<T>& a, const std::array<T, Dim>& r, T, T f, const T* v_b, T p_b, T volume_b, Sums<T>& s) {
+  static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T, T f, const T* v_b, T p_b, T volume_b,
+                                      Sums<T>& s) {
     const T vf = volume_b * f;
     const T pressure = vf * (a.p + p_b);
-    const T friction = vf * a.mu;
-    T vr(0.0), dynamic = a.p - p_b;
+    T vr(0.0);
     for (std::size_t d = 0; d < Dim; ++d) {
       const T dv = a.v[d] - v_b[d];
-      vr = fma(dv, r[d], vr);
-      dynamic = fnma(a.weight[d], r[d], dynamic);
+      vr = d == 0 ? dv * r[d] : fma(dv, r[d], vr);
       s.pressure[d] = fma(pressure, r[d], s.pressure[d]);
-      s.viscous[d] = fma(friction, dv, s.viscous[d]);
+      s.viscous[d] = fma(vf, dv, s.viscous[d]);
       s.concentration[d] = fma(vf, r[d], s.concentration[d]);
     }
     s.divergence = fma(vf, vr, s.divergence);
-    s.diffusion = fma(vf * a.diffusive, dynamic, s.diffusion);
+    s.diffusion = fma(vf, a.p - p_b, s.diffusion);
   }
 };
 

@@ -11,13 +11,14 @@
 
 #include "base/aligned.hpp"
 #include "neighbours/cell_grid.hpp"
+#include "simd/vec.hpp"
 
 namespace barchan {
 
 class PairList {
  public:
   static constexpr std::size_t chunk = 1024;    // particles
-  static constexpr std::size_t padding = 8;     // row lengths are multiples of this
+  static constexpr std::size_t padding = simd::native_width<double>;   // row lengths are multiples of this
 
   struct Row {
     const std::uint32_t* begin;

@@ -12,31 +12,43 @@ namespace barchan {
 namespace {
 
 template <int Dim, template <int> class Law>
-BARCHAN_SIMD_INLINE typename Law<Dim>::template Own<Lanes> load_own(const double* record, const Vec3& weight, double mu,
-                                                                    bool diffuse) {
+BARCHAN_SIMD_INLINE typename Law<Dim>::template Own<Lanes> load_own(const double* record) {
   using R = MotionRecord<Dim>;
   typename Law<Dim>::template Own<Lanes> own;
   for (std::size_t d = 0; d < Dim; ++d) {
     own.x[d] = Lanes(record[R::position + d]);
     own.v[d] = Lanes(record[R::velocity + d]);
-    own.weight[d] = Lanes(weight[d]);
   }
   own.p = Lanes(record[R::pressure]);
-  own.mu = Lanes(mu);
-  own.diffusive = Lanes(diffuse ? 1.0 : 0.0);
   return own;
 }
 
-template <int Dim, template <int> class Law, class Kernel>
-BARCHAN_SIMD_INLINE void add_row(PairList::Row row, const RecordArray& records, const Kernel& kernel,
-                                 const typename Law<Dim>::template Own<Lanes>& own,
-                                 typename Law<Dim>::template Sums<Lanes>& sums) {
+/// Adds one entry's row to `total`.
+template <int Dim, template <int> class Law>
+BARCHAN_SIMD_INLINE void add_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernel& ready,
+                                 const typename Law<Dim>::template Own<Lanes>& own, const Vec3& weight,
+                                 typename Law<Dim>::template Sums<Lanes>& total) {
   using R = MotionRecord<Dim>;
-  for_each_neighbour<R::size>(row, records, [&](const Lanes* b) __attribute__((always_inline)) {
-    std::array<Lanes, Dim> r;
-    const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-    Law<Dim>::add(own, r, r2, kernel.gradient(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
+  ready([&](const auto& kernel) __attribute__((always_inline)) {
+    typename Law<Dim>::template Sums<Lanes> sums{};
+    for_each_neighbour<R::size>(row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+      std::array<Lanes, Dim> r;
+      const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+      Law<Dim>::add(own, r, r2, kernel.slope(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
+    });
+    total.take(sums, kernel.slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
   });
+}
+
+/// At most this many entries a phase.
+constexpr std::size_t most_entries = 16;
+
+std::vector<ReadyKernel>& ready_kernels(std::span<const FluidNeighbour> neighbours, int dimensions) {
+  thread_local std::vector<ReadyKernel> kernels;
+  kernels.reserve(most_entries);
+  kernels.clear();
+  for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);
+  return kernels;
 }
 
 /// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
@@ -160,6 +172,7 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
   double* rate = fluid.column(Field::density_rate);
   const double* rho = fluid.column(Field::density);
   const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
+  const auto& kernels = ready_kernels(neighbours, Dim);
   constexpr std::size_t moments = Dim * (Dim + 1) / 2;
   std::array<double*, moments> skew{};   // 2D: xx xy, and yy = -xx
   if constexpr (L::corrected)
@@ -177,15 +190,16 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
       else
         for (std::size_t c = 0; c < moments; ++c) anisotropy[c] = skew[c][k];
     }
-    for (const auto& e : neighbours) {
+    auto own = load_own<Dim, Law>(own_records[k]);
+    if constexpr (L::corrected)
+      for (std::size_t d = 0; d < Dim; ++d)
+        for (std::size_t e = 0; e <= d; ++e)
+          own.anisotropy[moment_index(d, e)] = Lanes((d == e ? 1.0 : 2.0) * anisotropy[moment_index(d, e)]);
+    for (std::size_t c = 0; c < neighbours.size(); ++c) {
+      const auto& e = neighbours[c];
       const auto row = e.list->row(k);
       if (row.begin == row.end) continue;
-      auto own = load_own<Dim, Law>(own_records[k], weight, e.viscosity, e.diffuse);
-      if constexpr (L::corrected)
-        for (std::size_t c = 0; c < moments; ++c) own.anisotropy[c] = Lanes(anisotropy[c]);
-      with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-        add_row<Dim, Law>(row, *e.records, kernel, own, sums);
-      });
+      add_row<Dim, Law>(row, e, kernels[c], own, weight, sums);
     }
     typename L::template Sums<double> s;
     reduce(sums, s);
@@ -207,6 +221,7 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   std::array<double*, Dim> a{};
   for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = solid.column(Field::acceleration, d);
   const double inverse_mass = 1.0 / solid.mass();
+  const ReadyKernel kernel(e.kernel, e.radius, Dim);
   const auto n = static_cast<std::int64_t>(solid.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::int64_t i = 0; i < n; ++i) {
@@ -214,11 +229,8 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
     const auto row = e.list->row(k);
     if (row.begin == row.end) continue;
     const double* record = own_records[k];
-    const auto own = load_own<Dim, PlainFluid>(record, {0, 0, 0}, e.viscosity, false);
     typename L::template Sums<Lanes> sums{};
-    with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-      add_row<Dim, PlainFluid>(row, *e.records, kernel, own, sums);
-    });
+    add_row<Dim, PlainFluid>(row, e, kernel, load_own<Dim, PlainFluid>(record), {0, 0, 0}, sums);
     typename L::template Sums<double> s;
     reduce(sums, s);
     const double closing = pores ? 2.0 * record[R::pressure] : 0.0;

@@ -107,6 +107,9 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.kernel = i.kernel;
     e.radius = i.radius * scene.spacing;
     e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
+    if (e.a == e.b && scene.phases[e.a].scheme == FluidScheme::consistent && i.kernel != KernelKind::wendland_c2)
+      throw SceneError(scene.file + ": interactions." + e.name + ": the consistent scheme has no pressure that keeps "
+                       "particles apart, and under the cubic spline they pair; expected kernel = \"wendland-c2\"");
     const auto direction = [&](std::size_t from, std::size_t to) {
       plan.directions.push_back({from, to, e.radius});
       return static_cast<int>(plan.directions.size()) - 1;
