@@ -6,7 +6,7 @@
 
 namespace barchan {
 
-CellGrid::CellGrid(const Bounds& bounds, double cell, double reach)
+CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks)
     : dimensions_(static_cast<std::size_t>(bounds.dimensions)), bounds_(bounds) {
   // A cell count beyond this gains nothing and would only cost memory in sparse scenes.
   constexpr double largest_count = 4096.0 * 4.0;
@@ -22,10 +22,10 @@ CellGrid::CellGrid(const Bounds& bounds, double cell, double reach)
   const std::size_t cells = count_[0] * count_[1] * count_[2];
   begin_.assign(cells, 0);
   end_.assign(cells, 0);
-  order_interior();
+  order_interior(blocks);
 }
 
-void CellGrid::order_interior() {
+void CellGrid::order_interior(const Blocks& blocks) {
   // Non-periodic sides: the padding cells are real cells (they catch what lies outside), so they are walked as well.
   std::array<std::size_t, 3> low{0, 0, 0}, high = count_;
   for (std::size_t d = 0; d < dimensions_; ++d)
@@ -41,6 +41,32 @@ void CellGrid::order_interior() {
         for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y)
           for (std::size_t x = x0; x < std::min(x0 + wide, high[0]); ++x)
             walk_.push_back(static_cast<std::uint32_t>((z * count_[1] + y) * count_[0] + x));
+  walk_block_.reserve(walk_.size());
+  for (const std::uint32_t cell : walk_) {
+    const std::array<std::size_t, 3> at{cell % count_[0], cell / count_[0] % count_[1], cell / (count_[0] * count_[1])};
+    std::size_t block = 0;
+    for (std::size_t d = 3; d-- > 0;) {
+      std::size_t b = 0;
+      if (d < dimensions_) {
+        const double centre = (static_cast<double>(at[d]) - halo_[d] + 0.5) / static_cast<double>(inverse_cell_[d]);
+        b = static_cast<std::size_t>(std::clamp(centre / blocks.side[d], 0.0, static_cast<double>(blocks.count[d] - 1)));
+      }
+      block = block * blocks.count[d] + b;
+    }
+    walk_block_.push_back(static_cast<std::uint32_t>(block));
+  }
+}
+
+void CellGrid::make_runs() {
+  runs_.clear();
+  for (std::size_t w = 0; w < walk_.size(); ++w) {
+    const std::uint32_t begin = begin_[walk_[w]], end = end_[walk_[w]];
+    if (begin == end) continue;
+    if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin)
+      runs_.back().end = end;
+    else
+      runs_.push_back({begin, end, walk_block_[w]});
+  }
 }
 
 void CellGrid::sort(PhaseParticles& particles) {
@@ -82,6 +108,7 @@ void CellGrid::sort(PhaseParticles& particles) {
   }
   for (std::size_t k = 0; k < n; ++k) order_[end_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
   particles.permute(order_.data());
+  make_runs();
   make_images(particles);
 }
 

@@ -28,16 +28,31 @@ struct Image {
   std::array<std::int8_t, 3> shift;
 };
 
+/// Blocks of the domain, each wider than any search: particles within reach stand in the same or adjacent blocks.
+struct Blocks {
+  std::array<std::size_t, 3> count{1, 1, 1};
+  std::array<double, 3> side{1, 1, 1};              // m
+  std::size_t size() const { return count[0] * count[1] * count[2]; }
+};
+
+/// Particles begin .. end-1 stand in (cells centred in) one block.
+struct BlockRun {
+  std::uint32_t begin, end, block;
+};
+
 class CellGrid {
  public:
   static constexpr int strip = 16;                  // cells
 
   /// `reach` (m): the largest search radius over this phase's particles, skin included. `cell` (m): wanted cell size.
-  CellGrid(const Bounds& bounds, double cell, double reach);
+  CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks);
 
   /// Wraps positions into the periodic domain, sorts the phase by cell and makes the images. Positions outside the
   /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm.
   void sort(PhaseParticles& particles);
+
+  /// The phase's particles by block, as sorted last.
+  const std::vector<BlockRun>& runs() const { return runs_; }
 
   std::size_t images() const { return images_.size(); }
   const std::vector<Image>& image_list() const { return images_; }
@@ -82,7 +97,8 @@ class CellGrid {
     const int last = static_cast<int>(count_[axis]) - 1;
     return c < 0 || x * inverse_cell_[axis] < -static_cast<float>(halo_[axis]) ? 0 : (c > last ? last : c);
   }
-  void order_interior();
+  void order_interior(const Blocks& blocks);
+  void make_runs();
   void make_images(const PhaseParticles& particles);
 
   std::size_t dimensions_;
@@ -93,6 +109,8 @@ class CellGrid {
   std::array<float, 3> inverse_cell_{};
   std::vector<std::uint32_t> begin_, end_;          // by padded cell
   std::vector<std::uint32_t> walk_;                 // interior cells in the order of the sort
+  std::vector<std::uint32_t> walk_block_;           // block of each walked cell
+  std::vector<BlockRun> runs_;
   std::vector<std::uint32_t> cell_of_, order_;
   std::vector<Image> images_;
   std::array<AlignedVector<float>, 3> search_;

@@ -7,7 +7,16 @@
 namespace barchan {
 
 Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin)
-    : bounds_(bounds), directions_(std::move(directions)), grids_(phases), lists_(directions_.size()), skin_(skin) {
+    : bounds_(bounds), directions_(std::move(directions)), grids_(phases), lists_(directions_.size()), ranges_(phases),
+      skin_(skin) {
+  double widest = 0.0;
+  for (const auto& d : directions_) widest = std::max(widest, d.radius * (1.0 + skin_));
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions) && widest > 0.0; ++d) {
+    const double size = bounds_.high[d] - bounds_.low[d];
+    // A search, two halves of a cell that may stick out, and a little.
+    blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / (2.1 * widest)), 1.0, 4096.0));
+    blocks_.side[d] = size / static_cast<double>(blocks_.count[d]);
+  }
   for (std::size_t p = 0; p < phases; ++p) {
     // Cells suit the shortest search over a phase; longer ones look at more cells.
     double shortest = std::numeric_limits<double>::max(), longest = 0.0;
@@ -16,50 +25,99 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
       if (d.a == p || d.b == p) longest = std::max(longest, d.radius);
     }
     if (longest == 0.0) continue;
-    grids_[p] = std::make_unique<CellGrid>(bounds_, shortest * (1.0 + skin_), longest * (1.0 + skin_) * 1.001);
+    grids_[p] = std::make_unique<CellGrid>(bounds_, shortest * (1.0 + skin_), longest * (1.0 + skin_) * 1.001, blocks_);
+    ranges_[p].resize(blocks_.size());
   }
 }
 
-bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) const {
-  // Displacements since the last sort, by component: the relative displacement of two particles is at most the
-  // distance between the corners of the box that holds both phases' displacements.
-  struct Range {
-    std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
-  };
-  thread_local std::vector<Range> ranges;
-  ranges.assign(grids_.size(), Range{});
-  for (std::size_t p = 0; p < grids_.size(); ++p) {
-    if (!grids_[p]) continue;
-    const auto n = static_cast<std::int64_t>(particles[p].size());
-    for (int d = 0; d < bounds_.dimensions; ++d) {
-      const double* x = particles[p].column(Field::position, d);
-      const float* old = grids_[p]->search_position(d);
-      const double low = bounds_.low[static_cast<std::size_t>(d)];
-      double least = std::numeric_limits<double>::max(), most = -least;
-#pragma omp parallel for simd schedule(static) reduction(min : least) reduction(max : most)
-      for (std::int64_t k = 0; k < n; ++k) {
-        const double moved = x[k] - low - static_cast<double>(old[k]);
+void Neighbours::Range::clear() {
+  low.fill(std::numeric_limits<float>::max());
+  high.fill(-std::numeric_limits<float>::max());
+}
+
+void Neighbours::Range::widen(const Range& other) {
+  for (std::size_t d = 0; d < 3; ++d) {
+    low[d] = std::min(low[d], other.low[d]);
+    high[d] = std::max(high[d], other.high[d]);
+  }
+}
+
+void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
+  const CellGrid& grid = *grids_[phase];
+  const auto& runs = grid.runs();
+  if (run_ranges_.size() < runs.size()) run_ranges_.resize(runs.size() + runs.size() / 2);
+  std::array<const double*, 3> x{};
+  std::array<const float*, 3> old{};
+  const auto dimensions = static_cast<std::size_t>(bounds_.dimensions);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    x[d] = particles.column(Field::position, static_cast<int>(d));
+    old[d] = grid.search_position(static_cast<int>(d));
+  }
+  const auto n = static_cast<std::int64_t>(runs.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t q = 0; q < n; ++q) {
+    const BlockRun& run = runs[static_cast<std::size_t>(q)];
+    Range range;
+    range.low.fill(0.0f);
+    range.high.fill(0.0f);
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      float least = std::numeric_limits<float>::max(), most = -least;
+      const double low = bounds_.low[d];
+      for (std::uint32_t k = run.begin; k < run.end; ++k) {
+        const float moved = static_cast<float>(x[d][k] - low) - old[d][k];
         least = moved < least ? moved : least;
         most = moved > most ? moved : most;
       }
-      if (n > 0) {
-        ranges[p].low[static_cast<std::size_t>(d)] = least;
-        ranges[p].high[static_cast<std::size_t>(d)] = most;
+      range.low[d] = least;
+      range.high[d] = most;
+    }
+    run_ranges_[static_cast<std::size_t>(q)] = range;
+  }
+  for (auto& range : ranges_[phase]) range.clear();
+  for (std::size_t q = 0; q < runs.size(); ++q) ranges_[phase][runs[q].block].widen(run_ranges_[q]);
+}
+
+bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (grids_[p]) measure(particles[p], p);
+  // Two particles that may come within reach stand in adjacent blocks; their relative displacement is at most the
+  // diagonal of the box that holds the displacements of both phases there.
+  const auto steps = [&](std::size_t axis, long at, std::array<long, 3>& out) {
+    const auto count = static_cast<long>(blocks_.count[axis]);
+    int n = 0;
+    for (long s = -1; s <= 1; ++s) {
+      long b = at + s;
+      if (bounds_.periodic[axis]) b = (b + count) % count;
+      if (b >= 0 && b < count) out[static_cast<std::size_t>(n++)] = b;
+    }
+    return n;
+  };
+  bool valid = true;
+  const auto blocks = static_cast<std::int64_t>(blocks_.size());
+#pragma omp parallel for schedule(static) reduction(&& : valid)
+  for (std::int64_t q = 0; q < blocks; ++q) {
+    const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]);
+    std::array<long, 3> xs{}, ys{}, zs{};
+    const int mx = steps(0, q % nx, xs), my = steps(1, q / nx % ny, ys), mz = steps(2, q / (nx * ny), zs);
+    for (const auto& direction : directions_) {
+      Range box = ranges_[direction.a][static_cast<std::size_t>(q)];
+      if (box.low[0] > box.high[0]) continue;
+      for (int z = 0; z < mz; ++z)
+        for (int y = 0; y < my; ++y)
+          for (int x = 0; x < mx; ++x)
+            box.widen(ranges_[direction.b][static_cast<std::size_t>(
+                (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx + xs[static_cast<std::size_t>(x)])]);
+      double squared = 0.0;
+      for (std::size_t d = 0; d < 3; ++d) {
+        const double apart = static_cast<double>(box.high[d]) - static_cast<double>(box.low[d]);
+        squared += apart * apart;
       }
+      // A tenth of the skin is kept for the rounding of the search. NaN positions fail and are found by the check.
+      const double most = 0.9 * skin_ * direction.radius;
+      valid = valid && squared < most * most;
     }
   }
-  for (const auto& direction : directions_) {
-    const Range &a = ranges[direction.a], &b = ranges[direction.b];
-    double squared = 0.0;
-    for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
-      const double apart = std::max(a.high[d], b.high[d]) - std::min(a.low[d], b.low[d]);
-      if (!(apart < std::numeric_limits<double>::max())) return false;   // a non-finite position: sort and let it be found
-      squared += apart * apart;
-    }
-    // A tenth of the skin is kept in hand for the step that follows the check.
-    if (std::sqrt(squared) > 0.9 * skin_ * direction.radius) return false;
-  }
-  return true;
+  return valid;
 }
 
 bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {

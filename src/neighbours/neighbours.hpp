@@ -32,12 +32,22 @@ class Neighbours {
   std::size_t bytes() const;
 
  private:
-  bool still_valid(const std::vector<PhaseParticles>& particles) const;
+  /// Displacements since the last sort: bounds of their components.
+  struct Range {
+    std::array<float, 3> low, high;
+    void clear();
+    void widen(const Range& other);
+  };
+  bool still_valid(const std::vector<PhaseParticles>& particles);
+  void measure(const PhaseParticles& particles, std::size_t phase);
 
   Bounds bounds_;
   std::vector<Direction> directions_;
   std::vector<std::unique_ptr<CellGrid>> grids_;   // null for a phase without entries
   std::vector<PairList> lists_;
+  Blocks blocks_;
+  std::vector<std::vector<Range>> ranges_;         // by phase, block
+  std::vector<Range> run_ranges_;
   double skin_;
   long rebuilds_ = 0;
 };

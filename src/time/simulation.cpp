@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "base/errors.hpp"
 #include "kernels/kernel.hpp"
@@ -18,18 +19,28 @@ enum Pass : std::size_t {
 constexpr std::array<const char*, pass_count> pass_names{
     "kick and drift", "elastic strain", "wall motion", "neighbours", "pack", "extension into walls",
     "extension into solids", "fluid rates", "wall repulsion", "elastic forces", "contacts", "reaction on solids", "kick"};
+
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 }  // namespace
 
 template <class F>
 void Simulation::timed(std::size_t pass, F&& verb) {
   const auto start = std::chrono::steady_clock::now();
+  const double processor = thread_seconds();
   verb();
+  processor_seconds_[pass] += thread_seconds() - processor;
   seconds_[pass].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks)
     : scene_(scene), plan_(plan), neighbours_(plan.bounds, plan.directions, plan.phases.size(), plan.skin) {
   for (const char* name : pass_names) seconds_.emplace_back(name, 0.0);
+  processor_seconds_.assign(pass_count, 0.0);
   make_state(blocks);
   wire();
   for (const auto& l : plan_.limits) limit_counts_[l.name] = 0;

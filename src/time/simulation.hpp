@@ -46,6 +46,8 @@ class Simulation {
   std::uint64_t pairs(const PlanEntry& entry) const;
   /// Seconds of wall time by pass, in the order of the step.
   const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
+  /// Seconds of processor time of the calling thread by pass; what a benchmark on a busy machine can trust.
+  const std::vector<double>& processor_seconds() const { return processor_seconds_; }
   std::size_t bytes() const;
 
   /// A copy of the state for the writer.
@@ -108,6 +110,7 @@ class Simulation {
   std::string ruling_;
   std::map<std::string, long> limit_counts_;
   std::vector<std::pair<std::string, double>> seconds_;
+  std::vector<double> processor_seconds_;
 };
 
 }  // namespace barchan
