@@ -106,6 +106,9 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.law = law_of(scene.phases[e.a], scene.phases[e.b]);
     e.kernel = i.kernel;
     e.radius = i.radius * scene.spacing;
+    e.drag = i.drag;
+    if (e.drag > 0 && e.law != Law::coupling)
+      throw SceneError(scene.file + ": interactions." + e.name + ".drag: only a fluid with grains has a drag; expected no drag here");
     e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     if (e.a == e.b && scene.phases[e.a].scheme == FluidScheme::consistent && i.kernel != KernelKind::wendland_c2)
       throw SceneError(scene.file + ": interactions." + e.name + ": the consistent scheme has no pressure that keeps "
@@ -157,6 +160,7 @@ void add_passes(Plan& plan) {
   pass("elastic forces", any_kind(PhaseKind::elastic));
   pass("contacts", any_law(Law::contact));
   pass("reaction on solids", any_law(Law::coupling));
+  pass("drag", std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.drag > 0; }));
   pass("kick", true);
 }
 

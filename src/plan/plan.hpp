@@ -39,6 +39,7 @@ struct PlanEntry {
   KernelKind kernel = KernelKind::cubic_spline;
   double radius = 0;          // m
   Consistency consistency;
+  double drag = 0;            // drag coefficient, 0: none
   int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
 };
 

@@ -75,6 +75,7 @@ constexpr Key table[] = {
     {"interactions", "kernel", as_word, "", "cubic-spline", "Kernel of every pair that does not name its own.", {},
      "cubic-spline|wendland-c2"},
     {"interactions.pair", "radius", as_number, "spacings", "required", "Kernel radius (support).", {.at_most = 8.0, .above = 0.0}},
+    {"interactions.pair", "drag", as_number, "", "0", "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve.", not_negative},
     {"interactions.pair", "kernel", as_word, "", "that of [interactions]", "Kernel of this pair.", {}, "cubic-spline|wendland-c2"},
 
     {"fill", "phase", as_text, "", "required", "Phase of the particles."},

@@ -98,6 +98,7 @@ std::vector<Interaction> take_interactions(const toml::table& table) {
     if (const toml::table* entry = table[pair].as_table()) {
       take_number(*entry, "radius", interaction.radius);
       interaction.kernel = take_kernel(*entry, common);
+      take_number(*entry, "drag", interaction.drag);
     }
     interactions.push_back(interaction);
   }

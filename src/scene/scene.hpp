@@ -76,6 +76,7 @@ struct Interaction {
   std::string a, b;                            // phase names as written, "air-sand"
   double radius = 0.0;                         // kernel radius (support) in spacings, eq. (15)-(17)
   KernelKind kernel = KernelKind::cubic_spline;
+  double drag = 0.0;                           // fluid-grains: drag coefficient of a grain, 0 switches it off
 };
 
 // ---- fills: what is where at the beginning ------------------------------------------------------------------------------

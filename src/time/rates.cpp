@@ -160,6 +160,11 @@ void Simulation::touch() {
       contact_forces(particles_[c.a], motion_[c.a], *c.list, motion_[c.b], c.kernel, c.radius, c.law);
 }
 
+void Simulation::drag_grains() {
+  for (const auto& d : drags_)
+    drag_forces(particles_[d.a], motion_[d.a], *d.list, motion_[d.b], d.entry, d.a_is_fluid);
+}
+
 void Simulation::react() {
   for (auto& x : extensions_)
     for (const auto& fluid : x.felt)

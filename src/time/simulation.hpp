@@ -9,6 +9,7 @@
 
 #include "neighbours/neighbours.hpp"
 #include "output/frame.hpp"
+#include "passes/drag.hpp"
 #include "passes/elastic.hpp"
 #include "passes/fluid.hpp"
 #include "passes/grains.hpp"
@@ -63,6 +64,7 @@ class Simulation {
   struct Extension;
   struct Contact;
   struct Body;
+  struct Drag;
 
   // the verbs of a step, in order
   void choose_step(double largest);
@@ -78,6 +80,7 @@ class Simulation {
   void stress_bodies();
   void touch();
   void react();
+  void drag_grains();
   void kick();
 
   void rates(bool first);
@@ -100,6 +103,7 @@ class Simulation {
   std::vector<Extension> extensions_;
   std::vector<Contact> contacts_;
   std::vector<Body> bodies_;
+  std::vector<Drag> drags_;
   std::vector<std::array<Formula, 3>> wall_velocity_;     // by phase
   struct Force { std::size_t phase; std::array<Formula, 3> acceleration; };
   std::vector<Force> forcings_;

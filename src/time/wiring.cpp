@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/errors.hpp"
 #include "kernels/kernel.hpp"
@@ -189,6 +190,14 @@ void Simulation::wire() {
       }
       bodies_.push_back(std::move(b));
     }
+  }
+  for (const auto& e : plan_.entries) {
+    if (!(e.drag > 0)) continue;
+    const bool a_fluid = particles_[e.a].kind() == PhaseKind::fluid;
+    const double d = plan_.spacing, section = plan_.dimensions == 2 ? d : 0.25 * std::numbers::pi * d * d;
+    const DragEntry entry{e.kernel, e.radius, 0.5 * e.drag * scene_.phases[a_fluid ? e.a : e.b].density * section};
+    drags_.push_back({e.a, e.b, &neighbours_.list(static_cast<std::size_t>(e.forward)), entry, a_fluid});
+    drags_.push_back({e.b, e.a, &neighbours_.list(static_cast<std::size_t>(e.backward)), entry, !a_fluid});
   }
   for (const auto& e : plan_.entries) {
     if (e.law != Law::contact && e.law != Law::repulsive) continue;

@@ -29,6 +29,14 @@ struct Simulation::Contact {
   bool is_repulsion = false;             // the paper's repulsive wall for a fluid
 };
 
+/// One direction of a fluid-grains entry with drag.
+struct Simulation::Drag {
+  std::size_t a = 0, b = 0;
+  const PairList* list = nullptr;
+  DragEntry entry{};
+  bool a_is_fluid = false;
+};
+
 /// An elastic phase.
 struct Simulation::Body {
   std::size_t phase = 0;

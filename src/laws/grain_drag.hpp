@@ -1,0 +1,27 @@
+// Form drag between a fluid and grains of about its spacing: the wake of a single particle is not resolved, and at grain
+// Reynolds numbers of hundreds it carries nearly all of the drag.
+//
+//   f_ab = -K V_f W(r_ab) |v_ab| v_ab,   K = 1/2 C_D rho_f A
+// A is the grain's cross section (d in 2D, per metre of depth; pi d^2/4 in 3D), V_f the fluid particle's volume. Over a
+// full neighbourhood sum V_f W = 1 and a grain feels the quadratic drag 1/2 C_D rho A U^2; one that is half buried feels
+// what the fluid on its free side exerts. Antisymmetric: the fluid loses what the grain gains.
+#pragma once
+
+#include <array>
+
+#include "simd/vec.hpp"
+
+namespace barchan {
+
+struct GrainDrag {
+  /// Adds the force on a [N]: v = v_a - v_b, strength K V_f W >= 0.
+  template <class T, std::size_t Dim>
+  static BARCHAN_SIMD_INLINE void add(const std::array<T, Dim>& v, T strength, std::array<T, Dim>& force) {
+    T v2 = v[0] * v[0];
+    for (std::size_t d = 1; d < Dim; ++d) v2 = fma(v[d], v[d], v2);
+    const T factor = strength * sqrt(v2);
+    for (std::size_t d = 0; d < Dim; ++d) force[d] = fnma(factor, v[d], force[d]);
+  }
+};
+
+}  // namespace barchan
