@@ -1,11 +1,29 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdlib>
 #include <iostream>
 
 #include "app/commands.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
 
+namespace {
+
+/// Threads that wait for work spin for a moment only, so that a busy machine is not wasted. OpenMP's library reads its
+/// settings before main, so the program starts itself again with them, once, unless the user has set them.
+void wait_politely(char** argv) {
+  if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
+  setenv("GOMP_SPINCOUNT", "20000", 1);
+  execv("/proc/self/exe", argv);   // returns only if it failed; then the run goes on as it is
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  wait_politely(argv);
+  std::signal(SIGXFSZ, SIG_IGN);   // a file-size limit is an error to report, not a reason to die
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
   app.set_version_flag("--version", [] {
     return "barchan " + barchan::version() + " (" + barchan::commit() + ")\ncompiler: " + barchan::compiler() +

@@ -1,4 +1,7 @@
 // barchan plan, generate, compare, schema.
+#include <omp.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -16,6 +19,7 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, boo
   const Scene scene = read_scene(file, overrides);
   const auto blocks = generate(scene);
   Plan plan = make_plan(scene, blocks);
+  omp_set_num_threads(std::min(omp_get_max_threads(), 1 + static_cast<int>(plan.particles() / 2000.0)));
   const Estimate estimate = measure(scene, plan, blocks);
   std::cout << (json ? to_json(plan, scene, estimate) : to_text(plan, scene) + to_text(estimate));
   return 0;

@@ -51,6 +51,10 @@ class Run {
       finish();
       progress_.end(reason_);
       throw;
+    } catch (const OutputError& e) {
+      reason_ = std::string("output failed: ") + e.what();
+      progress_.end(reason_);
+      throw;
     }
     finish();
     progress_.end(reason_);
@@ -116,6 +120,8 @@ class Run {
     r.threads = omp_get_max_threads();
     r.scene_title = scene_.title;
     r.scene_file = scene_.file;
+    r.scene_state = scene_.state;
+    r.scene_spacing = scene_.spacing;
     double pairs = 0;
     for (const auto& p : plan.phases) {
       r.particles[p.name] = static_cast<long>(p.count);
@@ -166,7 +172,6 @@ class Run {
 }  // namespace
 
 int run(const RunOptions& options) {
-  if (options.threads > 0) omp_set_num_threads(options.threads);
   const Scene scene = read_scene(options.scene, options.overrides);
   if (!options.restart.empty()) {
     if (options.restart != "latest")
@@ -176,6 +181,10 @@ int run(const RunOptions& options) {
   }
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
+  // A thread for every two thousand particles: below that, waiting for each other costs more than it brings. The result
+  // does not depend on it.
+  const int useful = 1 + static_cast<int>(plan.particles() / 2000.0);
+  omp_set_num_threads(options.threads > 0 ? options.threads : std::min(omp_get_max_threads(), useful));
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);

@@ -15,7 +15,8 @@ struct RunReport {
   int threads = 1;
 
   // the scene and the plan
-  std::string scene_title, scene_file;
+  std::string scene_title, scene_file, scene_state;
+  double scene_spacing = 0;                                    // m
   std::map<std::string, long> particles;                       // by phase
   std::map<std::string, long> pairs;                           // by matrix entry, "air-sand": directed pairs of the last list
   std::map<std::string, std::vector<std::string>> fields;      // by phase

@@ -51,6 +51,11 @@ std::vector<ReadyKernel>& ready_kernels(std::span<const FluidNeighbour> neighbou
   return kernels;
 }
 
+double determinant(const std::array<double, 3>& m) { return m[0] * m[2] - m[1] * m[1]; }
+double determinant(const std::array<double, 6>& m) {
+  return m[0] * (m[2] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[3]) + m[3] * (m[1] * m[4] - m[2] * m[3]);
+}
+
 /// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
 inline std::array<double, 4> inverse_symmetric(const std::array<double, 3>& m) {
   const double det = m[0] * m[2] - m[1] * m[1], s = 1.0 / det;
@@ -96,6 +101,9 @@ Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, doub
   return r;
 }
 
+/// det(-M) of a full neighbourhood is 1; below this the gradient is not corrected.
+constexpr double least_determinant = 0.25;
+
 /// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
 constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
   return d >= e ? d * (d + 1) / 2 + e : e * (e + 1) / 2 + d;
@@ -106,13 +114,23 @@ Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s,
                   const FluidParameters& q, std::span<double> anisotropy) {
   Rates<Dim> r;
   r.shift = shift_of<Dim>(s.concentration, q);
-  const auto inverse = inverse_symmetric(s.moment);
+  // A particle among grains in flight may have too few neighbours to invert anything: it goes uncorrected, M = -1.
+  auto moment = s.moment;
+  const double sign = Dim == 2 ? 1.0 : -1.0;
+  const bool whole = sign * determinant(moment) > least_determinant;
+  if (!whole)
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e <= d; ++e) {
+        moment[moment_index(d, e)] = d == e ? -1.0 : 0.0;
+        anisotropy[moment_index(d, e)] = 0.0;
+      }
+  const auto inverse = inverse_symmetric(moment);
   double trace = 0.0, weighted_trace = 0.0;
   for (std::size_t d = 0; d < Dim; ++d) {
-    trace += s.moment[moment_index(d, d)];
-    for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * s.moment[moment_index(d, e)];
+    trace += moment[moment_index(d, d)];
+    for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * moment[moment_index(d, e)];
   }
-  weighted_trace += trace;
+  weighted_trace = std::min(weighted_trace + trace, 0.5 * trace);   // both negative
   const double laplace_v = -2.0 * Dim / weighted_trace, laplace_p = -2.0 * Dim / trace;
   const double c2 = q.sound_speed * q.sound_speed;
   std::array<double, Dim> grad_p{};
@@ -142,7 +160,13 @@ Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s,
   const double scale = -0.5 * (Dim + 2) * Dim / trace;
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e <= d; ++e)
-      anisotropy[moment_index(d, e)] = scale * s.moment[moment_index(d, e)] + (d == e ? 0.5 * (Dim + 2) : 0.0);
+      anisotropy[moment_index(d, e)] = !whole ? 0.0 : scale * moment[moment_index(d, e)] + (d == e ? 0.5 * (Dim + 2) : 0.0);
+  // Weights stay positive: no entry of A beyond a half.
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e) {
+      double& a = anisotropy[moment_index(d, e)];
+      a = std::clamp(a, -0.5, 0.5);
+    }
   return r;
 }
 

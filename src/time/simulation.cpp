@@ -113,66 +113,24 @@ void Simulation::choose_step(double largest) {
 
 // ---- kick, drift, kick -----------------------------------------------------------------------------------------------
 
-void Simulation::kick_phase(PhaseParticles& p, double dt) {
-  const auto n = static_cast<std::int64_t>(p.size());
-  for (int d = 0; d < p.dimensions(); ++d) {
-    double* v = p.column(Field::velocity, d);
-    const double* a = p.column(Field::acceleration, d);
-#pragma omp parallel for simd schedule(static)
-    for (std::int64_t k = 0; k < n; ++k) v[k] += dt * a[k];
-  }
-}
-
-void Simulation::drift_phase(PhaseParticles& p, double dt) {
-  const auto n = static_cast<std::int64_t>(p.size());
-  const bool shifted = p.has(Field::shift_velocity);
-  for (int d = 0; d < p.dimensions(); ++d) {
-    double* x = p.column(Field::position, d);
-    const double* v = p.column(Field::velocity, d);
-    if (shifted) {
-      const double* du = p.column(Field::shift_velocity, d);
-#pragma omp parallel for simd schedule(static)
-      for (std::int64_t k = 0; k < n; ++k) x[k] += dt * (v[k] + du[k]);
-    } else {
-#pragma omp parallel for simd schedule(static)
-      for (std::int64_t k = 0; k < n; ++k) x[k] += dt * v[k];
-    }
-  }
-}
-
-void Simulation::update_pressure(std::size_t phase) {
-  auto& p = particles_[phase];
+PressureLaw Simulation::pressure_law(std::size_t phase) const {
   const Phase& s = scene_.phases[phase];
-  const double rho0 = s.density, c = plan_.phases[phase].sound_speed, background = s.background_pressure * rho0 * c * c;
-  double* rho = p.column(Field::density);
-  double* pressure = p.column(Field::pressure);
-  const auto n = static_cast<std::int64_t>(p.size());
-  if (s.equation_of_state == EquationOfState::linear) {
-    const double stiffness = c * c;
-#pragma omp parallel for simd schedule(static)
-    for (std::int64_t k = 0; k < n; ++k) pressure[k] = stiffness * (rho[k] - rho0) + background;
-  } else {
-    const double b = rho0 * c * c / s.tait_exponent, inverse = 1.0 / rho0;
-#pragma omp parallel for schedule(static)
-    for (std::int64_t k = 0; k < n; ++k)
-      pressure[k] = b * (std::pow(rho[k] * inverse, s.tait_exponent) - 1.0) + background;
-  }
+  const double c = plan_.phases[phase].sound_speed;
+  return {s.density, c, s.equation_of_state == EquationOfState::linear ? 1.0 : s.tait_exponent,
+          s.background_pressure * s.density * c * c};
 }
 
 void Simulation::kick_and_drift() {
   for (std::size_t k = 0; k < particles_.size(); ++k) {
     auto& p = particles_[k];
     if (p.kind() == PhaseKind::wall) continue;
-    kick_phase(p, 0.5 * dt_);
-    // Bodies stop half-way: their strain is taken there (see strain_bodies).
-    drift_phase(p, p.kind() == PhaseKind::elastic ? 0.5 * dt_ : dt_);
-    if (p.kind() != PhaseKind::fluid) continue;
-    double* rho = p.column(Field::density);
-    const double* rate = p.column(Field::density_rate);
-    const auto n = static_cast<std::int64_t>(p.size());
-#pragma omp parallel for simd schedule(static)
-    for (std::int64_t i = 0; i < n; ++i) rho[i] += dt_ * rate[i];
-    update_pressure(k);
+    if (p.kind() == PhaseKind::fluid) {
+      const PressureLaw law = pressure_law(k);
+      barchan::kick_and_drift(p, 0.5 * dt_, dt_, &law);
+    } else {
+      // Bodies stop half-way: their strain is taken there (see strain_bodies).
+      barchan::kick_and_drift(p, 0.5 * dt_, p.kind() == PhaseKind::elastic ? 0.5 * dt_ : dt_, nullptr);
+    }
   }
 }
 
@@ -181,7 +139,7 @@ void Simulation::strain_bodies() {
   for (auto& b : bodies_) stress_[b.phase].fill_images(neighbours_.grid(b.phase), plan_.dimensions);
   for (auto& b : bodies_) {
     elastic_strain(particles_[b.phase], stress_[b.phase], b.neighbours, b.parameters, dt_);
-    drift_phase(particles_[b.phase], 0.5 * dt_);
+    drift(particles_[b.phase], 0.5 * dt_);
   }
 }
 
@@ -210,27 +168,11 @@ void Simulation::find_neighbours(bool force) {
 }
 
 void Simulation::kick() {
-  double largest = 0.0, sum = 0.0;
-  for (auto& p : particles_) {
-    if (p.kind() == PhaseKind::wall) continue;
-    kick_phase(p, 0.5 * dt_);
-    const auto n = static_cast<std::int64_t>(p.size());
-    for (int d = 0; d < p.dimensions(); ++d) {
-      const double* a = p.column(Field::acceleration, d);
-      double most = 0.0;
-      bool finite = true;
-#pragma omp parallel for schedule(static) reduction(max : most) reduction(&& : finite)
-      for (std::int64_t k = 0; k < n; ++k) {
-        const double size = std::abs(a[k]);
-        finite = finite && size < 1e300;
-        most = size > most ? size : most;
-      }
-      if (!finite) sum = std::nan("");
-      largest = std::max(largest, most);
-    }
-  }
+  double largest = 0.0;
+  for (auto& p : particles_)
+    if (p.kind() != PhaseKind::wall) largest = std::max(largest, barchan::kick(p, 0.5 * dt_));
   largest_acceleration_ = largest;
-  if (std::isnan(sum)) check();
+  if (!std::isfinite(largest)) check();
 }
 
 }  // namespace barchan

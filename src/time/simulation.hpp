@@ -13,6 +13,7 @@
 #include "passes/elastic.hpp"
 #include "passes/fluid.hpp"
 #include "passes/grains.hpp"
+#include "passes/integrate.hpp"
 #include "passes/walls.hpp"
 #include "plan/plan.hpp"
 #include "scene/formula.hpp"
@@ -86,9 +87,7 @@ class Simulation {
   void rates(bool first);
   void make_state(const std::vector<ParticleBlock>& blocks);
   void wire();
-  void kick_phase(PhaseParticles& p, double dt);
-  void drift_phase(PhaseParticles& p, double dt);
-  void update_pressure(std::size_t phase);
+  PressureLaw pressure_law(std::size_t phase) const;
 
   template <class F>
   void timed(std::size_t pass, F&& verb);

@@ -98,8 +98,11 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
       }
     }
     if (q.kind == PhaseKind::wall) set_wall_geometry(p, plan_.bounds);
+    if (q.kind == PhaseKind::fluid) {
+      const PressureLaw law = pressure_law(k);
+      for (std::size_t i = 0; i < q.count; ++i) p.column(Field::pressure)[i] = law(p.column(Field::density)[i]);
+    }
     particles_.push_back(std::move(p));
-    if (q.kind == PhaseKind::fluid) update_pressure(k);
   }
 }
 
