@@ -59,6 +59,7 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
   using R = StressRecord<Dim>;
   using Law = ElasticStrain<Dim>;
   double *rho = body.column(Field::density), *p = body.column(Field::pressure);
+  double* energy = body.has(Field::energy) ? body.column(Field::energy) : nullptr;
   std::array<double*, 6> stress{};
   for (int c = 0; c < 6; ++c) stress[static_cast<std::size_t>(c)] = body.column(Field::stress, c);
   const auto n = static_cast<std::int64_t>(body.size());
@@ -95,6 +96,12 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
     const Tensor rate = stress_rate(mid, l, q.shear_modulus);
     for (std::size_t d = 0; d < 3; ++d)
       for (std::size_t e = 0; e <= d; ++e) stress[column_of[d][e]][k] = old[d][e] + dt * rate[d][e];
+    if (energy) {   // de/dt = s:L/rho, eq. (13b) with the whole stress; the power at the middle of the step
+      double power = -p[k] * (l[0][0] + l[1][1] + l[2][2]);
+      for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t e = 0; e < 3; ++e) power += mid[d][e] * l[d][e];
+      energy[k] += dt * power / rho[k];
+    }
     rho[k] += dt * simd::sum(s.density);
     p[k] = q.bulk_modulus / q.reference_density * (rho[k] - q.reference_density);
   }

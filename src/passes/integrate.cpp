@@ -43,6 +43,12 @@ void advance_density(PhaseParticles& phase, double time, const PressureLaw& law)
   double *rho = phase.column(Field::density), *p = phase.column(Field::pressure);
   const double* rate = phase.column(Field::density_rate);
   const auto n = static_cast<std::int64_t>(phase.size());
+  if (phase.has(Field::energy)) {
+    double* e = phase.column(Field::energy);
+    const double* e_rate = phase.column(Field::energy_rate);
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t k = 0; k < n; ++k) e[k] += time * e_rate[k];
+  }
   if (law.exponent == 1.0) {
     const double stiffness = law.sound_speed * law.sound_speed;
 #pragma omp parallel for simd schedule(static)

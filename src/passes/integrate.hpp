@@ -15,7 +15,7 @@ struct PressureLaw {
 };
 
 /// v += half_kick a; x += drift (v + du), du the shift velocity where the phase has one. If `pressure` is given:
-/// rho += drift drho/dt and p = pressure(rho).
+/// rho += drift drho/dt, p = pressure(rho), and e += drift de/dt where the phase has an energy.
 void kick_and_drift(PhaseParticles& phase, double half_kick, double drift, const PressureLaw* pressure);
 
 /// x += drift v.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "passes/energy.hpp"
 #include "time/limits.hpp"
 #include "time/wiring.hpp"
 
@@ -136,6 +137,11 @@ void Simulation::rate_fluids() {
       }
     }
   }
+}
+
+void Simulation::rate_energies() {
+  for (const auto& f : fluids_)
+    if (particles_[f.phase].has(Field::energy)) fluid_energy(particles_[f.phase], motion_[f.phase], f.neighbours);
 }
 
 void Simulation::repel_from_walls() {

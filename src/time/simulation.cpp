@@ -14,11 +14,11 @@ namespace barchan {
 namespace {
 enum Pass : std::size_t {
   pass_kick_and_drift, pass_strain, pass_walls, pass_neighbours, pass_pack, pass_extend_walls, pass_extend_solids,
-  pass_fluid, pass_repel, pass_elastic, pass_contacts, pass_reaction, pass_drag, pass_kick, pass_count
+  pass_fluid, pass_energy, pass_repel, pass_elastic, pass_contacts, pass_reaction, pass_drag, pass_kick, pass_count
 };
 constexpr std::array<const char*, pass_count> pass_names{
     "kick and drift", "elastic strain", "wall motion", "neighbours", "pack", "extension into walls",
-    "extension into solids", "fluid rates", "wall repulsion", "elastic forces", "contacts", "reaction on solids", "drag", "kick"};
+    "extension into solids", "fluid rates", "fluid energy", "wall repulsion", "elastic forces", "contacts", "reaction on solids", "drag", "kick"};
 
 double thread_seconds() {
   timespec t{};
@@ -70,6 +70,7 @@ void Simulation::rates(bool first) {
   timed(pass_extend_walls, [&] { extend_into_walls(); });
   timed(pass_extend_solids, [&] { extend_into_grains(); });
   timed(pass_fluid, [&] { rate_fluids(); });
+  timed(pass_energy, [&] { rate_energies(); });
   timed(pass_repel, [&] { repel_from_walls(); });
   timed(pass_elastic, [&] { stress_bodies(); });
   timed(pass_contacts, [&] { touch(); });

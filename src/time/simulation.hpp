@@ -77,6 +77,7 @@ class Simulation {
   void extend_into_walls();
   void extend_into_grains();
   void rate_fluids();
+  void rate_energies();
   void repel_from_walls();
   void stress_bodies();
   void touch();
