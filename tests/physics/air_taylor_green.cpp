@@ -1,0 +1,73 @@
+// Taylor-Green vortices at Re = 100: particles that start disturbed by 0.2 spacings against the exact decay.
+#include <cmath>
+#include <numbers>
+
+#include "physics/drive.hpp"
+
+namespace barchan {
+namespace {
+
+using std::numbers::pi;
+using testing::Drive;
+using testing::report;
+
+struct Errors {
+  double velocity;  // L1 = sum ||u| - |u_exact|| / sum |u_exact|, each particle at its own place
+  double decay;     // (max |u| - U e^(bt)) / U e^(bt)
+  double pressure;  // mean |p - p_exact| / max |p_exact|, less the mean
+};
+
+Errors errors(Drive& drive) {
+  const auto& p = drive.phase(0);
+  const double t = drive.simulation().time(), decay = std::exp(-8 * pi * pi / 100 * t);
+  double difference = 0, sum = 0, fastest = 0, mean = 0;
+  const auto exact_pressure = [&](std::size_t k) {
+    const double x = p.column(Field::position, 0)[k], y = p.column(Field::position, 1)[k];
+    return -0.25 * decay * decay * (std::cos(4 * pi * x) + std::cos(4 * pi * y));
+  };
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double x = p.column(Field::position, 0)[k], y = p.column(Field::position, 1)[k];
+    const double exact =
+        decay * std::hypot(std::cos(2 * pi * x) * std::sin(2 * pi * y), std::sin(2 * pi * x) * std::cos(2 * pi * y));
+    const double size = std::hypot(p.column(Field::velocity, 0)[k], p.column(Field::velocity, 1)[k]);
+    difference += std::abs(size - exact);
+    sum += exact;
+    fastest = std::max(fastest, size);
+    mean += (p.column(Field::pressure)[k] - exact_pressure(k)) / static_cast<double>(p.size());
+  }
+  double pressure = 0;
+  for (std::size_t k = 0; k < p.size(); ++k)
+    pressure += std::abs(p.column(Field::pressure)[k] - exact_pressure(k) - mean) / static_cast<double>(p.size());
+  return {difference / sum, fastest / decay - 1, pressure / (0.5 * decay * decay)};
+}
+
+Errors after_a_second(const std::vector<std::string>& overrides, double bound) {
+  Drive drive("verification/taylor_green", overrides);
+  drive.to(1.0);
+  const Errors e = errors(drive);
+  report("L1 of speed at t = 1 s", e.velocity, bound);
+  report("decay of the largest speed", e.decay, bound);
+  report("L1 of pressure", e.pressure, 0.1);
+  return e;
+}
+
+TEST(TaylorGreen, ConsistentScheme) {
+  const Errors e = after_a_second({}, 0.004);
+  EXPECT_LE(e.velocity, 0.004);
+}
+
+TEST(TaylorGreen, PlainScheme) {
+  const Errors e = after_a_second({"phases.fluid.scheme=plain", "interactions.fluid-fluid=3.0"}, 0.03);
+  EXPECT_LE(e.velocity, 0.03);
+}
+
+/// The error falls with the spacing, at the lattice's start disturbed alike.
+TEST(TaylorGreen, ConsistentSchemeConverges) {
+  const Errors coarse = after_a_second({"spacing=0.04"}, 0.02);
+  const Errors fine = after_a_second({}, 0.004);
+  report("error at 25 over error at 50 a side", coarse.velocity / fine.velocity, 1.5);
+  EXPECT_GT(coarse.velocity, 1.5 * fine.velocity);
+}
+
+}  // namespace
+}  // namespace barchan

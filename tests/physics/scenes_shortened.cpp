@@ -1,0 +1,172 @@
+// Every scene of the repository, shortened: it runs through the library and through the program, and what it says is
+// finite.
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "output/series.hpp"
+#include "physics/drive.hpp"
+
+namespace barchan {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Drive;
+
+/// Names of all scenes, "flat_bed", "verification/couette", ...
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> names;
+  const fs::path top = BARCHAN_SOURCE_DIR "/scenes";
+  for (const auto& entry : fs::recursive_directory_iterator(top))
+    if (entry.path().extension() == ".toml")
+      names.push_back(fs::relative(entry.path(), top).replace_extension("").string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// A time of `steps` steps, as an override.
+std::string ending_after(const std::string& scene, double steps) {
+  const Scene s = read_scene(testing::scene_file(scene));
+  char text[64];
+  std::snprintf(text, sizeof text, "time.end=%.9g", steps * make_plan(s, generate(s)).step());
+  return text;
+}
+
+void expect_finite(const Frame& frame) {
+  EXPECT_TRUE(std::all_of(frame.points.begin(), frame.points.end(), [](double x) { return std::isfinite(x); }));
+  for (const auto& field : frame.fields)
+    EXPECT_TRUE(std::all_of(field.values.begin(), field.values.end(), [](double x) { return std::isfinite(x); }))
+        << field.name;
+}
+
+/// A folder of its own that goes with the test.
+class Folder {
+ public:
+  Folder() {
+    char name[] = "/tmp/barchan_scenes_XXXXXX";
+    path_ = mkdtemp(name);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Runs the program on a scene; its exit status.
+int run_program(const std::string& scene, const fs::path& out, const std::vector<std::string>& overrides) {
+  std::string command =
+      "'" BARCHAN_PROGRAM "' run '" + testing::scene_file(scene) + "' --quiet --out '" + out.string() + "'";
+  for (const auto& o : overrides) command += " --set '" + o + "'";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+nlohmann::json report_of(const fs::path& out) { return nlohmann::json::parse(std::ifstream(out / "run.json")); }
+
+class EveryScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScene, TakesStepsInTheLibrary) {
+  Drive drive(GetParam());
+  auto& simulation = drive.simulation();
+  for (int k = 0; k < 10; ++k) simulation.step(1e300);
+  EXPECT_NO_THROW(simulation.check());
+  const auto columns = Simulation::history_columns(drive.plan());
+  const auto row = simulation.history_row();
+  ASSERT_EQ(row.size(), columns.size());
+  for (std::size_t c = 0; c < row.size(); ++c) EXPECT_TRUE(std::isfinite(row[c])) << columns[c];
+  expect_finite(simulation.frame(0));
+}
+
+TEST_P(EveryScene, RunsInTheProgram) {
+  if (!fs::exists(BARCHAN_PROGRAM)) GTEST_SKIP() << "no program at " BARCHAN_PROGRAM;
+  const Folder folder;
+  const fs::path out = folder.path() / "out";
+  const std::string end = ending_after(GetParam(), 6);
+  const double every = std::stod(end.substr(end.find('=') + 1)) / 2;
+  char frames[64];
+  std::snprintf(frames, sizeof frames, "output.every=%.9g", every);
+  ASSERT_EQ(run_program(GetParam(), out, {end, frames, "output.history-every=0"}), 0);
+
+  const std::string name = fs::path(GetParam()).filename().string();
+  const auto entries = read_pvd(out / (name + ".pvd"));
+  std::set<std::string> listed, there;
+  for (const auto& e : entries) listed.insert(e.file);
+  for (const auto& e : fs::directory_iterator(out))
+    if (e.path().extension() == ".vtp" || e.path().extension() == ".vtu") there.insert(e.path().filename().string());
+  EXPECT_EQ(listed, there);
+  EXPECT_EQ(entries.size(), 3u);  // first, half-way, last
+  for (const auto& e : entries) {
+    const Frame frame = read_frame(out / e.file);
+    EXPECT_EQ(frame.time, e.time);
+    expect_finite(frame);
+  }
+  std::ifstream history(out / "history.csv");
+  std::string line;
+  for (int rows = 0; std::getline(history, line); ++rows) EXPECT_EQ(line.find("nan"), std::string::npos) << line;
+
+  const auto report = report_of(out);
+  EXPECT_EQ(report["end_reason"], "end");
+  EXPECT_GE(report["steps"].get<long>(), 6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, ::testing::ValuesIn(all_scenes()), [](const auto& test) {
+  std::string name = test.param;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+});
+
+/// What a scene does not have is neither run nor stored: run.json names the passes that ran and the fields that were
+/// made.
+TEST(RunJson, AirAloneHasNoContactsNoStressNoExtension) {
+  const Folder folder;
+  const std::string scene = "verification/taylor_green";
+  ASSERT_EQ(run_program(scene, folder.path(), {ending_after(scene, 3)}), 0);
+  const auto report = report_of(folder.path());
+  const auto passes = report["passes"].get<std::set<std::string>>();
+  EXPECT_TRUE(passes.contains("fluid rates"));
+  for (const char* absent : {"contacts", "elastic forces", "elastic strain", "extension into walls",
+                             "extension into solids", "reaction on solids", "wall motion", "wall repulsion"}) {
+    EXPECT_FALSE(passes.contains(absent)) << absent;
+    EXPECT_FALSE(report["seconds"].contains(absent)) << absent;
+  }
+  const auto fields = report["fields"]["fluid"].get<std::set<std::string>>();
+  EXPECT_TRUE(fields.contains("pressure"));
+  for (const char* absent : {"stress", "energy", "wall_normal", "velocity_gradient"})
+    EXPECT_FALSE(fields.contains(absent)) << absent;
+}
+
+/// The other way round: bodies have no fluid's passes, and a bed has all that it needs.
+TEST(RunJson, BodiesHaveNoFluidAndTheBedHasBoth) {
+  const Folder folder;
+  const std::string impact = "verification/two_particle_impact", bed = "flat_bed";
+  ASSERT_EQ(run_program(impact, folder.path() / "a", {ending_after(impact, 3)}), 0);
+  auto passes = report_of(folder.path() / "a")["passes"].get<std::set<std::string>>();
+  EXPECT_TRUE(passes.contains("elastic forces"));
+  for (const char* absent : {"fluid rates", "contacts", "extension into walls"})
+    EXPECT_FALSE(passes.contains(absent)) << absent;
+  const auto fields = report_of(folder.path() / "a")["fields"]["a"].get<std::set<std::string>>();
+  EXPECT_TRUE(fields.contains("stress"));
+  EXPECT_FALSE(fields.contains("density_rate"));
+
+  ASSERT_EQ(run_program(bed, folder.path() / "b", {ending_after(bed, 3)}), 0);
+  passes = report_of(folder.path() / "b")["passes"].get<std::set<std::string>>();
+  for (const char* present : {"fluid rates", "contacts", "extension into solids", "reaction on solids"})
+    EXPECT_TRUE(passes.contains(present)) << present;
+  EXPECT_FALSE(passes.contains("elastic forces"));
+}
+
+}  // namespace
+}  // namespace barchan
