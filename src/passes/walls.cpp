@@ -16,7 +16,7 @@ template <int Dim>
 void extend(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids, const Vec3& gravity,
             Slip slip) {
   using R = MotionRecord<Dim>;
-  const bool has_depth = solid.has(Field::wall_depth), accelerates = solid.has(Field::acceleration);
+  const bool has_depth = solid.has(Field::wall_depth), accelerates = solid.kind() == PhaseKind::elastic;
   const double* depth = has_depth ? solid.column(Field::wall_depth) : nullptr;
   const auto n = static_cast<std::int64_t>(solid.size());
 #pragma omp parallel for schedule(dynamic, 256)

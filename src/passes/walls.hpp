@@ -18,6 +18,8 @@ struct ExtensionSource {
 
 /// Writes velocity and pressure into the solid's motion records `own` (position and volume are there already):
 ///   p_w = [sum p_a W + rho (g - a_w) . sum (x_w - x_a) W] / sum W               (Adami et al. 2012, eq. 27)
+///     a_w is that of an elastic body; grains count as unaccelerated: the blows of their contacts, thousands of g for some
+///     microseconds, are no motion of a boundary that the fluid could follow
 ///   no-slip, depth known: v_w = v_wall - phi_w sum W phi_a (v_a - v_wall) / sum W phi_a^2, the line through the wall's
 ///     velocity at the surface that fits the fluid best (phi: distance to the surface); exact for a linear profile
 ///   no-slip, depth unknown: v_w = 2 v_wall - sum v_a W / sum W                   (Adami et al. 2012, eq. 23)
