@@ -201,8 +201,8 @@ Particles<T, D> make_particles(int wanted, Fluid& fluid) {
       x[d] = (static_cast<double>(q % static_cast<std::size_t>(side)) + 0.5 + 0.4 * random.symmetric()) * fluid.spacing;
     for (int d = 0; d < D; ++d) {
       s.x(d)[i] = T(x[d]);
-      s.v(d)[i] = T((d == 0 ? 1 : -1) * std::sin(wave * x[d]) * std::cos(wave * x[(d + 1) % D]) +
-                    0.05 * random.symmetric());
+      s.v(d)[i] =
+          T((d == 0 ? 1 : -1) * std::sin(wave * x[d]) * std::cos(wave * x[(d + 1) % D]) + 0.05 * random.symmetric());
     }
     const double density = fluid.density * (1 + 0.01 * random.symmetric());
     s.volume()[i] = T(fluid.mass / density);
@@ -429,8 +429,8 @@ struct Forms {
 
   // ---- stored full lists
 
-  // Neighbours of i: index[start[i] .. start[i+1]), padded with i to a multiple of `multiple`. The entries are multiplied
-  // by `Scale`: with the fields of a record they are offsets and need no address arithmetic.
+  // Neighbours of i: index[start[i] .. start[i+1]), padded with i to a multiple of `multiple`. The entries are
+  // multiplied by `Scale`: with the fields of a record they are offsets and need no address arithmetic.
   struct List {
     Array<Index> index;
     std::vector<std::size_t> start;
@@ -683,22 +683,23 @@ struct Forms {
       }
       const T* in = record.data();
       T* out = next.data();
-      over_list<W>(list, in, [=](std::size_t i, const auto* sums) __attribute__((always_inline)) {
-        const T* old = in + i * record_fields;
-        const Vec<T, 4> total = sum(sums[0], sums[1], sums[2], sums[D]);
-        alignas(32) T r[4];
-        total.store(r);
-        alignas(64) T now[record_fields] = {};
-        const T volume = old[2 * D + 1], factor = dt * volume / mass;
-        for (int d = 0; d < D; ++d) {
-          now[D + d] = old[D + d] - factor * r[d];
-          now[d] = old[d] + dt * now[D + d];
-        }
-        const T density = mass / volume * (1 + dt * r[3]);
-        now[2 * D] = equation_of_state(stiffness, density * inverse_density);
-        now[2 * D + 1] = mass / density;
-        std::memcpy(out + i * record_fields, now, sizeof(now));
-      });
+      over_list<W>(
+          list, in, [=](std::size_t i, const auto* sums) __attribute__((always_inline)) {
+            const T* old = in + i * record_fields;
+            const Vec<T, 4> total = sum(sums[0], sums[1], sums[2], sums[D]);
+            alignas(32) T r[4];
+            total.store(r);
+            alignas(64) T now[record_fields] = {};
+            const T volume = old[2 * D + 1], factor = dt * volume / mass;
+            for (int d = 0; d < D; ++d) {
+              now[D + d] = old[D + d] - factor * r[d];
+              now[d] = old[d] + dt * now[D + d];
+            }
+            const T density = mass / volume * (1 + dt * r[3]);
+            now[2 * D] = equation_of_state(stiffness, density * inverse_density);
+            now[2 * D + 1] = mass / density;
+            std::memcpy(out + i * record_fields, now, sizeof(now));
+          });
       std::swap(record, next);
       if ((step + 1) % options.rebuild == 0 || step + 1 == count) {  // back to arrays for the sort
         const T* r = record.data();
@@ -804,7 +805,8 @@ void run(const Options& options) {
     forms.template list_records<W>(list, record);
   });
   forms.template build<T, W>(wide, fluid.radius * options.skin, 2 * W, list);
-  measure("list, records, two vectors at once", n, all, true, [&] { forms.template list_records<2 * W>(list, record); });
+  measure("list, records, two vectors at once", n, all, true,
+          [&] { forms.template list_records<2 * W>(list, record); });
   Array<float> mixed;
   forms.pack_mixed(mixed);
   forms.template build<T, W>(wide, fluid.radius * options.skin, simd::native_width<float>, list);
@@ -837,11 +839,12 @@ void run(const Options& options) {
   if (!options.json) std::printf("  list loop after the steps: error %.1e\n", last);
 
   if (options.json) {
-    std::printf("{\"dimension\": %d, \"precision\": \"%s\", \"kernel\": \"%s\", \"particles\": %zu, \"neighbours\": "
-                "%.3f, \"entries\": %.3f, \"candidates\": %.3f, \"skin\": %g, \"rebuild\": %d, \"cells\": %d, "
-                "\"threads\": %d, \"lanes\": %d, \"forms\": [",
-                D, sizeof(T) == 8 ? "double" : "float", options.cubic ? "cubic" : "wendland", s.n, neighbours,
-                entries / n, candidates / n, options.skin, options.rebuild, options.cells, options.threads, W);
+    std::printf(
+        "{\"dimension\": %d, \"precision\": \"%s\", \"kernel\": \"%s\", \"particles\": %zu, \"neighbours\": "
+        "%.3f, \"entries\": %.3f, \"candidates\": %.3f, \"skin\": %g, \"rebuild\": %d, \"cells\": %d, "
+        "\"threads\": %d, \"lanes\": %d, \"forms\": [",
+        D, sizeof(T) == 8 ? "double" : "float", options.cubic ? "cubic" : "wendland", s.n, neighbours, entries / n,
+        candidates / n, options.skin, options.rebuild, options.cells, options.threads, W);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       std::printf("%s\n  {\"form\": \"%s\", \"mega_pairs_per_second\": %.4g, \"mega_particle_steps_per_second\": %.4g",
                   k ? "," : "", rows[k].name.c_str(), rows[k].pairs, rows[k].steps);
@@ -858,9 +861,10 @@ void run_kernel(const Options& o) {
 }
 
 int usage() {
-  std::fprintf(stderr,
-               "usage: pairs [--dim 2|3] [--n N] [--precision d|f] [--kernel wendland|cubic] [--threads N] [--repeat N]\n"
-               "             [--skin F] [--rebuild N] [--cells N] [--json]\n");
+  std::fprintf(
+      stderr,
+      "usage: pairs [--dim 2|3] [--n N] [--precision d|f] [--kernel wendland|cubic] [--threads N] [--repeat N]\n"
+      "             [--skin F] [--rebuild N] [--cells N] [--json]\n");
   return 2;
 }
 
@@ -876,32 +880,20 @@ int main(int argc, char** argv) {
     }
     if (k + 1 == argc) return usage();
     const char* value = argv[++k];
-    if (name == "--dim")
-      o.dim = std::atoi(value);
-    else if (name == "--n")
-      o.n = std::atoi(value);
-    else if (name == "--precision")
-      o.single = value[0] == 'f';
-    else if (name == "--kernel")
-      o.cubic = value[0] == 'c';
-    else if (name == "--threads")
-      o.threads = std::atoi(value);
-    else if (name == "--repeat")
-      o.repeat = std::atoi(value);
-    else if (name == "--skin")
-      o.skin = std::atof(value);
-    else if (name == "--rebuild")
-      o.rebuild = std::atoi(value);
-    else if (name == "--cells")
-      o.cells = std::atoi(value);
-    else
-      return usage();
+    if (name == "--dim") o.dim = std::atoi(value);
+    else if (name == "--n") o.n = std::atoi(value);
+    else if (name == "--precision") o.single = value[0] == 'f';
+    else if (name == "--kernel") o.cubic = value[0] == 'c';
+    else if (name == "--threads") o.threads = std::atoi(value);
+    else if (name == "--repeat") o.repeat = std::atoi(value);
+    else if (name == "--skin") o.skin = std::atof(value);
+    else if (name == "--rebuild") o.rebuild = std::atoi(value);
+    else if (name == "--cells") o.cells = std::atoi(value);
+    else return usage();
   }
   if ((o.dim != 2 && o.dim != 3) || o.n < 1000 || o.threads < 1 || o.repeat < 1 || o.rebuild < 1 || o.cells < 1 ||
       !(o.skin >= 1))
     return usage();
-  if (o.dim == 2)
-    o.single ? run_kernel<float, 2>(o) : run_kernel<double, 2>(o);
-  else
-    o.single ? run_kernel<float, 3>(o) : run_kernel<double, 3>(o);
+  if (o.dim == 2) o.single ? run_kernel<float, 2>(o) : run_kernel<double, 2>(o);
+  else o.single ? run_kernel<float, 3>(o) : run_kernel<double, 3>(o);
 }

@@ -36,18 +36,22 @@ std::string air(int dimensions, double n, const std::string& scheme, double radi
          "\n[phases.air]\nkind = \"fluid\"\ndensity = 1.0\nviscosity = 1e-3\nsound-speed = 10\nscheme = \"" + scheme +
          "\"\n[interactions]\nkernel = \"wendland-c2\"\nair-air = " + number(radius) +
          "\n[[fill]]\nphase = \"air\"\nshape = \"the-rest\"\nperturb = 0.2\nvelocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", "
-         "\"sin(2*pi*x)*cos(2*pi*y)\"" + (flat ? "]" : ", 0]") + "\n[time]\nend = 10\n";
+         "\"sin(2*pi*x)*cos(2*pi*y)\"" +
+         (flat ? "]" : ", 0]") + "\n[time]\nend = 10\n";
 }
 
 /// A deep bed of staggered grains on a floor.
 std::string grains(double n) {
   const double per_side = std::round(std::sqrt(n)), dx = 1e-3, size = per_side * dx;
   return "dimensions = 2\nspacing = 1e-3\n[domain]\nsize = [" + number(size) + ", " + number(size * 1.2) +
-         "]\nperiodic = [\"x\"]\ngravity = [0, -9.81]\n[phases.sand]\nkind = \"grains\"\ndensity = 2650\nrestitution = 0.7\n"
+         "]\nperiodic = [\"x\"]\ngravity = [0, -9.81]\n[phases.sand]\nkind = \"grains\"\ndensity = 2650\nrestitution = "
+         "0.7\n"
          "[phases.floor]\nkind = \"wall\"\n[interactions]\nsand-sand = 1.1\nsand-floor = 1.1\n"
-         "[[fill]]\nphase = \"floor\"\nshape = { box = { min = [0, 0], max = [" + number(size) + ", 0.002] } }\n"
-         "packing = \"staggered\"\n[[fill]]\nphase = \"sand\"\nshape = { bed = " + number(size) +
-         ", from = 0.002 }\npacking = \"staggered\"\n[time]\nend = 10\n";
+         "[[fill]]\nphase = \"floor\"\nshape = { box = { min = [0, 0], max = [" +
+         number(size) +
+         ", 0.002] } }\n"
+         "packing = \"staggered\"\n[[fill]]\nphase = \"sand\"\nshape = { bed = " +
+         number(size) + ", from = 0.002 }\npacking = \"staggered\"\n[time]\nend = 10\n";
 }
 
 /// A square elastic body that vibrates.
@@ -56,7 +60,8 @@ std::string elastic(double n) {
   return "dimensions = 2\nspacing = " + number(dx) +
          "\n[domain]\nsize = [2, 2]\n[phases.body]\nkind = \"elastic\"\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
          "artificial-viscosity = 0.1\n[interactions]\nbody-body = 2.6\n[[fill]]\nphase = \"body\"\n"
-         "shape = { box = { min = [0.5, 0.5], max = [1.5, 1.5] } }\nvelocity = [\"0.1*sin(pi*(x-1))\", 0]\n[time]\nend = 10\n";
+         "shape = { box = { min = [0.5, 0.5], max = [1.5, 1.5] } }\nvelocity = [\"0.1*sin(pi*(x-1))\", 0]\n[time]\nend "
+         "= 10\n";
 }
 
 /// Neighbours within the radius itself: entries of the lists hold those in the skin too.
@@ -117,23 +122,30 @@ int main(int argc, char** argv) {
   for (std::size_t k = 0; k < before.size(); ++k) {
     const double seconds = s.processor_seconds()[k] - before[k];
     all += seconds;
-    if (s.seconds()[k].first == "fluid rates" || s.seconds()[k].first == "elastic forces" || s.seconds()[k].first == "contacts")
+    if (s.seconds()[k].first == "fluid rates" || s.seconds()[k].first == "elastic forces" ||
+        s.seconds()[k].first == "contacts")
       fluid += seconds;
   }
   if (json) {
-    nlohmann::ordered_json j{{"case", name}, {"particles", plan.particles()}, {"threads", threads}, {"neighbours", neighbours},
-                             {"particle_steps_per_second", rates[2]}, {"pairs_per_second", rates[2] * neighbours},
+    nlohmann::ordered_json j{{"case", name},
+                             {"particles", plan.particles()},
+                             {"threads", threads},
+                             {"neighbours", neighbours},
+                             {"particle_steps_per_second", rates[2]},
+                             {"pairs_per_second", rates[2] * neighbours},
                              {"pair_pass_pairs_per_second", fluid > 0 ? true_pairs(s) * 5.0 * steps / fluid : 0.0},
-                             {"steps_per_rebuild", every}, {"bytes_per_particle", bytes}};
+                             {"steps_per_rebuild", every},
+                             {"bytes_per_particle", bytes}};
     for (std::size_t k = 0; k < before.size(); ++k)
       if (const double t = s.processor_seconds()[k] - before[k]; t > 0) j["share"][s.seconds()[k].first] = t / all;
     std::printf("%s\n", j.dump(2).c_str());
     return 0;
   }
-  std::printf("%-18s %9.0f particles  %d threads  %5.1f neighbours  %6.2f M particle-steps/s  %6.1f M pairs/s  "
-              "pair pass %6.1f M pairs/s  a rebuild every %.1f steps  %.0f B/particle\n",
-              name.c_str(), plan.particles(), threads, neighbours, rates[2] * 1e-6, rates[2] * neighbours * 1e-6,
-              fluid > 0 ? true_pairs(s) * 5.0 * steps / fluid * 1e-6 : 0.0, every, bytes);
+  std::printf(
+      "%-18s %9.0f particles  %d threads  %5.1f neighbours  %6.2f M particle-steps/s  %6.1f M pairs/s  "
+      "pair pass %6.1f M pairs/s  a rebuild every %.1f steps  %.0f B/particle\n",
+      name.c_str(), plan.particles(), threads, neighbours, rates[2] * 1e-6, rates[2] * neighbours * 1e-6,
+      fluid > 0 ? true_pairs(s) * 5.0 * steps / fluid * 1e-6 : 0.0, every, bytes);
   std::printf("  share of the step:");
   for (std::size_t k = 0; k < before.size(); ++k)
     if (const double t = s.processor_seconds()[k] - before[k]; t > 0.002 * all)

@@ -8,10 +8,10 @@ namespace barchan {
 
 struct RunOptions {
   std::string scene;
-  std::string out;                       // empty: out/NAME
-  std::vector<std::string> overrides;    // KEY=VALUE
-  int threads = 0;                       // 0: all
-  std::string restart;                   // empty, "latest" or a checkpoint
+  std::string out;                     // empty: out/NAME
+  std::vector<std::string> overrides;  // KEY=VALUE
+  int threads = 0;                     // 0: all
+  std::string restart;                 // empty, "latest" or a checkpoint
   bool quiet = false;
 };
 

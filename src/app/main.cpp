@@ -16,22 +16,23 @@ namespace {
 void wait_politely(char** argv) {
   if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
   setenv("GOMP_SPINCOUNT", "20000", 1);
-  execv("/proc/self/exe", argv);   // returns only if it failed; then the run goes on as it is
+  execv("/proc/self/exe", argv);  // returns only if it failed; then the run goes on as it is
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   wait_politely(argv);
-  std::signal(SIGXFSZ, SIG_IGN);   // a file-size limit is an error to report, not a reason to die
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
   app.set_version_flag("--version", [] {
     return "barchan " + barchan::version() + " (" + barchan::commit() + ")\ncompiler: " + barchan::compiler() +
            "\ninstruction set: " + barchan::instruction_set() + "\nVTK: " + barchan::vtk_version();
   });
   app.require_subcommand(1);
-  app.footer("Exit status: 0 done, 2 wrong scene or command, 3 the run broke down, 4 input/output failed,\n"
-             "130 or 143 stopped by a signal. A file named TERMINATE in the output folder ends a run well.");
+  app.footer(
+      "Exit status: 0 done, 2 wrong scene or command, 3 the run broke down, 4 input/output failed,\n"
+      "130 or 143 stopped by a signal. A file named TERMINATE in the output folder ends a run well.");
 
   int status = 0;
   std::vector<std::string> overrides;
@@ -44,7 +45,8 @@ int main(int argc, char** argv) {
   c_run->add_option("scene", run.scene, "scene file (.toml)")->required();
   c_run->add_option("--out", run.out, "output folder (default out/NAME)")->type_name("DIR");
   c_run->add_option("--threads", run.threads, "number of threads (default: all)")->check(CLI::Range(1, 4096));
-  c_run->add_option("--restart", run.restart, "go on from a checkpoint, or from the latest one")->type_name("FILE|latest");
+  c_run->add_option("--restart", run.restart, "go on from a checkpoint, or from the latest one")
+      ->type_name("FILE|latest");
   c_run->add_flag("--quiet", run.quiet, "print errors only");
   add_set(c_run);
   c_run->callback([&] {

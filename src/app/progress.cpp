@@ -13,17 +13,19 @@ std::string clock_text(double seconds) {
   if (!(seconds >= 0) || seconds > 1e7) return "--:--";
   const auto s = static_cast<long>(seconds + 0.5);
   char text[32];
-  if (s >= 3600)
-    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-  else
-    std::snprintf(text, sizeof text, "%02ld:%02ld", s / 60, s % 60);
+  if (s >= 3600) std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+  else std::snprintf(text, sizeof text, "%02ld:%02ld", s / 60, s % 60);
   return text;
 }
 
 }  // namespace
 
 Progress::Progress(double end, double particles, bool quiet)
-    : end_(end), particles_(particles), quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0), start_(Clock::now()),
+    : end_(end),
+      particles_(particles),
+      quiet_(quiet),
+      terminal_(isatty(STDOUT_FILENO) != 0),
+      start_(Clock::now()),
       last_(start_) {}
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -42,12 +44,12 @@ void Progress::step(const Simulation& s) {
   constexpr int width = 30;
   if (terminal_) {
     const int full = static_cast<int>(done * width);
-    std::printf("\r[%.*s%*s] %5.1f %%  t = %.6g s  step %ld  dt %.2e (%s)  %.2f M particle-steps/s  %s left \033[K", full,
-                "##############################", width - full, "", 100 * done, s.time(), s.steps(), s.last_step(),
-                s.ruling_limit().c_str(), rate, clock_text(left).c_str());
+    std::printf("\r[%.*s%*s] %5.1f %%  t = %.6g s  step %ld  dt %.2e (%s)  %.2f M particle-steps/s  %s left \033[K",
+                full, "##############################", width - full, "", 100 * done, s.time(), s.steps(),
+                s.last_step(), s.ruling_limit().c_str(), rate, clock_text(left).c_str());
   } else {
-    std::printf("%5.1f %%  t = %.6g s  step %ld  dt %.2e s (%s)  %.2f M particle-steps/s  %s left\n", 100 * done, s.time(),
-                s.steps(), s.last_step(), s.ruling_limit().c_str(), rate, clock_text(left).c_str());
+    std::printf("%5.1f %%  t = %.6g s  step %ld  dt %.2e s (%s)  %.2f M particle-steps/s  %s left\n", 100 * done,
+                s.time(), s.steps(), s.last_step(), s.ruling_limit().c_str(), rate, clock_text(left).c_str());
   }
   std::fflush(stdout);
 }

@@ -11,9 +11,9 @@ namespace barchan {
 class Progress {
  public:
   Progress(double end, double particles, bool quiet);
-  void step(const Simulation& simulation);    ///< after every step; prints ten times a second at most
+  void step(const Simulation& simulation);  ///< after every step; prints ten times a second at most
   void end(const std::string& reason);
-  double seconds() const;                     ///< s since the beginning
+  double seconds() const;  ///< s since the beginning
 
  private:
   using Clock = std::chrono::steady_clock;

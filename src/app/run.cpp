@@ -37,7 +37,9 @@ double cpu_seconds() {
 class Run {
  public:
   Run(const Scene& scene, const Plan& plan, Simulation& simulation, const fs::path& directory, bool quiet)
-      : scene_(scene), simulation_(simulation), directory_(directory),
+      : scene_(scene),
+        simulation_(simulation),
+        directory_(directory),
         series_(directory, scene.name, scene.output.format, scene.output.compress),
         history_(directory / "history.csv", Simulation::history_columns(plan)),
         progress_(scene.time.end, plan.particles(), quiet) {}
@@ -175,7 +177,8 @@ int run(const RunOptions& options) {
   const Scene scene = read_scene(options.scene, options.overrides);
   if (!options.restart.empty()) {
     if (options.restart != "latest")
-      throw SceneError("--restart " + options.restart + ": checkpoints are not there yet; only \"latest\" is accepted, "
+      throw SceneError("--restart " + options.restart +
+                       ": checkpoints are not there yet; only \"latest\" is accepted, "
                        "which starts at the beginning when there is none");
     std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
   }
@@ -189,12 +192,12 @@ int run(const RunOptions& options) {
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
   simulation.check();
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::error_code ignored;
-  fs::remove(directory / "TERMINATE", ignored);   // one that an earlier run left
+  fs::remove(directory / "TERMINATE", ignored);  // one that an earlier run left
   return Run(scene, plan, simulation, directory, options.quiet).go();
 }
 

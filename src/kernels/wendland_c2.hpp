@@ -31,7 +31,7 @@ class WendlandC2 {
   template <int W>
   void value_and_gradient(simd::Vec<T, W> r2, simd::Vec<T, W>& w, simd::Vec<T, W>& f) const {
     using V = simd::Vec<T, W>;
-    const V s = simd::sqrt(r2) * V(inverse_radius_);           // q/2
+    const V s = simd::sqrt(r2) * V(inverse_radius_);  // q/2
     const V t = simd::max(V(T(1)) - s, V(T(0))), t3 = t * t * t;
     w = V(sigma_) * t3 * t * simd::fma(V(T(4)), s, V(T(1)));
     f = V(gradient_) * t3;

@@ -5,7 +5,8 @@
 //   w = 1 + r.A.r/r^2,     C = sum V F w r,   L_v = sum V F w v_ab,         L_p = sum V F p_ab
 //   grad p = M^-1 P,  grad v = U M^-1     (renormalised gradient: Randles & Libersky 1996; Bonet & Lok 1999)
 //   lap v  = -2 Dim [L_v - grad v . C] / (tr M + A:M)
-//   A      = -(Dim+2)/2 (Dim M/tr M - 1), of the step before: weights that make the second moment isotropic, so that the
+//   A      = -(Dim+2)/2 (Dim M/tr M - 1), of the step before: weights that make the second moment isotropic, so that
+//   the
 //            Laplacian is exact for quadratic fields too (first-order correction after Basic et al. 2018)
 // The second-order scheme of Negi & Ramachandran 2022 uses the same gradient; taking the corrections out of the sums is
 // what saves its extra passes. The form is not antisymmetric: momentum is conserved to the order of the scheme only.
@@ -51,7 +52,7 @@ struct ConsistentFluid {
   struct Own {
     std::array<T, Dim> x, v;
     T p;
-    std::array<T, moments> anisotropy;               // A, the order of the moment; off the diagonal doubled
+    std::array<T, moments> anisotropy;  // A, the order of the moment; off the diagonal doubled
   };
 
   template <class T>
@@ -59,11 +60,12 @@ struct ConsistentFluid {
                                       T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T dp = a.p - p_b;
-    T lopsided(0.0);                                 // r.A.r
+    T lopsided(0.0);  // r.A.r
     std::size_t q = 0;
     for (std::size_t d = 0; d < Dim; ++d) {
       T along(0.0);
-      for (std::size_t e = 0; e <= d; ++e, ++q) along = e == 0 ? a.anisotropy[q] * r[e] : fma(a.anisotropy[q], r[e], along);
+      for (std::size_t e = 0; e <= d; ++e, ++q)
+        along = e == 0 ? a.anisotropy[q] * r[e] : fma(a.anisotropy[q], r[e], along);
       lopsided = d == 0 ? along * r[d] : fma(along, r[d], lopsided);
     }
     const T wvf = fma(vf, lopsided / r2, vf);

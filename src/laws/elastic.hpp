@@ -3,8 +3,8 @@
 //   dv_a/dt   = sum m_b (s_a/rho_a^2 + s_b/rho_b^2) . grad W - sum m_b Pi_ab grad W    (eq. 12; Gray et al. 2001)
 //   drho_a/dt = sum m_b v_ab . grad W,   grad v_a = -sum V_b v_ab (x) grad W
 //   Pi_ab     = (-alpha c mu + beta mu^2) / rho,  mu = h v.r/(r^2 + 0.01 h^2) on approach, else 0   (Monaghan 1992)
-// The stress rate is Hooke's law with Jaumann's rotation, s_dot = 2 G dev(D) + s.W^T + W.s (eq. 11 prints G for 2G and no
-// rotation), in passes/elastic.cpp. No kernel corrections: momentum and angular momentum of a pair are exact.
+// The stress rate is Hooke's law with Jaumann's rotation, s_dot = 2 G dev(D) + s.W^T + W.s (eq. 11 prints G for 2G and
+// no rotation), in passes/elastic.cpp. No kernel corrections: momentum and angular momentum of a pair are exact.
 #pragma once
 
 #include <array>
@@ -60,8 +60,8 @@ template <int Dim>
 struct ElasticStrain {
   template <class T>
   struct Sums {
-    std::array<T, Dim * Dim> gradient{};   // sum V F v_ab (x) r
-    T density{};                           // sum m F v_ab . r
+    std::array<T, Dim * Dim> gradient{};  // sum V F v_ab (x) r
+    T density{};                          // sum m F v_ab . r
   };
 
   template <class T>

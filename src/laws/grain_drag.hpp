@@ -1,10 +1,10 @@
-// Form drag between a fluid and grains of about its spacing: the wake of a single particle is not resolved, and at grain
-// Reynolds numbers of hundreds it carries nearly all of the drag.
+// Form drag between a fluid and grains of about its spacing: the wake of a single particle is not resolved, and at
+// grain Reynolds numbers of hundreds it carries nearly all of the drag.
 //
 //   f_ab = -K V_f W(r_ab) |v_ab| v_ab,   K = 1/2 C_D rho_f A
 // A is the grain's cross section (d in 2D, per metre of depth; pi d^2/4 in 3D), V_f the fluid particle's volume. Over a
-// full neighbourhood sum V_f W = 1 and a grain feels the quadratic drag 1/2 C_D rho A U^2; one that is half buried feels
-// what the fluid on its free side exerts. Antisymmetric: the fluid loses what the grain gains.
+// full neighbourhood sum V_f W = 1 and a grain feels the quadratic drag 1/2 C_D rho A U^2; one that is half buried
+// feels what the fluid on its free side exerts. Antisymmetric: the fluid loses what the grain gains.
 #pragma once
 
 #include <array>

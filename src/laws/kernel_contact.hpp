@@ -4,8 +4,9 @@
 // A pair repels with the potential
 //   U(r) = 1/2 K g(r)^2,  g(r) = max(W(r) - W(d), 0) / |W'(d)|,
 // zero at the rest distance d, so that U ~ 1/2 K (d - r)^2 for a small overlap and stiffer beyond. That is eq. (12) of
-// Halik et al. 2015 for two particles, whose density rises by m (W(r) - W(d)), without its tension: grains do not stick.
-// The dashpot c v_n acts while they overlap, scaled like the stiffness, so that the restitution does not depend on speed:
+// Halik et al. 2015 for two particles, whose density rises by m (W(r) - W(d)), without its tension: grains do not
+// stick. The dashpot c v_n acts while they overlap, scaled like the stiffness, so that the restitution does not depend
+// on speed:
 //   c = 2 zeta sqrt(K m*) W'(r)/W'(d),  e = exp(-pi zeta / sqrt(1 - zeta^2))   (linear spring and dashpot).
 #pragma once
 
@@ -41,8 +42,8 @@ struct KernelContact {
   static void add(const Constants<T>& c, const std::array<T, Dim>& r, T r2, const std::array<T, Dim>& v, T w, T f,
                   std::array<T, Dim>& force) {
     using std::max;
-    const T overlap = max(w - c.rest_value, T(0.0)) * c.inverse_slope;      // g [m]
-    const T slope = f * c.inverse_slope;                                    // W'(r)/|W'(d)| / r, negative
+    const T overlap = max(w - c.rest_value, T(0.0)) * c.inverse_slope;  // g [m]
+    const T slope = f * c.inverse_slope;                                // W'(r)/|W'(d)| / r, negative
     T vr(0.0);
     for (std::size_t d = 0; d < Dim; ++d) vr = fma(v[d], r[d], vr);
     // -dU/dr e_r = -K g g' e_r; dashpot -c |W'(r)/W'(d)| v_n e_r with v_n = v.r/r: one factor 1/r of each is in slope.

@@ -22,8 +22,8 @@ struct PlainFluid {
   /// Sums over neighbours. T: a SIMD vector in the loop, a number after it.
   template <class T>
   struct Sums {
-    std::array<T, Dim> pressure{}, viscous{}, concentration{};   // sum V F (p_a+p_b) r, sum V F v_ab, sum V F r
-    T divergence{}, diffusion{};                                 // sum V F v_ab.r, sum V F p_ab
+    std::array<T, Dim> pressure{}, viscous{}, concentration{};  // sum V F (p_a+p_b) r, sum V F v_ab, sum V F r
+    T divergence{}, diffusion{};                                // sum V F v_ab.r, sum V F p_ab
 
     /// Adds the sums of one entry: `scale` its kernel's constant factor, `mu` its viscosity [Pa s]; `diffuse` 0 or 1
     /// switches density diffusion. `weight` is rho0 g [Pa/m].
@@ -51,8 +51,8 @@ struct PlainFluid {
 
   /// Adds the pair: r = x_a - x_b, f the gradient factor of the kernel (up to a constant), b the neighbour.
   template <class T>
-  static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T, T f, const T* v_b, T p_b, T volume_b,
-                                      Sums<T>& s) {
+  static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T, T f, const T* v_b, T p_b,
+                                      T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T pressure = vf * (a.p + p_b);
     T vr(0.0);

@@ -49,7 +49,8 @@ void CellGrid::order_interior(const Blocks& blocks) {
       std::size_t b = 0;
       if (d < dimensions_) {
         const double centre = (static_cast<double>(at[d]) - halo_[d] + 0.5) / static_cast<double>(inverse_cell_[d]);
-        b = static_cast<std::size_t>(std::clamp(centre / blocks.side[d], 0.0, static_cast<double>(blocks.count[d] - 1)));
+        b = static_cast<std::size_t>(
+            std::clamp(centre / blocks.side[d], 0.0, static_cast<double>(blocks.count[d] - 1)));
       }
       block = block * blocks.count[d] + b;
     }
@@ -62,10 +63,8 @@ void CellGrid::make_runs() {
   for (std::size_t w = 0; w < walk_.size(); ++w) {
     const std::uint32_t begin = begin_[walk_[w]], end = end_[walk_[w]];
     if (begin == end) continue;
-    if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin)
-      runs_.back().end = end;
-    else
-      runs_.push_back({begin, end, walk_block_[w]});
+    if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin) runs_.back().end = end;
+    else runs_.push_back({begin, end, walk_block_[w]});
   }
 }
 
@@ -148,7 +147,7 @@ void CellGrid::make_images(const PhaseParticles& particles) {
   }
   for (std::size_t d = 0; d < dimensions_; ++d) {
     auto& s = search_[d];
-    const std::size_t needed = n + images_.size() + 16;   // the search reads whole vectors
+    const std::size_t needed = n + images_.size() + 16;  // the search reads whole vectors
     if (s.size() < needed) s.resize(needed + needed / 8);
     const double* x = particles.column(Field::position, static_cast<int>(d));
     for (std::size_t k = 0; k < n; ++k) s[k] = static_cast<float>(x[k] - bounds_.low[d]);

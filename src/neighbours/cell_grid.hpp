@@ -18,7 +18,7 @@ namespace barchan {
 /// Where particles may be, and which sides are periodic.
 struct Bounds {
   int dimensions = 2;
-  Vec3 low{}, high{};                               // m; periodic sides: the period
+  Vec3 low{}, high{};  // m; periodic sides: the period
   std::array<bool, 3> periodic{false, false, false};
 };
 
@@ -31,7 +31,7 @@ struct Image {
 /// Blocks of the domain, each wider than any search: particles within reach stand in the same or adjacent blocks.
 struct Blocks {
   std::array<std::size_t, 3> count{1, 1, 1};
-  std::array<double, 3> side{1, 1, 1};              // m
+  std::array<double, 3> side{1, 1, 1};  // m
   std::size_t size() const { return count[0] * count[1] * count[2]; }
 };
 
@@ -42,7 +42,7 @@ struct BlockRun {
 
 class CellGrid {
  public:
-  static constexpr int strip = 16;                  // cells
+  static constexpr int strip = 16;  // cells
 
   /// `reach` (m): the largest search radius over this phase's particles, skin included. `cell` (m): wanted cell size.
   CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks);
@@ -74,7 +74,8 @@ class CellGrid {
       for (int y = first[1]; y <= last[1]; ++y) {
         const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
         for (int c = first[0]; c <= last[0]; ++c) {
-          const std::uint32_t b = begin_[row + static_cast<std::size_t>(c)], e = end_[row + static_cast<std::size_t>(c)];
+          const std::uint32_t b = begin_[row + static_cast<std::size_t>(c)],
+                              e = end_[row + static_cast<std::size_t>(c)];
           if (b == e) continue;
           if (b == end) {
             end = e;
@@ -105,11 +106,11 @@ class CellGrid {
   Bounds bounds_;
   std::array<double, 3> period_{};
   std::array<int, 3> halo_{0, 0, 0};
-  std::array<std::size_t, 3> count_{1, 1, 1};       // cells of the padded grid
+  std::array<std::size_t, 3> count_{1, 1, 1};  // cells of the padded grid
   std::array<float, 3> inverse_cell_{};
-  std::vector<std::uint32_t> begin_, end_;          // by padded cell
-  std::vector<std::uint32_t> walk_;                 // interior cells in the order of the sort
-  std::vector<std::uint32_t> walk_block_;           // block of each walked cell
+  std::vector<std::uint32_t> begin_, end_;  // by padded cell
+  std::vector<std::uint32_t> walk_;         // interior cells in the order of the sort
+  std::vector<std::uint32_t> walk_block_;   // block of each walked cell
   std::vector<BlockRun> runs_;
   std::vector<std::uint32_t> cell_of_, order_;
   std::vector<Image> images_;

@@ -7,7 +7,11 @@
 namespace barchan {
 
 Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin)
-    : bounds_(bounds), directions_(std::move(directions)), grids_(phases), lists_(directions_.size()), ranges_(phases),
+    : bounds_(bounds),
+      directions_(std::move(directions)),
+      grids_(phases),
+      lists_(directions_.size()),
+      ranges_(phases),
       skin_(skin) {
   double widest = 0.0;
   for (const auto& d : directions_) widest = std::max(widest, d.radius * (1.0 + skin_));
@@ -106,7 +110,8 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
         for (int y = 0; y < my; ++y)
           for (int x = 0; x < mx; ++x)
             box.widen(ranges_[direction.b][static_cast<std::size_t>(
-                (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx + xs[static_cast<std::size_t>(x)])]);
+                (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
+                xs[static_cast<std::size_t>(x)])]);
       double squared = 0.0;
       for (std::size_t d = 0; d < 3; ++d) {
         const double apart = static_cast<double>(box.high[d]) - static_cast<double>(box.low[d]);

@@ -12,8 +12,8 @@ namespace barchan {
 
 /// One direction of an entry of the matrix: the particles of `a` look for those of `b`.
 struct Direction {
-  std::size_t a = 0, b = 0;   // phase numbers
-  double radius = 0.0;        // m
+  std::size_t a = 0, b = 0;  // phase numbers
+  double radius = 0.0;       // m
 };
 
 class Neighbours {
@@ -21,8 +21,8 @@ class Neighbours {
   /// `skin`: lists reach this fraction beyond an entry's radius, so that they stay valid while particles move.
   Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin);
 
-  /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it did;
-  /// then particles have new places. The decision depends on positions alone.
+  /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it
+  /// did; then particles have new places. The decision depends on positions alone.
   bool update(std::vector<PhaseParticles>& particles, bool force);
 
   const PairList& list(std::size_t direction) const { return lists_[direction]; }
@@ -43,10 +43,10 @@ class Neighbours {
 
   Bounds bounds_;
   std::vector<Direction> directions_;
-  std::vector<std::unique_ptr<CellGrid>> grids_;   // null for a phase without entries
+  std::vector<std::unique_ptr<CellGrid>> grids_;  // null for a phase without entries
   std::vector<PairList> lists_;
   Blocks blocks_;
-  std::vector<std::vector<Range>> ranges_;         // by phase, block
+  std::vector<std::vector<Range>> ranges_;  // by phase, block
   std::vector<Range> run_ranges_;
   double skin_;
   long rebuilds_ = 0;

@@ -51,7 +51,7 @@ void PairList::build_chunks(const CellGrid& grid_a, std::size_t size_a, const Ce
         }
       });
       std::uint32_t* out = c.index.data();
-      if (same) {   // take the particle itself out
+      if (same) {  // take the particle itself out
         for (std::uint32_t q = used; q < row_end; ++q)
           if (out[q] == self) {
             for (std::uint32_t s = q + 1; s < row_end; ++s) out[s - 1] = out[s];
@@ -73,10 +73,8 @@ void PairList::build(const CellGrid& grid_a, std::size_t size_a, const CellGrid&
                      std::uint32_t dummy, int dimensions) {
   const std::size_t needed = (size_a + chunk - 1) / chunk;
   if (chunks_.size() != needed) chunks_.resize(needed);
-  if (dimensions == 2)
-    build_chunks<2>(grid_a, size_a, grid_b, same, radius, dummy);
-  else
-    build_chunks<3>(grid_a, size_a, grid_b, same, radius, dummy);
+  if (dimensions == 2) build_chunks<2>(grid_a, size_a, grid_b, same, radius, dummy);
+  else build_chunks<3>(grid_a, size_a, grid_b, same, radius, dummy);
 }
 
 std::uint64_t PairList::entries() const {

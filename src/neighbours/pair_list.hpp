@@ -17,8 +17,8 @@ namespace barchan {
 
 class PairList {
  public:
-  static constexpr std::size_t chunk = 1024;    // particles
-  static constexpr std::size_t padding = simd::native_width<double>;   // row lengths are multiples of this
+  static constexpr std::size_t chunk = 1024;                          // particles
+  static constexpr std::size_t padding = simd::native_width<double>;  // row lengths are multiples of this
 
   struct Row {
     const std::uint32_t* begin;
@@ -35,7 +35,7 @@ class PairList {
     const std::size_t r = k % chunk;
     return {c.index.data() + c.begin[r], c.index.data() + c.begin[r + 1]};
   }
-  std::uint64_t entries() const;     ///< listed neighbours (those in the skin too, padding not)
+  std::uint64_t entries() const;  ///< listed neighbours (those in the skin too, padding not)
   std::size_t bytes() const;
 
  private:

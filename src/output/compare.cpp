@@ -18,7 +18,10 @@ namespace barchan {
 namespace {
 
 /// One particle in both frames.
-struct Match { std::int64_t id; std::size_t a, b; };
+struct Match {
+  std::int64_t id;
+  std::size_t a, b;
+};
 
 /// Particle numbers in the order of their ids, so that the first difference found is that of the lowest id.
 std::vector<std::size_t> by_id(const Frame& frame) {
@@ -121,7 +124,8 @@ std::vector<FrameDifference> compare_series(const std::filesystem::path& a, cons
     FrameDifference rest;
     rest.same = false;
     rest.remarks.push_back("A has " + std::to_string(entries_a.size()) + " frames, B has " +
-                           std::to_string(entries_b.size()) + "; the first " + std::to_string(common) + " are compared");
+                           std::to_string(entries_b.size()) + "; the first " + std::to_string(common) +
+                           " are compared");
     if (common > 0) rest.time_a = differences.back().time_a, rest.time_b = differences.back().time_b;
     differences.push_back(rest);
   }
@@ -143,7 +147,8 @@ std::string text_of(const FrameDifference& frame) {
   text += frame.same ? ": same\n" : ": different\n";
   if (!frame.fields.empty()) {
     char line[256];
-    std::snprintf(line, sizeof line, "  %-*s  %11s  %11s  %11s  %11s\n", width, "field", "L1", "L2", "largest", "scale");
+    std::snprintf(line, sizeof line, "  %-*s  %11s  %11s  %11s  %11s\n", width, "field", "L1", "L2", "largest",
+                  "scale");
     text += line;
   }
   for (const auto& d : frame.fields) text += table_row(d, width);
@@ -171,7 +176,8 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
   remark_ids(remarks, found.only_b, "only in B");
   remark_ids(remarks, found.twice, "there more than once");
 
-  const auto add = [&](const std::string& name, std::span<const double> va, std::span<const double> vb, int components) {
+  const auto add = [&](const std::string& name, std::span<const double> va, std::span<const double> vb,
+                       int components) {
     result.fields.push_back(difference(name, va, vb, static_cast<std::size_t>(components), found.both, tolerance));
   };
   add("position", a.points, b.points, 3);
@@ -180,8 +186,8 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
     const FrameField* other = find(b, field.name);
     if (!other) remarks.push_back("only A has the field '" + field.name + "'");
     else if (other->components != field.components)
-      remarks.push_back("the field '" + field.name + "' has " + std::to_string(field.components) + " components in A, " +
-                        std::to_string(other->components) + " in B");
+      remarks.push_back("the field '" + field.name + "' has " + std::to_string(field.components) +
+                        " components in A, " + std::to_string(other->components) + " in B");
     else add(field.name, field.values, other->values, field.components);
   }
   for (const auto& field : b.fields)
@@ -194,7 +200,8 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
 std::vector<FrameDifference> compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
                                            double tolerance) {
   if (is_series(a) != is_series(b))
-    throw OutputError("cannot compare '" + a.string() + "' with '" + b.string() + "': one is a series, the other a frame");
+    throw OutputError("cannot compare '" + a.string() + "' with '" + b.string() +
+                      "': one is a series, the other a frame");
   if (is_series(a)) return compare_series(a, b, tolerance);
   return {compare(read_frame(a), read_frame(b), tolerance)};
 }
@@ -218,8 +225,11 @@ std::string to_json(const std::vector<FrameDifference>& differences) {
       if (above_tolerance(d)) field["first"] = {{"id", d.first_id}, {"a", d.first_a}, {"b", d.first_b}};
       fields[d.field] = field;
     }
-    frames.push_back({{"same", frame.same}, {"time_a", frame.time_a}, {"time_b", frame.time_b},
-                      {"fields", fields}, {"remarks", frame.remarks}});
+    frames.push_back({{"same", frame.same},
+                      {"time_a", frame.time_a},
+                      {"time_b", frame.time_b},
+                      {"fields", fields},
+                      {"remarks", frame.remarks}});
     same = same && frame.same;
   }
   return Json{{"same", same}, {"frames", frames}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

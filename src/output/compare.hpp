@@ -12,17 +12,17 @@ namespace barchan {
 
 struct FieldDifference {
   std::string field;
-  double l1 = 0, l2 = 0, largest = 0;   // relative to the largest magnitude of A's field (absolute when that is 0)
-  double scale = 0;                     // that largest magnitude
-  std::int64_t first_id = -1;           // first particle (lowest id) above the tolerance, -1: none
-  double first_a = 0, first_b = 0;      // its values (the component that differs most)
+  double l1 = 0, l2 = 0, largest = 0;  // relative to the largest magnitude of A's field (absolute when that is 0)
+  double scale = 0;                    // that largest magnitude
+  std::int64_t first_id = -1;          // first particle (lowest id) above the tolerance, -1: none
+  double first_a = 0, first_b = 0;     // its values (the component that differs most)
 };
 
 struct FrameDifference {
   double time_a = 0, time_b = 0;
   std::vector<FieldDifference> fields;
-  std::vector<std::string> remarks;     // particles or fields that only one of the two has
-  bool same = true;                     // no difference above the tolerance and no remark
+  std::vector<std::string> remarks;  // particles or fields that only one of the two has
+  bool same = true;                  // no difference above the tolerance and no remark
 };
 
 /// Compares particle by particle. Positions count as a field "position".
@@ -30,7 +30,8 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance);
 
 /// The same for files: two .vtp/.vtu, or two .pvd (frame by frame; a different number of frames is a remark).
 /// Throws OutputError when a file cannot be read.
-std::vector<FrameDifference> compare_files(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance);
+std::vector<FrameDifference> compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                                           double tolerance);
 
 std::string to_text(const std::vector<FrameDifference>& differences);
 std::string to_json(const std::vector<FrameDifference>& differences);

@@ -8,21 +8,21 @@
 namespace barchan {
 
 struct FrameField {
-  std::string name;             // as in the table of fields
-  std::string unit;             // SI, "" for none
-  int components = 1;           // 1, 3 (vector) or 6 (symmetric tensor xx yy zz xy yz xz, ParaView's order)
-  std::vector<double> values;   // particle-major, n * components
+  std::string name;            // as in the table of fields
+  std::string unit;            // SI, "" for none
+  int components = 1;          // 1, 3 (vector) or 6 (symmetric tensor xx yy zz xy yz xz, ParaView's order)
+  std::vector<double> values;  // particle-major, n * components
 };
 
 struct Frame {
-  int index = 0;                // number in the series
+  int index = 0;  // number in the series
   long step = 0;
-  double time = 0.0;            // s
-  std::vector<double> points;   // m, 3 a particle
-  std::vector<std::int64_t> id; // stable from the first frame to the last
+  double time = 0.0;             // s
+  std::vector<double> points;    // m, 3 a particle
+  std::vector<std::int64_t> id;  // stable from the first frame to the last
   std::vector<std::int32_t> phase;
-  std::vector<std::string> phase_names;   // phase number -> name
-  std::vector<std::string> phase_kinds;   // phase number -> fluid, elastic, grains, wall
+  std::vector<std::string> phase_names;  // phase number -> name
+  std::vector<std::string> phase_kinds;  // phase number -> fluid, elastic, grains, wall
   std::vector<FrameField> fields;
   std::size_t size() const { return id.size(); }
 };

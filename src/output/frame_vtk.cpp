@@ -1,7 +1,7 @@
 // One frame to a file and back through VTK's XML writers and readers.
 //
-// .vtp and .vtu hold the same arrays and one vertex cell a particle, which is what ParaView draws without a filter. They
-// differ in two ways, both for meshio's sake, which reads .vtu but neither LZ4 nor arrays of strings:
+// .vtp and .vtu hold the same arrays and one vertex cell a particle, which is what ParaView draws without a filter.
+// They differ in two ways, both for meshio's sake, which reads .vtu but neither LZ4 nor arrays of strings:
 //
 //           compressor    phase_names and units
 //   .vtp    LZ4           vtkStringArray, one value a line
@@ -136,7 +136,8 @@ void check_shape(const Frame& frame) {
 
 Lines unit_lines(const Frame& frame) {
   Lines lines{"position m", "TimeValue s"};
-  for (const auto& field : frame.fields) lines.push_back(field.unit.empty() ? field.name : field.name + " " + field.unit);
+  for (const auto& field : frame.fields)
+    lines.push_back(field.unit.empty() ? field.name : field.name + " " + field.unit);
   return lines;
 }
 
@@ -222,7 +223,8 @@ std::vector<T> values_of(vtkDataArray* array) {
   } else {
     const auto components = static_cast<std::size_t>(array->GetNumberOfComponents());
     for (std::size_t k = 0; k < values.size(); ++k)
-      values[k] = static_cast<T>(array->GetComponent(static_cast<vtkIdType>(k / components), static_cast<int>(k % components)));
+      values[k] =
+          static_cast<T>(array->GetComponent(static_cast<vtkIdType>(k / components), static_cast<int>(k % components)));
   }
   return values;
 }
@@ -235,10 +237,8 @@ Lines lines_of(vtkFieldData* about, const char* name) {
   } else if (auto* text = vtkArrayDownCast<vtkUnsignedCharArray>(array); text && text->GetNumberOfValues() > 0) {
     lines.emplace_back();
     for (vtkIdType k = 0; k < text->GetNumberOfValues(); ++k)
-      if (const char c = static_cast<char>(text->GetValue(k)); c == '\n')
-        lines.emplace_back();
-      else
-        lines.back() += c;
+      if (const char c = static_cast<char>(text->GetValue(k)); c == '\n') lines.emplace_back();
+      else lines.back() += c;
   }
   return lines;
 }
@@ -308,9 +308,7 @@ void write_frame(const std::filesystem::path& file, const Frame& frame, FrameFor
       data->SetCells(VTK_VERTEX, vertices(frame.size()));
       run(vtkNew<vtkXMLUnstructuredGridWriter>(), data, whole, format, compress);
     }
-  } catch (const OutputError& e) {
-    throw OutputError("cannot write '" + file.string() + "': " + e.what());
-  }
+  } catch (const OutputError& e) { throw OutputError("cannot write '" + file.string() + "': " + e.what()); }
   whole.publish();
 }
 
@@ -325,9 +323,7 @@ Frame read_frame(const std::filesystem::path& file) {
   if (!has_its_end(file)) fail("the file is incomplete");
   try {
     return suffix == ".vtp" ? read_with<vtkXMLPolyDataReader>(file) : read_with<vtkXMLUnstructuredGridReader>(file);
-  } catch (const OutputError& e) {
-    fail(e.what());
-  }
+  } catch (const OutputError& e) { fail(e.what()); }
   return {};
 }
 

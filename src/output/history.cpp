@@ -45,9 +45,7 @@ History::History(const std::filesystem::path& file, std::vector<std::string> col
   if (append && std::filesystem::exists(file)) {
     try {
       begin = rows_until(read_text(file), begin, until);
-    } catch (const OutputError& e) {
-      throw OutputError("cannot go on with '" + file.string() + "': " + e.what());
-    }
+    } catch (const OutputError& e) { throw OutputError("cannot go on with '" + file.string() + "': " + e.what()); }
   }
   if (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file)) write_whole_file(file, begin);
   errno = 0;
@@ -62,8 +60,7 @@ void History::row(const std::vector<double>& values) {
   line += '\n';
   errno = 0;
   stream_ << line << std::flush;
-  if (!stream_)
-    throw OutputError("cannot write '" + file_.string() + "': " + std::strerror(errno != 0 ? errno : EIO));
+  if (!stream_) throw OutputError("cannot write '" + file_.string() + "': " + std::strerror(errno != 0 ? errno : EIO));
 }
 
 }  // namespace barchan

@@ -44,7 +44,10 @@ std::string unescape(std::string_view text) {
 /// As much of XML as a .pvd needs: tags with attributes, comments, declarations; text between tags is skipped.
 class Tags {
  public:
-  struct Tag { std::string_view name; std::map<std::string_view, std::string> attributes; };
+  struct Tag {
+    std::string_view name;
+    std::map<std::string_view, std::string> attributes;
+  };
 
   explicit Tags(std::string_view text) : text_(text) {}
 
@@ -113,7 +116,8 @@ std::vector<SeriesWriter::Entry> parse(std::string_view text) {
     if (tag.name == "/VTKFile") ended = true;
     if (tag.name != "DataSet") continue;
     const auto file = tag.attributes.find("file"), time = tag.attributes.find("timestep");
-    if (file == tag.attributes.end() || time == tag.attributes.end()) tags.fail("a DataSet needs 'timestep' and 'file'");
+    if (file == tag.attributes.end() || time == tag.attributes.end())
+      tags.fail("a DataSet needs 'timestep' and 'file'");
     const auto value = parse_number(time->second);
     if (!value) tags.fail("timestep=\"" + time->second + "\" is not a number");
     entries.push_back({*value, file->second});
@@ -139,9 +143,7 @@ std::vector<SeriesWriter::Entry> read_pvd(const std::filesystem::path& pvd) {
   const std::string text = read_text(pvd);
   try {
     return parse(text);
-  } catch (const OutputError& e) {
-    throw OutputError("cannot read '" + pvd.string() + "': " + e.what());
-  }
+  } catch (const OutputError& e) { throw OutputError("cannot read '" + pvd.string() + "': " + e.what()); }
 }
 
 }  // namespace barchan

@@ -16,22 +16,22 @@ struct RunReport {
 
   // the scene and the plan
   std::string scene_title, scene_file, scene_state;
-  double scene_spacing = 0;                                    // m
-  std::map<std::string, long> particles;                       // by phase
-  std::map<std::string, long> pairs;                           // by matrix entry, "air-sand": directed pairs of the last list
-  std::map<std::string, std::vector<std::string>> fields;      // by phase
-  std::vector<std::string> passes;                             // in the order of the step
+  double scene_spacing = 0;               // m
+  std::map<std::string, long> particles;  // by phase
+  std::map<std::string, long> pairs;      // by matrix entry, "air-sand": directed pairs of the last list
+  std::map<std::string, std::vector<std::string>> fields;  // by phase
+  std::vector<std::string> passes;                         // in the order of the step
 
   // the run
   long steps = 0;
-  double simulated_time = 0;                                   // s
-  std::vector<std::pair<std::string, double>> seconds;         // s of wall time by pass, in the order of the step
-  double wall_seconds = 0, cpu_seconds = 0;                    // s, in all
+  double simulated_time = 0;                            // s
+  std::vector<std::pair<std::string, double>> seconds;  // s of wall time by pass, in the order of the step
+  double wall_seconds = 0, cpu_seconds = 0;             // s, in all
   double particle_steps_per_second = 0;
-  double pair_interactions_per_second = 0;                     // directed pairs
-  std::map<std::string, long> time_step_limits;                // limit -> steps that it ruled
-  std::map<std::string, double> budgets;                       // momentum drift, largest density error, ...
-  std::string end_reason;                                      // "end", "breakdown: ...", "SIGINT", ...
+  double pair_interactions_per_second = 0;       // directed pairs
+  std::map<std::string, long> time_step_limits;  // limit -> steps that it ruled
+  std::map<std::string, double> budgets;         // momentum drift, largest density error, ...
+  std::string end_reason;                        // "end", "breakdown: ...", "SIGINT", ...
 };
 
 /// The document that write_run_report writes. What is not finite becomes null.

@@ -59,14 +59,14 @@ struct SeriesWriter::Work {
   FrameFormat format;
   bool compress;
 
-  std::vector<Entry> entries;      // of the .pvd; the writer's thread alone changes them
-  std::atomic<long> whole{0};      // how many they are
+  std::vector<Entry> entries;  // of the .pvd; the writer's thread alone changes them
+  std::atomic<long> whole{0};  // how many they are
   std::atomic<double> writing{0}, waiting{0};
 
-  std::mutex mutex;                // guards what follows
+  std::mutex mutex;  // guards what follows
   std::condition_variable changed;
-  std::deque<Frame> frames;        // the first is the one being written
-  std::exception_ptr error;        // the first one; nothing is written after it
+  std::deque<Frame> frames;  // the first is the one being written
+  std::exception_ptr error;  // the first one; nothing is written after it
   bool ending = false;
   std::thread thread;
 
@@ -83,7 +83,7 @@ void SeriesWriter::Work::prepare() {
   if (failed) throw OutputError("cannot create the directory '" + directory.string() + "': " + failed.message());
   if (!std::filesystem::is_directory(directory, failed))
     throw OutputError("cannot write into '" + directory.string() + "': it is not a directory");
-  WholeFile{pvd()};   // says now, not at the first frame, that nothing can be written here
+  WholeFile{pvd()};  // says now, not at the first frame, that nothing can be written here
 
   // First the list, then the files that it no longer names: at no moment does it name one that is gone.
   if (entries.empty()) std::filesystem::remove(pvd(), failed);
@@ -92,7 +92,8 @@ void SeriesWriter::Work::prepare() {
   for (const auto& entry : entries) kept.insert(entry.file);
   std::vector<std::filesystem::path> stale;
   for (const auto& file : std::filesystem::directory_iterator(directory, failed))
-    if (const auto n = file.path().filename().string(); file.is_regular_file() && is_frame_of(name, n) && !kept.contains(n))
+    if (const auto n = file.path().filename().string();
+        file.is_regular_file() && is_frame_of(name, n) && !kept.contains(n))
       stale.push_back(file);
   for (const auto& file : stale) std::filesystem::remove(file, failed);
 }
@@ -112,14 +113,12 @@ void SeriesWriter::Work::loop() {
     changed.wait(lock, [&] { return ending || !frames.empty(); });
     if (frames.empty()) return;
     if (!error) {
-      const Frame& frame = frames.front();   // a deque's elements stay where they are when write() adds one
+      const Frame& frame = frames.front();  // a deque's elements stay where they are when write() adds one
       lock.unlock();
       std::exception_ptr failure;
       try {
         write_first(frame);
-      } catch (...) {
-        failure = std::current_exception();
-      }
+      } catch (...) { failure = std::current_exception(); }
       lock.lock();
       error = failure;
     }

@@ -11,26 +11,29 @@
 
 namespace barchan {
 
-/// Writes DIR/NAME_000000.vtp ... on a thread of its own and DIR/NAME.pvd after each. A file gets its name by rename when
-/// it is whole and on the disk, and the .pvd is replaced by rename, so that a killed run leaves a series that opens.
-/// At most two frames wait; a third write() blocks until one is done.
+/// Writes DIR/NAME_000000.vtp ... on a thread of its own and DIR/NAME.pvd after each. A file gets its name by rename
+/// when it is whole and on the disk, and the .pvd is replaced by rename, so that a killed run leaves a series that
+/// opens. At most two frames wait; a third write() blocks until one is done.
 class SeriesWriter {
  public:
-  struct Entry { double time; std::string file; };   // file relative to DIR
+  struct Entry {
+    double time;
+    std::string file;
+  };  // file relative to DIR
 
   /// Creates DIR. `kept` are the frames of an earlier run that a restart goes on from. Throws OutputError.
   SeriesWriter(std::filesystem::path directory, std::string name, FrameFormat format, bool compress,
                std::vector<Entry> kept = {});
-  ~SeriesWriter();   ///< finishes what waits; swallows errors (call finish() to see them)
+  ~SeriesWriter();  ///< finishes what waits; swallows errors (call finish() to see them)
 
   /// Hands a frame over. Throws OutputError if an earlier frame could not be written; earlier frames stay whole.
   void write(Frame&& frame);
   /// Waits until all is on the disk. Throws OutputError.
   void finish();
 
-  double seconds_writing() const;   ///< time the writer's thread spent
-  double seconds_waiting() const;   ///< time write() and finish() blocked the caller
-  long frames() const;              ///< whole frames, kept ones included
+  double seconds_writing() const;  ///< time the writer's thread spent
+  double seconds_waiting() const;  ///< time write() and finish() blocked the caller
+  long frames() const;             ///< whole frames, kept ones included
 
  private:
   struct Work;
@@ -41,9 +44,9 @@ class SeriesWriter {
 std::vector<SeriesWriter::Entry> read_pvd(const std::filesystem::path& pvd);
 
 /// Writes one frame to a .vtp or .vtu (by format): appended data, compressed on request, vertices for every particle,
-/// point arrays id (Int64, also set as global ids), phase (Int32) and the fields; field data TimeValue, step, frame (its
-/// index) and phase_names, phase_kinds, units (lines "name unit") as arrays of strings, which a .vtu holds as UInt8 text
-/// with a newline between, because meshio reads no strings. Throws OutputError.
+/// point arrays id (Int64, also set as global ids), phase (Int32) and the fields; field data TimeValue, step, frame
+/// (its index) and phase_names, phase_kinds, units (lines "name unit") as arrays of strings, which a .vtu holds as
+/// UInt8 text with a newline between, because meshio reads no strings. Throws OutputError.
 void write_frame(const std::filesystem::path& file, const Frame& frame, FrameFormat format, bool compress);
 
 /// Reads a frame back (.vtp or .vtu). Throws OutputError.

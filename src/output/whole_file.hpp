@@ -21,8 +21,8 @@ class WholeFile {
 
   /// Where another writer than write() puts its bytes.
   const std::filesystem::path& temporary() const { return temporary_; }
-  void write(std::string_view bytes);   ///< Appends. Throws OutputError.
-  void publish();                       ///< fsync, rename, fsync of the directory. Throws OutputError.
+  void write(std::string_view bytes);  ///< Appends. Throws OutputError.
+  void publish();                      ///< fsync, rename, fsync of the directory. Throws OutputError.
 
   /// Says why another writer could not write temporary(): tries to write there itself and returns the system's words
   /// ("No space left on device"), or `otherwise` if the trial succeeds.

@@ -9,39 +9,59 @@
 namespace barchan {
 
 enum class Field : int {
-  position, velocity, density, pressure, acceleration, density_rate, velocity_gradient, stress, energy, energy_rate,
-  shift_velocity, anisotropy, wall_normal, wall_depth, smoothing_length, count
+  position,
+  velocity,
+  density,
+  pressure,
+  acceleration,
+  density_rate,
+  velocity_gradient,
+  stress,
+  energy,
+  energy_rate,
+  shift_velocity,
+  anisotropy,
+  wall_normal,
+  wall_depth,
+  smoothing_length,
+  count
 };
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
-enum class Rank { scalar, vector, deviator, symmetric, matrix };   // deviator: symmetric, traceless (2 or 6 numbers)
+enum class Rank { scalar, vector, deviator, symmetric, matrix };  // deviator: symmetric, traceless (2 or 6 numbers)
 
 struct FieldInfo {
   Field id;
-  std::string_view name;      // as written to files and in a scene's output.fields
+  std::string_view name;  // as written to files and in a scene's output.fields
   std::string_view symbol;
   std::string_view unit;
   Rank rank;
-  bool is_state;              // part of the state: in a checkpoint, permuted by sorting
+  bool is_state;  // part of the state: in a checkpoint, permuted by sorting
   std::string_view meaning;
 };
 
 inline constexpr std::array<FieldInfo, field_count> field_table{{
     {Field::position, "position", "x", "m", Rank::vector, true, "place of the particle"},
-    {Field::velocity, "velocity", "v", "m/s", Rank::vector, true, "velocity; between steps half a step behind the position"},
+    {Field::velocity, "velocity", "v", "m/s", Rank::vector, true,
+     "velocity; between steps half a step behind the position"},
     {Field::density, "density", "rho", "kg/m3", Rank::scalar, true, "density"},
     {Field::pressure, "pressure", "p", "Pa", Rank::scalar, true, "pressure from the equation of state"},
     {Field::acceleration, "acceleration", "a", "m/s2", Rank::vector, true, "total acceleration of the last pass"},
     {Field::density_rate, "density_rate", "drho/dt", "kg/m3/s", Rank::scalar, true, "rate of change of the density"},
-    {Field::velocity_gradient, "velocity_gradient", "grad v", "1/s", Rank::matrix, false, "velocity gradient, row-major"},
+    {Field::velocity_gradient, "velocity_gradient", "grad v", "1/s", Rank::matrix, false,
+     "velocity gradient, row-major"},
     {Field::stress, "stress", "s", "Pa", Rank::symmetric, true, "deviatoric stress, xx yy zz xy yz xz"},
     {Field::energy, "energy", "e", "J/kg", Rank::scalar, true, "specific internal energy"},
     {Field::energy_rate, "energy_rate", "de/dt", "W/kg", Rank::scalar, false, "rate of change of the internal energy"},
-    {Field::shift_velocity, "shift_velocity", "du", "m/s", Rank::vector, true, "transport velocity less the velocity (particle shifting)"},
-    {Field::anisotropy, "anisotropy", "A", "1", Rank::deviator, true, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz"},
+    {Field::shift_velocity, "shift_velocity", "du", "m/s", Rank::vector, true,
+     "transport velocity less the velocity (particle shifting)"},
+    {Field::anisotropy, "anisotropy", "A", "1", Rank::deviator, true,
+     "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz"},
     {Field::wall_normal, "wall_normal", "n", "1", Rank::vector, true, "unit normal of a wall particle, into the fluid"},
-    {Field::wall_depth, "wall_depth", "phi", "m", Rank::scalar, true, "distance of a wall particle behind the wall's surface, 0: unknown"},
-    {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false, "half the kernel radius of the phase with itself"},
+    {Field::wall_depth, "wall_depth", "phi", "m", Rank::scalar, true,
+     "distance of a wall particle behind the wall's surface, 0: unknown"},
+    {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false,
+     "half the kernel radius of the phase with itself"},
 }};
 
 constexpr const FieldInfo& info(Field f) { return field_table[static_cast<std::size_t>(f)]; }

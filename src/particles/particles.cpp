@@ -6,8 +6,14 @@ namespace barchan {
 
 PhaseParticles::PhaseParticles(std::string name, PhaseKind kind, int dimensions, std::size_t size, double mass,
                                std::int64_t first_id)
-    : name_(std::move(name)), kind_(kind), dimensions_(dimensions), size_(size), mass_(mass), id_(size),
-      id_scratch_(size), scratch_(size) {
+    : name_(std::move(name)),
+      kind_(kind),
+      dimensions_(dimensions),
+      size_(size),
+      mass_(mass),
+      id_(size),
+      id_scratch_(size),
+      scratch_(size) {
   std::iota(id_.begin(), id_.end(), first_id);
 }
 

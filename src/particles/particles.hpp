@@ -16,18 +16,21 @@ namespace barchan {
 /// says which particle stands where.
 class PhaseParticles {
  public:
-  PhaseParticles(std::string name, PhaseKind kind, int dimensions, std::size_t size, double mass, std::int64_t first_id);
+  PhaseParticles(std::string name, PhaseKind kind, int dimensions, std::size_t size, double mass,
+                 std::int64_t first_id);
 
   const std::string& name() const { return name_; }
   PhaseKind kind() const { return kind_; }
   int dimensions() const { return dimensions_; }
   std::size_t size() const { return size_; }
-  double mass() const { return mass_; }   ///< kg a particle (kg per metre of depth in 2D)
+  double mass() const { return mass_; }  ///< kg a particle (kg per metre of depth in 2D)
 
-  void add(Field field);                  ///< makes the field, zero; does nothing if it is there
+  void add(Field field);  ///< makes the field, zero; does nothing if it is there
   bool has(Field field) const { return !columns_[index(field)].empty(); }
   int components(Field field) const { return barchan::components(info(field).rank, dimensions_); }
-  double* column(Field field, int component = 0) { return columns_[index(field)][static_cast<std::size_t>(component)].data(); }
+  double* column(Field field, int component = 0) {
+    return columns_[index(field)][static_cast<std::size_t>(component)].data();
+  }
   const double* column(Field field, int component = 0) const {
     return columns_[index(field)][static_cast<std::size_t>(component)].data();
   }
@@ -38,7 +41,7 @@ class PhaseParticles {
   /// Reorders every array: new[k] = old[order[k]]. Allocates nothing.
   void permute(const std::uint32_t* order);
 
-  std::size_t bytes() const;              ///< memory of the arrays
+  std::size_t bytes() const;  ///< memory of the arrays
 
  private:
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }

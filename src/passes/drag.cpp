@@ -29,14 +29,15 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
         force[d] = Lanes(0.0);
       }
       const Lanes own_volume(record[R::volume]), strength(e.strength);
-      for_each_neighbour<R::size>(row, others, [&](const Lanes* b) __attribute__((always_inline)) {
-        std::array<Lanes, Dim> r, dv;
-        const Lanes r2 = separation<Dim>(x, b + R::position, r);
-        for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
-        Lanes w, f;
-        kernel.value_and_gradient(r2, w, f);
-        GrainDrag::add(dv, strength * w * (a_is_fluid ? own_volume : b[R::volume]), force);
-      });
+      for_each_neighbour<R::size>(
+          row, others, [&](const Lanes* b) __attribute__((always_inline)) {
+            std::array<Lanes, Dim> r, dv;
+            const Lanes r2 = separation<Dim>(x, b + R::position, r);
+            for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
+            Lanes w, f;
+            kernel.value_and_gradient(r2, w, f);
+            GrainDrag::add(dv, strength * w * (a_is_fluid ? own_volume : b[R::volume]), force);
+          });
       for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
     }
   });
@@ -46,10 +47,8 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
 
 void drag_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
                  const DragEntry& entry, bool a_is_fluid) {
-  if (a.dimensions() == 2)
-    drag<2>(a, own, list, others, entry, a_is_fluid);
-  else
-    drag<3>(a, own, list, others, entry, a_is_fluid);
+  if (a.dimensions() == 2) drag<2>(a, own, list, others, entry, a_is_fluid);
+  else drag<3>(a, own, list, others, entry, a_is_fluid);
 }
 
 }  // namespace barchan

@@ -1,20 +1,20 @@
 // Form drag of grains in a fluid, one side at a time.
 #pragma once
 
-#include "passes/pair_loop.hpp"
 #include "particles/particles.hpp"
+#include "passes/pair_loop.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
 
 struct DragEntry {
   KernelKind kernel;
-  double radius;       // m
-  double strength;     // K = 1/2 C_D rho_f A [kg/m]
+  double radius;    // m
+  double strength;  // K = 1/2 C_D rho_f A [kg/m]
 };
 
-/// Adds to the acceleration of `a` the drag from `others` (motion records with true velocities). `a_is_fluid` says whose
-/// volume weighs a pair.
+/// Adds to the acceleration of `a` the drag from `others` (motion records with true velocities). `a_is_fluid` says
+/// whose volume weighs a pair.
 void drag_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
                  const DragEntry& entry, bool a_is_fluid);
 

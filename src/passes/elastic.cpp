@@ -78,11 +78,12 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
       if (row.begin == row.end) continue;
       const Lanes mass(e.mass);
       with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-        for_each_neighbour<R::size>(row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-          std::array<Lanes, Dim> r;
-          const Lanes r2 = separation<Dim>(x, b + R::position, r);
-          Law::add(v, mass, r, kernel.gradient(r2), b + R::velocity, b[R::volume], s);
-        });
+        for_each_neighbour<R::size>(
+            row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+              std::array<Lanes, Dim> r;
+              const Lanes r2 = separation<Dim>(x, b + R::position, r);
+              Law::add(v, mass, r, kernel.gradient(r2), b + R::velocity, b[R::volume], s);
+            });
       });
     }
     Tensor l{}, old{}, mid{};
@@ -96,7 +97,7 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
     const Tensor rate = stress_rate(mid, l, q.shear_modulus);
     for (std::size_t d = 0; d < 3; ++d)
       for (std::size_t e = 0; e <= d; ++e) stress[column_of[d][e]][k] = old[d][e] + dt * rate[d][e];
-    if (energy) {   // de/dt = s:L/rho, eq. (13b) with the whole stress; the power at the middle of the step
+    if (energy) {  // de/dt = s:L/rho, eq. (13b) with the whole stress; the power at the middle of the step
       double power = -p[k] * (l[0][0] + l[1][1] + l[2][2]);
       for (std::size_t d = 0; d < 3; ++d)
         for (std::size_t e = 0; e < 3; ++e) power += mid[d][e] * l[d][e];
@@ -136,12 +137,13 @@ void forces(PhaseParticles& body, const RecordArray& own_records, std::span<cons
       own.beta = Lanes(q.beta * h * h / q.reference_density);
       own.soft = Lanes(0.01 * h * h);
       with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-        for_each_neighbour<R::size>(row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-          std::array<Lanes, Dim> r;
-          const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-          Law::template add<Viscous>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress, b[R::volume],
-                                     sum);
-        });
+        for_each_neighbour<R::size>(
+            row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+              std::array<Lanes, Dim> r;
+              const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+              Law::template add<Viscous>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress, b[R::volume],
+                                         sum);
+            });
       });
     }
     for (std::size_t d = 0; d < Dim; ++d) a[d][k] = simd::sum(sum[d]) + q.gravity[d];
@@ -164,8 +166,7 @@ void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<cons
   const bool viscous = q.alpha != 0.0 || q.beta != 0.0;
   if (body.dimensions() == 2)
     viscous ? forces<2, true>(body, own, neighbours, q) : forces<2, false>(body, own, neighbours, q);
-  else
-    viscous ? forces<3, true>(body, own, neighbours, q) : forces<3, false>(body, own, neighbours, q);
+  else viscous ? forces<3, true>(body, own, neighbours, q) : forces<3, false>(body, own, neighbours, q);
 }
 
 }  // namespace barchan

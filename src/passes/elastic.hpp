@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "passes/pair_loop.hpp"
 #include "particles/particles.hpp"
+#include "passes/pair_loop.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -12,19 +12,19 @@ namespace barchan {
 /// One entry between elastic phases.
 struct ElasticNeighbour {
   const PairList* list;
-  const RecordArray* records;      // stress records of the other phase
+  const RecordArray* records;  // stress records of the other phase
   KernelKind kernel;
-  double radius;                   // m
-  double mass;                     // kg, of a particle of the other phase
+  double radius;  // m
+  double mass;    // kg, of a particle of the other phase
 };
 
 struct ElasticParameters {
-  double reference_density;        // kg/m3
-  double shear_modulus;            // Pa, G
-  double bulk_modulus;             // Pa, K; p = (K/rho0)(rho - rho0)
-  double alpha, beta;              // Monaghan's viscosity
-  double sound_speed;              // m/s, of the viscosity: sqrt(K/rho0)
-  Vec3 gravity;                    // m/s2
+  double reference_density;  // kg/m3
+  double shear_modulus;      // Pa, G
+  double bulk_modulus;       // Pa, K; p = (K/rho0)(rho - rho0)
+  double alpha, beta;        // Monaghan's viscosity
+  double sound_speed;        // m/s, of the viscosity: sqrt(K/rho0)
+  Vec3 gravity;              // m/s2
 };
 
 /// Packs stress records: position, velocity, (s - p I)/rho^2, m/rho.

@@ -29,19 +29,20 @@ void energy(PhaseParticles& fluid, const RecordArray& own, std::span<const Fluid
       const Lanes mu(e.viscosity);
       Lanes sum(0.0);
       with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-        for_each_neighbour<R::size>(row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-          std::array<Lanes, Dim> r;
-          const Lanes r2 = separation<Dim>(x, b + R::position, r);
-          const Lanes vf = b[R::volume] * kernel.gradient(r2);
-          Lanes vr(0.0), v2(0.0);
-          for (std::size_t d = 0; d < Dim; ++d) {
-            const Lanes dv = v[d] - b[R::velocity + d];
-            vr = simd::fma(dv, r[d], vr);
-            v2 = simd::fma(dv, dv, v2);
-          }
-          const Lanes work = simd::fma(simd::fma(Lanes(0.5), b[R::pressure], half_p), vr, -(mu * v2));
-          sum = simd::fma(vf, work, sum);
-        });
+        for_each_neighbour<R::size>(
+            row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+              std::array<Lanes, Dim> r;
+              const Lanes r2 = separation<Dim>(x, b + R::position, r);
+              const Lanes vf = b[R::volume] * kernel.gradient(r2);
+              Lanes vr(0.0), v2(0.0);
+              for (std::size_t d = 0; d < Dim; ++d) {
+                const Lanes dv = v[d] - b[R::velocity + d];
+                vr = simd::fma(dv, r[d], vr);
+                v2 = simd::fma(dv, dv, v2);
+              }
+              const Lanes work = simd::fma(simd::fma(Lanes(0.5), b[R::pressure], half_p), vr, -(mu * v2));
+              sum = simd::fma(vf, work, sum);
+            });
       });
       total += simd::sum(sum);
     }

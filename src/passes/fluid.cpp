@@ -31,11 +31,12 @@ BARCHAN_SIMD_INLINE void add_row(PairList::Row row, const FluidNeighbour& e, con
   using R = MotionRecord<Dim>;
   ready([&](const auto& kernel) __attribute__((always_inline)) {
     typename Law<Dim>::template Sums<Lanes> sums{};
-    for_each_neighbour<R::size>(row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-      std::array<Lanes, Dim> r;
-      const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-      Law<Dim>::add(own, r, r2, kernel.slope(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
-    });
+    for_each_neighbour<R::size>(
+        row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+          std::array<Lanes, Dim> r;
+          const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+          Law<Dim>::add(own, r, r2, kernel.slope(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
+        });
     total.take(sums, kernel.slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
   });
 }
@@ -101,8 +102,9 @@ Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, doub
   return r;
 }
 
-/// det(-M) of a full neighbourhood is 1, perturbed by a fifth of a spacing 0.8 to 1.2. Below this there is a void (behind
-/// a grain that has left, say): corrections would raise the local speed of sound, and with it break the step's limit.
+/// det(-M) of a full neighbourhood is 1, perturbed by a fifth of a spacing 0.8 to 1.2. Below this there is a void
+/// (behind a grain that has left, say): corrections would raise the local speed of sound, and with it break the step's
+/// limit.
 constexpr double least_determinant = 0.6;
 
 /// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
@@ -131,7 +133,7 @@ Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s,
     trace += moment[moment_index(d, d)];
     for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * moment[moment_index(d, e)];
   }
-  weighted_trace = std::min(weighted_trace + trace, 0.5 * trace);   // both negative
+  weighted_trace = std::min(weighted_trace + trace, 0.5 * trace);  // both negative
   const double laplace_v = -2.0 * Dim / weighted_trace, laplace_p = -2.0 * Dim / trace;
   const double c2 = q.sound_speed * q.sound_speed;
   std::array<double, Dim> grad_p{};
@@ -152,8 +154,7 @@ Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s,
       transported += r.shift[e] * grad_v[d][e];
       squared += grad_v[d][e] * grad_v[e][d];
     }
-    r.acceleration[d] =
-        (laplace_v * mu * friction - grad_p[d]) / rho + q.gravity[d] + q.acceleration[d] + transported;
+    r.acceleration[d] = (laplace_v * mu * friction - grad_p[d]) / rho + q.gravity[d] + q.acceleration[d] + transported;
   }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
   r.density = -rho * divergence + q.diffusivity / c2 * laplace_p * dynamic +
@@ -161,7 +162,8 @@ Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s,
   const double scale = -0.5 * (Dim + 2) * Dim / trace;
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e <= d; ++e)
-      anisotropy[moment_index(d, e)] = !whole ? 0.0 : scale * moment[moment_index(d, e)] + (d == e ? 0.5 * (Dim + 2) : 0.0);
+      anisotropy[moment_index(d, e)] =
+          !whole ? 0.0 : scale * moment[moment_index(d, e)] + (d == e ? 0.5 * (Dim + 2) : 0.0);
   // Weights stay positive: no entry of A beyond a half.
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e <= d; ++e) {
@@ -199,7 +201,7 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
   const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
   const auto& kernels = ready_kernels(neighbours, Dim);
   constexpr std::size_t moments = Dim * (Dim + 1) / 2;
-  std::array<double*, moments> skew{};   // 2D: xx xy, and yy = -xx
+  std::array<double*, moments> skew{};  // 2D: xx xy, and yy = -xx
   if constexpr (L::corrected)
     for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c)
       skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
@@ -210,8 +212,7 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
     typename L::template Sums<Lanes> sums{};
     std::array<double, moments> anisotropy{};
     if constexpr (L::corrected) {
-      if constexpr (Dim == 2)
-        anisotropy = {skew[0][k], skew[1][k], -skew[0][k]};
+      if constexpr (Dim == 2) anisotropy = {skew[0][k], skew[1][k], -skew[0][k]};
       else
         for (std::size_t c = 0; c < moments; ++c) anisotropy[c] = skew[c][k];
     }
@@ -271,15 +272,12 @@ void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const 
   const bool plain = scheme == FluidScheme::plain;
   if (fluid.dimensions() == 2)
     plain ? rates<2, PlainFluid>(fluid, own, neighbours, q) : rates<2, ConsistentFluid>(fluid, own, neighbours, q);
-  else
-    plain ? rates<3, PlainFluid>(fluid, own, neighbours, q) : rates<3, ConsistentFluid>(fluid, own, neighbours, q);
+  else plain ? rates<3, PlainFluid>(fluid, own, neighbours, q) : rates<3, ConsistentFluid>(fluid, own, neighbours, q);
 }
 
 void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores) {
-  if (solid.dimensions() == 2)
-    reaction<2>(solid, own, fluid, pores);
-  else
-    reaction<3>(solid, own, fluid, pores);
+  if (solid.dimensions() == 2) reaction<2>(solid, own, fluid, pores);
+  else reaction<3>(solid, own, fluid, pores);
 }
 
 }  // namespace barchan

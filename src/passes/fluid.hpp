@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "passes/pair_loop.hpp"
 #include "particles/particles.hpp"
+#include "passes/pair_loop.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -13,32 +13,33 @@ namespace barchan {
 /// One entry of the matrix as the fluid sees it.
 struct FluidNeighbour {
   const PairList* list;
-  const RecordArray* records;      // motion records of the other phase (a solid's: pressure and velocity extended into it)
+  const RecordArray* records;  // motion records of the other phase (a solid's: pressure and velocity extended into it)
   KernelKind kernel;
-  double radius;                   // m
-  double viscosity;                // Pa s, of the pair
-  bool diffuse;                    // density diffusion acts across this entry
+  double radius;     // m
+  double viscosity;  // Pa s, of the pair
+  bool diffuse;      // density diffusion acts across this entry
 };
 
 struct FluidParameters {
-  double reference_density;        // kg/m3
-  double sound_speed;              // m/s
-  double diffusivity;              // m2/s, of the density: theta c^2 dt + delta h c
-  double source_diffusivity;       // m2/s, consistent scheme: of the part of lap p that the flow itself makes
-  double shift_speed;              // m/s: du = -shift_speed * h * B, at most `shift_limit`
-  double shift_limit;              // m/s
-  double smoothing_length;         // m, of the phase with itself
-  Vec3 gravity;                    // m/s2
-  Vec3 acceleration;               // m/s2, further uniform body force
+  double reference_density;   // kg/m3
+  double sound_speed;         // m/s
+  double diffusivity;         // m2/s, of the density: theta c^2 dt + delta h c
+  double source_diffusivity;  // m2/s, consistent scheme: of the part of lap p that the flow itself makes
+  double shift_speed;         // m/s: du = -shift_speed * h * B, at most `shift_limit`
+  double shift_limit;         // m/s
+  double smoothing_length;    // m, of the phase with itself
+  Vec3 gravity;               // m/s2
+  Vec3 acceleration;          // m/s2, further uniform body force
 };
 
 /// Writes acceleration, density_rate and (if the field is there) shift_velocity of `fluid`. `own` are its records.
 void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& parameters, FluidScheme scheme);
 
-/// Adds to the acceleration of a solid's particles what the fluid does to them, the reaction to fluid_rates of the plain
-/// scheme: m_b dv_b = -m_a dv_a for every pair. With `pores`, the pressure is closed behind a particle that has fluid
-/// on one side only by its own extended pressure (air in the pores of a bed), so that a uniform pressure lifts nothing.
+/// Adds to the acceleration of a solid's particles what the fluid does to them, the reaction to fluid_rates of the
+/// plain scheme: m_b dv_b = -m_a dv_a for every pair. With `pores`, the pressure is closed behind a particle that has
+/// fluid on one side only by its own extended pressure (air in the pores of a bed), so that a uniform pressure lifts
+/// nothing.
 void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores);
 
 }  // namespace barchan

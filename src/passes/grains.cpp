@@ -28,14 +28,15 @@ void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, c
         v[d] = Lanes(record[R::velocity + d]);
         force[d] = Lanes(0.0);
       }
-      for_each_neighbour<R::size>(row, others, [&](const Lanes* b) __attribute__((always_inline)) {
-        std::array<Lanes, Dim> r, dv;
-        const Lanes r2 = separation<Dim>(x, b + R::position, r);
-        for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
-        Lanes w, f;
-        kernel.value_and_gradient(r2, w, f);
-        KernelContact::add(constants, r, r2, dv, w, f, force);
-      });
+      for_each_neighbour<R::size>(
+          row, others, [&](const Lanes* b) __attribute__((always_inline)) {
+            std::array<Lanes, Dim> r, dv;
+            const Lanes r2 = separation<Dim>(x, b + R::position, r);
+            for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
+            Lanes w, f;
+            kernel.value_and_gradient(r2, w, f);
+            KernelContact::add(constants, r, r2, dv, w, f, force);
+          });
       for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
     }
   });
@@ -45,10 +46,8 @@ void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, c
 
 void contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
                     KernelKind kernel, double radius, const KernelContact& law) {
-  if (a.dimensions() == 2)
-    contacts<2>(a, own, list, others, kernel, radius, law);
-  else
-    contacts<3>(a, own, list, others, kernel, radius, law);
+  if (a.dimensions() == 2) contacts<2>(a, own, list, others, kernel, radius, law);
+  else contacts<3>(a, own, list, others, kernel, radius, law);
 }
 
 }  // namespace barchan

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "laws/kernel_contact.hpp"
-#include "passes/pair_loop.hpp"
 #include "particles/particles.hpp"
+#include "passes/pair_loop.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {

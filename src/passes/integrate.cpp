@@ -32,10 +32,8 @@ void kick_and_drift_all(PhaseParticles& phase, double half_kick, double time) {
     for (std::size_t d = 0; d < Dim; ++d) {
       const double speed = v[d][k] + half_kick * a[d][k];
       v[d][k] = speed;
-      if constexpr (Shifted)
-        x[d][k] += time * (speed + du[d][k]);
-      else
-        x[d][k] += time * speed;
+      if constexpr (Shifted) x[d][k] += time * (speed + du[d][k]);
+      else x[d][k] += time * speed;
     }
 }
 
@@ -69,7 +67,7 @@ template <std::size_t Dim>
 double kick_all(PhaseParticles& phase, double half_kick) {
   const auto v = columns<Dim>(phase, Field::velocity), a = columns<Dim>(phase, Field::acceleration);
   const auto n = static_cast<std::int64_t>(phase.size());
-  double most = 0.0, sum = 0.0;   // the sum of zeros is NaN when an acceleration is not finite, whatever the order
+  double most = 0.0, sum = 0.0;  // the sum of zeros is NaN when an acceleration is not finite, whatever the order
 #pragma omp parallel for simd schedule(static) reduction(max : most) reduction(+ : sum)
   for (std::int64_t k = 0; k < n; ++k)
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -86,9 +84,11 @@ double kick_all(PhaseParticles& phase, double half_kick) {
 void kick_and_drift(PhaseParticles& phase, double half_kick, double time, const PressureLaw* pressure) {
   const bool shifted = phase.has(Field::shift_velocity);
   if (phase.dimensions() == 2)
-    shifted ? kick_and_drift_all<2, true>(phase, half_kick, time) : kick_and_drift_all<2, false>(phase, half_kick, time);
+    shifted ? kick_and_drift_all<2, true>(phase, half_kick, time)
+            : kick_and_drift_all<2, false>(phase, half_kick, time);
   else
-    shifted ? kick_and_drift_all<3, true>(phase, half_kick, time) : kick_and_drift_all<3, false>(phase, half_kick, time);
+    shifted ? kick_and_drift_all<3, true>(phase, half_kick, time)
+            : kick_and_drift_all<3, false>(phase, half_kick, time);
   if (pressure) advance_density(phase, time, *pressure);
 }
 

@@ -7,10 +7,10 @@ namespace barchan {
 
 /// The equation of state of a fluid, p(rho), as integrate.cpp evaluates it.
 struct PressureLaw {
-  double reference_density;     // kg/m3
-  double sound_speed;           // m/s
-  double exponent;              // Tait's gamma; 1 is the linear equation of state
-  double background;            // Pa
+  double reference_density;  // kg/m3
+  double sound_speed;        // m/s
+  double exponent;           // Tait's gamma; 1 is the linear equation of state
+  double background;         // Pa
   double operator()(double density) const;
 };
 

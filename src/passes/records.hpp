@@ -39,7 +39,7 @@ class RecordArray {
     dummy_ = particles + images;
     double* d = data_.data() + dummy_ * size_;
     for (std::size_t f = 0; f < size_; ++f) d[f] = 0.0;
-    d[0] = d[1] = far_away;   // finite, beyond every kernel
+    d[0] = d[1] = far_away;  // finite, beyond every kernel
   }
 
   double* operator[](std::size_t k) { return data_.data() + k * size_; }

@@ -8,8 +8,8 @@ namespace {
 
 template <int Dim>
 struct Sums {
-  Lanes weight{0.0}, pressure{0.0}, depth2{0.0};              // sum W, sum W (p + rho (g-a).r), sum W phi_a^2
-  std::array<Lanes, Dim> velocity{}, sloped{};                // sum W v, sum W phi_a (v - v_wall)
+  Lanes weight{0.0}, pressure{0.0}, depth2{0.0};  // sum W, sum W (p + rho (g-a).r), sum W phi_a^2
+  std::array<Lanes, Dim> velocity{}, sloped{};    // sum W v, sum W phi_a (v - v_wall)
 };
 
 template <int Dim>
@@ -45,26 +45,27 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
       }
       const Lanes behind(-phi_w);
       with_kernel<double>(fluid.kernel, fluid.radius, Dim, [&](const auto& kernel) {
-        for_each_neighbour<R::size>(row, *fluid.records, [&](const Lanes* b) __attribute__((always_inline)) {
-          std::array<Lanes, Dim> r;
-          const Lanes r2 = separation<Dim>(x, b + R::position, r);
-          Lanes w, f;
-          kernel.value_and_gradient(r2, w, f);
-          w = w * b[R::volume];
-          Lanes p = b[R::pressure], phi = behind;
-          for (std::size_t d = 0; d < Dim; ++d) {
-            p = simd::fma(lift[d], r[d], p);
-            phi = simd::fnma(toward[d], r[d], phi);      // phi_a = n.(x_a - x_w) - depth
-          }
-          const Lanes w_phi = w * phi;
-          s.weight += w;
-          s.pressure = simd::fma(w, p, s.pressure);
-          s.depth2 = simd::fma(w_phi, phi, s.depth2);
-          for (std::size_t d = 0; d < Dim; ++d) {
-            s.velocity[d] = simd::fma(w, b[R::velocity + d], s.velocity[d]);
-            s.sloped[d] = simd::fma(w_phi, b[R::velocity + d] - wall[d], s.sloped[d]);
-          }
-        });
+        for_each_neighbour<R::size>(
+            row, *fluid.records, [&](const Lanes* b) __attribute__((always_inline)) {
+              std::array<Lanes, Dim> r;
+              const Lanes r2 = separation<Dim>(x, b + R::position, r);
+              Lanes w, f;
+              kernel.value_and_gradient(r2, w, f);
+              w = w * b[R::volume];
+              Lanes p = b[R::pressure], phi = behind;
+              for (std::size_t d = 0; d < Dim; ++d) {
+                p = simd::fma(lift[d], r[d], p);
+                phi = simd::fnma(toward[d], r[d], phi);  // phi_a = n.(x_a - x_w) - depth
+              }
+              const Lanes w_phi = w * phi;
+              s.weight += w;
+              s.pressure = simd::fma(w, p, s.pressure);
+              s.depth2 = simd::fma(w_phi, phi, s.depth2);
+              for (std::size_t d = 0; d < Dim; ++d) {
+                s.velocity[d] = simd::fma(w, b[R::velocity + d], s.velocity[d]);
+                s.sloped[d] = simd::fma(w_phi, b[R::velocity + d] - wall[d], s.sloped[d]);
+              }
+            });
       });
     }
     const double weight = simd::sum(s.weight);
@@ -79,14 +80,13 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
     double mean_normal = 0.0, stuck_normal = 0.0;
     for (std::size_t d = 0; d < Dim; ++d) {
       mean[d] = simd::sum(s.velocity[d]) / weight;
-      stuck[d] = phi_w > 0.0 && depth2 > 0.0 ? v_wall[d] - phi_w * simd::sum(s.sloped[d]) / depth2
-                                             : 2.0 * v_wall[d] - mean[d];
+      stuck[d] =
+          phi_w > 0.0 && depth2 > 0.0 ? v_wall[d] - phi_w * simd::sum(s.sloped[d]) / depth2 : 2.0 * v_wall[d] - mean[d];
       mean_normal += mean[d] * normal[d];
       stuck_normal += stuck[d] * normal[d];
     }
     for (std::size_t d = 0; d < Dim; ++d)
-      record[R::velocity + d] =
-          slip == Slip::no_slip ? stuck[d] : mean[d] + (stuck_normal - mean_normal) * normal[d];
+      record[R::velocity + d] = slip == Slip::no_slip ? stuck[d] : mean[d] + (stuck_normal - mean_normal) * normal[d];
   }
 }
 
@@ -94,10 +94,8 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
 
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
                        const Vec3& gravity, Slip slip) {
-  if (solid.dimensions() == 2)
-    extend<2>(solid, own, fluids, gravity, slip);
-  else
-    extend<3>(solid, own, fluids, gravity, slip);
+  if (solid.dimensions() == 2) extend<2>(solid, own, fluids, gravity, slip);
+  else extend<3>(solid, own, fluids, gravity, slip);
 }
 
 }  // namespace barchan

@@ -1,4 +1,5 @@
-// Pressure and velocity of the fluid continued into solids, so that a fluid particle near one finds neighbours all round.
+// Pressure and velocity of the fluid continued into solids, so that a fluid particle near one finds neighbours all
+// round.
 #pragma once
 
 #include <span>
@@ -9,17 +10,17 @@ namespace barchan {
 
 /// What a solid (a wall, or grains in air) sees of one fluid.
 struct ExtensionSource {
-  const PairList* list;            // fluid particles about each particle of the solid
-  const RecordArray* records;      // the fluid's motion records
+  const PairList* list;        // fluid particles about each particle of the solid
+  const RecordArray* records;  // the fluid's motion records
   KernelKind kernel;
-  double radius;                   // m
-  double density;                  // kg/m3, of the fluid at rest
+  double radius;   // m
+  double density;  // kg/m3, of the fluid at rest
 };
 
 /// Writes velocity and pressure into the solid's motion records `own` (position and volume are there already):
 ///   p_w = [sum p_a W + rho (g - a_w) . sum (x_w - x_a) W] / sum W               (Adami et al. 2012, eq. 27)
-///     a_w is that of an elastic body; grains count as unaccelerated: the blows of their contacts, thousands of g for some
-///     microseconds, are no motion of a boundary that the fluid could follow
+///     a_w is that of an elastic body; grains count as unaccelerated: the blows of their contacts, thousands of g for
+///     some microseconds, are no motion of a boundary that the fluid could follow
 ///   no-slip, depth known: v_w = v_wall - phi_w sum W phi_a (v_a - v_wall) / sum W phi_a^2, the line through the wall's
 ///     velocity at the surface that fits the fluid best (phi: distance to the surface); exact for a linear profile
 ///   no-slip, depth unknown: v_w = 2 v_wall - sum v_a W / sum W                   (Adami et al. 2012, eq. 23)

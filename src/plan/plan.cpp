@@ -64,8 +64,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
       }
     }
   double height = 0;
-  for (std::size_t d = 0; d < 3; ++d)
-    height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
+  for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
@@ -113,17 +112,19 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.radius = i.radius * scene.spacing;
     e.drag = i.drag;
     if (e.drag > 0 && e.law != Law::coupling)
-      throw SceneError(scene.file + ": interactions." + e.name + ".drag: only a fluid with grains has a drag; expected no drag here");
+      throw SceneError(scene.file + ": interactions." + e.name +
+                       ".drag: only a fluid with grains has a drag; expected no drag here");
     e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     if (e.a == e.b && scene.phases[e.a].scheme == FluidScheme::consistent && i.kernel != KernelKind::wendland_c2)
-      throw SceneError(scene.file + ": interactions." + e.name + ": the consistent scheme has no pressure that keeps "
+      throw SceneError(scene.file + ": interactions." + e.name +
+                       ": the consistent scheme has no pressure that keeps "
                        "particles apart, and under the cubic spline they pair; expected kernel = \"wendland-c2\"");
     const auto direction = [&](std::size_t from, std::size_t to) {
       plan.directions.push_back({from, to, e.radius});
       return static_cast<int>(plan.directions.size()) - 1;
     };
     const bool a_wall = scene.phases[e.a].kind == PhaseKind::wall, b_wall = scene.phases[e.b].kind == PhaseKind::wall;
-    const bool wall_looks = e.law == Law::boundary;   // extension needs the fluid about the wall; contacts do not
+    const bool wall_looks = e.law == Law::boundary;  // extension needs the fluid about the wall; contacts do not
     if (!a_wall || wall_looks) e.forward = direction(e.a, e.b);
     if (e.a != e.b && (!b_wall || wall_looks)) e.backward = direction(e.b, e.a);
     plan.entries.push_back(e);
@@ -137,8 +138,8 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (p.smoothing_length == 0)
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
-    const bool own = std::any_of(plan.entries.begin(), plan.entries.end(),
-                                 [&](const PlanEntry& e) { return e.a == k && e.b == k; });
+    const bool own =
+        std::any_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.a == k && e.b == k; });
     if (p.kind == PhaseKind::fluid && !own)
       throw SceneError("interactions: the fluid \"" + p.name + "\" has no entry with itself; add " + p.name + "-" +
                        p.name + " = 3.0");
@@ -216,15 +217,15 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
       q.sound_speed = p.contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
     }
     if (p.kind == PhaseKind::fluid && q.sound_speed <= 0)
-      throw SceneError("phases." + p.name + ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
+      throw SceneError("phases." + p.name +
+                       ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
                        "can be chosen; give sound-speed or time.largest-speed");
     plan.phases.push_back(q);
   }
   add_entries(scene, plan);
   add_passes(scene, plan);
   plan.limits = initial_limits(scene, plan);
-  if (plan.limits.empty() && plan.fixed_step == 0)
-    throw SceneError("time: nothing limits the step; give time.step");
+  if (plan.limits.empty() && plan.fixed_step == 0) throw SceneError("time: nothing limits the step; give time.step");
   return plan;
 }
 

@@ -26,54 +26,54 @@ std::string to_string(Law law);
 /// The kernel sums of an entry on a regular lattice of the scene's spacing; 1 and 1 are the truth.
 struct Consistency {
   int neighbours = 0;
-  double volume_sum = 0;      // sum V W, the particle itself included
-  double gradient_sum = 0;    // -sum V x dW/dx
+  double volume_sum = 0;    // sum V W, the particle itself included
+  double gradient_sum = 0;  // -sum V x dW/dx
   bool consistent() const { return std::abs(volume_sum - 1) < 0.03 && std::abs(gradient_sum - 1) < 0.03; }
 };
 Consistency lattice_consistency(KernelKind kernel, double radius_in_spacings, int dimensions);
 
 struct PlanEntry {
-  std::size_t a = 0, b = 0;   // phase numbers, a <= b
-  std::string name;           // "air-sand"
+  std::size_t a = 0, b = 0;  // phase numbers, a <= b
+  std::string name;          // "air-sand"
   Law law = Law::fluid;
   KernelKind kernel = KernelKind::cubic_spline;
-  double radius = 0;          // m
+  double radius = 0;  // m
   Consistency consistency;
-  double drag = 0;            // drag coefficient, 0: none
-  int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
+  double drag = 0;                  // drag coefficient, 0: none
+  int forward = -1, backward = -1;  // directions: a looks for b, b looks for a; -1: not needed
 };
 
 struct PlanPhase {
   std::string name;
   PhaseKind kind = PhaseKind::fluid;
   std::size_t count = 0;
-  double mass = 0;            // kg a particle (per metre of depth in 2D)
-  double sound_speed = 0;     // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
-  double smoothing_length = 0;   // m
+  double mass = 0;              // kg a particle (per metre of depth in 2D)
+  double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
+  double smoothing_length = 0;  // m
   std::vector<Field> fields;
 };
 
 /// A bound on the time step. `value` is at the start; limits that follow the motion are renewed every step.
 struct StepLimit {
-  std::string name;           // "acoustic air", "viscous air", "force", "elastic a", "contact sand"
-  double value = 0;           // s
+  std::string name;  // "acoustic air", "viscous air", "force", "elastic a", "contact sand"
+  double value = 0;  // s
   std::string reason;
 };
 
 struct Plan {
   int dimensions = 2;
-  double spacing = 0;         // m
-  double largest_speed = 0;   // m/s, what the automatic sound speed is ten times of
+  double spacing = 0;        // m
+  double largest_speed = 0;  // m/s, what the automatic sound speed is ten times of
   Bounds bounds;
   std::vector<PlanPhase> phases;
   std::vector<PlanEntry> entries;
   std::vector<Direction> directions;
   std::vector<StepLimit> limits;
-  std::vector<std::string> passes, skipped;   // by the names of the timers
+  std::vector<std::string> passes, skipped;  // by the names of the timers
   double skin = 0.1;
   double particles() const;
-  double step() const;        ///< the smallest limit, s (or the fixed step)
-  double fixed_step = 0;      // s, 0: none
+  double step() const;    ///< the smallest limit, s (or the fixed step)
+  double fixed_step = 0;  // s, 0: none
   double estimated_bytes = 0;
 };
 

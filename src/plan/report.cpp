@@ -38,7 +38,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string to_text(const Plan& plan, const Scene& scene) {
   std::string t = scene.title.empty() ? scene.name + "\n" : scene.title + "\n";
-  t += line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, plan.spacing, plan.particles(), scene.time.end);
+  t +=
+      line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, plan.spacing, plan.particles(), scene.time.end);
   t += line("%-12s %-8s %10s %12s %10s  %s\n", "phase", "kind", "particles", "mass [kg]", "c [m/s]", "fields");
   for (const auto& p : plan.phases) {
     std::vector<std::string> names;
@@ -46,17 +47,18 @@ std::string to_text(const Plan& plan, const Scene& scene) {
     t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), kind_name(p.kind), p.count, p.mass, p.sound_speed);
     t += joined(names) + "\n";
   }
-  t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW", "gradient",
-            "(on a lattice; the truth is 1 and 1)");
+  t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
+            "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
     t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), to_string(e.law).c_str(),
               kernel_name(e.kernel), e.radius / plan.spacing, e.consistency.neighbours, e.consistency.volume_sum,
-              e.consistency.gradient_sum, e.consistency.consistent() ? "consistent" : "a contact law, not an approximation");
+              e.consistency.gradient_sum,
+              e.consistency.consistent() ? "consistent" : "a contact law, not an approximation");
   t += "\npasses  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n\n";
   if (plan.fixed_step > 0) t += line("step    %.4g s, fixed by the scene\n", plan.fixed_step);
   for (const auto& l : plan.limits)
-    t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value, l.name.c_str(),
-              l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
+    t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value,
+              l.name.c_str(), l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
   return t + "\n";
 }
 
@@ -80,9 +82,11 @@ Estimate measure(const Scene& scene, const Plan& plan, const std::vector<Particl
 
 std::string to_text(const Estimate& e) {
   std::string t = "pairs  ";
-  for (const auto& [name, count] : e.pairs) t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
-  t += line("\nmemory  %.1f MB\nrun     about %.0f steps, %.0f s at %.2f M particle-steps/s (measured on the first steps)\n",
-            e.bytes * 1e-6, e.steps, e.seconds, e.particle_steps_per_second * 1e-6);
+  for (const auto& [name, count] : e.pairs)
+    t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
+  t += line(
+      "\nmemory  %.1f MB\nrun     about %.0f steps, %.0f s at %.2f M particle-steps/s (measured on the first steps)\n",
+      e.bytes * 1e-6, e.steps, e.seconds, e.particle_steps_per_second * 1e-6);
   return t;
 }
 
@@ -119,8 +123,10 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   j["skipped"] = plan.skipped;
   j["step"] = plan.step();
   for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
-  j["estimate"] = {{"steps", estimate.steps}, {"seconds", estimate.seconds},
-                   {"particle_steps_per_second", estimate.particle_steps_per_second}, {"bytes", estimate.bytes}};
+  j["estimate"] = {{"steps", estimate.steps},
+                   {"seconds", estimate.seconds},
+                   {"particle_steps_per_second", estimate.particle_steps_per_second},
+                   {"bytes", estimate.bytes}};
   return j.dump(2) + "\n";
 }
 

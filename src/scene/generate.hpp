@@ -8,9 +8,9 @@
 namespace barchan {
 
 struct ParticleBlock {
-  std::vector<Vec3> position;      // m
-  std::vector<Vec3> velocity;      // m/s
-  std::vector<double> pressure;    // Pa, initial; empty when no fill of the phase gives one
+  std::vector<Vec3> position;    // m
+  std::vector<Vec3> velocity;    // m/s
+  std::vector<double> pressure;  // Pa, initial; empty when no fill of the phase gives one
 };
 
 /// Carries out the fills of the scene in order. Two-dimensional scenes have z = 0. Particle k of the scene gets id k,
@@ -19,7 +19,8 @@ struct ParticleBlock {
 /// fill makes no particle, or when particles of different fills overlap (closer than 0.5 spacings).
 std::vector<ParticleBlock> generate(const Scene& scene);
 
-/// Height of the ground (bed and dune of the first fill that has one) over the domain's bottom at x, z; 0 without a bed.
+/// Height of the ground (bed and dune of the first fill that has one) over the domain's bottom at x, z; 0 without a
+/// bed.
 double ground_height(const Scene& scene, double x, double z);
 
 }  // namespace barchan

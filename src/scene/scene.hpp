@@ -14,10 +14,10 @@
 
 namespace barchan {
 
-/// A number or a formula in x, y, z, t (muParser syntax; constants pi and e). Formulas were compiled once by the reader,
-/// so they are known to be well formed.
+/// A number or a formula in x, y, z, t (muParser syntax; constants pi and e). Formulas were compiled once by the
+/// reader, so they are known to be well formed.
 struct Expression {
-  std::string formula;    // empty: `value` holds
+  std::string formula;  // empty: `value` holds
   double value = 0.0;
   bool is_formula() const { return !formula.empty(); }
 };
@@ -27,7 +27,7 @@ using VectorExpression = std::array<Expression, 3>;
 
 enum class PhaseKind { fluid, elastic, grains, wall };
 enum class EquationOfState { linear, tait };
-enum class WallLaw { adami, repulsive };       // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
+enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
 enum class Slip { no_slip, free_slip };
 enum class FluidScheme { plain, consistent };  // docs/method.md
 
@@ -35,146 +35,169 @@ enum class FluidScheme { plain, consistent };  // docs/method.md
 struct Phase {
   std::string name;
   PhaseKind kind = PhaseKind::fluid;
-  double density = 0.0;                        // kg/m3, at rest
+  double density = 0.0;  // kg/m3, at rest
 
   // fluid
-  double viscosity = 0.0;                      // m2/s, kinematic
-  std::optional<double> sound_speed;           // m/s; empty: 10 times the largest speed that the scene promises
+  double viscosity = 0.0;             // m2/s, kinematic
+  std::optional<double> sound_speed;  // m/s; empty: 10 times the largest speed that the scene promises
   EquationOfState equation_of_state = EquationOfState::linear;
   double tait_exponent = 7.0;
-  double artificial_viscosity = 0.0;           // Monaghan's alpha
-  double artificial_viscosity_beta = 0.0;      // Monaghan's beta
-  double density_diffusion = 0.05;             // delta of delta-SPH, 0 switches it off
-  double shifting = 1.0;                       // strength of particle shifting, 0 switches it off
-  double background_pressure = 0.0;            // in rho0 c^2
+  double artificial_viscosity = 0.0;       // Monaghan's alpha
+  double artificial_viscosity_beta = 0.0;  // Monaghan's beta
+  double density_diffusion = 0.05;         // delta of delta-SPH, 0 switches it off
+  double shifting = 1.0;                   // strength of particle shifting, 0 switches it off
+  double background_pressure = 0.0;        // in rho0 c^2
   FluidScheme scheme = FluidScheme::plain;
-  bool enclosed = false;                       // fills a closed space: its mean density is kept
-  std::string turbulence = "none";             // "none"; others come with the air work
+  bool enclosed = false;            // fills a closed space: its mean density is kept
+  std::string turbulence = "none";  // "none"; others come with the air work
 
   // elastic
-  double young = 0.0;                          // Pa
+  double young = 0.0;  // Pa
   double poisson = 0.0;
-  double artificial_stress = 0.0;              // epsilon of Gray et al. 2001, 0 switches it off
-  bool energy = false;                         // fluid and elastic: integrate the internal energy (eq. 13)
+  double artificial_stress = 0.0;  // epsilon of Gray et al. 2001, 0 switches it off
+  bool energy = false;             // fluid and elastic: integrate the internal energy (eq. 13)
 
   // grains
-  double restitution = 1.0;                    // of a head-on collision of two grains, 0 < e <= 1
-  std::optional<double> contact_speed;         // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
+  double restitution = 1.0;             // of a head-on collision of two grains, 0 < e <= 1
+  std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
 
   // wall
   WallLaw wall_law = WallLaw::adami;
   Slip slip = Slip::no_slip;
-  VectorExpression wall_velocity;              // m/s, a function of time
+  VectorExpression wall_velocity;  // m/s, a function of time
 };
 
-// ---- the interaction matrix -------------------------------------------------------------------------------------------
+// ---- the interaction matrix
+// -------------------------------------------------------------------------------------------
 
 enum class KernelKind { cubic_spline, wendland_c2 };
 
 /// One entry of the matrix: an unordered pair of phases. A pair without an entry does not interact.
 struct Interaction {
-  std::string a, b;                            // phase names as written, "air-sand"
-  double radius = 0.0;                         // kernel radius (support) in spacings, eq. (15)-(17)
+  std::string a, b;     // phase names as written, "air-sand"
+  double radius = 0.0;  // kernel radius (support) in spacings, eq. (15)-(17)
   KernelKind kernel = KernelKind::cubic_spline;
-  double drag = 0.0;                           // fluid-grains: drag coefficient of a grain, 0 switches it off
+  double drag = 0.0;  // fluid-grains: drag coefficient of a grain, 0 switches it off
 };
 
-// ---- fills: what is where at the beginning ------------------------------------------------------------------------------
+// ---- fills: what is where at the beginning
+// ------------------------------------------------------------------------------
 
-struct BoxShape { Vec3 min{}, max{}; };                               // m
-struct DiscShape { Vec3 centre{}; double radius = 0; };               // disc in 2D (cylinder along z in 3D)
-struct SphereShape { Vec3 centre{}; double radius = 0; };
-struct RingShape { Vec3 centre{}; double inner = 0, outer = 0; };     // 2D ring (tube along z in 3D)
-struct PolygonShape { std::vector<std::array<double, 2>> corners; };  // in x, y; at least three corners
-struct CubeShape { Vec3 centre{}; int count = 0; };                   // count particles along each side, spacing apart
-struct PointsShape { std::vector<Vec3> at; };                         // single particles
-struct FormulaShape { Expression inside; };                           // particles where it is > 0
-struct SidesShape {                                                   // layers of wall particles outside the domain
-  std::vector<std::string> sides;                                     // "bottom","top","left","right","front","back"
+struct BoxShape {
+  Vec3 min{}, max{};
+};  // m
+struct DiscShape {
+  Vec3 centre{};
+  double radius = 0;
+};  // disc in 2D (cylinder along z in 3D)
+struct SphereShape {
+  Vec3 centre{};
+  double radius = 0;
+};
+struct RingShape {
+  Vec3 centre{};
+  double inner = 0, outer = 0;
+};  // 2D ring (tube along z in 3D)
+struct PolygonShape {
+  std::vector<std::array<double, 2>> corners;
+};  // in x, y; at least three corners
+struct CubeShape {
+  Vec3 centre{};
+  int count = 0;
+};  // count particles along each side, spacing apart
+struct PointsShape {
+  std::vector<Vec3> at;
+};  // single particles
+struct FormulaShape {
+  Expression inside;
+};                                 // particles where it is > 0
+struct SidesShape {                // layers of wall particles outside the domain
+  std::vector<std::string> sides;  // "bottom","top","left","right","front","back"
   int layers = 3;
 };
-struct TheRestShape {};                                               // the domain less what earlier fills hold
+struct TheRestShape {};  // the domain less what earlier fills hold
 
 /// Height of the ground above the bed as a function of x (and z in 3D), in metres.
 struct DuneShape {
   enum class Form { cosine, gaussian, asymmetric, formula } form = Form::cosine;
-  double height = 0, length = 0, at = 0;       // m; `at` is the crest's x
-  double slip_face_angle = 33.0;               // degrees, asymmetric only
-  Expression formula;                          // formula only: height over the bed, m
+  double height = 0, length = 0, at = 0;  // m; `at` is the crest's x
+  double slip_face_angle = 33.0;          // degrees, asymmetric only
+  Expression formula;                     // formula only: height over the bed, m
 };
 struct BedShape {
-  double depth = 0;                            // m, from the domain's bottom
-  double from = 0;                             // m over the bottom: nothing below it (a floor that another fill made)
+  double depth = 0;  // m, from the domain's bottom
+  double from = 0;   // m over the bottom: nothing below it (a floor that another fill made)
   std::optional<DuneShape> dune;
 };
 
-using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape, FormulaShape,
-                           SidesShape, BedShape, TheRestShape>;
+using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
+                           FormulaShape, SidesShape, BedShape, TheRestShape>;
 
-enum class Packing { square, hexagonal, random };   // rows, staggered rows, random without overlap
+enum class Packing { square, hexagonal, random };  // rows, staggered rows, random without overlap
 
 /// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
 struct LogProfile {
-  double friction_velocity = 0;                // m/s
-  double roughness = 0;                        // m
+  double friction_velocity = 0;  // m/s
+  double roughness = 0;          // m
   double kappa = 0.4;
-  bool over_ground = true;                     // height counted from the ground under the point (bed and dune)
+  bool over_ground = true;  // height counted from the ground under the point (bed and dune)
 };
 
 struct Fill {
   std::string phase;
   Shape shape;
   Packing packing = Packing::square;
-  double perturb = 0.0;                        // spacings: each coordinate moved by a uniform number in +-perturb
+  double perturb = 0.0;  // spacings: each coordinate moved by a uniform number in +-perturb
   unsigned seed = 1;
-  VectorExpression velocity;                   // m/s, formulas in x, y, z
-  std::optional<LogProfile> log_profile;       // added to `velocity`, along x
-  Expression pressure;                         // Pa, fluid phases: initial pressure
-  bool hydrostatic = false;                    // fluid phases: start from the hydrostatic pressure instead
+  VectorExpression velocity;              // m/s, formulas in x, y, z
+  std::optional<LogProfile> log_profile;  // added to `velocity`, along x
+  Expression pressure;                    // Pa, fluid phases: initial pressure
+  bool hydrostatic = false;               // fluid phases: start from the hydrostatic pressure instead
 };
 
-// ---- the rest -----------------------------------------------------------------------------------------------------------
+// ---- the rest
+// -----------------------------------------------------------------------------------------------------------
 
 struct Domain {
-  Vec3 origin{};                               // m
-  Vec3 size{};                                 // m
+  Vec3 origin{};  // m
+  Vec3 size{};    // m
   std::array<bool, 3> periodic{false, false, false};
-  Vec3 gravity{};                              // m/s2
+  Vec3 gravity{};  // m/s2
 };
 
 struct Forcing {
-  std::string phase;                           // body force on this phase
-  VectorExpression acceleration;               // m/s2, formulas in x, y, z, t
+  std::string phase;              // body force on this phase
+  VectorExpression acceleration;  // m/s2, formulas in x, y, z, t
 };
 
 struct TimeControl {
-  double end = 0.0;                            // s
-  std::optional<double> fixed_step;            // s
-  double safety = 1.0;                         // factor on every stability limit
-  double largest_speed = 0.0;                  // m/s, a promise used for the automatic sound speed; 0: from the fills
+  double end = 0.0;                  // s
+  std::optional<double> fixed_step;  // s
+  double safety = 1.0;               // factor on every stability limit
+  double largest_speed = 0.0;        // m/s, a promise used for the automatic sound speed; 0: from the fills
 };
 
 enum class FrameFormat { vtp, vtu };
 
 struct OutputControl {
-  double every = 0.0;                          // s between frames; 0: first and last only
-  double history_every = 0.0;                  // s between rows of history.csv; 0: a hundredth of the end time
-  std::vector<std::string> fields;             // beside id, phase, velocity, smoothing_length, density, pressure
+  double every = 0.0;               // s between frames; 0: first and last only
+  double history_every = 0.0;       // s between rows of history.csv; 0: a hundredth of the end time
+  std::vector<std::string> fields;  // beside id, phase, velocity, smoothing_length, density, pressure
   FrameFormat format = FrameFormat::vtp;
   bool compress = true;
-  double checkpoint_every = 0.0;               // s of wall time; 0: none
-  bool walls = true;                           // write wall particles too
+  double checkpoint_every = 0.0;  // s of wall time; 0: none
+  bool walls = true;              // write wall particles too
 };
 
 enum class Precision { double_precision, mixed };
 
 struct Scene {
-  std::string file;                            // as given, for messages
-  std::string name;                            // file name without directory and suffix
+  std::string file;  // as given, for messages
+  std::string name;  // file name without directory and suffix
   std::string title;
-  std::string state = "";                      // pvstate that scripts/run renders; empty: none
+  std::string state = "";  // pvstate that scripts/run renders; empty: none
   int dimensions = 2;
-  double spacing = 0.0;                        // m, dx
+  double spacing = 0.0;  // m, dx
   Precision precision = Precision::double_precision;
   Domain domain;
   std::vector<Phase> phases;

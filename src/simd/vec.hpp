@@ -53,10 +53,12 @@ namespace detail {
 enum class Kind { scalar, native, halves };
 
 template <class T, int W>
-inline constexpr int bytes = W * static_cast<int>(sizeof(T));
+inline constexpr int bytes = W* static_cast<int>(sizeof(T));
 
 template <class T, int W>
-inline constexpr Kind kind = W == 1 ? Kind::scalar : bytes<T, W> <= max_bytes ? Kind::native : Kind::halves;
+inline constexpr Kind kind = W == 1                     ? Kind::scalar
+                             : bytes<T, W> <= max_bytes ? Kind::native
+                                                        : Kind::halves;
 
 #if defined(__AVX512F__)
 inline constexpr bool has_avx512 = true;
@@ -66,7 +68,7 @@ inline constexpr bool has_avx512 = false;
 
 // True where comparisons produce an AVX-512 bit mask instead of a vector of all-ones lanes.
 template <class T, int W>
-inline constexpr bool bit_mask = has_avx512 && kind<T, W> == Kind::native && bytes<T, W> == 64;
+inline constexpr bool bit_mask = has_avx512&& kind<T, W> == Kind::native&& bytes<T, W> == 64;
 
 // The signed integer with the size of T.
 template <class T>
@@ -117,18 +119,17 @@ struct MaskStorage<T, W, Kind::halves, false> {
 };
 
 // Applies a lane-wise operator to the storage; integers wrap around.
-#define BARCHAN_SIMD_ARITHMETIC(op)                                                                        \
-  if constexpr (kind<T, W> == Kind::halves) {                                                              \
-    return {{a.v.lo op b.v.lo, a.v.hi op b.v.hi}};                                                         \
-  } else if constexpr (std::is_integral_v<T> && W == 1) {                                                  \
-    return {static_cast<T>(static_cast<std::make_unsigned_t<T>>(a.v)                                       \
-                               op static_cast<std::make_unsigned_t<T>>(b.v))};                             \
-  } else if constexpr (std::is_integral_v<T>) {                                                            \
-    using U = typename Register<std::make_unsigned_t<T>, W>::type;                                         \
-    using S = typename Vec<T, W>::Storage;                                                                 \
-    return {reinterpret_cast<S>(reinterpret_cast<U>(a.v) op reinterpret_cast<U>(b.v))};                    \
-  } else {                                                                                                 \
-    return {a.v op b.v};                                                                                   \
+#define BARCHAN_SIMD_ARITHMETIC(op)                                                                                  \
+  if constexpr (kind<T, W> == Kind::halves) {                                                                        \
+    return {{a.v.lo op b.v.lo, a.v.hi op b.v.hi}};                                                                   \
+  } else if constexpr (std::is_integral_v<T> && W == 1) {                                                            \
+    return {static_cast<T>(static_cast<std::make_unsigned_t<T>>(a.v) op static_cast<std::make_unsigned_t<T>>(b.v))}; \
+  } else if constexpr (std::is_integral_v<T>) {                                                                      \
+    using U = typename Register<std::make_unsigned_t<T>, W>::type;                                                   \
+    using S = typename Vec<T, W>::Storage;                                                                           \
+    return {reinterpret_cast<S>(reinterpret_cast<U>(a.v) op reinterpret_cast<U>(b.v))};                              \
+  } else {                                                                                                           \
+    return {a.v op b.v};                                                                                             \
   }
 
 template <class T, int W>
@@ -147,10 +148,8 @@ BARCHAN_SIMD_INLINE Vec<T, W> multiply(Vec<T, W> a, Vec<T, W> b) {
 
 template <class T, int W>
 BARCHAN_SIMD_INLINE Vec<T, W> divide(Vec<T, W> a, Vec<T, W> b) {
-  if constexpr (kind<T, W> == Kind::halves)
-    return {{a.v.lo / b.v.lo, a.v.hi / b.v.hi}};
-  else
-    return {a.v / b.v};
+  if constexpr (kind<T, W> == Kind::halves) return {{a.v.lo / b.v.lo, a.v.hi / b.v.hi}};
+  else return {a.v / b.v};
 }
 
 enum class Relation { less, less_equal, equal };
@@ -176,19 +175,13 @@ BARCHAN_SIMD_INLINE Mask<T, W> compare(Vec<T, W> a, Vec<T, W> b) {
     }
 #endif
   } else if constexpr (W == 1) {
-    if constexpr (R == Relation::less)
-      return {a.v < b.v};
-    else if constexpr (R == Relation::less_equal)
-      return {a.v <= b.v};
-    else
-      return {!(a.v < b.v) && !(b.v < a.v) && a.v <= b.v};
+    if constexpr (R == Relation::less) return {a.v < b.v};
+    else if constexpr (R == Relation::less_equal) return {a.v <= b.v};
+    else return {!(a.v < b.v) && !(b.v < a.v) && a.v <= b.v};
   } else {
-    if constexpr (R == Relation::less)
-      return {reinterpret_cast<M>(a.v < b.v)};
-    else if constexpr (R == Relation::less_equal)
-      return {reinterpret_cast<M>(a.v <= b.v)};
-    else
-      return {reinterpret_cast<M>(a.v <= b.v) & reinterpret_cast<M>(b.v <= a.v)};
+    if constexpr (R == Relation::less) return {reinterpret_cast<M>(a.v < b.v)};
+    else if constexpr (R == Relation::less_equal) return {reinterpret_cast<M>(a.v <= b.v)};
+    else return {reinterpret_cast<M>(a.v <= b.v) & reinterpret_cast<M>(b.v <= a.v)};
   }
 }
 
@@ -205,24 +198,17 @@ struct Mask {
   static BARCHAN_SIMD_INLINE Mask first(int n);
 
   friend BARCHAN_SIMD_INLINE Mask operator&(Mask a, Mask b) {
-    if constexpr (detail::kind<T, W> == detail::Kind::halves)
-      return {{a.v.lo & b.v.lo, a.v.hi & b.v.hi}};
-    else
-      return {static_cast<Storage>(a.v & b.v)};
+    if constexpr (detail::kind<T, W> == detail::Kind::halves) return {{a.v.lo & b.v.lo, a.v.hi & b.v.hi}};
+    else return {static_cast<Storage>(a.v & b.v)};
   }
   friend BARCHAN_SIMD_INLINE Mask operator|(Mask a, Mask b) {
-    if constexpr (detail::kind<T, W> == detail::Kind::halves)
-      return {{a.v.lo | b.v.lo, a.v.hi | b.v.hi}};
-    else
-      return {static_cast<Storage>(a.v | b.v)};
+    if constexpr (detail::kind<T, W> == detail::Kind::halves) return {{a.v.lo | b.v.lo, a.v.hi | b.v.hi}};
+    else return {static_cast<Storage>(a.v | b.v)};
   }
   friend BARCHAN_SIMD_INLINE Mask operator!(Mask a) {
-    if constexpr (detail::kind<T, W> == detail::Kind::halves)
-      return {{!a.v.lo, !a.v.hi}};
-    else if constexpr (W == 1)
-      return {!a.v};
-    else
-      return {static_cast<Storage>(~a.v)};
+    if constexpr (detail::kind<T, W> == detail::Kind::halves) return {{!a.v.lo, !a.v.hi}};
+    else if constexpr (W == 1) return {!a.v};
+    else return {static_cast<Storage>(~a.v)};
   }
 };
 
@@ -238,17 +224,12 @@ struct Vec {
   // Uninitialised.
   Vec() = default;
   // Wraps a register.
-  BARCHAN_SIMD_INLINE Vec(Storage s)
-    requires(W > 1)
-      : v(s) {}
+  BARCHAN_SIMD_INLINE Vec(Storage s) requires(W > 1) : v(s) {}
   // The same value in every lane.
   BARCHAN_SIMD_INLINE Vec(T s) {
-    if constexpr (detail::kind<T, W> == detail::Kind::halves)
-      v = {Vec<T, W / 2>(s), Vec<T, W / 2>(s)};
-    else if constexpr (W == 1)
-      v = s;
-    else
-      v = s - Storage{};  // x - 0 keeps every x, even -0.0
+    if constexpr (detail::kind<T, W> == detail::Kind::halves) v = {Vec<T, W / 2>(s), Vec<T, W / 2>(s)};
+    else if constexpr (W == 1) v = s;
+    else v = s - Storage{};  // x - 0 keeps every x, even -0.0
   }
   // 0, 1, .. W-1.
   static BARCHAN_SIMD_INLINE Vec iota() {
@@ -261,8 +242,7 @@ struct Vec {
     Vec r;
     if constexpr (detail::kind<T, W> == detail::Kind::halves)
       r.v = {Vec<T, W / 2>::load(p), Vec<T, W / 2>::load(p + W / 2)};
-    else
-      std::memcpy(&r.v, p, sizeof(r.v));
+    else std::memcpy(&r.v, p, sizeof(r.v));
     return r;
   }
   // W consecutive values from an address that is a multiple of W * sizeof(T).
@@ -284,29 +264,21 @@ struct Vec {
   }
   // The value of lane k (slow: for tests and set-up).
   BARCHAN_SIMD_INLINE T operator[](int k) const {
-    if constexpr (detail::kind<T, W> == detail::Kind::halves)
-      return k < W / 2 ? v.lo[k] : v.hi[k - W / 2];
-    else if constexpr (W == 1)
-      return v;
-    else
-      return v[k];
+    if constexpr (detail::kind<T, W> == detail::Kind::halves) return k < W / 2 ? v.lo[k] : v.hi[k - W / 2];
+    else if constexpr (W == 1) return v;
+    else return v[k];
   }
 
   friend BARCHAN_SIMD_INLINE Vec operator+(Vec a, Vec b) { return detail::add(a, b); }
   friend BARCHAN_SIMD_INLINE Vec operator-(Vec a, Vec b) { return detail::subtract(a, b); }
   friend BARCHAN_SIMD_INLINE Vec operator*(Vec a, Vec b) { return detail::multiply(a, b); }
-  friend BARCHAN_SIMD_INLINE Vec operator/(Vec a, Vec b)
-    requires std::is_floating_point_v<T>
-  {
+  friend BARCHAN_SIMD_INLINE Vec operator/(Vec a, Vec b) requires std::is_floating_point_v<T> {
     return detail::divide(a, b);
   }
   friend BARCHAN_SIMD_INLINE Vec operator-(Vec a) {
-    if constexpr (detail::kind<T, W> == detail::Kind::halves)
-      return Storage{-a.v.lo, -a.v.hi};
-    else if constexpr (std::is_integral_v<T>)
-      return Vec(T(0)) - a;
-    else
-      return Vec(-a.v);
+    if constexpr (detail::kind<T, W> == detail::Kind::halves) return Storage{-a.v.lo, -a.v.hi};
+    else if constexpr (std::is_integral_v<T>) return Vec(T(0)) - a;
+    else return Vec(-a.v);
   }
   friend BARCHAN_SIMD_INLINE Vec& operator+=(Vec& a, Vec b) { return a = a + b; }
   friend BARCHAN_SIMD_INLINE Vec& operator-=(Vec& a, Vec b) { return a = a - b; }
@@ -338,10 +310,8 @@ BARCHAN_SIMD_INLINE auto extract(Vec<T, W> a, std::index_sequence<K...>) {
 template <int First, class T, int W>
 BARCHAN_SIMD_INLINE Vec<T, W / 2> half(Vec<T, W> a) {
   if constexpr (kind<T, W> == Kind::halves) {
-    if constexpr (First == 0)
-      return a.v.lo;
-    else
-      return a.v.hi;
+    if constexpr (First == 0) return a.v.lo;
+    else return a.v.hi;
   } else if constexpr (W == 2) {
     return Vec<T, 1>(a.v[First]);
   } else {
@@ -372,35 +342,27 @@ BARCHAN_SIMD_INLINE Vec<T, W / 2> upper(Vec<T, W> a) {
 template <class T, int W>
 BARCHAN_SIMD_INLINE Vec<T, 2 * W> join(Vec<T, W> a, Vec<T, W> b) {
   using S = typename Vec<T, 2 * W>::Storage;
-  if constexpr (detail::kind<T, 2 * W> == detail::Kind::halves)
-    return S{a, b};
-  else if constexpr (W == 1)
-    return S{a.v, b.v};
-  else
-    return {detail::concatenate(a, b, std::make_index_sequence<static_cast<std::size_t>(2 * W)>{})};
+  if constexpr (detail::kind<T, 2 * W> == detail::Kind::halves) return S{a, b};
+  else if constexpr (W == 1) return S{a.v, b.v};
+  else return {detail::concatenate(a, b, std::make_index_sequence<static_cast<std::size_t>(2 * W)>{})};
 }
 
 // Converts lanes between double, float and std::int32_t (towards integers: truncation).
 template <class U, class T, int W>
 BARCHAN_SIMD_INLINE Vec<U, W> convert(Vec<T, W> a) {
-  if constexpr (std::is_same_v<U, T>)
-    return a;
-  else if constexpr (W == 1)
-    return Vec<U, 1>(static_cast<U>(a.v));
+  if constexpr (std::is_same_v<U, T>) return a;
+  else if constexpr (W == 1) return Vec<U, 1>(static_cast<U>(a.v));
   else if constexpr (detail::kind<T, W> == detail::Kind::halves || detail::kind<U, W> == detail::Kind::halves)
     return join(convert<U>(lower(a)), convert<U>(upper(a)));
-  else
-    return {__builtin_convertvector(a.v, typename Vec<U, W>::Storage)};
+  else return {__builtin_convertvector(a.v, typename Vec<U, W>::Storage)};
 }
 
 // The same bits as lanes of another type of the same size.
 template <class U, class T, int W>
 BARCHAN_SIMD_INLINE Vec<U, W> bit_cast(Vec<T, W> a) {
   static_assert(sizeof(U) == sizeof(T));
-  if constexpr (detail::kind<T, W> == detail::Kind::halves)
-    return join(bit_cast<U>(a.v.lo), bit_cast<U>(a.v.hi));
-  else
-    return Vec<U, W>(std::bit_cast<typename Vec<U, W>::Storage>(a.v));
+  if constexpr (detail::kind<T, W> == detail::Kind::halves) return join(bit_cast<U>(a.v.lo), bit_cast<U>(a.v.hi));
+  else return Vec<U, W>(std::bit_cast<typename Vec<U, W>::Storage>(a.v));
 }
 
 // One bit a lane, lane 0 in bit 0.
@@ -479,10 +441,8 @@ BARCHAN_SIMD_INLINE Vec<T, W> select(Mask<T, W> m, Vec<T, W> a, Vec<T, W> b) {
     return m.v ? a : b;
   } else if constexpr (detail::bit_mask<T, W>) {
 #if defined(__AVX512F__)
-    if constexpr (std::is_same_v<T, double>)
-      return {_mm512_mask_blend_pd(m.v, b.v, a.v)};
-    else if constexpr (std::is_same_v<T, float>)
-      return {_mm512_mask_blend_ps(m.v, b.v, a.v)};
+    if constexpr (std::is_same_v<T, double>) return {_mm512_mask_blend_pd(m.v, b.v, a.v)};
+    else if constexpr (std::is_same_v<T, float>) return {_mm512_mask_blend_ps(m.v, b.v, a.v)};
     else
       return {reinterpret_cast<S>(
           _mm512_mask_blend_epi32(m.v, reinterpret_cast<__m512i>(b.v), reinterpret_cast<__m512i>(a.v)))};
@@ -514,12 +474,9 @@ BARCHAN_SIMD_INLINE Vec<T, W> mask_zero(Mask<T, W> m, Vec<T, W> a) {
     return m.v ? a : Vec<T, W>(T(0));
   } else if constexpr (detail::bit_mask<T, W>) {
 #if defined(__AVX512F__)
-    if constexpr (std::is_same_v<T, double>)
-      return {_mm512_maskz_mov_pd(m.v, a.v)};
-    else if constexpr (std::is_same_v<T, float>)
-      return {_mm512_maskz_mov_ps(m.v, a.v)};
-    else
-      return {reinterpret_cast<S>(_mm512_maskz_mov_epi32(m.v, reinterpret_cast<__m512i>(a.v)))};
+    if constexpr (std::is_same_v<T, double>) return {_mm512_maskz_mov_pd(m.v, a.v)};
+    else if constexpr (std::is_same_v<T, float>) return {_mm512_maskz_mov_ps(m.v, a.v)};
+    else return {reinterpret_cast<S>(_mm512_maskz_mov_epi32(m.v, reinterpret_cast<__m512i>(a.v)))};
 #endif
   } else {
     return {reinterpret_cast<S>(m.v & reinterpret_cast<typename Mask<T, W>::Storage>(a.v))};
@@ -528,25 +485,25 @@ BARCHAN_SIMD_INLINE Vec<T, W> mask_zero(Mask<T, W> m, Vec<T, W> a) {
 
 // Calls the intrinsic for the register at hand, or f on every lane.
 #if defined(__AVX512F__)
-#define BARCHAN_SIMD_512(name, ...)                                                                             \
-  if constexpr (detail::bytes<T, W> == 64 && sizeof(T) == 8) return {_mm512_##name##_pd(__VA_ARGS__)};          \
-  else if constexpr (detail::bytes<T, W> == 64) return {_mm512_##name##_ps(__VA_ARGS__)};                       \
+#define BARCHAN_SIMD_512(name, ...)                                                                    \
+  if constexpr (detail::bytes<T, W> == 64 && sizeof(T) == 8) return {_mm512_##name##_pd(__VA_ARGS__)}; \
+  else if constexpr (detail::bytes<T, W> == 64) return {_mm512_##name##_ps(__VA_ARGS__)};              \
   else
 #else
 #define BARCHAN_SIMD_512(name, ...)
 #endif
 #if defined(__AVX2__)
-#define BARCHAN_SIMD_256(name, ...)                                                                             \
-  if constexpr (detail::bytes<T, W> == 32 && sizeof(T) == 8) return {_mm256_##name##_pd(__VA_ARGS__)};          \
-  else if constexpr (detail::bytes<T, W> == 32) return {_mm256_##name##_ps(__VA_ARGS__)};                       \
+#define BARCHAN_SIMD_256(name, ...)                                                                    \
+  if constexpr (detail::bytes<T, W> == 32 && sizeof(T) == 8) return {_mm256_##name##_pd(__VA_ARGS__)}; \
+  else if constexpr (detail::bytes<T, W> == 32) return {_mm256_##name##_ps(__VA_ARGS__)};              \
   else
 #else
 #define BARCHAN_SIMD_256(name, ...)
 #endif
 #if defined(__SSE2__)
-#define BARCHAN_SIMD_128(name, ...)                                                                             \
-  if constexpr (detail::bytes<T, W> == 16 && sizeof(T) == 8) return {_mm_##name##_pd(__VA_ARGS__)};             \
-  else if constexpr (detail::bytes<T, W> == 16) return {_mm_##name##_ps(__VA_ARGS__)};                          \
+#define BARCHAN_SIMD_128(name, ...)                                                                 \
+  if constexpr (detail::bytes<T, W> == 16 && sizeof(T) == 8) return {_mm_##name##_pd(__VA_ARGS__)}; \
+  else if constexpr (detail::bytes<T, W> == 16) return {_mm_##name##_ps(__VA_ARGS__)};              \
   else
 #else
 #define BARCHAN_SIMD_128(name, ...)
@@ -568,8 +525,7 @@ BARCHAN_SIMD_INLINE Vec<T, W> fma(Vec<T, W> a, Vec<T, W> b, Vec<T, W> c) {
 #if defined(__FMA__)
     BARCHAN_SIMD_512(fmadd, a.v, b.v, c.v)
     BARCHAN_SIMD_256(fmadd, a.v, b.v, c.v)
-    BARCHAN_SIMD_128(fmadd, a.v, b.v, c.v)
-    {
+    BARCHAN_SIMD_128(fmadd, a.v, b.v, c.v) {
       Vec<T, W> r;
       for (int k = 0; k < W; ++k) r.v[k] = std::fma(a.v[k], b.v[k], c.v[k]);
       return r;
@@ -627,8 +583,7 @@ BARCHAN_SIMD_INLINE Vec<T, W> sqrt(Vec<T, W> a) {
   } else {
     BARCHAN_SIMD_512(sqrt, a.v)
     BARCHAN_SIMD_256(sqrt, a.v)
-    BARCHAN_SIMD_128(sqrt, a.v)
-    {
+    BARCHAN_SIMD_128(sqrt, a.v) {
       Vec<T, W> r;
       for (int k = 0; k < W; ++k) r.v[k] = std::sqrt(a.v[k]);
       return r;
@@ -650,8 +605,7 @@ BARCHAN_SIMD_INLINE Vec<T, W> refine_inverse_sqrt(Vec<T, W> a, Vec<T, W> y) {
   V series(T(0.5));
   if constexpr (Order == 3) series = fma(e, V(T(0.375)), V(T(0.5)));
   if constexpr (Order == 4) series = fma(e, fma(e, V(T(0.3125)), V(T(0.375))), V(T(0.5)));
-  if constexpr (Order == 5)
-    series = fma(e, fma(e, fma(e, V(T(0.2734375)), V(T(0.3125))), V(T(0.375))), V(T(0.5)));
+  if constexpr (Order == 5) series = fma(e, fma(e, fma(e, V(T(0.2734375)), V(T(0.3125))), V(T(0.375))), V(T(0.5)));
   return fma(y * e, series, y);
 }
 
@@ -694,10 +648,8 @@ inline constexpr bool use_divider = !detail::has_avx512;
 // sqrt(a) for kernels, by the divider or as a * inverse_sqrt(a), whichever is faster; 2^-126 < a < 2^126.
 template <class T, int W>
 BARCHAN_SIMD_INLINE Vec<T, W> root(Vec<T, W> a) {
-  if constexpr (use_divider || W == 1)
-    return sqrt(a);
-  else
-    return a * inverse_sqrt(a);
+  if constexpr (use_divider || W == 1) return sqrt(a);
+  else return a * inverse_sqrt(a);
 }
 
 // 1/a for kernels: the correctly rounded quotient, or for float registers of AVX-512 an estimate and one Newton step
@@ -713,17 +665,14 @@ BARCHAN_SIMD_INLINE Vec<T, W> inverse(Vec<T, W> a) {
 #endif
       if constexpr (detail::kind<T, W> == detail::Kind::halves)
     return typename Vec<T, W>::Storage{inverse(a.v.lo), inverse(a.v.hi)};
-  else
-    return Vec<T, W>(T(1)) / a;
+  else return Vec<T, W>(T(1)) / a;
 }
 
 // The sum of all lanes in a fixed order: upper half + lower half, recursively (the same on every machine for one W).
 template <class T, int W>
 BARCHAN_SIMD_INLINE T sum(Vec<T, W> a) {
-  if constexpr (W == 1)
-    return a.v;
-  else
-    return sum(lower(a) + upper(a));
+  if constexpr (W == 1) return a.v;
+  else return sum(lower(a) + upper(a));
 }
 
 // The sums of four vectors, {sum(a), sum(b), sum(c), sum(d)}, each in the order of sum() but cheaper together.
@@ -783,8 +732,7 @@ BARCHAN_SIMD_INLINE int compress_store(std::uint32_t* out, Mask<T, W> m, Vec<std
 #if defined(__AVX512VL__)
       if constexpr (W == 8) {
     const std::uint32_t bits = to_bits(m);
-    const __m256i packed =
-        _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), reinterpret_cast<__m256i>(index.v));
+    const __m256i packed = _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), reinterpret_cast<__m256i>(index.v));
     std::memcpy(out, &packed, sizeof(packed));
     return std::popcount(bits);
   } else
@@ -792,8 +740,7 @@ BARCHAN_SIMD_INLINE int compress_store(std::uint32_t* out, Mask<T, W> m, Vec<std
 #if defined(__AVX2__)
       if constexpr (W == 8) {
     const std::uint32_t bits = to_bits(m);
-    const __m128i position =
-        _mm_loadl_epi64(reinterpret_cast<const __m128i*>(detail::compress_table.position[bits]));
+    const __m128i position = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(detail::compress_table.position[bits]));
     const __m256i packed =
         _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(index.v), _mm256_cvtepu8_epi32(position));
     std::memcpy(out, &packed, sizeof(packed));
@@ -802,8 +749,8 @@ BARCHAN_SIMD_INLINE int compress_store(std::uint32_t* out, Mask<T, W> m, Vec<std
     const std::uint32_t bits = to_bits(m);
     std::int32_t position;
     std::memcpy(&position, detail::compress_table.position[bits], sizeof(position));
-    const __m128 packed = _mm_permutevar_ps(reinterpret_cast<__m128>(index.v),
-                                            _mm_cvtepu8_epi32(_mm_cvtsi32_si128(position)));
+    const __m128 packed =
+        _mm_permutevar_ps(reinterpret_cast<__m128>(index.v), _mm_cvtepu8_epi32(_mm_cvtsi32_si128(position)));
     std::memcpy(out, &packed, sizeof(packed));
     return std::popcount(bits);
   } else
@@ -873,7 +820,7 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
         const __m512d low = _mm512_castpd256_pd512(_mm256_castps_pd(_mm256_loadu_ps(record(i) + f)));
         return _mm512_castpd_ps(_mm512_insertf64x4(low, _mm256_castps_pd(_mm256_loadu_ps(record(j) + f)), 1));
       };
-      const auto transpose = [](__m512 a, __m512 b, __m512 c, __m512 d, __m512* r) __attribute__((always_inline)) {
+      const auto transpose = [](__m512 a, __m512 b, __m512 c, __m512 d, __m512 * r) __attribute__((always_inline)) {
         const __m512 ab = _mm512_unpacklo_ps(a, b), cd = _mm512_unpacklo_ps(c, d);
         const __m512 AB = _mm512_unpackhi_ps(a, b), CD = _mm512_unpackhi_ps(c, d);
         r[0] = _mm512_shuffle_ps(ab, cd, 0x44);
@@ -922,8 +869,7 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
 #endif
     {
       for (int f = 0; f < Fields; ++f) {
-        if constexpr (W == 1)
-          out[f] = Vec<T, W>(record(0)[f]);
+        if constexpr (W == 1) out[f] = Vec<T, W>(record(0)[f]);
         else
           for (int k = 0; k < W; ++k) out[f].v[k] = record(k)[f];
       }

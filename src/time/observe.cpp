@@ -86,19 +86,19 @@ Frame Simulation::frame(int index) const {
     out.name = about.name;
     out.unit = about.unit;
     const int width = components(about.rank, plan_.dimensions);
-    out.components = about.rank == Rank::scalar ? 1 : about.rank == Rank::vector ? 3 : about.rank == Rank::symmetric ? 6 : width;
+    out.components = about.rank == Rank::scalar      ? 1
+                     : about.rank == Rank::vector    ? 3
+                     : about.rank == Rank::symmetric ? 6
+                                                     : width;
     out.values.reserve(n * static_cast<std::size_t>(out.components));
     for (const std::size_t k : written) {
       const auto& p = particles_[k];
       for (std::size_t i = 0; i < p.size(); ++i)
         for (int c = 0; c < out.components; ++c) {
           double value = 0.0;
-          if (field == Field::smoothing_length)
-            value = plan_.phases[k].smoothing_length;
-          else if (field == Field::density && !p.has(field))
-            value = scene_.phases[k].density;
-          else if (p.has(field) && c < width)
-            value = p.column(field, c)[i];
+          if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
+          else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
+          else if (p.has(field) && c < width) value = p.column(field, c)[i];
           out.values.push_back(value);
         }
     }
@@ -108,8 +108,14 @@ Frame Simulation::frame(int index) const {
 }
 
 std::vector<std::string> Simulation::history_columns(const Plan& plan) {
-  std::vector<std::string> c{"time [s]", "step", "dt [s]", "momentum_x [kg m/s]", "momentum_y [kg m/s]",
-                             "momentum_z [kg m/s]", "largest_speed [m/s]", "largest_density_error"};
+  std::vector<std::string> c{"time [s]",
+                             "step",
+                             "dt [s]",
+                             "momentum_x [kg m/s]",
+                             "momentum_y [kg m/s]",
+                             "momentum_z [kg m/s]",
+                             "largest_speed [m/s]",
+                             "largest_density_error"};
   for (const auto& p : plan.phases) {
     if (p.kind == PhaseKind::wall) continue;
     c.push_back(p.name + "_kinetic_energy [J]");
@@ -134,7 +140,8 @@ std::vector<double> Simulation::history_row() const {
     double fastest = 0.0;
     const double square = ordered_sum(n, [&](std::size_t i) {
       double s = 0;
-      for (int d = 0; d < plan_.dimensions; ++d) s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
+      for (int d = 0; d < plan_.dimensions; ++d)
+        s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
       fastest = std::max(fastest, s);
       return s;
     });
@@ -176,8 +183,8 @@ void Simulation::check() const {
       std::string place;
       for (int d = 0; d < plan_.dimensions; ++d) place += (d ? ", " : "") + number(p.column(Field::position, d)[i]);
       const auto who = [&] {
-        return "particle " + std::to_string(p.id()[i]) + " of phase \"" + p.name() + "\" at (" + place + ") m, t = " +
-               number(time_) + " s, step " + std::to_string(steps_);
+        return "particle " + std::to_string(p.id()[i]) + " of phase \"" + p.name() + "\" at (" + place +
+               ") m, t = " + number(time_) + " s, step " + std::to_string(steps_);
       };
       for (int d = 0; d < plan_.dimensions; ++d) {
         const auto c = static_cast<std::size_t>(d);
@@ -189,14 +196,16 @@ void Simulation::check() const {
                                  "sound-speed or density-diffusion of the phase");
         const double margin = 0.5 * plan_.spacing;
         if (!plan_.bounds.periodic[c] && (x < plan_.bounds.low[c] - margin || x > plan_.bounds.high[c] + margin))
-          throw BreakdownError(who() + " escaped through the " + (x < plan_.bounds.low[c] ? "lower" : "upper") + " side of " +
-                               "xyz"[d] + "; there is no wall that holds it, or it moves too fast for the contact: add a "
+          throw BreakdownError(who() + " escaped through the " + (x < plan_.bounds.low[c] ? "lower" : "upper") +
+                               " side of " + "xyz"[d] +
+                               "; there is no wall that holds it, or it moves too fast for the contact: add a "
                                "wall on that side, enlarge domain.size, or raise contact-speed or sound-speed");
       }
       if (p.has(Field::density)) {
         const double rho = p.column(Field::density)[i];
         if (!(rho > 0.0) || !std::isfinite(rho))
-          throw BreakdownError(who() + ": density " + number(rho) + " kg/m3 is impossible; the pressure ran away: raise "
+          throw BreakdownError(who() + ": density " + number(rho) +
+                               " kg/m3 is impossible; the pressure ran away: raise "
                                "sound-speed, or lower time.safety");
       }
     }

@@ -35,8 +35,8 @@ void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressu
   }
 }
 
-/// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of the
-/// divergence must not pump it up. Sums in blocks, in an order that the number of particles decides.
+/// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of
+/// the divergence must not pump it up. Sums in blocks, in an order that the number of particles decides.
 void keep_mean_density(PhaseParticles& p) {
   constexpr std::int64_t block = 4096;
   static std::vector<double> parts;
@@ -114,10 +114,8 @@ void Simulation::rate_fluids() {
     for (const auto& force : forcings_) {
       if (force.phase != f.phase) continue;
       for (std::size_t d = 0; d < 3; ++d)
-        if (force.acceleration[d].is_constant())
-          q.acceleration[d] += force.acceleration[d].constant();
-        else
-          varies = true;
+        if (force.acceleration[d].is_constant()) q.acceleration[d] += force.acceleration[d].constant();
+        else varies = true;
     }
     auto& p = particles_[f.phase];
     fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
@@ -146,8 +144,7 @@ void Simulation::rate_energies() {
 
 void Simulation::repel_from_walls() {
   for (const auto& c : contacts_)
-    if (c.is_repulsion)
-      contact_forces(particles_[c.a], motion_[c.a], *c.list, motion_[c.b], c.kernel, c.radius, c.law);
+    if (c.is_repulsion) contact_forces(particles_[c.a], motion_[c.a], *c.list, motion_[c.b], c.kernel, c.radius, c.law);
 }
 
 void Simulation::stress_bodies() {
@@ -167,8 +164,7 @@ void Simulation::touch() {
 }
 
 void Simulation::drag_grains() {
-  for (const auto& d : drags_)
-    drag_forces(particles_[d.a], motion_[d.a], *d.list, motion_[d.b], d.entry, d.a_is_fluid);
+  for (const auto& d : drags_) drag_forces(particles_[d.a], motion_[d.a], *d.list, motion_[d.b], d.entry, d.a_is_fluid);
 }
 
 void Simulation::react() {

@@ -13,12 +13,38 @@ namespace barchan {
 
 namespace {
 enum Pass : std::size_t {
-  pass_kick_and_drift, pass_strain, pass_walls, pass_neighbours, pass_pack, pass_extend_walls, pass_extend_solids,
-  pass_fluid, pass_energy, pass_repel, pass_elastic, pass_contacts, pass_reaction, pass_drag, pass_kick, pass_count
+  pass_kick_and_drift,
+  pass_strain,
+  pass_walls,
+  pass_neighbours,
+  pass_pack,
+  pass_extend_walls,
+  pass_extend_solids,
+  pass_fluid,
+  pass_energy,
+  pass_repel,
+  pass_elastic,
+  pass_contacts,
+  pass_reaction,
+  pass_drag,
+  pass_kick,
+  pass_count
 };
-constexpr std::array<const char*, pass_count> pass_names{
-    "kick and drift", "elastic strain", "wall motion", "neighbours", "pack", "extension into walls",
-    "extension into solids", "fluid rates", "fluid energy", "wall repulsion", "elastic forces", "contacts", "reaction on solids", "drag", "kick"};
+constexpr std::array<const char*, pass_count> pass_names{"kick and drift",
+                                                         "elastic strain",
+                                                         "wall motion",
+                                                         "neighbours",
+                                                         "pack",
+                                                         "extension into walls",
+                                                         "extension into solids",
+                                                         "fluid rates",
+                                                         "fluid energy",
+                                                         "wall repulsion",
+                                                         "elastic forces",
+                                                         "contacts",
+                                                         "reaction on solids",
+                                                         "drag",
+                                                         "kick"};
 
 double thread_seconds() {
   timespec t{};
@@ -47,7 +73,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   for (const char* name : {"force", "output", "fixed"}) limit_counts_[name] = 0;
   dt_ = plan_.step();
   rates(true);
-  rates(true);    // the weights of the consistent Laplacian are those of the pass before
+  rates(true);  // the weights of the consistent Laplacian are those of the pass before
 }
 
 Simulation::~Simulation() = default;
@@ -98,7 +124,8 @@ void Simulation::choose_step(double largest) {
       limit("force", scene_.time.safety * StepConstants::force * std::sqrt(shortest / largest_acceleration_));
     if (dt < 1e-6 * plan_.step())
       throw BreakdownError("the time step collapsed to " + std::to_string(dt) + " s at t = " + std::to_string(time_) +
-                           " s, ruled by " + ruling_ + "; a particle feels an enormous force: lower time.safety, raise "
+                           " s, ruled by " + ruling_ +
+                           "; a particle feels an enormous force: lower time.safety, raise "
                            "the sound speed or look for overlapping bodies");
   }
   // The last steps before an output share what is left, so that none is tiny.
@@ -112,7 +139,8 @@ void Simulation::choose_step(double largest) {
   ++limit_counts_[ruling_];
 }
 
-// ---- kick, drift, kick -----------------------------------------------------------------------------------------------
+// ---- kick, drift, kick
+// -----------------------------------------------------------------------------------------------
 
 PressureLaw Simulation::pressure_law(std::size_t phase) const {
   const Phase& s = scene_.phases[phase];

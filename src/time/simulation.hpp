@@ -97,15 +97,18 @@ class Simulation {
   Plan plan_;
   std::vector<PhaseParticles> particles_;
   Neighbours neighbours_;
-  std::vector<RecordArray> motion_, extended_, stress_;   // by phase; extended: a solid as the fluid sees it
+  std::vector<RecordArray> motion_, extended_, stress_;  // by phase; extended: a solid as the fluid sees it
 
   std::vector<Fluid> fluids_;
   std::vector<Extension> extensions_;
   std::vector<Contact> contacts_;
   std::vector<Body> bodies_;
   std::vector<Drag> drags_;
-  std::vector<std::array<Formula, 3>> wall_velocity_;     // by phase
-  struct Force { std::size_t phase; std::array<Formula, 3> acceleration; };
+  std::vector<std::array<Formula, 3>> wall_velocity_;  // by phase
+  struct Force {
+    std::size_t phase;
+    std::array<Formula, 3> acceleration;
+  };
   std::vector<Force> forcings_;
 
   double time_ = 0, dt_ = 0;

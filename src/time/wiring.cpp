@@ -49,7 +49,8 @@ KernelContact contact_law(const Scene& scene, const Plan& plan, const PlanEntry&
     law.rest_value = kernel.value(d);
     const double slope = std::abs(kernel.derivative(d));
     if (slope <= 0)
-      throw SceneError("interactions." + e.name + ": a contact needs a radius beyond one spacing (1.1 in eq. 16 of "
+      throw SceneError("interactions." + e.name +
+                       ": a contact needs a radius beyond one spacing (1.1 in eq. 16 of "
                        "Halik et al. 2015), so that touching grains feel each other");
     law.inverse_slope = 1.0 / slope;
   });
@@ -80,7 +81,7 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
       bool hydrostatic = false;
       for (const auto& f : scene_.fills) hydrostatic = hydrostatic || (f.phase == s.name && f.hydrostatic);
       const Vec3& g = scene_.domain.gravity;
-      double top = 1e300;   // the smallest g.x in the domain is the surface
+      double top = 1e300;  // the smallest g.x in the domain is the surface
       for (std::size_t i = 0; i < q.count; ++i) top = std::min(top, dot(g, block.position[i]));
       top -= 0.5 * scene_.spacing * norm(g);
       const double c2 = q.sound_speed * q.sound_speed;
@@ -128,7 +129,8 @@ void Simulation::wire() {
     const auto of = [&](std::size_t k) {
       const Phase& s = scene_.phases[k];
       const PlanPhase& p = plan_.phases[k];
-      const double artificial = s.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (plan_.dimensions + 2));
+      const double artificial =
+          s.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (plan_.dimensions + 2));
       return s.density * (s.viscosity + artificial);
     };
     const bool a_fluid = particles_[a].kind() == PhaseKind::fluid, b_fluid = particles_[b].kind() == PhaseKind::fluid;
@@ -146,7 +148,8 @@ void Simulation::wire() {
       f.parameters.sound_speed = q.sound_speed;
       f.parameters.smoothing_length = q.smoothing_length;
       const double speed = plan_.largest_speed > 0 ? plan_.largest_speed : 0.1 * q.sound_speed;
-      // Strengths measured in docs/method.md: 2 in the consistent scheme, 4 in the plain one, whose sums need more order.
+      // Strengths measured in docs/method.md: 2 in the consistent scheme, 4 in the plain one, whose sums need more
+      // order.
       const double pace = speed + s.viscosity / q.smoothing_length;
       f.parameters.shift_speed = (s.scheme == FluidScheme::consistent ? 2.0 : 4.0) * s.shifting * pace;
       f.parameters.shift_limit = 0.2 * pace;
@@ -157,13 +160,14 @@ void Simulation::wire() {
         const int direction = e.a == k ? e.forward : e.backward;
         const bool solid = particles_[other].kind() != PhaseKind::fluid;
         FluidNeighbour n{&neighbours_.list(static_cast<std::size_t>(direction)),
-                         solid ? &extended_[other] : &motion_[other], e.kernel, e.radius, viscosity(k, other),
+                         solid ? &extended_[other] : &motion_[other],
+                         e.kernel,
+                         e.radius,
+                         viscosity(k, other),
                          solid || other == k};
         // The phase's own entry comes first: its viscosity is the phase's.
-        if (other == k)
-          f.neighbours.insert(f.neighbours.begin(), n);
-        else
-          f.neighbours.push_back(n);
+        if (other == k) f.neighbours.insert(f.neighbours.begin(), n);
+        else f.neighbours.push_back(n);
       }
       fluids_.push_back(std::move(f));
     } else if (seen[k]) {
@@ -183,8 +187,13 @@ void Simulation::wire() {
       Body b;
       b.phase = k;
       const double shear = s.young / (2.0 * (1.0 + s.poisson)), bulk = s.young / (3.0 * (1.0 - 2.0 * s.poisson));
-      b.parameters = {s.density, shear, bulk, s.artificial_viscosity, s.artificial_viscosity_beta,
-                      std::sqrt(bulk / s.density), scene_.domain.gravity};
+      b.parameters = {s.density,
+                      shear,
+                      bulk,
+                      s.artificial_viscosity,
+                      s.artificial_viscosity_beta,
+                      std::sqrt(bulk / s.density),
+                      scene_.domain.gravity};
       for (const auto& e : plan_.entries) {
         if ((e.a != k && e.b != k) || e.law != Law::elastic) continue;
         const std::size_t other = e.a == k ? e.b : e.a;

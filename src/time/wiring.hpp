@@ -16,7 +16,7 @@ struct Simulation::Fluid {
 struct Simulation::Extension {
   std::size_t phase = 0;
   std::vector<ExtensionSource> sources;
-  std::vector<FluidNeighbour> felt;      // for the reaction; empty for walls
+  std::vector<FluidNeighbour> felt;  // for the reaction; empty for walls
 };
 
 /// One direction of a contact entry.
@@ -26,7 +26,7 @@ struct Simulation::Contact {
   KernelKind kernel{};
   double radius = 0;
   KernelContact law{};
-  bool is_repulsion = false;             // the paper's repulsive wall for a fluid
+  bool is_repulsion = false;  // the paper's repulsive wall for a fluid
 };
 
 /// One direction of a fluid-grains entry with drag.
