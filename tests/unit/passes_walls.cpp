@@ -1,0 +1,195 @@
+// The fluid continued into solids against a naive twin of the formulas in src/passes/walls.hpp, and what these formulas
+// promise: a linear velocity continues exactly, a column at rest gives the wall its pressure.
+#include "passes/walls.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/naive_fluid.hpp"
+
+namespace barchan {
+namespace {
+
+using namespace sets;
+
+constexpr double rounding = 1e-12;
+
+/// A wall below, a fluid above and a second fluid among it, with random fields. Some of the wall knows its depth.
+Cast wall_under_fluids(int dimensions, Uniform& random) {
+  const Bounds b = dimensions == 2 ? box(2, {8, 6, 0}, {true, false, false}) : box(3, {5, 5, 6}, {true, false, true});
+  Bounds below = b;
+  below.low[1] = -5.0;
+  below.high[1] = 0.0;
+  std::vector<Vec3> one, other;
+  for (const Vec3& x : lattice(b, 1.0, 0.2, random)) (random(0, 1) < 0.7 ? one : other).push_back(x);
+  std::vector<PhaseParticles> p;
+  const std::vector<Field> fluid{Field::velocity, Field::density, Field::pressure};
+  p.push_back(phase(PhaseKind::wall, dimensions, lattice(below, 1.0, 0.1, random), 1.0,
+                    {Field::velocity, Field::wall_normal, Field::wall_depth}));
+  p.push_back(phase(PhaseKind::fluid, dimensions, one, 1.2, fluid, 1000));
+  p.push_back(phase(PhaseKind::fluid, dimensions, other, 900.0, fluid, 2000));
+  for (auto& q : p) randomise(q, Field::velocity, -2, 2, random);
+  for (std::size_t k : {1u, 2u}) {
+    randomise(p[k], Field::density, 0.9 * p[k].mass(), 1.1 * p[k].mass(), random);
+    randomise(p[k], Field::pressure, -3, 9, random);
+  }
+  for (std::size_t k = 0; k < p[0].size(); ++k) {
+    p[0].column(Field::wall_normal, 1)[k] = 1.0;
+    p[0].column(Field::wall_depth)[k] = k % 4 == 0 ? 0.0 : -position(p[0], k)[1];
+  }
+  return Cast(b, std::move(p), {{0, 1, 3.0}, {0, 2, 2.2}});
+}
+
+class Extension : public testing::TestWithParam<std::tuple<int, Slip, bool>> {};
+INSTANTIATE_TEST_SUITE_P(Walls, Extension,
+                         testing::Combine(testing::Values(2, 3), testing::Values(Slip::no_slip, Slip::free_slip),
+                                          testing::Bool()));
+
+TEST_P(Extension, EqualsTheNaiveSums) {
+  const auto [dimensions, slip, accelerates] = GetParam();
+  Uniform random(31);
+  Cast cast = wall_under_fluids(dimensions, random);
+  auto& wall = cast.phases[0];
+  if (accelerates) {
+    wall.add(Field::acceleration);
+    randomise(wall, Field::acceleration, -3, 3, random);
+  }
+  const Vec3 gravity{0.5, -9.81, dimensions == 3 ? 1.5 : 0.0};
+  const std::vector<double> rest{1.2, 900.0};
+  std::array<std::vector<double>, 3> velocity;
+  std::vector<double> pressure;
+  int alone = 0, linear = 0;
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    const Vec3 v_w = vector(wall, Field::velocity, k), n = vector(wall, Field::wall_normal, k);
+    const double phi_w = wall.column(Field::wall_depth)[k];
+    const Vec3 pull = gravity - (accelerates ? vector(wall, Field::acceleration, k) : Vec3{});
+    double sum = 0.0, sum_p = 0.0, sum_phi2 = 0.0;
+    Vec3 sum_v{}, sloped{};
+    for (std::size_t b : {1u, 2u})
+      for_all_pairs(cast.bounds, wall, k, cast.phases[b], false, cast.directions[b - 1].radius,
+                    [&](std::size_t j, const Vec3& r, const std::array<int, 3>&) {
+                      const PhaseParticles& fluid = cast.phases[b];
+                      const KernelKind kind = b == 1 ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
+                      const double w = naive::volume(fluid, j) *
+                                       naive::weight(kind, cast.directions[b - 1].radius, dimensions, norm(r));
+                      const Vec3 v_a = vector(fluid, Field::velocity, j);
+                      const double phi_a = -dot(n, r) - phi_w;
+                      sum += w;
+                      sum_p += w * (fluid.column(Field::pressure)[j] + rest[b - 1] * dot(pull, r));
+                      sum_phi2 += w * phi_a * phi_a;
+                      sum_v = sum_v + w * v_a;
+                      sloped = sloped + w * phi_a * (v_a - v_w);
+                    });
+    Vec3 v = v_w;
+    if (sum > 0.0) {
+      const Vec3 mean = 1.0 / sum * sum_v;
+      const Vec3 stuck = phi_w > 0.0 ? v_w - phi_w / sum_phi2 * sloped : 2.0 * v_w - mean;
+      v = slip == Slip::no_slip ? stuck : mean + dot(stuck - mean, n) * n;
+      linear += phi_w > 0.0;
+    } else {
+      ++alone;
+    }
+    for (std::size_t d = 0; d < 3; ++d) velocity[d].push_back(v[d]);
+    pressure.push_back(sum > 0.0 ? sum_p / sum : 0.0);
+  }
+  EXPECT_GT(alone, 0) << "the lowest layers see no fluid";
+  EXPECT_GT(linear, 0);
+  const std::vector<ExtensionSource> fluids{{&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, rest[0]},
+                                            {&cast.list(1), &cast.motion[2], KernelKind::cubic_spline, 2.2, rest[1]}};
+  extend_into_solid(wall, cast.motion[0], fluids, gravity, slip);
+  const auto n = static_cast<std::size_t>(dimensions);
+  std::vector<double> got(wall.size());
+  for (std::size_t d = 0; d <= n; ++d) {  // the velocity's components, then the pressure
+    for (std::size_t k = 0; k < wall.size(); ++k) got[k] = cast.motion[0][k][n + d];
+    EXPECT_LT(difference(got.data(), d < n ? velocity[d] : pressure), rounding) << (d < n ? "velocity" : "pressure");
+  }
+}
+
+/// Fluid over a flat wall at y = 0, a velocity and a pressure that depend on y; the wall's extended records.
+class Flat {
+ public:
+  template <class Velocity, class Pressure>
+  Flat(const Vec3& v_wall, const Vec3& gravity, Slip slip, Velocity&& v_of, Pressure&& p_of)
+      : cast_(make(v_wall, v_of, p_of)) {
+    const std::vector<ExtensionSource> fluid{{&cast_.list(0), &cast_.motion[1], KernelKind::wendland_c2, 3.0, 1.2}};
+    extend_into_solid(cast_.phases[0], cast_.motion[0], fluid, gravity, slip);
+  }
+  template <class F>
+  void each(F&& f) const {  // f(x, velocity, pressure) of wall particles near the fluid
+    for (std::size_t k = 0; k < cast_.phases[0].size(); ++k) {
+      const Vec3 x = position(cast_.phases[0], k);
+      const double* r = cast_.motion[0][k];
+      if (x[1] > -2.2) f(x, Vec3{r[2], r[3], 0}, r[4]);
+    }
+  }
+
+ private:
+  template <class Velocity, class Pressure>
+  static Cast make(const Vec3& v_wall, Velocity&& v_of, Pressure&& p_of) {
+    Uniform random(32);
+    const Bounds b = box(2, {10, 8, 0}, {true, false, false});
+    Bounds below = b;
+    below.low[1] = -3.0;
+    below.high[1] = 0.0;
+    std::vector<PhaseParticles> p;
+    p.push_back(phase(PhaseKind::wall, 2, lattice(below, 1.0, 0.0, random), 1.0,
+                      {Field::velocity, Field::wall_normal, Field::wall_depth}));
+    p.push_back(phase(PhaseKind::fluid, 2, lattice(b, 1.0, 0.25, random), 1.2,
+                      {Field::velocity, Field::density, Field::pressure}, 1000));
+    for (std::size_t k = 0; k < p[0].size(); ++k) {
+      p[0].column(Field::wall_normal, 1)[k] = 1.0;
+      p[0].column(Field::wall_depth)[k] = -position(p[0], k)[1];
+      for (int d = 0; d < 2; ++d) p[0].column(Field::velocity, d)[k] = v_wall[static_cast<std::size_t>(d)];
+    }
+    for (std::size_t k = 0; k < p[1].size(); ++k) {
+      const Vec3 x = position(p[1], k), v = v_of(x);
+      p[1].column(Field::density)[k] = 1.2;
+      p[1].column(Field::pressure)[k] = p_of(x);
+      for (int d = 0; d < 2; ++d) p[1].column(Field::velocity, d)[k] = v[static_cast<std::size_t>(d)];
+    }
+    return Cast(b, std::move(p), {{0, 1, 3.0}});
+  }
+  Cast cast_;
+};
+
+double no_pressure(const Vec3&) { return 0.0; }
+
+TEST(FlatWall, ALinearVelocityContinuesExactly) {
+  const Vec3 v_wall{0.7, 0, 0};
+  const Flat flat(
+      v_wall, {}, Slip::no_slip,
+      [](const Vec3& x) {
+        return Vec3{0.7 + 3.0 * x[1], -0.5 * x[1], 0};
+      },
+      no_pressure);
+  flat.each([](const Vec3& x, const Vec3& v, double) {
+    EXPECT_NEAR(v[0], 0.7 + 3.0 * x[1], 1e-12);
+    EXPECT_NEAR(v[1], -0.5 * x[1], 1e-12);
+  });
+}
+
+TEST(FlatWall, FreeSlipKeepsTheTangentialAndReflectsTheNormal) {
+  const Flat flat(
+      {5.0, 0, 0}, {}, Slip::free_slip,
+      [](const Vec3& x) {
+        return Vec3{1.5, 2.0 * x[1], 0};
+      },
+      no_pressure);
+  flat.each([](const Vec3& x, const Vec3& v, double) {
+    EXPECT_NEAR(v[0], 1.5, 1e-12) << "whatever the wall does along itself";
+    EXPECT_NEAR(v[1], 2.0 * x[1], 1e-12);
+  });
+}
+
+TEST(FlatWall, ARestingColumnGivesTheWallItsPressure) {
+  const Vec3 gravity{0, -9.81, 0};
+  const auto weight = [](const Vec3& x) { return 20.0 - 1.2 * 9.81 * x[1]; };
+  const Flat flat(
+      {}, gravity, Slip::no_slip, [](const Vec3&) { return Vec3{}; }, weight);
+  flat.each([&](const Vec3& x, const Vec3& v, double p) {
+    EXPECT_NEAR(p, weight(x), 1e-11);
+    EXPECT_EQ(v[0], 0.0);
+  });
+}
+
+}  // namespace
+}  // namespace barchan
