@@ -1,0 +1,76 @@
+// A step allocates nothing: operator new is counted through two hundred steps of each kind of scene, with sorting and
+// searching among them, after a warm-up in which the lists have found their sizes.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "physics/small_scenes.hpp"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  void* p =
+      alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment) : std::malloc(size);
+  if (p == nullptr && size > 0) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+// NOLINTBEGIN: the program's own allocation functions
+void* operator new(std::size_t size) { return counted(size, 0); }
+void* operator new[](std::size_t size) { return counted(size, 0); }
+void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
+void* operator new[](std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+// NOLINTEND
+
+namespace barchan {
+namespace {
+
+TEST(Allocations, AreCounted) {
+  const long before = allocations;
+  const auto text = std::make_unique<std::string>(1000, 'x');
+  const AlignedVector<double> array(100);
+  EXPECT_EQ(allocations, before + 3);
+}
+
+class Steps : public testing::TestWithParam<std::pair<const char*, const std::string*>> {};
+
+TEST_P(Steps, AllocateNothing) {
+  const auto run = small::simulation(*GetParam().second);
+  long rebuilds = run->neighbours().rebuilds();
+  int warm_up = 0;  // until the particles have been sorted anew a few times
+  while (warm_up < 100 || run->neighbours().rebuilds() < rebuilds + 3) {
+    run->step(1.0);
+    ASSERT_LT(++warm_up, 2000);
+  }
+  rebuilds = run->neighbours().rebuilds();
+  const long before = allocations;
+  for (int k = 0; k < 200; ++k) {
+    run->step(1.0);
+    ASSERT_EQ(allocations, before) << "in step " << k << " after " << run->neighbours().rebuilds() - rebuilds
+                                   << " searches";
+  }
+  EXPECT_GT(run->neighbours().rebuilds(), rebuilds) << "the test is meant to see a search";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Steps,
+                         testing::Values(std::pair{"Dune", &small::dune}, std::pair{"Channel", &small::channel},
+                                         std::pair{"Squares", &small::squares}, std::pair{"Grains", &small::grains}),
+                         [](const auto& s) { return std::string(s.param.first); });
+
+}  // namespace
+}  // namespace barchan

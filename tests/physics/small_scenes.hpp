@@ -1,0 +1,162 @@
+// Small scenes that several tests of the step run.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scene/generate.hpp"
+#include "scene/reader.hpp"
+#include "time/simulation.hpp"
+
+namespace barchan::small {
+
+/// A fluid with a wall below, in wind; nothing else.
+inline const std::string channel = R"toml(
+spacing = 0.01
+[domain]
+size = [0.3, 0.2]
+periodic = ["x"]
+gravity = [0.1, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-3
+sound-speed = 20
+[phases.floor]
+kind = "wall"
+[interactions]
+kernel = "wendland-c2"
+water-water = 3.0
+water-floor = 3.0
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom", "top"], layers = 3 }
+[[fill]]
+phase = "water"
+shape = "the-rest"
+perturb = 0.1
+velocity = ["2 + sin(2*pi*x/0.3)", "0.5*sin(2*pi*x/0.3)*sin(pi*y/0.2)"]
+[time]
+end = 10
+largest-speed = 3
+)toml";
+
+/// Wind over a little dune on a floor of fixed grains, with a lid: every kind of coupling at once.
+inline const std::string dune = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.06, 0.03]
+periodic = ["x"]
+gravity = [0, -9.81]
+[phases.air]
+kind = "fluid"
+density = 1.225
+viscosity = 1.48e-5
+sound-speed = 200
+enclosed = true
+scheme = "consistent"
+artificial-viscosity = 0.02
+[phases.sand]
+kind = "grains"
+density = 2650
+restitution = 0.7
+[phases.floor]
+kind = "wall"
+[phases.lid]
+kind = "wall"
+slip = "free-slip"
+[interactions]
+air-air = { radius = 3.0, kernel = "wendland-c2" }
+air-sand = 2.5
+sand-sand = 1.1
+sand-floor = 1.1
+air-lid = 3.0
+[[fill]]
+phase = "floor"
+shape = { box = { min = [0, 0], max = [0.06, 0.002] } }
+packing = "staggered"
+[[fill]]
+phase = "sand"
+shape = { bed = 0.004, from = 0.002, dune = { form = "cosine", height = 0.006, length = 0.04, at = 0.03 } }
+packing = "staggered"
+[[fill]]
+phase = "lid"
+shape = { sides = ["top"], layers = 3 }
+[[fill]]
+phase = "air"
+shape = "the-rest"
+velocity = { log-profile = { friction-velocity = 0.8, roughness = 3.3e-5 } }
+[time]
+end = 10
+)toml";
+
+/// Two elastic squares that collide.
+inline const std::string squares = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.04, 0.03]
+[phases.a]
+kind = "elastic"
+density = 1000
+young = 1e7
+poisson = 0.3
+artificial-viscosity = 0.5
+[phases.b]
+kind = "elastic"
+density = 1000
+young = 1e7
+poisson = 0.3
+artificial-viscosity = 0.5
+[interactions]
+a-a = 2.4
+b-b = 2.4
+a-b = 2.4
+[[fill]]
+phase = "a"
+shape = { box = { min = [0.005, 0.010], max = [0.014, 0.020] } }
+velocity = [4, 0.5]
+[[fill]]
+phase = "b"
+shape = { box = { min = [0.016, 0.008], max = [0.026, 0.018] } }
+velocity = [-4, 0]
+[time]
+end = 10
+largest-speed = 8
+)toml";
+
+/// Grains that fall into a heap in a periodic channel with a floor.
+inline const std::string grains = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.04, 0.06]
+periodic = ["x"]
+gravity = [0.5, -9.81]
+[phases.sand]
+kind = "grains"
+density = 2650
+restitution = 0.6
+[phases.floor]
+kind = "wall"
+density = 2650
+[interactions]
+sand-sand = 1.1
+sand-floor = 1.1
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"], layers = 1 }
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0.0, 0.002], max = [0.04, 0.02] } }
+packing = "random"
+velocity = ["0.2*sin(2*pi*x/0.04)", "-0.3*y/0.02"]
+[time]
+end = 10
+)toml";
+
+inline std::unique_ptr<Simulation> simulation(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const Scene scene = parse_scene(text, "test.toml", overrides);
+  const auto blocks = generate(scene);
+  return std::make_unique<Simulation>(scene, make_plan(scene, blocks), blocks);
+}
+
+}  // namespace barchan::small
