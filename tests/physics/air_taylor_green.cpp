@@ -48,6 +48,8 @@ Errors after_a_second(const std::vector<std::string>& overrides, double bound) {
   report("L1 of speed at t = 1 s", e.velocity, bound);
   report("decay of the largest speed", e.decay, bound);
   report("L1 of pressure", e.pressure, 0.1);
+  EXPECT_LE(std::abs(e.decay), bound);
+  EXPECT_LE(e.pressure, 0.1);
   return e;
 }
 
