@@ -17,6 +17,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
             Slip slip) {
   using R = MotionRecord<Dim>;
   const bool has_depth = solid.has(Field::wall_depth), accelerates = solid.kind() == PhaseKind::elastic;
+  const bool is_grain = solid.kind() == PhaseKind::grains;
   const double* depth = has_depth ? solid.column(Field::wall_depth) : nullptr;
   const auto n = static_cast<std::int64_t>(solid.size());
 #pragma omp parallel for schedule(dynamic, 256)
@@ -80,8 +81,9 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
     double mean_normal = 0.0, stuck_normal = 0.0;
     for (std::size_t d = 0; d < Dim; ++d) {
       mean[d] = simd::sum(s.velocity[d]) / weight;
-      stuck[d] =
-          phi_w > 0.0 && depth2 > 0.0 ? v_wall[d] - phi_w * simd::sum(s.sloped[d]) / depth2 : 2.0 * v_wall[d] - mean[d];
+      stuck[d] = is_grain                      ? v_wall[d]
+                 : phi_w > 0.0 && depth2 > 0.0 ? v_wall[d] - phi_w * simd::sum(s.sloped[d]) / depth2
+                                               : 2.0 * v_wall[d] - mean[d];
       mean_normal += mean[d] * normal[d];
       stuck_normal += stuck[d] * normal[d];
     }

@@ -24,6 +24,7 @@ struct ExtensionSource {
 ///   no-slip, depth known: v_w = v_wall - phi_w sum W phi_a (v_a - v_wall) / sum W phi_a^2, the line through the wall's
 ///     velocity at the surface that fits the fluid best (phi: distance to the surface); exact for a linear profile
 ///   no-slip, depth unknown: v_w = 2 v_wall - sum v_a W / sum W                   (Adami et al. 2012, eq. 23)
+///   grains: v_w = v_wall, their own; a jump of twice the slip across one grain in flight would be no smooth field
 ///   free-slip: the normal part as no-slip, the tangential part the fluid's mean.
 /// Without fluid near, the solid keeps its own velocity and the pressure is zero.
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,

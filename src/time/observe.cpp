@@ -201,6 +201,14 @@ void Simulation::check() const {
                                "; there is no wall that holds it, or it moves too fast for the contact: add a "
                                "wall on that side, enlarge domain.size, or raise contact-speed or sound-speed");
       }
+      if (p.kind() == PhaseKind::fluid) {
+        double speed2 = 0.0;
+        for (int d = 0; d < plan_.dimensions; ++d) speed2 += std::pow(p.column(Field::velocity, d)[i], 2);
+        if (speed2 > std::pow(plan_.phases[k].sound_speed, 2))
+          throw BreakdownError(who() + " is faster (" + number(std::sqrt(speed2)) + " m/s) than sound (" +
+                               number(plan_.phases[k].sound_speed) +
+                               " m/s); the flow ran away: raise sound-speed, viscosity or artificial-viscosity");
+      }
       if (p.has(Field::density)) {
         const double rho = p.column(Field::density)[i];
         if (!(rho > 0.0) || !std::isfinite(rho))
