@@ -84,7 +84,7 @@ void CellGrid::sort(PhaseParticles& particles) {
     for (std::size_t k = 0; k < n; ++k) {
       if (x[k] >= low && x[k] < high) continue;
       x[k] -= period * std::floor((x[k] - low) / period);
-      if (x[k] < low || x[k] >= high) x[k] = low;   // rounding at a side
+      if (x[k] < low || x[k] >= high) x[k] = low;  // rounding at a side
     }
   }
   std::array<const double*, 3> x{};

@@ -44,7 +44,8 @@ Frame shuffled(const Frame& f) {
 }
 
 const FieldDifference& of(const FrameDifference& difference, const std::string& field) {
-  const auto found = std::find_if(difference.fields.begin(), difference.fields.end(), [&](auto& d) { return d.field == field; });
+  const auto found =
+      std::find_if(difference.fields.begin(), difference.fields.end(), [&](auto& d) { return d.field == field; });
   if (found == difference.fields.end()) throw std::runtime_error("no field " + field);
   return *found;
 }
@@ -52,7 +53,7 @@ const FieldDifference& of(const FrameDifference& difference, const std::string& 
 TEST(Compare, FramesThatDifferInOrderAloneAreSame) {
   const auto difference = compare(plain_frame(50), shuffled(plain_frame(50)), 0.0);
   EXPECT_TRUE(difference.same);
-  EXPECT_EQ(difference.fields.size(), 6u);   // position, phase and four fields
+  EXPECT_EQ(difference.fields.size(), 6u);  // position, phase and four fields
   for (const auto& d : difference.fields) {
     EXPECT_EQ(d.largest, 0.0) << d.field;
     EXPECT_EQ(d.first_id, -1) << d.field;
@@ -63,9 +64,9 @@ TEST(Compare, FindsAPlantedDifferenceAndNamesTheParticle) {
   const std::size_t n = 50;
   const Frame a = plain_frame(n);
   Frame b = a;
-  b.fields[1].values[7] += 0.05;     // id 93
-  b.fields[1].values[20] -= 0.02;    // id 80, the lowest
-  b.fields[1].values[40] += 1e-9;    // id 60, below the tolerance
+  b.fields[1].values[7] += 0.05;   // id 93
+  b.fields[1].values[20] -= 0.02;  // id 80, the lowest
+  b.fields[1].values[40] += 1e-9;  // id 60, below the tolerance
   const auto difference = compare(a, shuffled(b), 1e-6);
   EXPECT_FALSE(difference.same);
   const auto& d = of(difference, "density");
@@ -117,7 +118,7 @@ TEST(Compare, TakesNanForDifferentFromEveryNumberOnly) {
 TEST(Compare, RemarksOnWhatOnlyOneHas) {
   const Frame a = plain_frame(10);
   Frame b = a;
-  b.id[9] = 500;                      // id 91 is gone, 500 is new
+  b.id[9] = 500;  // id 91 is gone, 500 is new
   b.fields[3].name = "mark";
   b.fields[0].components = 1;
   b.fields[0].values.resize(10);
@@ -127,9 +128,10 @@ TEST(Compare, RemarksOnWhatOnlyOneHas) {
   EXPECT_FALSE(difference.same);
   std::string remarks;
   for (const auto& remark : difference.remarks) remarks += remark + "\n";
-  for (const char* words : {"1 particle is only in A, the first has id 91", "1 particle is only in B, the first has id 500",
-                            "only A has the field 'marker'", "only B has the field 'mark'", "3 components in A, 1 in B",
-                            "the times differ", "the phases"})
+  for (const char* words :
+       {"1 particle is only in A, the first has id 91", "1 particle is only in B, the first has id 500",
+        "only A has the field 'marker'", "only B has the field 'mark'", "3 components in A, 1 in B", "the times differ",
+        "the phases"})
     EXPECT_NE(remarks.find(words), std::string::npos) << words << "\n" << remarks;
 }
 
@@ -147,10 +149,11 @@ TEST(Compare, FramesWithoutParticlesAreSame) {
 TEST(Compare, SaysItInWordsAndInJson) {
   const Frame a = plain_frame(10);
   Frame b = a;
-  b.fields[1].values[5] = 1.5;        // id 95
+  b.fields[1].values[5] = 1.5;  // id 95
   const std::vector differences{compare(a, a, 0.0), compare(a, b, 0.0)};
   const std::string text = to_text(differences);
-  EXPECT_NE(text.find("density differs first at particle 95: 1.2250000000000001 against 1.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("density differs first at particle 95: 1.2250000000000001 against 1.5"), std::string::npos)
+      << text;
 
   const auto json = nlohmann::json::parse(to_json(differences));
   EXPECT_EQ(json.at("same"), false);
@@ -166,7 +169,8 @@ TEST(Compare, SaysItInWordsAndInJson) {
 TEST(Compare, ReadsFramesAndSeries) {
   const TemporaryDirectory directory;
   {
-    SeriesWriter a(directory / "a", "dune", FrameFormat::vtp, true), b(directory / "b", "sand", FrameFormat::vtu, false);
+    SeriesWriter a(directory / "a", "dune", FrameFormat::vtp, true),
+        b(directory / "b", "sand", FrameFormat::vtu, false);
     for (int k = 0; k < 3; ++k) a.write(frame(20, k)), b.write(frame(20, k));
     a.finish();
     b.finish();

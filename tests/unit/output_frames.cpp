@@ -7,7 +7,8 @@
 #include "output/series.hpp"
 #include "unit/output_example.hpp"
 
-// VTK 9.2 forgets its compression tables (32 bytes an array) when a write fails half way. Read by the leak sanitizer alone.
+// VTK 9.2 forgets its compression tables (32 bytes an array) when a write fails half way. Read by the leak sanitizer
+// alone.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:vtkXMLWriter::CreateCompressionHeader\n"; }
 
@@ -21,7 +22,11 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-struct Way { FrameFormat format; bool compress; std::size_t particles; };
+struct Way {
+  FrameFormat format;
+  bool compress;
+  std::size_t particles;
+};
 
 class RoundTrip : public testing::TestWithParam<Way> {};
 
@@ -44,8 +49,8 @@ std::vector<Way> every_way() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Frames, RoundTrip, testing::ValuesIn(every_way()), [](const auto& way) {
-  return std::string(way.param.format == FrameFormat::vtp ? "vtp" : "vtu") + (way.param.compress ? "Compressed" : "Plain") +
-         std::to_string(way.param.particles);
+  return std::string(way.param.format == FrameFormat::vtp ? "vtp" : "vtu") +
+         (way.param.compress ? "Compressed" : "Plain") + std::to_string(way.param.particles);
 });
 
 TEST(Frames, CompressionMakesThemSmaller) {
@@ -112,7 +117,7 @@ TEST(Frames, ThatAreCutOffAreNotRead) {
     const std::string name = format == FrameFormat::vtp ? "frame.vtp" : "frame.vtu";
     write_frame(directory / name, frame(50), format, true);
     const std::string whole = bytes_of(directory / name);
-    const auto size = whole.size() - 1;   // a file without its last end of line is still whole
+    const auto size = whole.size() - 1;  // a file without its last end of line is still whole
     for (const auto length : {size_t{0}, size_t{1}, size_t{64}, size_t{1000}, size / 2, size - 20, size - 1}) {
       std::ofstream(directory / name, std::ios::binary) << whole.substr(0, length);
       expect_output_error([&] { read_frame(directory / name); }, {name, "incomplete"});
@@ -132,7 +137,8 @@ TEST(Frames, ThatAreDamagedAreNotRead) {
     expect_output_error([&] { read_frame(directory / "frame.vtp"); }, {"frame.vtp"});
   }
   const auto data = whole.find("<AppendedData");
-  std::ofstream(directory / "frame.vtp", std::ios::binary) << whole.substr(0, data + 500) + "\n  </AppendedData>\n</VTKFile>\n";
+  std::ofstream(directory / "frame.vtp", std::ios::binary)
+      << whole.substr(0, data + 500) + "\n  </AppendedData>\n</VTKFile>\n";
   expect_output_error([&] { read_frame(directory / "frame.vtp"); }, {"frame.vtp"});
 }
 

@@ -31,7 +31,7 @@ TEST(History, HasItsColumnsAndEveryDigit) {
   History history(directory / "history.csv", columns);
   history.row({0.1 + 0.2, 1e-5, -1.0 / 3});
   history.row({1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()});
-  EXPECT_EQ(text_of(directory / "history.csv"),   // while it is still open: rows are flushed
+  EXPECT_EQ(text_of(directory / "history.csv"),  // while it is still open: rows are flushed
             "time [s],dt [s],momentum x [kg m/s]\n"
             "0.30000000000000004,1.0000000000000001e-05,-0.33333333333333331\n"
             "1,nan,inf\n");

@@ -45,7 +45,7 @@ TEST(RunReport, HoldsWhatTheContractNames) {
   EXPECT_TRUE(json["budgets"]["broken"].is_null());
   std::vector<std::string> passes;
   for (const auto& item : json["seconds"].items()) passes.push_back(item.key());
-  EXPECT_EQ(passes, report().passes);   // the order of the step, not of the alphabet
+  EXPECT_EQ(passes, report().passes);  // the order of the step, not of the alphabet
 }
 
 TEST(RunReport, WithNothingInItIsStillADocument) {
@@ -57,7 +57,8 @@ TEST(RunReport, WithNothingInItIsStillADocument) {
 
 TEST(RunReport, ThatCannotBeWrittenSaysWhy) {
   const TemporaryDirectory directory;
-  expect_output_error([&] { write_run_report(directory / "nowhere" / "run.json", report()); }, {"run.json", "No such file"});
+  expect_output_error([&] { write_run_report(directory / "nowhere" / "run.json", report()); },
+                      {"run.json", "No such file"});
 }
 
 }  // namespace

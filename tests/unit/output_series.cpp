@@ -18,7 +18,8 @@ using namespace example;
 
 std::vector<std::string> files_in(const std::filesystem::path& directory) {
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(directory)) names.insert(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(directory))
+    names.insert(entry.path().filename().string());
   return {names.begin(), names.end()};
 }
 
@@ -98,7 +99,7 @@ TEST(Series, HoldsTheCallerBackWhenTwoFramesWait) {
   SeriesWriter series(directory.path, "dune", FrameFormat::vtp, true);
   for (int k = 0; k < 6; ++k) {
     series.write(frame(20'000, k));
-    EXPECT_GE(series.frames(), k - 1);   // at most two of the k + 1 frames handed over are not on the disk
+    EXPECT_GE(series.frames(), k - 1);  // at most two of the k + 1 frames handed over are not on the disk
   }
   series.finish();
   EXPECT_GT(series.seconds_waiting(), 0.0);
@@ -154,7 +155,7 @@ TEST(Series, CarriesAnErrorToTheCallerAndKeepsTheFramesBefore) {
   series.write(frame(100, 1));
   series.finish();
   series.write(frame(20'000, 2));
-  series.write(frame(100, 3));   // waits while the large one fails
+  series.write(frame(100, 3));  // waits while the large one fails
   expect_output_error([&] { series.finish(); }, {"dune_000002.vtp", "File too large"});
   expect_output_error([&] { series.write(frame(100, 4)); }, {"dune_000002.vtp", "File too large"});
   EXPECT_EQ(series.frames(), 2);
@@ -214,7 +215,8 @@ int check_series(const std::filesystem::path& directory) {
   // Beside them there is at most what was being made: one frame that has just got its name, or parts.
   int whole_but_not_listed = 0;
   for (const auto& name : files_in(directory))
-    if (!name.ends_with(".part") && std::find(expected.begin(), expected.end(), name) == expected.end()) ++whole_but_not_listed;
+    if (!name.ends_with(".part") && std::find(expected.begin(), expected.end(), name) == expected.end())
+      ++whole_but_not_listed;
   EXPECT_LE(whole_but_not_listed, 1);
   return index;
 }
