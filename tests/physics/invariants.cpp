@@ -1,9 +1,10 @@
 // What the forces conserve on random patches, to round-off: momentum of a fluid of two phases at a density ratio of
-// 2000, of elastic bodies and of grains; angular momentum where the law is central; the power of elastic forces against
-// the work of stress; and action and reaction between a fluid and grains.
+// 2000, of elastic bodies and of grains; angular momentum where the law is central; the energy of a fluid; the power of
+// elastic forces against the work of stress; and action and reaction between a fluid and grains.
 #include <gtest/gtest.h>
 
 #include "passes/elastic.hpp"
+#include "passes/energy.hpp"
 #include "passes/fluid.hpp"
 #include "passes/grains.hpp"
 #include "unit/naive_fluid.hpp"
@@ -91,6 +92,7 @@ void rate_mixture(Cast& cast, double mu) {
         {&cast.list(a == 0 ? 0 : 3), &cast.motion[a], KernelKind::wendland_c2, own_radius, 2.0 * mu, true},
         {&cast.list(a == 0 ? 1 : 2), &cast.motion[b], KernelKind::cubic_spline, 2.0, mu, false}};
     fluid_rates(cast.phases[a], cast.motion[a], n, parameters(), FluidScheme::plain);
+    if (cast.phases[a].has(Field::energy_rate)) fluid_energy(cast.phases[a], cast.motion[a], n);
   }
 }
 
@@ -101,6 +103,24 @@ TEST_P(Invariants, PlainFluidsOfRatio2000KeepTheirMomentum) {
     Balance momentum;
     for (const auto& p : cast.phases) add_forces(momentum, p);
     momentum.expect_zero(GetParam(), 1e-12);
+  }
+}
+
+// What pressure and friction take from the motion, the internal energy gains.
+TEST_P(Invariants, PlainFluidsKeepTheirEnergy) {
+  for (const double mu : {0.0, 3.0}) {
+    auto fields = fluid_fields;
+    fields.push_back(Field::energy_rate);
+    Cast cast = mixture(GetParam(), true, PhaseKind::fluid, PhaseKind::fluid, 2000.0, fields, all_directions);
+    rate_mixture(cast, mu);
+    Balance energy;
+    for (const auto& p : cast.phases)
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        const double power = dot(vector(p, Field::velocity, k), vector(p, Field::acceleration, k));
+        energy.add({p.mass() * power, 0, 0});
+        energy.add({p.mass() * p.column(Field::energy_rate)[k], 0, 0});
+      }
+    energy.expect_zero(1, 1e-12);
   }
 }
 

@@ -146,11 +146,11 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
                      L_p += vf * (p_ab - q.reference_density * dot(q.gravity, r));
                    });
     keep_shift(out, B, q);
-    // Few neighbours, det(-M) below a quarter: uncorrected, M = -1 and A = 0.
+    // Few neighbours, det(-M) below 0.6: uncorrected, M = -1 and A = 0.
     Matrix minus_m{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (std::size_t d = 0; d < dim; ++d)
       for (std::size_t e = 0; e < dim; ++e) minus_m[d][e] = -M[d][e];
-    const bool whole = determinant(minus_m) > 0.25;
+    const bool whole = determinant(minus_m) > 0.6;
     if (!whole) {
       M = {{{-1, 0, 0}, {0, -1, 0}, {0, 0, dim == 3 ? -1.0 : 0.0}}};
       A = {};

@@ -73,9 +73,10 @@ struct ElasticStage {
   static constexpr double own_radius = 2.4, other_radius = 1.6;
 
   explicit ElasticStage(int dimensions)
-      : cast(two_phases(dimensions, PhaseKind::elastic, PhaseKind::elastic,
-                        {Field::velocity, Field::density, Field::pressure, Field::stress, Field::acceleration},
-                        {{0, 0, own_radius}, {0, 1, other_radius}}, 21)) {
+      : cast(two_phases(
+            dimensions, PhaseKind::elastic, PhaseKind::elastic,
+            {Field::velocity, Field::density, Field::pressure, Field::stress, Field::acceleration, Field::energy},
+            {{0, 0, own_radius}, {0, 1, other_radius}}, 21)) {
     for (std::size_t k = 0; k < 2; ++k) {
       stress.emplace_back(dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size);
       stress[k].resize(cast.phases[k].size(), cast.neighbours.grid(k).images());
@@ -107,7 +108,7 @@ TEST_P(ElasticPasses, StrainEqualsTheNaiveSums) {
   ElasticStage stage(dimensions);
   const double dt = 0.01;
   auto& body = stage.cast.phases[0];
-  std::vector<double> rho, pressure;
+  std::vector<double> rho, pressure, energy;
   std::array<std::vector<double>, 6> stress;
   for (std::size_t k = 0; k < body.size(); ++k) {
     const Vec3 v_a = vector(body, Field::velocity, k);
@@ -124,12 +125,17 @@ TEST_P(ElasticPasses, StrainEqualsTheNaiveSums) {
     for (std::size_t d = 0; d < 3; ++d)
       for (std::size_t e = 0; e <= d; ++e)
         stress[static_cast<std::size_t>(places[d][e])].push_back(old[d][e] + dt * rate[d][e]);
-    rho.push_back(body.column(Field::density)[k] + dt * drho);
+    const double old_rho = body.column(Field::density)[k], divergence = l[0][0] + l[1][1] + l[2][2];
+    double power = -body.column(Field::pressure)[k] * divergence;  // eq. (13b), the whole stress
+    for (std::size_t d = 0; d < 3; ++d) power += dot(mid[d], l[d]);
+    energy.push_back(body.column(Field::energy)[k] + dt * power / old_rho);
+    rho.push_back(old_rho + dt * drho);
     pressure.push_back(stage.q.bulk_modulus / stage.q.reference_density * (rho.back() - stage.q.reference_density));
   }
   elastic_strain(body, stage.stress[0], stage.neighbours, stage.q, dt);
   EXPECT_LT(difference(body.column(Field::density), rho), rounding);
   EXPECT_LT(difference(body.column(Field::pressure), pressure), rounding);
+  EXPECT_LT(difference(body.column(Field::energy), energy), rounding);
   for (int c = 0; c < 6; ++c)
     EXPECT_LT(difference(body.column(Field::stress, c), stress[static_cast<std::size_t>(c)]), rounding)
         << "component " << c;

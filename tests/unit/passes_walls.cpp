@@ -13,8 +13,8 @@ using namespace sets;
 
 constexpr double rounding = 1e-12;
 
-/// A wall below, a fluid above and a second fluid among it, with random fields. Some of the wall knows its depth.
-Cast wall_under_fluids(int dimensions, Uniform& random) {
+/// A solid below, a fluid above and a second fluid among it, with random fields. Some of the solid knows its depth.
+Cast solid_under_fluids(PhaseKind kind, int dimensions, Uniform& random) {
   const Bounds b = dimensions == 2 ? box(2, {8, 6, 0}, {true, false, false}) : box(3, {5, 5, 6}, {true, false, true});
   Bounds below = b;
   below.low[1] = -5.0;
@@ -23,7 +23,7 @@ Cast wall_under_fluids(int dimensions, Uniform& random) {
   for (const Vec3& x : lattice(b, 1.0, 0.2, random)) (random(0, 1) < 0.7 ? one : other).push_back(x);
   std::vector<PhaseParticles> p;
   const std::vector<Field> fluid{Field::velocity, Field::density, Field::pressure};
-  p.push_back(phase(PhaseKind::wall, dimensions, lattice(below, 1.0, 0.1, random), 1.0,
+  p.push_back(phase(kind, dimensions, lattice(below, 1.0, 0.1, random), 1.0,
                     {Field::velocity, Field::wall_normal, Field::wall_depth}));
   p.push_back(phase(PhaseKind::fluid, dimensions, one, 1.2, fluid, 1000));
   p.push_back(phase(PhaseKind::fluid, dimensions, other, 900.0, fluid, 2000));
@@ -39,17 +39,18 @@ Cast wall_under_fluids(int dimensions, Uniform& random) {
   return Cast(b, std::move(p), {{0, 1, 3.0}, {0, 2, 2.2}});
 }
 
-class Extension : public testing::TestWithParam<std::tuple<int, Slip, bool>> {};
+class Extension : public testing::TestWithParam<std::tuple<int, Slip, PhaseKind>> {};
 INSTANTIATE_TEST_SUITE_P(Walls, Extension,
                          testing::Combine(testing::Values(2, 3), testing::Values(Slip::no_slip, Slip::free_slip),
-                                          testing::Bool()));
+                                          testing::Values(PhaseKind::wall, PhaseKind::elastic, PhaseKind::grains)));
 
 TEST_P(Extension, EqualsTheNaiveSums) {
-  const auto [dimensions, slip, accelerates] = GetParam();
+  const auto [dimensions, slip, kind] = GetParam();
+  const bool accelerates = kind == PhaseKind::elastic;  // the blows of grains are no motion of a boundary
   Uniform random(31);
-  Cast cast = wall_under_fluids(dimensions, random);
+  Cast cast = solid_under_fluids(kind, dimensions, random);
   auto& wall = cast.phases[0];
-  if (accelerates) {
+  if (kind != PhaseKind::wall) {
     wall.add(Field::acceleration);
     randomise(wall, Field::acceleration, -3, 3, random);
   }
@@ -68,9 +69,9 @@ TEST_P(Extension, EqualsTheNaiveSums) {
       for_all_pairs(cast.bounds, wall, k, cast.phases[b], false, cast.directions[b - 1].radius,
                     [&](std::size_t j, const Vec3& r, const std::array<int, 3>&) {
                       const PhaseParticles& fluid = cast.phases[b];
-                      const KernelKind kind = b == 1 ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
+                      const KernelKind kernel = b == 1 ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
                       const double w = naive::volume(fluid, j) *
-                                       naive::weight(kind, cast.directions[b - 1].radius, dimensions, norm(r));
+                                       naive::weight(kernel, cast.directions[b - 1].radius, dimensions, norm(r));
                       const Vec3 v_a = vector(fluid, Field::velocity, j);
                       const double phi_a = -dot(n, r) - phi_w;
                       sum += w;
@@ -82,7 +83,9 @@ TEST_P(Extension, EqualsTheNaiveSums) {
     Vec3 v = v_w;
     if (sum > 0.0) {
       const Vec3 mean = 1.0 / sum * sum_v;
-      const Vec3 stuck = phi_w > 0.0 ? v_w - phi_w / sum_phi2 * sloped : 2.0 * v_w - mean;
+      const Vec3 stuck = kind == PhaseKind::grains ? v_w
+                         : phi_w > 0.0             ? v_w - phi_w / sum_phi2 * sloped
+                                                   : 2.0 * v_w - mean;
       v = slip == Slip::no_slip ? stuck : mean + dot(stuck - mean, n) * n;
       linear += phi_w > 0.0;
     } else {
