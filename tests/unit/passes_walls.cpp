@@ -45,7 +45,9 @@ INSTANTIATE_TEST_SUITE_P(Walls, Extension,
                                           testing::Values(PhaseKind::wall, PhaseKind::elastic, PhaseKind::grains)));
 
 TEST_P(Extension, EqualsTheNaiveSums) {
-  const auto [dimensions, slip, kind] = GetParam();
+  const int dimensions = std::get<0>(GetParam());
+  const Slip slip = std::get<1>(GetParam());
+  const PhaseKind kind = std::get<2>(GetParam());
   const bool accelerates = kind == PhaseKind::elastic;  // the blows of grains are no motion of a boundary
   Uniform random(31);
   Cast cast = solid_under_fluids(kind, dimensions, random);
