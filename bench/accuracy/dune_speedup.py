@@ -42,7 +42,7 @@ def main():
     else:
         entries = [e for e in entries if e[0] >= 0.8 * entries[-1][0]]
     half = 0.5 * dune["length"]
-    windows = {"upstream": (dune["at"] - 1.5 * half, dune["at"] - 1.15 * half), "crest": (dune["at"] - 5 * dx, dune["at"] + 5 * dx),
+    windows = {"upstream": (dune["at"] - 2.0 * half, dune["at"] - 1.2 * half), "crest": (dune["at"] - 5 * dx, dune["at"] + 5 * dx),
                "lee": (dune["at"] + 0.5 * half, dune["at"] + 1.1 * half)}
     means = {name: [] for name in windows}
     error = 0.0
@@ -54,7 +54,7 @@ def main():
         ground = numpy.zeros(columns)
         numpy.maximum.at(ground, (x[rest, 0] / dx).astype(int) % columns, x[rest, 1] + 0.5 * dx)
         height = x[air, 1] - ground[(x[air, 0] / dx).astype(int) % columns]
-        speed = a["velocity"][air, 0]
+        speed = numpy.linalg.norm(a["velocity"][air], axis=1)
         error = max(error, abs(a["density"][air] / scene["phases"]["air"]["density"] - 1).max())
         for name, (low, high) in windows.items():
             s = (x[air, 0] - low) % length

@@ -1,6 +1,7 @@
 #include "passes/fluid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "kernels/kernel.hpp"
@@ -173,16 +174,17 @@ Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s,
   return r;
 }
 
-template <class Sums, class Reduced, std::size_t... K>
-void reduce(const Sums& from, Reduced& to) {
-  // Both are plain aggregates of the same shape: arrays of vectors here, of numbers there.
+/// The sums over the lanes of every member: both are plain aggregates of the same shape, of vectors and of numbers.
+template <class Reduced, class Sums>
+BARCHAN_SIMD_INLINE Reduced reduce(const Sums& from) {
   constexpr std::size_t count = sizeof(Sums) / sizeof(Lanes);
   static_assert(count == sizeof(Reduced) / sizeof(double));
-  const auto* v = reinterpret_cast<const Lanes*>(&from);
-  auto* x = reinterpret_cast<double*>(&to);
+  const auto v = std::bit_cast<std::array<Lanes, count>>(from);
+  alignas(64) std::array<double, count> x;
   std::size_t k = 0;
-  for (; k + 4 <= count; k += 4) simd::sum(v[k], v[k + 1], v[k + 2], v[k + 3]).store(x + k);
+  for (; k + 4 <= count; k += 4) simd::sum(v[k], v[k + 1], v[k + 2], v[k + 3]).store(x.data() + k);
   for (; k < count; ++k) x[k] = simd::sum(v[k]);
+  return std::bit_cast<Reduced>(x);
 }
 
 template <int Dim, template <int> class Law>
@@ -227,8 +229,7 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
       if (row.begin == row.end) continue;
       add_row<Dim, Law>(row, e, kernels[c], own, weight, sums);
     }
-    typename L::template Sums<double> s;
-    reduce(sums, s);
+    const auto s = reduce<typename L::template Sums<double>>(sums);
     const auto r = finish<Dim>(s, mu, rho[k], q, anisotropy);
     if constexpr (L::corrected)
       for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c) skew[c][k] = anisotropy[c];
@@ -257,8 +258,7 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
     const double* record = own_records[k];
     typename L::template Sums<Lanes> sums{};
     add_row<Dim, PlainFluid>(row, e, kernel, load_own<Dim, PlainFluid>(record), {0, 0, 0}, sums);
-    typename L::template Sums<double> s;
-    reduce(sums, s);
+    const auto s = reduce<typename L::template Sums<double>>(sums);
     const double closing = pores ? 2.0 * record[R::pressure] : 0.0;
     for (std::size_t d = 0; d < Dim; ++d)
       a[d][k] += record[R::volume] * inverse_mass * (2.0 * s.viscous[d] - s.pressure[d] + closing * s.concentration[d]);
