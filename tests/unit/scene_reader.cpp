@@ -134,7 +134,7 @@ velocity = [0.25, 0, "sin(t)"]
 [interactions]
 kernel = "wendland-c2"
 water-water = 3
-water-steel = { radius = 2, kernel = "cubic-spline" }
+water-steel = { radius = 2, kernel = "cubic-spline", drag = 0.5 }
 floor-water = { radius = 2.5 }
 [[fill]]
 phase = "floor"
@@ -209,6 +209,7 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.interactions.at(0).kernel, KernelKind::wendland_c2);
   EXPECT_EQ(scene.interactions.at(1).kernel, KernelKind::cubic_spline);
   EXPECT_EQ(scene.interactions.at(1).radius, 2);
+  EXPECT_EQ(scene.interactions.at(1).drag, 0.5);
   EXPECT_EQ(scene.interactions.at(2).kernel, KernelKind::wendland_c2);
   EXPECT_EQ(std::get<SidesShape>(scene.fills.at(0).shape).layers, 2);
   EXPECT_EQ(std::get<PointsShape>(scene.fills.at(1).shape).at.at(1), (Vec3{0.5, 0.5, 1}));
