@@ -3,7 +3,7 @@
 
     /usr/bin/python3 bench/accuracy/dune_speedup.py out/dune/dune.pvd [TIME]
 
-Ground is the highest grain below which sand is at rest, by columns of one spacing. Prints the means over the frames of the
+Ground is the top of the sand, by columns of one spacing, of the grains too slow to rise by their own diameter. Prints the means over the frames of the
 last fifth of the series (or of the frame nearest TIME), and exits with 1 when the crest is not above, or the lee not below,
 the upstream value.
 """
@@ -41,6 +41,7 @@ def main():
         entries = [min(entries, key=lambda e: abs(e[0] - float(sys.argv[2])))]
     else:
         entries = [e for e in entries if e[0] >= 0.8 * entries[-1][0]]
+    slow = (2 * 9.81 * dx) ** 0.5
     half = 0.5 * dune["length"]
     windows = {"upstream": (dune["at"] - 2.0 * half, dune["at"] - 1.2 * half), "crest": (dune["at"] - 5 * dx, dune["at"] + 5 * dx),
                "lee": (dune["at"] + 0.5 * half, dune["at"] + 1.1 * half)}
@@ -49,7 +50,7 @@ def main():
     for _, path in entries:
         x, a, phases = read(path)
         air, sand = a["phase"] == phases["air"], a["phase"] == phases["sand"]
-        rest = sand & (numpy.linalg.norm(a["velocity"], axis=1) < 0.02)
+        rest = sand & (numpy.linalg.norm(a["velocity"], axis=1) < slow)
         columns = int(round(length / dx))
         ground = numpy.zeros(columns)
         numpy.maximum.at(ground, (x[rest, 0] / dx).astype(int) % columns, x[rest, 1] + 0.5 * dx)

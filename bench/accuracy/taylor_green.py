@@ -24,10 +24,10 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = ROOT / "scenes/verification/taylor_green.toml"
 SCHEMES = {  # name: overrides
-    "plain, 3.0 dx": ["phases.air.scheme=plain", "interactions.air-air=3.0"],
-    "plain, 4.0 dx": ["phases.air.scheme=plain", "interactions.air-air=4.0"],
-    "consistent, 2.6 dx": ["phases.air.scheme=consistent", "interactions.air-air=2.6"],
-    "consistent, 2.6 dx, c = 20": ["phases.air.scheme=consistent", "interactions.air-air=2.6", "phases.air.sound-speed=20"],
+    "plain, 3.0 dx": ["phases.fluid.scheme=plain", "interactions.fluid-fluid=3.0"],
+    "plain, 4.0 dx": ["phases.fluid.scheme=plain", "interactions.fluid-fluid=4.0"],
+    "consistent, 2.6 dx": ["phases.fluid.scheme=consistent", "interactions.fluid-fluid=2.6"],
+    "consistent, 2.6 dx, c = 20": ["phases.fluid.scheme=consistent", "interactions.fluid-fluid=2.6", "phases.fluid.sound-speed=20"],
 }
 PEERS = {"EDAC-TVF": {30: .0122, 50: .0090, 70: .0096, 100: .0078}, "TVF": {30: .1182, 50: .0674, 70: .0519, 100: .0393},
          "delta+": {30: .0267, 50: .0266, 70: .0243, 100: .0207}}

@@ -15,20 +15,21 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
   for (int d = 0; d < Dim; ++d) acceleration[static_cast<std::size_t>(d)] = a.column(Field::acceleration, d);
   const double inverse_mass = 1.0 / a.mass();
   const auto n = static_cast<std::int64_t>(a.size());
-  with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
+  const ReadyKernel ready(e.kernel, e.radius, Dim);
 #pragma omp parallel for schedule(dynamic, 512)
-    for (std::int64_t i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const auto row = list.row(k);
-      if (row.begin == row.end) continue;
-      const double* record = own[k];
-      std::array<Lanes, Dim> x, v, force;
-      for (std::size_t d = 0; d < Dim; ++d) {
-        x[d] = Lanes(record[R::position + d]);
-        v[d] = Lanes(record[R::velocity + d]);
-        force[d] = Lanes(0.0);
-      }
-      const Lanes own_volume(record[R::volume]), strength(e.strength);
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto row = list.row(k);
+    if (row.begin == row.end) continue;
+    const double* record = own[k];
+    std::array<Lanes, Dim> x, v, force;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      x[d] = Lanes(record[R::position + d]);
+      v[d] = Lanes(record[R::velocity + d]);
+      force[d] = Lanes(0.0);
+    }
+    const Lanes own_volume(record[R::volume]), strength(e.strength);
+    ready([&](const auto& kernel) __attribute__((always_inline)) {
       for_each_neighbour<R::size>(
           row, others, [&](const Lanes* b) __attribute__((always_inline)) {
             std::array<Lanes, Dim> r, dv;
@@ -38,9 +39,9 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
             kernel.value_and_gradient(r2, w, f);
             GrainDrag::add(dv, strength * w * (a_is_fluid ? own_volume : b[R::volume]), force);
           });
-      for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
-    }
-  });
+    });
+    for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
+  }
 }
 
 }  // namespace
