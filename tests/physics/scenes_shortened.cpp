@@ -96,7 +96,7 @@ TEST_P(EveryScene, RunsInTheProgram) {
   const std::string end = ending_after(GetParam(), 6);
   const double every = std::stod(end.substr(end.find('=') + 1)) / 2;
   char frames[64];
-  std::snprintf(frames, sizeof frames, "output.every=%.9g", every);
+  std::snprintf(frames, sizeof frames, "output.every=%.17g", every);
   ASSERT_EQ(run_program(GetParam(), out, {end, frames, "output.history-every=0"}), 0);
 
   const std::string name = fs::path(GetParam()).filename().string();
