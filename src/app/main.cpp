@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "base/denormals.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
 
@@ -22,6 +23,7 @@ void wait_politely(char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  barchan::flush_denormals();
   wait_politely(argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};

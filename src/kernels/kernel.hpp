@@ -18,6 +18,7 @@ auto with_kernel(KernelKind kind, double radius, int dimensions, F&& f) {
 }
 
 /// A kernel ready for a pair loop: made once a pass, chosen once a row.
+template <class T = double>
 class ReadyKernel {
  public:
   ReadyKernel(KernelKind kind, double radius, int dimensions)
@@ -27,11 +28,15 @@ class ReadyKernel {
     if (kind_ == KernelKind::wendland_c2) return f(wendland_);
     return f(spline_);
   }
+  /// The constant that slope() leaves out.
+  double slope_factor() const {
+    return static_cast<double>(kind_ == KernelKind::wendland_c2 ? wendland_.slope_factor() : spline_.slope_factor());
+  }
 
  private:
   KernelKind kind_;
-  CubicSpline<double> spline_;
-  WendlandC2<double> wendland_;
+  CubicSpline<T> spline_;
+  WendlandC2<T> wendland_;
 };
 
 }  // namespace barchan

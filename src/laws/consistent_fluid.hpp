@@ -33,16 +33,16 @@ struct ConsistentFluid {
 
     /// Adds the sums of one entry; see PlainFluid. The viscosity is the phase's, not the entry's.
     BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double, double, const std::array<double, 3>& weight) {
-      const T k(scale);
+      const T k = simd::broadcast<T>(scale);
       for (std::size_t m = 0; m < moments; ++m) moment[m] = fma(k, s.moment[m], moment[m]);
       for (std::size_t m = 0; m < Dim * Dim; ++m) velocity[m] = fma(k, s.velocity[m], velocity[m]);
-      T hydrostatic(0.0);
+      T hydrostatic = simd::broadcast<T>(0.0);
       for (std::size_t d = 0; d < Dim; ++d) {
         concentration[d] = fma(k, s.concentration[d], concentration[d]);
         pressure[d] = fma(k, s.pressure[d], pressure[d]);
         viscous[d] = fma(k, s.viscous[d], viscous[d]);
         weighted[d] = fma(k, s.weighted[d], weighted[d]);
-        hydrostatic = fma(T(weight[d]), s.concentration[d], hydrostatic);
+        hydrostatic = fma(simd::broadcast<T>(weight[d]), s.concentration[d], hydrostatic);
       }
       diffusion = fma(k, s.diffusion - hydrostatic, diffusion);
     }
@@ -60,10 +60,10 @@ struct ConsistentFluid {
                                       T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T dp = a.p - p_b;
-    T lopsided(0.0);  // r.A.r
+    T lopsided = simd::broadcast<T>(0.0);  // r.A.r
     std::size_t q = 0;
     for (std::size_t d = 0; d < Dim; ++d) {
-      T along(0.0);
+      T along = simd::broadcast<T>(0.0);
       for (std::size_t e = 0; e <= d; ++e, ++q)
         along = e == 0 ? a.anisotropy[q] * r[e] : fma(a.anisotropy[q], r[e], along);
       lopsided = d == 0 ? along * r[d] : fma(along, r[d], lopsided);

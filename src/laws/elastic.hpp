@@ -35,8 +35,8 @@ struct ElasticForce {
   };
 
   template <bool Viscous, class T>
-  static void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, const T* s_b, T volume_b,
-                  std::array<T, Dim>& acceleration) {
+  static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b,
+                                      const T* s_b, T volume_b, std::array<T, Dim>& acceleration) {
     // The dummy has no volume; its mass must vanish as well.
     const T mf = select(volume_b > T(0.0), a.mass_b * f, T(0.0));
     T resistance(0.0);
@@ -65,8 +65,8 @@ struct ElasticStrain {
   };
 
   template <class T>
-  static void add(const std::array<T, Dim>& v_a, T mass_b, const std::array<T, Dim>& r, T f, const T* v_b, T volume_b,
-                  Sums<T>& s) {
+  static BARCHAN_SIMD_INLINE void add(const std::array<T, Dim>& v_a, T mass_b, const std::array<T, Dim>& r, T f,
+                                      const T* v_b, T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     T vr(0.0);
     for (std::size_t d = 0; d < Dim; ++d) {

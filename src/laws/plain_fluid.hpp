@@ -29,13 +29,14 @@ struct PlainFluid {
     /// switches density diffusion. `weight` is rho0 g [Pa/m].
     BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double mu, double diffuse,
                                   const std::array<double, 3>& weight) {
-      const T k(scale), viscosity(scale * mu), kd(scale * diffuse);
-      T hydrostatic(0.0);
+      const T k = simd::broadcast<T>(scale), viscosity = simd::broadcast<T>(scale * mu),
+              kd = simd::broadcast<T>(scale * diffuse);
+      T hydrostatic = simd::broadcast<T>(0.0);
       for (std::size_t d = 0; d < Dim; ++d) {
         pressure[d] = fma(k, s.pressure[d], pressure[d]);
         viscous[d] = fma(viscosity, s.viscous[d], viscous[d]);
         concentration[d] = fma(k, s.concentration[d], concentration[d]);
-        hydrostatic = fma(T(weight[d]), s.concentration[d], hydrostatic);
+        hydrostatic = fma(simd::broadcast<T>(weight[d]), s.concentration[d], hydrostatic);
       }
       divergence = fma(k, s.divergence, divergence);
       diffusion = fma(kd, s.diffusion - hydrostatic, diffusion);
@@ -55,7 +56,7 @@ struct PlainFluid {
                                       T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
     const T pressure = vf * (a.p + p_b);
-    T vr(0.0);
+    T vr = simd::broadcast<T>(0.0);
     for (std::size_t d = 0; d < Dim; ++d) {
       const T dv = a.v[d] - v_b[d];
       vr = d == 0 ? dv * r[d] : fma(dv, r[d], vr);

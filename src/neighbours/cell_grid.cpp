@@ -8,14 +8,13 @@ namespace barchan {
 
 CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks)
     : dimensions_(static_cast<std::size_t>(bounds.dimensions)), bounds_(bounds) {
-  // A cell count beyond this gains nothing and would only cost memory in sparse scenes.
-  constexpr double largest_count = 4096.0 * 4.0;
   for (std::size_t d = 0; d < dimensions_; ++d) {
     const double size = bounds.high[d] - bounds.low[d];
     period_[d] = bounds.periodic[d] ? size : 0.0;
-    const double n = std::clamp(std::floor(size / cell), 1.0, largest_count);
+    const double n = static_cast<double>(blocks.count[d]) * std::max(std::floor(blocks.side[d] / cell), 1.0);
     const double side = size / n;
     inverse_cell_[d] = static_cast<float>(1.0 / side);
+    side_[d] = static_cast<float>(side);
     halo_[d] = bounds.periodic[d] ? static_cast<int>(std::ceil(reach / side)) + 1 : 1;
     count_[d] = static_cast<std::size_t>(n) + 2 * static_cast<std::size_t>(halo_[d]);
   }
@@ -41,6 +40,14 @@ void CellGrid::order_interior(const Blocks& blocks) {
         for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y)
           for (std::size_t x = x0; x < std::min(x0 + wide, high[0]); ++x)
             walk_.push_back(static_cast<std::uint32_t>((z * count_[1] + y) * count_[0] + x));
+  // Strips as walked; the halo of a periodic side is made row by row, so it is contiguous on either side of them.
+  strip_last_.resize(count_[0]);
+  for (std::size_t c = 0; c < count_[0]; ++c) {
+    const std::size_t end = c < low[0]     ? low[0]
+                            : c >= high[0] ? count_[0]
+                                           : std::min(low[0] + ((c - low[0]) / wide + 1) * wide, high[0]);
+    strip_last_[c] = static_cast<int>(end) - 1;
+  }
   walk_block_.reserve(walk_.size());
   for (const std::uint32_t cell : walk_) {
     const std::array<std::size_t, 3> at{cell % count_[0], cell / count_[0] % count_[1], cell / (count_[0] * count_[1])};

@@ -6,30 +6,29 @@
 
 namespace barchan {
 
-Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin)
+Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin,
+                       double spacing, std::size_t padding)
     : bounds_(bounds),
       directions_(std::move(directions)),
       grids_(phases),
       lists_(directions_.size()),
       ranges_(phases),
+      padding_(padding),
       skin_(skin) {
-  double widest = 0.0;
-  for (const auto& d : directions_) widest = std::max(widest, d.radius * (1.0 + skin_));
-  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions) && widest > 0.0; ++d) {
+  for (const auto& d : directions_) widest_ = std::max(widest_, d.radius * (1.0 + skin_));
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions) && widest_ > 0.0; ++d) {
     const double size = bounds_.high[d] - bounds_.low[d];
-    // A search, two halves of a cell that may stick out, and a little.
-    blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / (2.1 * widest)), 1.0, 4096.0));
+    blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / (block_width * widest_)), 1.0, 4096.0));
     blocks_.side[d] = size / static_cast<double>(blocks_.count[d]);
   }
   for (std::size_t p = 0; p < phases; ++p) {
-    // Cells suit the shortest search over a phase; longer ones look at more cells.
-    double shortest = std::numeric_limits<double>::max(), longest = 0.0;
-    for (const auto& d : directions_) {
-      if (d.a == p || d.b == p) shortest = std::min(shortest, d.radius);
+    double longest = 0.0;
+    for (const auto& d : directions_)
       if (d.a == p || d.b == p) longest = std::max(longest, d.radius);
-    }
     if (longest == 0.0) continue;
-    grids_[p] = std::make_unique<CellGrid>(bounds_, shortest * (1.0 + skin_), longest * (1.0 + skin_) * 1.001, blocks_);
+    // Half a search a cell: a ball's cells then cover little more than the ball. Cells emptier than that are no gain.
+    const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacing);
+    grids_[p] = std::make_unique<CellGrid>(bounds_, cell, longest * (1.0 + skin_) * 1.001, blocks_);
     ranges_[p].resize(blocks_.size());
   }
 }
@@ -44,6 +43,17 @@ void Neighbours::Range::widen(const Range& other) {
     low[d] = std::min(low[d], other.low[d]);
     high[d] = std::max(high[d], other.high[d]);
   }
+}
+
+/// Square of the largest relative displacement of two particles, one from each box of displacements.
+double Neighbours::apart(const Range& a, const Range& b) {
+  double squared = 0.0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double most = std::max(static_cast<double>(a.high[d]) - static_cast<double>(b.low[d]),
+                                 static_cast<double>(b.high[d]) - static_cast<double>(a.low[d]));
+    squared += most * most;
+  }
+  return squared;
 }
 
 void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
@@ -84,8 +94,17 @@ void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
 bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
   for (std::size_t p = 0; p < grids_.size(); ++p)
     if (grids_[p]) measure(particles[p], p);
-  // Two particles that may come within reach stand in adjacent blocks; their relative displacement is at most the
-  // diagonal of the box that holds the displacements of both phases there.
+  // A pair that no list holds stood more than radius + skin apart. In the same or adjacent blocks it comes within the
+  // radius only by a relative displacement of a skin; elsewhere it stood a whole block apart.
+  Range all;
+  all.clear();
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (grids_[p])
+      for (const auto& range : ranges_[p]) all.widen(range);
+  double least_gap = std::numeric_limits<double>::max();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d)
+    least_gap = std::min(least_gap, blocks_.side[d] - widest_);
+  if (!(apart(all, all) < least_gap * least_gap)) return false;
   const auto steps = [&](std::size_t axis, long at, std::array<long, 3>& out) {
     const auto count = static_cast<long>(blocks_.count[axis]);
     int n = 0;
@@ -104,22 +123,19 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
     std::array<long, 3> xs{}, ys{}, zs{};
     const int mx = steps(0, q % nx, xs), my = steps(1, q / nx % ny, ys), mz = steps(2, q / (nx * ny), zs);
     for (const auto& direction : directions_) {
-      Range box = ranges_[direction.a][static_cast<std::size_t>(q)];
-      if (box.low[0] > box.high[0]) continue;
-      for (int z = 0; z < mz; ++z)
-        for (int y = 0; y < my; ++y)
-          for (int x = 0; x < mx; ++x)
-            box.widen(ranges_[direction.b][static_cast<std::size_t>(
-                (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
-                xs[static_cast<std::size_t>(x)])]);
-      double squared = 0.0;
-      for (std::size_t d = 0; d < 3; ++d) {
-        const double apart = static_cast<double>(box.high[d]) - static_cast<double>(box.low[d]);
-        squared += apart * apart;
-      }
+      const Range& own = ranges_[direction.a][static_cast<std::size_t>(q)];
+      if (own.low[0] > own.high[0]) continue;
       // A tenth of the skin is kept for the rounding of the search. NaN positions fail and are found by the check.
       const double most = 0.9 * skin_ * direction.radius;
-      valid = valid && squared < most * most;
+      for (int z = 0; z < mz; ++z)
+        for (int y = 0; y < my; ++y)
+          for (int x = 0; x < mx; ++x) {
+            const Range& other = ranges_[direction.b][static_cast<std::size_t>(
+                (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
+                xs[static_cast<std::size_t>(x)])];
+            if (other.low[0] > other.high[0]) continue;
+            valid = valid && apart(own, other) < most * most;
+          }
     }
   }
   return valid;
@@ -133,7 +149,7 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
     const auto& d = directions_[q];
     const auto dummy = static_cast<std::uint32_t>(particles[d.b].size() + grids_[d.b]->images());
     lists_[q].build(*grids_[d.a], particles[d.a].size(), *grids_[d.b], d.a == d.b, d.radius * (1.0 + skin_), dummy,
-                    bounds_.dimensions);
+                    padding_, bounds_.dimensions);
   }
   ++rebuilds_;
   return true;

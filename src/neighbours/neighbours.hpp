@@ -18,8 +18,10 @@ struct Direction {
 
 class Neighbours {
  public:
-  /// `skin`: lists reach this fraction beyond an entry's radius, so that they stay valid while particles move.
-  Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin);
+  /// `spacing` (m): of the particles. `padding`: of the rows of all lists. `skin`: lists reach this fraction beyond an
+  /// entry's radius, so that they stay valid while particles move.
+  Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin, double spacing,
+             std::size_t padding = simd::native_width<double>);
 
   /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it
   /// did; then particles have new places. The decision depends on positions alone.
@@ -32,12 +34,17 @@ class Neighbours {
   std::size_t bytes() const;
 
  private:
+  /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
+  /// in wide ones particles may go further before blocks that are not adjacent matter.
+  static constexpr double block_width = 1.5;
+
   /// Displacements since the last sort: bounds of their components.
   struct Range {
     std::array<float, 3> low, high;
     void clear();
     void widen(const Range& other);
   };
+  static double apart(const Range& a, const Range& b);
   bool still_valid(const std::vector<PhaseParticles>& particles);
   void measure(const PhaseParticles& particles, std::size_t phase);
 
@@ -48,7 +55,8 @@ class Neighbours {
   Blocks blocks_;
   std::vector<std::vector<Range>> ranges_;  // by phase, block
   std::vector<Range> run_ranges_;
-  double skin_;
+  std::size_t padding_;
+  double skin_, widest_ = 0.0;
   long rebuilds_ = 0;
 };
 

@@ -17,8 +17,9 @@ namespace barchan {
 
 class PairList {
  public:
-  static constexpr std::size_t chunk = 1024;                          // particles
-  static constexpr std::size_t padding = simd::native_width<double>;  // row lengths are multiples of this
+  static constexpr std::size_t chunk = 1024;  // particles
+  /// A neighbour is listed as `stride` times its index: where its record begins in an array of records of that size.
+  static constexpr std::uint32_t stride = 8;
 
   struct Row {
     const std::uint32_t* begin;
@@ -26,15 +27,17 @@ class PairList {
   };
 
   /// Lists, for each particle of `a`, the particles and images of `grid_b` within `radius` (m), itself left out when
-  /// `same` says that both are one phase. `dummy` is the index used for padding.
+  /// `same` says that both are one phase. `dummy` is the index that pads rows to multiples of
+  /// `padding`, a power of two.
   void build(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
-             std::uint32_t dummy, int dimensions);
+             std::uint32_t dummy, std::size_t padding, int dimensions);
 
   Row row(std::size_t k) const {
     const auto& c = chunks_[k / chunk];
     const std::size_t r = k % chunk;
     return {c.index.data() + c.begin[r], c.index.data() + c.begin[r + 1]};
   }
+  std::size_t padding() const { return padding_; }
   std::uint64_t entries() const;  ///< listed neighbours (those in the skin too, padding not)
   std::size_t bytes() const;
 
@@ -48,6 +51,7 @@ class PairList {
   void build_chunks(const CellGrid&, std::size_t, const CellGrid&, bool, double, std::uint32_t);
 
   std::vector<Chunk> chunks_;
+  std::size_t padding_ = simd::native_width<double>;
 };
 
 }  // namespace barchan

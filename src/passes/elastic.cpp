@@ -2,12 +2,11 @@
 
 #include "kernels/kernel.hpp"
 #include "laws/elastic.hpp"
+#include "passes/fours.hpp"
 
 namespace barchan {
 
 namespace {
-
-using Tensor = std::array<std::array<double, 3>, 3>;
 
 /// The field's order: xx yy zz xy yz xz.
 constexpr std::size_t column_of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -36,21 +35,52 @@ void pack(const PhaseParticles& body, RecordArray& records) {
   }
 }
 
-/// 2 G dev(D) + s.W^T + W.s at stress s, with L the velocity gradient (row: component of v).
-Tensor stress_rate(const Tensor& s, const Tensor& l, double shear_modulus) {
-  Tensor rate{}, spin{}, strain{};
-  for (std::size_t d = 0; d < 3; ++d)
-    for (std::size_t e = 0; e < 3; ++e) {
-      strain[d][e] = 0.5 * (l[d][e] + l[e][d]);
-      spin[d][e] = 0.5 * (l[d][e] - l[e][d]);
+/// A symmetric stress of four particles: the components that the dimensions have, and zz in two (plane strain).
+template <int Dim>
+struct Stress {
+  std::array<std::array<Four, Dim>, Dim> in;
+  Four zz;  // two dimensions only
+};
+template <int Dim>
+using Gradient = std::array<std::array<Four, Dim>, Dim>;  // row: component of v
+
+/// 2 G dev(D) + s.W^T + W.s at stress s.
+template <int Dim>
+BARCHAN_SIMD_INLINE Stress<Dim> stress_rate(const Stress<Dim>& s, const Gradient<Dim>& l, Four shear_modulus) {
+  Stress<Dim> rate;
+  Four third(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) third += l[d][d];
+  third *= Four(2.0 / 3.0) * shear_modulus;
+  const auto spin = [&](std::size_t d, std::size_t e) { return Four(0.5) * (l[d][e] - l[e][d]); };
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e) {
+      Four sum = shear_modulus * (l[d][e] + l[e][d]);
+      if (d == e) sum -= third;
+      for (std::size_t f = 0; f < Dim; ++f) {
+        if (f != e) sum = simd::fma(s.in[d][f], spin(e, f), sum);
+        if (f != d) sum = simd::fma(spin(d, f), s.in[f][e], sum);
+      }
+      rate.in[d][e] = rate.in[e][d] = sum;
     }
-  const double third = (strain[0][0] + strain[1][1] + strain[2][2]) / 3.0;
-  for (std::size_t d = 0; d < 3; ++d)
-    for (std::size_t e = 0; e < 3; ++e) {
-      rate[d][e] = 2.0 * shear_modulus * (strain[d][e] - (d == e ? third : 0.0));
-      for (std::size_t f = 0; f < 3; ++f) rate[d][e] += s[d][f] * spin[e][f] + spin[d][f] * s[f][e];
-    }
+  rate.zz = -third;
   return rate;
+}
+
+template <int Dim>
+BARCHAN_SIMD_INLINE Stress<Dim> advance(const Stress<Dim>& s, Four time, const Stress<Dim>& rate) {
+  Stress<Dim> r;
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e < Dim; ++e) r.in[d][e] = simd::fma(time, rate.in[d][e], s.in[d][e]);
+  r.zz = simd::fma(time, rate.zz, s.zz);
+  return r;
+}
+
+std::vector<ReadyKernel<double>>& ready_kernels(std::span<const ElasticNeighbour> neighbours, int dimensions) {
+  thread_local std::vector<ReadyKernel<double>> kernels;
+  kernels.reserve(16);
+  kernels.clear();
+  for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);
+  return kernels;
 }
 
 template <int Dim>
@@ -62,49 +92,65 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
   double* energy = body.has(Field::energy) ? body.column(Field::energy) : nullptr;
   std::array<double*, 6> stress{};
   for (int c = 0; c < 6; ++c) stress[static_cast<std::size_t>(c)] = body.column(Field::stress, c);
-  const auto n = static_cast<std::int64_t>(body.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double* record = own_records[k];
-    std::array<Lanes, Dim> x, v;
-    for (std::size_t d = 0; d < Dim; ++d) {
-      x[d] = Lanes(record[R::position + d]);
-      v[d] = Lanes(record[R::velocity + d]);
+  const auto& kernels = ready_kernels(neighbours, Dim);
+  const Four time(dt), half(0.5 * dt), shear(q.shear_modulus), stiffness(q.bulk_modulus / q.reference_density);
+  const std::size_t n = body.size();
+  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int64_t block = 0; block < fours; ++block) {
+    const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
+    std::array<typename Law::template Sums<Lanes>, 4> sums;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t k = std::min(first + lane, n - 1);
+      const double* record = own_records[k];
+      std::array<Lanes, Dim> x, v;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        x[d] = Lanes(record[R::position + d]);
+        v[d] = Lanes(record[R::velocity + d]);
+      }
+      typename Law::template Sums<Lanes> s{};
+      for (std::size_t c = 0; c < neighbours.size(); ++c) {
+        const auto& e = neighbours[c];
+        const auto row = e.list->row(k);
+        const Lanes mass(e.mass);
+        kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
+          for_each_neighbour<R::size>(
+              row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+                std::array<Lanes, Dim> r;
+                const Lanes r2 = separation<Dim>(x, b + R::position, r);
+                Law::add(v, mass, r, kernel.gradient(r2), b + R::velocity, b[R::volume], s);
+              });
+        });
+      }
+      sums[lane] = s;
     }
-    typename Law::template Sums<Lanes> s{};
-    for (const auto& e : neighbours) {
-      const auto row = e.list->row(k);
-      if (row.begin == row.end) continue;
-      const Lanes mass(e.mass);
-      with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-        for_each_neighbour<R::size>(
-            row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-              std::array<Lanes, Dim> r;
-              const Lanes r2 = separation<Dim>(x, b + R::position, r);
-              Law::add(v, mass, r, kernel.gradient(r2), b + R::velocity, b[R::volume], s);
-            });
-      });
-    }
-    Tensor l{}, old{}, mid{};
+    const auto s = reduce<typename Law::template Sums<Four>, double>(sums);
+    Gradient<Dim> l;
+    Stress<Dim> old;
     for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e < Dim; ++e) l[d][e] = -simd::sum(s.gradient[d * Dim + e]);
-    for (std::size_t d = 0; d < 3; ++d)
-      for (std::size_t e = 0; e < 3; ++e) old[d][e] = stress[column_of[d][e]][k];
-    const Tensor first = stress_rate(old, l, q.shear_modulus);
-    for (std::size_t d = 0; d < 3; ++d)
-      for (std::size_t e = 0; e < 3; ++e) mid[d][e] = old[d][e] + 0.5 * dt * first[d][e];
-    const Tensor rate = stress_rate(mid, l, q.shear_modulus);
-    for (std::size_t d = 0; d < 3; ++d)
-      for (std::size_t e = 0; e <= d; ++e) stress[column_of[d][e]][k] = old[d][e] + dt * rate[d][e];
+      for (std::size_t e = 0; e < Dim; ++e) {
+        l[d][e] = -s.gradient[d * Dim + e];
+        old.in[d][e] = load_four(stress[column_of[d][e]], first, count);
+      }
+    old.zz = load_four(stress[2], first, count);
+    const Stress<Dim> mid = advance(old, half, stress_rate<Dim>(old, l, shear));
+    const Stress<Dim> next = advance(old, time, stress_rate<Dim>(mid, l, shear));
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e <= d; ++e) store_four(next.in[d][e], stress[column_of[d][e]], first, count);
+    if (Dim == 2) store_four(next.zz, stress[2], first, count);
+    Four density = load_four(rho, first, count);
     if (energy) {  // de/dt = s:L/rho, eq. (13b) with the whole stress; the power at the middle of the step
-      double power = -p[k] * (l[0][0] + l[1][1] + l[2][2]);
-      for (std::size_t d = 0; d < 3; ++d)
-        for (std::size_t e = 0; e < 3; ++e) power += mid[d][e] * l[d][e];
-      energy[k] += dt * power / rho[k];
+      Four power(0.0), trace(0.0);
+      for (std::size_t d = 0; d < Dim; ++d) {
+        trace += l[d][d];
+        for (std::size_t e = 0; e < Dim; ++e) power = simd::fma(mid.in[d][e], l[d][e], power);
+      }
+      power -= load_four(p, first, count) * trace;
+      store_four(load_four(energy, first, count) + time * power / density, energy, first, count);
     }
-    rho[k] += dt * simd::sum(s.density);
-    p[k] = q.bulk_modulus / q.reference_density * (rho[k] - q.reference_density);
+    density = simd::fma(time, s.density, density);
+    store_four(density, rho, first, count);
+    store_four(stiffness * (density - Four(q.reference_density)), p, first, count);
   }
 }
 
@@ -113,40 +159,50 @@ void forces(PhaseParticles& body, const RecordArray& own_records, std::span<cons
             const ElasticParameters& q) {
   using R = StressRecord<Dim>;
   using Law = ElasticForce<Dim>;
+  using Sums = std::array<Lanes, Dim>;
+  const double alpha = -q.alpha * q.sound_speed / q.reference_density, beta = q.beta / q.reference_density;
   std::array<double*, Dim> a{};
   for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = body.column(Field::acceleration, d);
-  const auto n = static_cast<std::int64_t>(body.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double* record = own_records[k];
-    typename Law::template Own<Lanes> own;
-    std::array<Lanes, Dim> sum;
-    for (std::size_t d = 0; d < Dim; ++d) {
-      own.x[d] = Lanes(record[R::position + d]);
-      own.v[d] = Lanes(record[R::velocity + d]);
-      sum[d] = Lanes(0.0);
+  const auto& kernels = ready_kernels(neighbours, Dim);
+  const std::size_t n = body.size();
+  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int64_t block = 0; block < fours; ++block) {
+    const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
+    std::array<Sums, 4> sums;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t k = std::min(first + lane, n - 1);
+      const double* record = own_records[k];
+      typename Law::template Own<Lanes> own;
+      Sums sum;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        own.x[d] = Lanes(record[R::position + d]);
+        own.v[d] = Lanes(record[R::velocity + d]);
+        sum[d] = Lanes(0.0);
+      }
+      for (std::size_t c = 0; c < Law::stresses; ++c) own.s[c] = Lanes(record[R::stress + c]);
+      for (std::size_t c = 0; c < neighbours.size(); ++c) {
+        const auto& e = neighbours[c];
+        const auto row = e.list->row(k);
+        const double h = 0.5 * e.radius;
+        own.mass_b = Lanes(e.mass);
+        own.alpha = Lanes(alpha * h);
+        own.beta = Lanes(beta * h * h);
+        own.soft = Lanes(0.01 * h * h);
+        kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
+          for_each_neighbour<R::size>(
+              row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+                std::array<Lanes, Dim> r;
+                const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+                Law::template add<Viscous>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress,
+                                           b[R::volume], sum);
+              });
+        });
+      }
+      sums[lane] = sum;
     }
-    for (std::size_t c = 0; c < Law::stresses; ++c) own.s[c] = Lanes(record[R::stress + c]);
-    for (const auto& e : neighbours) {
-      const auto row = e.list->row(k);
-      if (row.begin == row.end) continue;
-      const double h = 0.5 * e.radius;
-      own.mass_b = Lanes(e.mass);
-      own.alpha = Lanes(-q.alpha * q.sound_speed * h / q.reference_density);
-      own.beta = Lanes(q.beta * h * h / q.reference_density);
-      own.soft = Lanes(0.01 * h * h);
-      with_kernel<double>(e.kernel, e.radius, Dim, [&](const auto& kernel) {
-        for_each_neighbour<R::size>(
-            row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-              std::array<Lanes, Dim> r;
-              const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-              Law::template add<Viscous>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress, b[R::volume],
-                                         sum);
-            });
-      });
-    }
-    for (std::size_t d = 0; d < Dim; ++d) a[d][k] = simd::sum(sum[d]) + q.gravity[d];
+    const auto s = reduce<std::array<Four, Dim>, double>(sums);
+    for (std::size_t d = 0; d < Dim; ++d) store_four(s[d] + Four(q.gravity[d]), a[d], first, count);
   }
 }
 

@@ -7,99 +7,108 @@
 #include "kernels/kernel.hpp"
 #include "laws/consistent_fluid.hpp"
 #include "laws/plain_fluid.hpp"
+#include "passes/fours.hpp"
 
 namespace barchan {
 
 namespace {
 
-template <int Dim, template <int> class Law>
-BARCHAN_SIMD_INLINE typename Law<Dim>::template Own<Lanes> load_own(const double* record) {
+template <int Dim, template <int> class Law, class T>
+BARCHAN_SIMD_INLINE typename Law<Dim>::template Own<LanesOf<T>> load_own(const T* record) {
   using R = MotionRecord<Dim>;
-  typename Law<Dim>::template Own<Lanes> own;
+  typename Law<Dim>::template Own<LanesOf<T>> own;
   for (std::size_t d = 0; d < Dim; ++d) {
-    own.x[d] = Lanes(record[R::position + d]);
-    own.v[d] = Lanes(record[R::velocity + d]);
+    own.x[d] = LanesOf<T>(record[R::position + d]);
+    own.v[d] = LanesOf<T>(record[R::velocity + d]);
   }
-  own.p = Lanes(record[R::pressure]);
+  own.p = LanesOf<T>(record[R::pressure]);
   return own;
 }
 
-/// Adds one entry's row to `total`.
-template <int Dim, template <int> class Law>
-BARCHAN_SIMD_INLINE void add_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernel& ready,
-                                 const typename Law<Dim>::template Own<Lanes>& own, const Vec3& weight,
-                                 typename Law<Dim>::template Sums<Lanes>& total) {
+template <class T>
+const T* records_of(const FluidNeighbour& e) {
+  if constexpr (std::is_same_v<T, double>) return e.records->data();
+  else return e.compact->data();
+}
+
+/// The raw sums of one entry's row: without the kernel's constant factor.
+template <int Dim, template <int> class Law, class T>
+BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernel<T>& ready,
+                                 const typename Law<Dim>::template Own<LanesOf<T>>& own, LanesOf<T> unit,
+                                 typename Law<Dim>::template Sums<LanesOf<T>>& out) {
   using R = MotionRecord<Dim>;
   ready([&](const auto& kernel) __attribute__((always_inline)) {
-    typename Law<Dim>::template Sums<Lanes> sums{};
+    typename Law<Dim>::template Sums<LanesOf<T>> sums{};
     for_each_neighbour<R::size>(
-        row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-          std::array<Lanes, Dim> r;
-          const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+        row, records_of<T>(e), [&](const LanesOf<T>* b) __attribute__((always_inline)) {
+          std::array<LanesOf<T>, Dim> r;
+          const LanesOf<T> r2 = separation<Dim, T>(own.x, b + R::position, unit, r);
           Law<Dim>::add(own, r, r2, kernel.slope(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
         });
-    total.take(sums, kernel.slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+    out = sums;
   });
 }
 
 /// At most this many entries a phase.
 constexpr std::size_t most_entries = 16;
 
-std::vector<ReadyKernel>& ready_kernels(std::span<const FluidNeighbour> neighbours, int dimensions) {
-  thread_local std::vector<ReadyKernel> kernels;
+template <class T>
+std::vector<ReadyKernel<T>>& ready_kernels(std::span<const FluidNeighbour> neighbours, int dimensions) {
+  thread_local std::vector<ReadyKernel<T>> kernels;
   kernels.reserve(most_entries);
   kernels.clear();
   for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);
   return kernels;
 }
 
-double determinant(const std::array<double, 3>& m) { return m[0] * m[2] - m[1] * m[1]; }
-double determinant(const std::array<double, 6>& m) {
+Four determinant(const std::array<Four, 3>& m) { return m[0] * m[2] - m[1] * m[1]; }
+Four determinant(const std::array<Four, 6>& m) {
   return m[0] * (m[2] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[3]) + m[3] * (m[1] * m[4] - m[2] * m[3]);
 }
 
 /// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
-inline std::array<double, 4> inverse_symmetric(const std::array<double, 3>& m) {
-  const double det = m[0] * m[2] - m[1] * m[1], s = 1.0 / det;
-  return {m[2] * s, -m[1] * s, -m[1] * s, m[0] * s};
+BARCHAN_SIMD_INLINE std::array<Four, 4> inverse_symmetric(const std::array<Four, 3>& m) {
+  const Four s = Four(1.0) / determinant(m), xy = -m[1] * s;
+  return {m[2] * s, xy, xy, m[0] * s};
 }
-inline std::array<double, 9> inverse_symmetric(const std::array<double, 6>& m) {
-  const double xx = m[0], xy = m[1], yy = m[2], xz = m[3], yz = m[4], zz = m[5];
-  const double a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
-  const double s = 1.0 / (xx * a + xy * b + xz * c);
-  const double d = (xx * zz - xz * xz) * s, e = (xy * xz - xx * yz) * s, f = (xx * yy - xy * xy) * s;
+BARCHAN_SIMD_INLINE std::array<Four, 9> inverse_symmetric(const std::array<Four, 6>& m) {
+  const Four xx = m[0], xy = m[1], yy = m[2], xz = m[3], yz = m[4], zz = m[5];
+  const Four a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
+  const Four s = Four(1.0) / (xx * a + xy * b + xz * c);
+  const Four d = (xx * zz - xz * xz) * s, e = (xy * xz - xx * yz) * s, f = (xx * yy - xy * xy) * s;
   return {a * s, b * s, c * s, b * s, d, e, c * s, e, f};
 }
 
 template <int Dim>
 struct Rates {
-  std::array<double, Dim> acceleration, shift;
-  double density;
+  std::array<Four, Dim> acceleration, shift;
+  Four density;
 };
 
 template <int Dim>
-std::array<double, Dim> shift_of(const std::array<double, Dim>& concentration, const FluidParameters& q) {
-  std::array<double, Dim> du;
-  double speed2 = 0.0;
+BARCHAN_SIMD_INLINE std::array<Four, Dim> shift_of(const std::array<Four, Dim>& concentration,
+                                                   const FluidParameters& q) {
+  std::array<Four, Dim> du;
+  Four speed2(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
-    du[d] = -q.shift_speed * q.smoothing_length * concentration[d];
+    du[d] = Four(-q.shift_speed * q.smoothing_length) * concentration[d];
     speed2 += du[d] * du[d];
   }
-  if (speed2 > q.shift_limit * q.shift_limit) {
-    const double s = q.shift_limit / std::sqrt(speed2);
-    for (auto& u : du) u *= s;
-  }
+  const Four limit(q.shift_limit);
+  const Four s = simd::select(speed2 > limit * limit, limit / simd::sqrt(speed2), Four(1.0));
+  for (auto& u : du) u *= s;
   return du;
 }
 
 template <int Dim>
-Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<double>& s, double, double rho,
-                  const FluidParameters& q, std::span<double>) {
+BARCHAN_SIMD_INLINE Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<Four>& s, double, Four rho,
+                                      const FluidParameters& q, std::array<Four, Dim*(Dim + 1) / 2>&) {
   Rates<Dim> r;
   r.shift = shift_of<Dim>(s.concentration, q);
+  const Four specific = Four(1.0) / rho;
   for (std::size_t d = 0; d < Dim; ++d)
-    r.acceleration[d] = (2.0 * s.viscous[d] - s.pressure[d]) / rho + q.gravity[d] + q.acceleration[d];
-  r.density = rho * s.divergence + 2.0 * q.diffusivity / (q.sound_speed * q.sound_speed) * s.diffusion;
+    r.acceleration[d] = (Four(2.0) * s.viscous[d] - s.pressure[d]) * specific + Four(q.gravity[d] + q.acceleration[d]);
+  r.density = rho * s.divergence + Four(2.0 * q.diffusivity / (q.sound_speed * q.sound_speed)) * s.diffusion;
   return r;
 }
 
@@ -114,83 +123,77 @@ constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
 }
 
 template <int Dim>
-Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<double>& s, double mu, double rho,
-                  const FluidParameters& q, std::span<double> anisotropy) {
+BARCHAN_SIMD_INLINE Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<Four>& s, double mu, Four rho,
+                                      const FluidParameters& q, std::array<Four, Dim*(Dim + 1) / 2>& anisotropy) {
   Rates<Dim> r;
   r.shift = shift_of<Dim>(s.concentration, q);
   // A particle among grains in flight may have too few neighbours to invert anything: it goes uncorrected, M = -1.
   auto moment = s.moment;
-  const double sign = Dim == 2 ? 1.0 : -1.0;
-  const bool whole = sign * determinant(moment) > least_determinant;
-  if (!whole)
-    for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e <= d; ++e) {
-        moment[moment_index(d, e)] = d == e ? -1.0 : 0.0;
-        anisotropy[moment_index(d, e)] = 0.0;
-      }
+  const Four sign(Dim == 2 ? 1.0 : -1.0);
+  const auto whole = sign * determinant(moment) > Four(least_determinant);
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e) {
+      const std::size_t m = moment_index(d, e);
+      moment[m] = simd::select(whole, moment[m], Four(d == e ? -1.0 : 0.0));
+      anisotropy[m] = simd::mask_zero(whole, anisotropy[m]);
+    }
   const auto inverse = inverse_symmetric(moment);
-  double trace = 0.0, weighted_trace = 0.0;
+  Four trace(0.0), weighted_trace(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
     trace += moment[moment_index(d, d)];
     for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * moment[moment_index(d, e)];
   }
-  weighted_trace = std::min(weighted_trace + trace, 0.5 * trace);  // both negative
-  const double laplace_v = -2.0 * Dim / weighted_trace, laplace_p = -2.0 * Dim / trace;
+  weighted_trace = simd::min(weighted_trace + trace, Four(0.5) * trace);  // both negative
+  const Four per_trace = Four(1.0) / trace;
+  const Four laplace_v = Four(-2.0 * Dim * mu) / (weighted_trace * rho), laplace_p = Four(-2.0 * Dim) * per_trace;
+  const Four specific = Four(1.0) / rho;
   const double c2 = q.sound_speed * q.sound_speed;
-  std::array<double, Dim> grad_p{};
-  std::array<std::array<double, Dim>, Dim> grad_v{};
-  for (std::size_t d = 0; d < Dim; ++d)
+  std::array<Four, Dim> grad_p;
+  std::array<std::array<Four, Dim>, Dim> grad_v;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    grad_p[d] = inverse[d * Dim] * s.pressure[0];
+    for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
     for (std::size_t e = 0; e < Dim; ++e) {
-      grad_p[d] += inverse[d * Dim + e] * s.pressure[e];
-      for (std::size_t f = 0; f < Dim; ++f) grad_v[d][e] += s.velocity[d * Dim + f] * inverse[f * Dim + e];
+      grad_v[d][e] = s.velocity[d * Dim] * inverse[e];
+      for (std::size_t f = 1; f < Dim; ++f)
+        grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
     }
-  double divergence = 0.0, along_p = 0.0, dynamic = s.diffusion, squared = 0.0;
+  }
+  Four divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
     divergence += grad_v[d][d];
     along_p += r.shift[d] * grad_p[d];
-    dynamic -= (grad_p[d] - q.reference_density * q.gravity[d]) * s.concentration[d];
-    double friction = s.viscous[d], transported = 0.0;
+    dynamic -= (grad_p[d] - Four(q.reference_density * q.gravity[d])) * s.concentration[d];
+    Four friction = s.viscous[d], transported(0.0);
     for (std::size_t e = 0; e < Dim; ++e) {
       friction -= grad_v[d][e] * s.weighted[e];
       transported += r.shift[e] * grad_v[d][e];
       squared += grad_v[d][e] * grad_v[e][d];
     }
-    r.acceleration[d] = (laplace_v * mu * friction - grad_p[d]) / rho + q.gravity[d] + q.acceleration[d] + transported;
+    r.acceleration[d] =
+        laplace_v * friction - grad_p[d] * specific + Four(q.gravity[d] + q.acceleration[d]) + transported;
   }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
-  r.density = -rho * divergence + q.diffusivity / c2 * laplace_p * dynamic +
-              q.source_diffusivity / c2 * q.reference_density * squared + along_p / c2;
-  const double scale = -0.5 * (Dim + 2) * Dim / trace;
-  for (std::size_t d = 0; d < Dim; ++d)
-    for (std::size_t e = 0; e <= d; ++e)
-      anisotropy[moment_index(d, e)] =
-          !whole ? 0.0 : scale * moment[moment_index(d, e)] + (d == e ? 0.5 * (Dim + 2) : 0.0);
-  // Weights stay positive: no entry of A beyond a half.
+  r.density = -rho * divergence + Four(q.diffusivity / c2) * laplace_p * dynamic +
+              Four(q.source_diffusivity / c2 * q.reference_density) * squared + along_p * Four(1.0 / c2);
+  // The next step's weights; they stay positive: no entry of A beyond a half.
+  const Four scale = Four(-0.5 * (Dim + 2) * Dim) * per_trace;
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e <= d; ++e) {
-      double& a = anisotropy[moment_index(d, e)];
-      a = std::clamp(a, -0.5, 0.5);
+      const std::size_t m = moment_index(d, e);
+      const Four a = scale * moment[m] + Four(d == e ? 0.5 * (Dim + 2) : 0.0);
+      anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a, Four(0.5)), Four(-0.5)));
     }
   return r;
 }
 
-/// The sums over the lanes of every member: both are plain aggregates of the same shape, of vectors and of numbers.
-template <class Reduced, class Sums>
-BARCHAN_SIMD_INLINE Reduced reduce(const Sums& from) {
-  constexpr std::size_t count = sizeof(Sums) / sizeof(Lanes);
-  static_assert(count == sizeof(Reduced) / sizeof(double));
-  const auto v = std::bit_cast<std::array<Lanes, count>>(from);
-  alignas(64) std::array<double, count> x;
-  std::size_t k = 0;
-  for (; k + 4 <= count; k += 4) simd::sum(v[k], v[k + 1], v[k + 2], v[k + 3]).store(x.data() + k);
-  for (; k < count; ++k) x[k] = simd::sum(v[k]);
-  return std::bit_cast<Reduced>(x);
-}
-
-template <int Dim, template <int> class Law>
-void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<const FluidNeighbour> neighbours,
+template <int Dim, template <int> class Law, class T>
+void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
            const FluidParameters& q) {
   using L = Law<Dim>;
+  using V = LanesOf<T>;
+  constexpr auto record_size = static_cast<std::size_t>(MotionRecord<Dim>::size);
+  const V unit = simd::broadcast<V>(length_unit);
   const Vec3 weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
                     q.reference_density * q.gravity[2]};
   std::array<double*, Dim> a{}, du{};
@@ -201,43 +204,51 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, std::span<cons
   double* rate = fluid.column(Field::density_rate);
   const double* rho = fluid.column(Field::density);
   const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
-  const auto& kernels = ready_kernels(neighbours, Dim);
-  constexpr std::size_t moments = Dim * (Dim + 1) / 2;
+  const auto& kernels = ready_kernels<T>(neighbours, Dim);
+  constexpr std::size_t moments = Dim * (Dim + 1) / 2, kept = Dim == 2 ? 2 : moments;
   std::array<double*, moments> skew{};  // 2D: xx xy, and yy = -xx
   if constexpr (L::corrected)
-    for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c)
-      skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
-  const auto n = static_cast<std::int64_t>(fluid.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    typename L::template Sums<Lanes> sums{};
-    std::array<double, moments> anisotropy{};
-    if constexpr (L::corrected) {
-      if constexpr (Dim == 2) anisotropy = {skew[0][k], skew[1][k], -skew[0][k]};
-      else
-        for (std::size_t c = 0; c < moments; ++c) anisotropy[c] = skew[c][k];
-    }
-    auto own = load_own<Dim, Law>(own_records[k]);
-    if constexpr (L::corrected)
-      for (std::size_t d = 0; d < Dim; ++d)
-        for (std::size_t e = 0; e <= d; ++e)
-          own.anisotropy[moment_index(d, e)] = Lanes((d == e ? 1.0 : 2.0) * anisotropy[moment_index(d, e)]);
+    for (std::size_t c = 0; c < kept; ++c) skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
+  const std::size_t n = fluid.size();
+  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int64_t block = 0; block < fours; ++block) {
+    const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
+    typename L::template Sums<Four> s{};
     for (std::size_t c = 0; c < neighbours.size(); ++c) {
       const auto& e = neighbours[c];
-      const auto row = e.list->row(k);
-      if (row.begin == row.end) continue;
-      add_row<Dim, Law>(row, e, kernels[c], own, weight, sums);
+      std::array<typename L::template Sums<V>, 4> sums;
+      bool any = false;
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        const std::size_t k = std::min(first + lane, n - 1);  // the last one again, and again dropped
+        const auto row = e.list->row(k);
+        any = any || row.begin != row.end;
+        auto own = load_own<Dim, Law>(own_records + k * record_size);
+        if constexpr (L::corrected) {
+          for (std::size_t m = 0; m < kept; ++m) own.anisotropy[m] = simd::broadcast<V>(skew[m][k]);
+          if constexpr (Dim == 2) own.anisotropy[2] = -own.anisotropy[0];
+          for (std::size_t d = 0; d < Dim; ++d)
+            for (std::size_t m = 0; m < d; ++m) own.anisotropy[moment_index(d, m)] *= simd::broadcast<V>(2.0);
+        }
+        sum_row<Dim, Law, T>(row, e, kernels[c], own, unit, sums[lane]);
+      }
+      if (any)
+        s.take(reduce<typename L::template Sums<Four>, T>(sums), kernels[c].slope_factor(), e.viscosity,
+               e.diffuse ? 1.0 : 0.0, weight);
     }
-    const auto s = reduce<typename L::template Sums<double>>(sums);
-    const auto r = finish<Dim>(s, mu, rho[k], q, anisotropy);
+    std::array<Four, moments> anisotropy;
+    if constexpr (L::corrected) {
+      for (std::size_t c = 0; c < kept; ++c) anisotropy[c] = load_four(skew[c], first, count);
+      if constexpr (Dim == 2) anisotropy[2] = -anisotropy[0];
+    }
+    const auto r = finish<Dim>(s, mu, load_four(rho, first, count), q, anisotropy);
     if constexpr (L::corrected)
-      for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c) skew[c][k] = anisotropy[c];
+      for (std::size_t c = 0; c < kept; ++c) store_four(anisotropy[c], skew[c], first, count);
     for (std::size_t d = 0; d < Dim; ++d) {
-      a[d][k] = r.acceleration[d];
-      if (du[d]) du[d][k] = r.shift[d];
+      store_four(r.acceleration[d], a[d], first, count);
+      if (du[d]) store_four(r.shift[d], du[d], first, count);
     }
-    rate[k] = r.density;
+    store_four(r.density, rate, first, count);
   }
 }
 
@@ -248,7 +259,7 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   std::array<double*, Dim> a{};
   for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = solid.column(Field::acceleration, d);
   const double inverse_mass = 1.0 / solid.mass();
-  const ReadyKernel kernel(e.kernel, e.radius, Dim);
+  const ReadyKernel<double> kernel(e.kernel, e.radius, Dim);
   const auto n = static_cast<std::int64_t>(solid.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::int64_t i = 0; i < n; ++i) {
@@ -256,23 +267,36 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
     const auto row = e.list->row(k);
     if (row.begin == row.end) continue;
     const double* record = own_records[k];
-    typename L::template Sums<Lanes> sums{};
-    add_row<Dim, PlainFluid>(row, e, kernel, load_own<Dim, PlainFluid>(record), {0, 0, 0}, sums);
-    const auto s = reduce<typename L::template Sums<double>>(sums);
-    const double closing = pores ? 2.0 * record[R::pressure] : 0.0;
+    typename L::template Sums<Lanes> raw, s{};
+    sum_row<Dim, PlainFluid, double>(row, e, kernel, load_own<Dim, PlainFluid>(record), Lanes(1.0), raw);
+    s.take(raw, kernel.slope_factor(), e.viscosity, 0.0, {0, 0, 0});
+    const Lanes closing(pores ? 2.0 * record[R::pressure] : 0.0);
     for (std::size_t d = 0; d < Dim; ++d)
-      a[d][k] += record[R::volume] * inverse_mass * (2.0 * s.viscous[d] - s.pressure[d] + closing * s.concentration[d]);
+      a[d][k] += record[R::volume] * inverse_mass *
+                 simd::sum(Lanes(2.0) * s.viscous[d] - s.pressure[d] + closing * s.concentration[d]);
   }
+}
+
+template <class T>
+void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
+              const FluidParameters& q, FluidScheme scheme) {
+  const bool plain = scheme == FluidScheme::plain, flat = fluid.dimensions() == 2;
+  if (flat && plain) rates<2, PlainFluid>(fluid, own, unit, neighbours, q);
+  else if (flat) rates<2, ConsistentFluid>(fluid, own, unit, neighbours, q);
+  else if (plain) rates<3, PlainFluid>(fluid, own, unit, neighbours, q);
+  else rates<3, ConsistentFluid>(fluid, own, unit, neighbours, q);
 }
 
 }  // namespace
 
 void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& q, FluidScheme scheme) {
-  const bool plain = scheme == FluidScheme::plain;
-  if (fluid.dimensions() == 2)
-    plain ? rates<2, PlainFluid>(fluid, own, neighbours, q) : rates<2, ConsistentFluid>(fluid, own, neighbours, q);
-  else plain ? rates<3, PlainFluid>(fluid, own, neighbours, q) : rates<3, ConsistentFluid>(fluid, own, neighbours, q);
+  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme);
+}
+
+void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& q, FluidScheme scheme) {
+  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme);
 }
 
 void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores) {

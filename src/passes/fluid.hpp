@@ -15,9 +15,10 @@ struct FluidNeighbour {
   const PairList* list;
   const RecordArray* records;  // motion records of the other phase (a solid's: pressure and velocity extended into it)
   KernelKind kernel;
-  double radius;     // m
-  double viscosity;  // Pa s, of the pair
-  bool diffuse;      // density diffusion acts across this entry
+  double radius;                            // m
+  double viscosity;                         // Pa s, of the pair
+  bool diffuse;                             // density diffusion acts across this entry
+  const CompactRecords* compact = nullptr;  // the same records for mixed precision, null in double
 };
 
 struct FluidParameters {
@@ -34,6 +35,9 @@ struct FluidParameters {
 
 /// Writes acceleration, density_rate and (if the field is there) shift_velocity of `fluid`. `own` are its records.
 void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& parameters, FluidScheme scheme);
+/// The same in mixed precision: differences and a row's sums in single, all else in double.
+void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& parameters, FluidScheme scheme);
 
 /// Adds to the acceleration of a solid's particles what the fluid does to them, the reaction to fluid_rates of the

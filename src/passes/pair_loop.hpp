@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "neighbours/pair_list.hpp"
 #include "passes/records.hpp"
@@ -10,19 +12,25 @@
 
 namespace barchan {
 
-inline constexpr int lanes = simd::native_width<double>;
-using Lanes = simd::Vec<double, lanes>;
-static_assert(PairList::padding % lanes == 0);
+/// One register of T.
+template <class T>
+using LanesOf = simd::Vec<T, simd::native_width<T>>;
+using Lanes = LanesOf<double>;
 
-/// Calls f(record) for every vector of `lanes` neighbours in the row; record[field] holds that field of each.
-template <int Fields, class F>
-BARCHAN_SIMD_INLINE void for_each_neighbour(PairList::Row row, const RecordArray& records, F&& f) {
-  const double* data = records.data();
-  for (const std::uint32_t* q = row.begin; q != row.end; q += lanes) {
-    Lanes record[Fields];
-    simd::load_transposed<Fields>(data, static_cast<std::size_t>(Fields), q, record);
+/// Calls f(record) for every vector of neighbours in the row; record[field] holds that field of each. Rows are padded
+/// to whole vectors (see PairList).
+template <int Fields, class T, class F>
+BARCHAN_SIMD_INLINE void for_each_neighbour(PairList::Row row, const T* data, F&& f) {
+  static_assert(Fields % PairList::stride == 0);
+  for (const std::uint32_t* q = row.begin; q != row.end; q += LanesOf<T>::width) {
+    LanesOf<T> record[Fields];
+    simd::load_transposed<Fields>(data, Fields / PairList::stride, q, record);
     f(record);
   }
+}
+template <int Fields, class F>
+BARCHAN_SIMD_INLINE void for_each_neighbour(PairList::Row row, const RecordArray& records, F&& f) {
+  for_each_neighbour<Fields>(row, records.data(), std::forward<F>(f));
 }
 
 /// x_a - x_b by component, and its square.
@@ -34,6 +42,22 @@ BARCHAN_SIMD_INLINE Lanes separation(const std::array<Lanes, Dim>& x_a, const La
     r2 = d == 0 ? r[d] * r[d] : simd::fma(r[d], r[d], r2);
   }
   return r2;
+}
+
+/// The same in double and in mixed precision, where positions are whole numbers of `unit` (see CompactRecords).
+template <int Dim, class T>
+BARCHAN_SIMD_INLINE LanesOf<T> separation(const std::array<LanesOf<T>, Dim>& x_a, const LanesOf<T>* x_b,
+                                          [[maybe_unused]] LanesOf<T> unit, std::array<LanesOf<T>, Dim>& r) {
+  if constexpr (std::is_same_v<T, double>) {
+    return separation<Dim>(x_a, x_b, r);
+  } else {
+    LanesOf<T> r2(T(0));
+    for (std::size_t d = 0; d < Dim; ++d) {
+      r[d] = unit * simd::convert<T>(simd::bit_cast<std::int32_t>(x_a[d]) - simd::bit_cast<std::int32_t>(x_b[d]));
+      r2 = d == 0 ? r[d] * r[d] : simd::fma(r[d], r[d], r2);
+    }
+    return r2;
+  }
 }
 
 }  // namespace barchan

@@ -155,7 +155,6 @@ void refuse_what_is_missing(const Scene& scene) {
     if (p.turbulence != "none") refuse("phases." + p.name + ".turbulence = \"" + p.turbulence + "\"", "\"none\"");
     if (p.artificial_stress != 0) refuse("phases." + p.name + ".artificial-stress", "0");
   }
-  if (scene.precision != Precision::double_precision) refuse("precision = \"mixed\"", "\"double\"");
   if (scene.output.checkpoint_every > 0) refuse("output.checkpoint-every", "no such key");
 }
 

@@ -299,6 +299,12 @@ struct Vec {
   friend BARCHAN_SIMD_INLINE Mask<T, W> operator!=(Vec a, Vec b) { return !(a == b); }
 };
 
+// A double in every lane, rounded to the lanes' type.
+template <class V>
+BARCHAN_SIMD_INLINE V broadcast(double x) {
+  return V(static_cast<typename V::value_type>(x));
+}
+
 namespace detail {
 
 // Lanes First .. First + Count - 1 of a register.
@@ -363,6 +369,15 @@ BARCHAN_SIMD_INLINE Vec<U, W> bit_cast(Vec<T, W> a) {
   static_assert(sizeof(U) == sizeof(T));
   if constexpr (detail::kind<T, W> == detail::Kind::halves) return join(bit_cast<U>(a.v.lo), bit_cast<U>(a.v.hi));
   else return Vec<U, W>(std::bit_cast<typename Vec<U, W>::Storage>(a.v));
+}
+
+// The same truth of lanes of another type of the same size.
+template <class U, class T, int W>
+BARCHAN_SIMD_INLINE Mask<U, W> bit_cast_mask(Mask<T, W> m) {
+  static_assert(sizeof(U) == sizeof(T));
+  if constexpr (detail::kind<T, W> == detail::Kind::halves)
+    return {{bit_cast_mask<U>(m.v.lo), bit_cast_mask<U>(m.v.hi)}};
+  else return {std::bit_cast<typename Mask<U, W>::Storage>(m.v)};
 }
 
 // One bit a lane, lane 0 in bit 0.

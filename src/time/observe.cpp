@@ -66,10 +66,19 @@ Frame Simulation::frame(int index) const {
   f.points.reserve(3 * n);
   f.id.reserve(n);
   f.phase.reserve(n);
+  // Between two sorts a particle may be a little past a periodic side; what is written stands within it.
+  const auto inside = [&](double x, int axis) {
+    const auto d = static_cast<std::size_t>(axis);
+    const double low = plan_.bounds.low[d], high = plan_.bounds.high[d];
+    if (!plan_.bounds.periodic[d] || (x >= low && x < high)) return x;
+    x -= (high - low) * std::floor((x - low) / (high - low));
+    return x >= low && x < high ? x : low;
+  };
   for (const std::size_t k : written) {
     const auto& p = particles_[k];
     for (std::size_t i = 0; i < p.size(); ++i) {
-      for (int d = 0; d < 3; ++d) f.points.push_back(d < plan_.dimensions ? p.column(Field::position, d)[i] : 0.0);
+      for (int d = 0; d < 3; ++d)
+        f.points.push_back(d < plan_.dimensions ? inside(p.column(Field::position, d)[i], d) : 0.0);
       f.id.push_back(p.id()[i]);
       f.phase.push_back(static_cast<std::int32_t>(k));
     }

@@ -35,6 +35,32 @@ void pack_motion(const PhaseParticles& p, RecordArray& records, bool with_pressu
   }
 }
 
+/// The same in mixed precision, with the images.
+template <int Dim>
+void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGrid& grid, bool fixed_volume,
+                  double volume) {
+  const auto n = static_cast<std::int64_t>(p.size());
+  std::array<const double*, Dim> x{}, v{};
+  for (int d = 0; d < Dim; ++d) {
+    x[static_cast<std::size_t>(d)] = p.column(Field::position, d);
+    v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
+  }
+  const double* pressure = p.column(Field::pressure);
+  const double* rho = fixed_volume ? nullptr : p.column(Field::density);
+  const double mass = p.mass();
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    std::array<double, Dim> at, speed;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      at[d] = x[d][k];
+      speed[d] = v[d][k];
+    }
+    records.write<Dim>(k, at, speed, pressure[k], rho ? mass / rho[k] : volume);
+  }
+  records.fill_images<Dim>(grid, x);
+}
+
 /// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of
 /// the divergence must not pump it up. Sums in blocks, in an order that the number of particles decides.
 void keep_mean_density(PhaseParticles& p) {
@@ -72,7 +98,12 @@ void Simulation::pack() {
                             : pack_motion<3>(p, records, fluid, fixed, volume);
       records.fill_images(neighbours_.grid(k), plan_.dimensions);
     };
-    fill(motion_[k]);
+    if (fluid && compact_[k]) {
+      const bool fixed = scene_.phases[k].scheme == FluidScheme::consistent;
+      plan_.dimensions == 2 ? pack_compact<2>(p, *compact_[k], neighbours_.grid(k), fixed, volume)
+                            : pack_compact<3>(p, *compact_[k], neighbours_.grid(k), fixed, volume);
+    }
+    if (motion_[k].stride() > 0) fill(motion_[k]);
     if (extended_[k].stride() > 0) fill(extended_[k]);
     if (stress_[k].stride() > 0) {
       pack_stress(p, stress_[k]);
@@ -100,6 +131,12 @@ void Simulation::extend_into_grains() {
 }
 
 void Simulation::rate_fluids() {
+  for (auto& x : extensions_) {
+    if (!compact_[x.phase]) continue;
+    const std::size_t count = particles_[x.phase].size() + neighbours_.grid(x.phase).images();
+    plan_.dimensions == 2 ? compact_[x.phase]->copy<2>(extended_[x.phase], count)
+                          : compact_[x.phase]->copy<3>(extended_[x.phase], count);
+  }
   for (auto& f : fluids_) {
     auto& q = f.parameters;
     const Phase& s = scene_.phases[f.phase];
@@ -118,7 +155,8 @@ void Simulation::rate_fluids() {
         else varies = true;
     }
     auto& p = particles_[f.phase];
-    fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
+    if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
+    else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
     if (s.enclosed) keep_mean_density(p);
     if (!varies) continue;
     for (const auto& force : forcings_) {

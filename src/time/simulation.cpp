@@ -64,7 +64,10 @@ void Simulation::timed(std::size_t pass, F&& verb) {
 }
 
 Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks)
-    : scene_(scene), plan_(plan), neighbours_(plan.bounds, plan.directions, plan.phases.size(), plan.skin) {
+    : scene_(scene),
+      plan_(plan),
+      neighbours_(plan.bounds, plan.directions, plan.phases.size(), plan.skin, plan.spacing,
+                  scene.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>) {
   for (const char* name : pass_names) seconds_.emplace_back(name, 0.0);
   processor_seconds_.assign(pass_count, 0.0);
   make_state(blocks);
@@ -190,7 +193,8 @@ void Simulation::find_neighbours(bool force) {
   for (std::size_t k = 0; k < particles_.size(); ++k) {
     if (!neighbours_.has_grid(k)) continue;
     const std::size_t images = neighbours_.grid(k).images();
-    motion_[k].resize(particles_[k].size(), images);
+    if (motion_[k].stride() > 0) motion_[k].resize(particles_[k].size(), images);
+    if (compact_[k]) compact_[k]->resize(particles_[k].size(), images);
     if (extended_[k].stride() > 0) extended_[k].resize(particles_[k].size(), images);
     if (stress_[k].stride() > 0) stress_[k].resize(particles_[k].size(), images);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -97,7 +98,8 @@ class Simulation {
   Plan plan_;
   std::vector<PhaseParticles> particles_;
   Neighbours neighbours_;
-  std::vector<RecordArray> motion_, extended_, stress_;  // by phase; extended: a solid as the fluid sees it
+  std::vector<RecordArray> motion_, extended_, stress_;   // by phase; extended: a solid as the fluid sees it
+  std::vector<std::unique_ptr<CompactRecords>> compact_;  // by phase, mixed precision: what fluid_rates reads
 
   std::vector<Fluid> fluids_;
   std::vector<Extension> extensions_;

@@ -115,8 +115,15 @@ void Simulation::wire() {
   for (const auto& e : plan_.entries)
     if (e.law == Law::boundary || e.law == Law::coupling)
       seen[scene_.phases[e.a].kind == PhaseKind::fluid ? e.b : e.a] = true;
+  const bool mixed = scene_.precision == Precision::mixed;
+  // Who reads records in double: every law but the fluid's own in mixed precision.
+  std::vector<bool> read(phases, !mixed);
+  for (const auto& e : plan_.entries)
+    if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
   for (std::size_t k = 0; k < phases; ++k) {
-    motion_.emplace_back(motion);
+    const bool fluid = particles_[k].kind() == PhaseKind::fluid;
+    motion_.emplace_back(read[k] || particles_[k].has(Field::energy) ? motion : 0);
+    compact_.push_back(mixed && (fluid || seen[k]) ? std::make_unique<CompactRecords>(plan_.bounds) : nullptr);
     extended_.emplace_back(seen[k] ? motion : 0);
     stress_.emplace_back(particles_[k].kind() == PhaseKind::elastic ? stress : 0);
     wall_velocity_.push_back(compile(scene_.phases[k].wall_velocity));
@@ -164,7 +171,8 @@ void Simulation::wire() {
                          e.kernel,
                          e.radius,
                          viscosity(k, other),
-                         solid || other == k};
+                         solid || other == k,
+                         compact_[other].get()};
         // The phase's own entry comes first: its viscosity is the phase's.
         if (other == k) f.neighbours.insert(f.neighbours.begin(), n);
         else f.neighbours.push_back(n);

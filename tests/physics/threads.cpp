@@ -59,9 +59,14 @@ TEST_P(Threads, DoNotChangeABit) {
   EXPECT_NE(once.values, other.values) << "and one step more does change them";
 }
 
+const std::string mixed_dune = "precision = \"mixed\"\n" + small::dune;
+const std::string mixed_channel = "precision = \"mixed\"\n" + small::channel;
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
                          testing::Values(std::pair{"Dune", &small::dune}, std::pair{"Channel", &small::channel},
-                                         std::pair{"Squares", &small::squares}, std::pair{"Grains", &small::grains}),
+                                         std::pair{"Squares", &small::squares}, std::pair{"Grains", &small::grains},
+                                         std::pair{"MixedDune", &mixed_dune},
+                                         std::pair{"MixedChannel", &mixed_channel}),
                          [](const auto& s) { return std::string(s.param.first); });
 
 }  // namespace

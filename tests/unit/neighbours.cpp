@@ -26,19 +26,21 @@ void expect_complete(const Cast& cast, std::size_t direction, double radius, dou
   std::uint64_t entries = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
     const auto row = cast.list(direction).row(k);
-    ASSERT_EQ(static_cast<std::size_t>(row.end - row.begin) % PairList::padding, 0u);
+    ASSERT_EQ(static_cast<std::size_t>(row.end - row.begin) % cast.list(direction).padding(), 0u);
     std::map<Key, int> listed;
-    for (const auto* q = row.begin; q != row.end; ++q) {
-      if (*q == cast.motion[b].dummy()) continue;
+    for (const auto* entry = row.begin; entry != row.end; ++entry) {
+      ASSERT_EQ(*entry % PairList::stride, 0u);
+      const std::uint32_t q = *entry / PairList::stride;
+      if (q == cast.motion[b].dummy()) continue;
       ++entries;
-      ASSERT_LT(*q, to.size() + images.size());
-      Key key{*q, 0, 0, 0};
-      if (*q >= to.size()) {
-        const Image& image = images[*q - to.size()];
+      ASSERT_LT(q, to.size() + images.size());
+      Key key{q, 0, 0, 0};
+      if (q >= to.size()) {
+        const Image& image = images[q - to.size()];
         key = {image.source, image.shift[0], image.shift[1], image.shift[2]};
       }
       ++listed[key];
-      const double* place = cast.motion[b][*q];
+      const double* place = cast.motion[b][q];
       double r2 = 0.0;
       for (std::size_t d = 0; d < dims; ++d) {
         const double period = cast.bounds.periodic[d] ? cast.bounds.high[d] - cast.bounds.low[d] : 0.0;
@@ -283,6 +285,29 @@ TEST(Skin, ACommonMotionNeedsNoNewLists) {
   EXPECT_FALSE(cast.neighbours.update(cast.phases, false));
   cast.pack();
   expect_complete(cast, 0, 2.0, 2.2);
+}
+
+// Two bodies that fly at each other through empty space: nothing near either of them moves against it.
+TEST(Skin, BodiesThatCrossAGapMeet) {
+  Uniform random(9);
+  const Bounds b = box(2, {60, 8, 0}, {false, false, false});
+  auto left = lattice(box(2, {6, 8, 0}, {false, false, false}), 1.0, 0.1, random), all = left;
+  for (auto x : left) {
+    x[0] += 54.0;
+    all.push_back(x);
+  }
+  std::vector<PhaseParticles> one;
+  one.push_back(phase(PhaseKind::fluid, 2, all, 1.0));
+  Cast cast(b, std::move(one), {{0, 0, 2.0}}, 0.1);
+  for (int step = 0; step < 50; ++step) {
+    auto& p = cast.phases[0];
+    for (std::size_t k = 0; k < p.size(); ++k)
+      p.column(Field::position, 0)[k] += p.id()[k] < static_cast<std::int64_t>(left.size()) ? 0.5 : -0.5;
+    cast.neighbours.update(cast.phases, false);
+    cast.pack();
+    expect_complete(cast, 0, 2.0, 60.0);
+  }
+  EXPECT_GT(cast.neighbours.rebuilds(), 2);
 }
 
 TEST(Skin, APositionThatIsNotFiniteRebuilds) {

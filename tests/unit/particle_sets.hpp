@@ -121,8 +121,12 @@ struct Cast {
   Neighbours neighbours;
   std::vector<RecordArray> motion;
 
-  Cast(const Bounds& b, std::vector<PhaseParticles> p, std::vector<Direction> d, double skin = 0.1)
-      : bounds(b), phases(std::move(p)), directions(std::move(d)), neighbours(bounds, directions, phases.size(), skin) {
+  Cast(const Bounds& b, std::vector<PhaseParticles> p, std::vector<Direction> d, double skin = 0.1,
+       std::size_t padding = simd::native_width<double>)
+      : bounds(b),
+        phases(std::move(p)),
+        directions(std::move(d)),
+        neighbours(bounds, directions, phases.size(), skin, 1.0, padding) {
     neighbours.update(phases, true);
     for (const auto& q : phases)
       motion.emplace_back(q.dimensions() == 2 ? MotionRecord<2>::size : MotionRecord<3>::size);

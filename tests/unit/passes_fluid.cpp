@@ -21,7 +21,7 @@ struct Case {
 class FluidPass : public testing::TestWithParam<Case> {};
 
 /// A perturbed periodic fluid (phase 0) and a wall (phase 1) within reach of some of it, all fields random.
-Cast fluid_and_wall(int dimensions, Uniform& random) {
+Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd::native_width<double>) {
   const Bounds b = dimensions == 2 ? box(2, {9, 8, 0}, {true, true, false}) : box(3, {6, 5, 7}, {true, true, true});
   std::vector<PhaseParticles> two;
   two.push_back(phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, 0.25, random), 1.2,
@@ -35,7 +35,7 @@ Cast fluid_and_wall(int dimensions, Uniform& random) {
     randomise(p, Field::pressure, -3, 8, random);
   }
   randomise(two[0], Field::anisotropy, -0.2, 0.2, random);
-  return Cast(b, std::move(two), {{0, 0, 3.0}, {0, 1, 2.2}});
+  return Cast(b, std::move(two), {{0, 0, 3.0}, {0, 1, 2.2}}, 0.1, padding);
 }
 
 FluidParameters bare() {  // density 1, nothing but pressure and friction
@@ -86,6 +86,36 @@ TEST_P(FluidPass, EqualsTheNaiveSums) {
   }
   EXPECT_GT(expected.limited, 0);
   EXPECT_LT(expected.limited, static_cast<int>(fluid.size()));
+}
+
+TEST_P(FluidPass, MixedPrecisionEqualsTheNaiveSumsToSinglePrecision) {
+  const auto [dimensions, scheme, kernel] = GetParam();
+  Uniform random(11);
+  Cast cast = fluid_and_wall(dimensions, random, simd::native_width<float>);
+  std::vector<CompactRecords> compact(2, CompactRecords(cast.bounds));
+  for (std::size_t p = 0; p < 2; ++p) {
+    const std::size_t n = cast.phases[p].size(), images = cast.neighbours.grid(p).images();
+    compact[p].resize(n, images);
+    dimensions == 2 ? compact[p].copy<2>(cast.motion[p], n + images) : compact[p].copy<3>(cast.motion[p], n + images);
+  }
+  const std::vector<FluidNeighbour> neighbours{
+      {&cast.list(0), &cast.motion[0], kernel, 3.0, 0.7, true, &compact[0]},
+      {&cast.list(1), &cast.motion[1], KernelKind::cubic_spline, 2.2, 1.9, false, &compact[1]}};
+  const std::vector<naive::Entry> entries{{0, kernel, 3.0, 0.7, true}, {1, KernelKind::cubic_spline, 2.2, 1.9, false}};
+  const FluidParameters q = parameters(dimensions);
+  const auto expected = scheme == FluidScheme::plain ? naive::plain_rates(cast, 0, entries, q)
+                                                     : naive::consistent_rates(cast, 0, entries, q);
+  auto& fluid = cast.phases[0];
+  fluid_rates(fluid, compact[0], neighbours, q, scheme);
+  const double rounding = 3e-6;  // some thirty terms of either sign, each to 6e-8
+  for (int d = 0; d < dimensions; ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    EXPECT_LT(difference(fluid.column(Field::acceleration, d), expected.acceleration[c]), rounding);
+    EXPECT_LT(difference(fluid.column(Field::shift_velocity, d), expected.shift[c]), rounding);
+  }
+  const double off = difference(fluid.column(Field::density_rate), expected.density);
+  EXPECT_LT(off, rounding);
+  EXPECT_GT(off, 1e-12) << "this was meant to be single precision";
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, FluidPass,
