@@ -19,7 +19,7 @@ class Lookup {
   /// `radius` (m) of all searches; a period of `bounds` must be longer than two.
   Lookup(const Bounds& bounds, double radius);
 
-  /// Sorts the particles into cells by their place in the phase's arrays.
+  /// Sorts the particles into cells. They are looked at until the next build and must neither go nor move.
   void build(const PhaseParticles& particles);
 
   /// Calls f(i, r, r2) for every particle i nearer than the radius, in an order that the arrays decide;

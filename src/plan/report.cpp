@@ -55,7 +55,8 @@ std::string to_text(const Plan& plan, const Scene& scene) {
               e.consistency.gradient_sum,
               e.consistency.consistent() ? "consistent" : "a contact law, not an approximation");
   t += "\npasses  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
-  for (const auto& i : plan.instruments) t += "measured " + to_text(i) + "\n";
+  for (const auto& i : plan.instruments)
+    t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
   t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
   if (plan.fixed_step > 0) t += line("step    %.4g s, fixed by the scene\n", plan.fixed_step);
   for (const auto& l : plan.limits)

@@ -24,7 +24,7 @@ class Checker {
         report_(report),
         box_known_(!report.touched("domain") && !report.touched("dimensions") && !report.touched("spacing")) {}
 
-  /// Name, phase and times. `grains`: they can be measured too.
+  /// Name and phase. `grains`: they can be measured too.
   template <class T>
   void common(const std::vector<T>& list, std::size_t k, const std::string& dotted, bool grains) {
     const Measured& measured = list[k];
@@ -47,9 +47,6 @@ class Checker {
         report_(dotted + ".phase", "\"" + phase->name + "\" is of kind " + kind_word(phase->kind) +
                                        "; expected a phase of kind fluid" + (grains ? " or grains" : ""));
     }
-    if (fine(dotted + ".start") && !report_.touched("time.end") && measured.start > scene_.time.end)
-      report_(dotted + ".start", number_text(measured.start) + " s is after the end of the run; expected at most " +
-                                     number_text(scene_.time.end) + " s (time.end)");
   }
 
   /// A key that must be a place in the domain.
