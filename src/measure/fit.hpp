@@ -36,7 +36,7 @@ struct Reading {
 };
 
 /// Less of the kernel than this covered by fluid, and there is nothing to read.
-inline constexpr double least_fraction = 0.1;
+inline constexpr double least_fraction = 0.2;
 
 /// Velocity and pressure at x (m).
 Reading interpolate(const Vec3& x, const FluidView& fluid, const Lookup& lookup, const ReadyKernel& kernel,
