@@ -7,11 +7,13 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
+#include "measure/measurements.hpp"
 #include "output/history.hpp"
 #include "output/run_report.hpp"
 #include "output/series.hpp"
@@ -42,7 +44,11 @@ class Run {
         directory_(directory),
         series_(directory, scene.name, scene.output.format, scene.output.compress),
         history_(directory / "history.csv", Simulation::history_columns(plan)),
-        progress_(scene.time.end, plan.particles(), quiet) {}
+        progress_(scene.time.end, plan.particles(), quiet) {
+    if (plan.instruments.empty()) return;
+    measurements_.emplace(simulation);
+    measurements_->open(directory);
+  }
 
   int go() {
     int status = 0;
@@ -69,12 +75,14 @@ class Run {
     const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
     const double row_every = scene_.output.history_every > 0 ? scene_.output.history_every : end / 100.0;
     long frames_due = 1, rows_due = 1;
+    if (measurements_) measurements_->sample(simulation_);
     write_frame();
     write_row();
     while (simulation_.time() < end * (1.0 - 1e-12)) {
       const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
       const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
       simulation_.step(std::min(next_frame, next_row) - simulation_.time());
+      if (measurements_) measurements_->sample(simulation_);
       const double now = simulation_.time() * (1.0 + 1e-12);
       if (now >= next_row) {
         simulation_.check();
@@ -104,6 +112,7 @@ class Run {
 
   void write_frame() {
     series_.write(simulation_.frame(frames_++));
+    if (measurements_) measurements_->write(directory_, simulation_.time());
     last_frame_step_ = simulation_.steps();
   }
   void write_row() { history_.row(simulation_.history_row()); }
@@ -144,6 +153,14 @@ class Run {
     }
     r.seconds.emplace_back("output (waiting)", series_.seconds_waiting());
     r.seconds.emplace_back("output (behind)", series_.seconds_writing());
+    if (measurements_) {
+      r.seconds.emplace_back("measuring", measurements_->seconds());
+      for (std::size_t k = 0; k < plan.instruments.size(); ++k) {
+        const Instrument& i = plan.instruments[k];
+        r.measured.push_back(
+            {kind_name(i.kind), i.name, i.files(), static_cast<long>(measurements_->accumulators().moments[k])});
+      }
+    }
     r.wall_seconds = progress_.seconds();
     r.cpu_seconds = cpu_seconds();
     const double steps = static_cast<double>(std::max(simulation_.steps(), 1L));
@@ -166,6 +183,7 @@ class Run {
   SeriesWriter series_;
   History history_;
   Progress progress_;
+  std::optional<Measurements> measurements_;  // empty: the scene measures nothing
   int frames_ = 0;
   long last_frame_step_ = -1;
   std::string reason_;

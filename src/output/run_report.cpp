@@ -10,7 +10,7 @@ std::string to_json(const RunReport& r) {
   using Json = nlohmann::ordered_json;
   Json seconds = Json::object();
   for (const auto& [pass, s] : r.seconds) seconds[pass] = s;
-  const Json json{
+  Json json{
       {"version", r.version},
       {"commit", r.commit},
       {"compiler", r.compiler},
@@ -34,6 +34,8 @@ std::string to_json(const RunReport& r) {
       {"time_step_limits", Json(r.time_step_limits)},
       {"budgets", Json(r.budgets)},
   };
+  for (const auto& m : r.measured)
+    json["measured"].push_back({{"kind", m.kind}, {"name", m.name}, {"files", m.files}, {"samples", m.samples}});
   // A title that is not UTF-8 must not lose the report of a whole run.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -31,7 +31,13 @@ struct RunReport {
   double pair_interactions_per_second = 0;       // directed pairs
   std::map<std::string, long> time_step_limits;  // limit -> steps that it ruled
   std::map<std::string, double> budgets;         // momentum drift, largest density error, ...
-  std::string end_reason;                        // "end", "breakdown: ...", "SIGINT", ...
+  struct Measured {
+    std::string kind, name;
+    std::vector<std::string> files;  // relative to the run's folder
+    long samples = 0;                // moments at which was measured
+  };
+  std::vector<Measured> measured;
+  std::string end_reason;  // "end", "breakdown: ...", "SIGINT", ...
 };
 
 /// The document that write_run_report writes. What is not finite becomes null.

@@ -223,6 +223,9 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   }
   add_entries(scene, plan);
   add_passes(scene, plan);
+  std::vector<double> sound_speeds;
+  for (const auto& p : plan.phases) sound_speeds.push_back(p.sound_speed);
+  plan.instruments = make_instruments(scene, plan.bounds, sound_speeds);
   plan.limits = initial_limits(scene, plan);
   if (plan.limits.empty() && plan.fixed_step == 0) throw SceneError("time: nothing limits the step; give time.step");
   return plan;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "measure/instrument.hpp"
 #include "neighbours/neighbours.hpp"
 #include "particles/fields.hpp"
 #include "scene/generate.hpp"
@@ -70,6 +71,7 @@ struct Plan {
   std::vector<Direction> directions;
   std::vector<StepLimit> limits;
   std::vector<std::string> passes, skipped;  // by the names of the timers
+  std::vector<Instrument> instruments;       // what is measured
   double skin = 0.1;
   double particles() const;
   double step() const;    ///< the smallest limit, s (or the fixed step)

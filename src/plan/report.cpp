@@ -54,7 +54,10 @@ std::string to_text(const Plan& plan, const Scene& scene) {
               kernel_name(e.kernel), e.radius / plan.spacing, e.consistency.neighbours, e.consistency.volume_sum,
               e.consistency.gradient_sum,
               e.consistency.consistent() ? "consistent" : "a contact law, not an approximation");
-  t += "\npasses  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n\n";
+  t += "\npasses  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
+  for (const auto& i : plan.instruments)
+    t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
+  t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
   if (plan.fixed_step > 0) t += line("step    %.4g s, fixed by the scene\n", plan.fixed_step);
   for (const auto& l : plan.limits)
     t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value,
@@ -121,6 +124,16 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   for (const auto& [name, count] : estimate.pairs) j["interactions"][name]["pairs"] = count;
   j["passes"] = plan.passes;
   j["skipped"] = plan.skipped;
+  j["measured"] = nlohmann::ordered_json::array();
+  for (const auto& i : plan.instruments)
+    j["measured"].push_back({{"kind", kind_name(i.kind)},
+                             {"name", i.name},
+                             {"phase", i.phase_name},
+                             {"rows", i.rows.size()},
+                             {"every", i.every},
+                             {"start", i.start},
+                             {"files", i.files()}});
+  j["not_measured"] = not_measured(plan.instruments);
   j["step"] = plan.step();
   for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
   j["estimate"] = {{"steps", estimate.steps},

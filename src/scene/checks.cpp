@@ -49,6 +49,8 @@ std::vector<std::string> phase_names(const Scene& scene) {
   return names;
 }
 
+}  // namespace
+
 const Phase* find_phase(const Scene& scene, const std::string& name) {
   for (const Phase& phase : scene.phases)
     if (phase.name == name) return &phase;
@@ -70,6 +72,8 @@ std::string unknown_phase(const std::string& name, const Scene& scene) {
   return "there is no phase \"" + name + "\"; expected " + (names.empty() ? "a phase of [phases]" : one_of(names)) +
          did_you_mean(nearest(name, names));
 }
+
+namespace {
 
 /// A key of another kind of phase; a phase that no fill mentions.
 void check_phases(const Scene& scene, const Report& report) {
@@ -193,6 +197,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_interactions(scene, report);
   check_domain(scene, report);
   check_forcings(scene, report);
+  check_measuring(scene, report);
 }
 
 }  // namespace barchan

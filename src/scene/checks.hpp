@@ -26,6 +26,14 @@ class Report {
   Problems& problems_;
 };
 
+const Phase* find_phase(const Scene& scene, const std::string& name);  ///< null when there is none
+std::string kind_word(PhaseKind kind);
+/// "there is no phase ...; expected ...; did you mean ...".
+std::string unknown_phase(const std::string& name, const Scene& scene);
+
+/// Of what is measured: places outside the domain, phases that cannot be measured, names that two files would share.
+void check_measuring(const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

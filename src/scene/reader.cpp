@@ -172,6 +172,7 @@ Scene take_scene(const toml::table& document, const std::string& file) {
   if (const toml::array* forcings = document["forcing"].as_array())
     for (const toml::node& forcing : *forcings)
       scene.forcings.push_back(forcing.is_table() ? take_forcing(*forcing.as_table()) : Forcing{});
+  scene.measuring = take_measuring(document);
   scene.time = take_time(section("time"));
   scene.output = take_output(section("output"));
   complete_wall_densities(scene);

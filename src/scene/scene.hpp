@@ -170,6 +170,41 @@ struct Forcing {
   VectorExpression acceleration;  // m/s2, formulas in x, y, z, t
 };
 
+// ---- what is measured
+// -----------------------------------------------------------------------------------------------
+
+/// What all instruments have.
+struct Measured {
+  std::string name;    // unique among its kind; part of a file's name
+  std::string phase;   // what is measured
+  double every = 0.0;  // s between samples; 0: that of history.csv
+  double start = 0.0;  // s, when averaging begins
+};
+struct Probe : Measured {
+  Vec3 at{};  // m
+};
+struct Profile : Measured {
+  Vec3 from{}, to{};            // m: points on a line,
+  std::optional<BoxShape> box;  // or slices of a box
+  std::size_t along = 1;        // axis of the slices
+  int count = 0;                // points or slices; 0: one a spacing
+};
+struct Grid : Measured {
+  std::optional<Vec3> min, max;  // m; empty: the domain
+  double spacing = 0.0;          // m; 0: the scene's
+};
+struct WallShear : Measured {
+  std::string wall;  // phase
+  bool top = false;  // the upper side of the domain
+  int count = 0;     // columns along x; 0: one a spacing
+};
+struct Measuring {
+  std::vector<Probe> probes;
+  std::vector<Profile> profiles;
+  std::vector<Grid> grids;
+  std::vector<WallShear> wall_shears;
+};
+
 struct TimeControl {
   double end = 0.0;                  // s
   std::optional<double> fixed_step;  // s
@@ -204,6 +239,7 @@ struct Scene {
   std::vector<Interaction> interactions;
   std::vector<Fill> fills;
   std::vector<Forcing> forcings;
+  Measuring measuring;
   TimeControl time;
   OutputControl output;
 };

@@ -143,6 +143,11 @@ std::string scene_tables() {
                                                           {"fill.velocity", "`velocity = { ... }` of a fill"},
                                                           {"fill.velocity.log-profile", "`log-profile = { ... }`"},
                                                           {"forcing", "`[[forcing]]`"},
+                                                          {"probe", "`[[probe]]`"},
+                                                          {"profile", "`[[profile]]`"},
+                                                          {"profile.box", "`box = { ... }` of a profile"},
+                                                          {"grid", "`[[grid]]`"},
+                                                          {"wall-shear", "`[[wall-shear]]`"},
                                                           {"time", "`[time]`"},
                                                           {"output", "`[output]`"}};
   std::string text;

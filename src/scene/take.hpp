@@ -19,6 +19,7 @@ std::vector<std::string> take_words(const toml::table& table, std::string_view n
 Expression take_expression(const toml::node* node);  ///< null: zero
 VectorExpression take_vector_expression(const toml::table& table, std::string_view name);
 Fill take_fill(const toml::table& table);
+Measuring take_measuring(const toml::table& document);
 
 template <class Enum>
 Enum take_choice(const toml::table& table, std::string_view name, Enum otherwise,

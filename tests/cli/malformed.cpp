@@ -44,6 +44,16 @@ std::string dune(const std::string& from, const std::string& to) { return with(d
 /// The square with one thing changed.
 std::string square(const std::string& from, const std::string& to) { return with(square_text, from, to); }
 
+/// The square with a viscous fluid on a floor whose shear is measured, with one thing changed.
+std::string shear(const std::string& from, const std::string& to) {
+  const std::string floor =
+      with(square_text, "density = 1\n", "density = 1\nviscosity = 1\n[phases.floor]\nkind = \"wall\"\n");
+  return with(with(with(floor, "air-air = 3.0\n", "air-air = 3.0\nair-floor = 3.0\n"), "[time]",
+                   "[[fill]]\nphase = \"floor\"\nshape = { sides = [\"bottom\"] }\n"
+                   "[[wall-shear]]\nname = \"p\"\nphase = \"air\"\nwall = \"floor\"\n[time]"),
+              from, to);
+}
+
 const std::vector<Malformed>& malformed_scenes() {
   static const std::vector<Malformed> scenes = {
 #include "malformed_scenes.inc"

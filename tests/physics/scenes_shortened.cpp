@@ -103,8 +103,10 @@ TEST_P(EveryScene, RunsInTheProgram) {
   const auto entries = read_pvd(out / (name + ".pvd"));
   std::set<std::string> listed, there;
   for (const auto& e : entries) listed.insert(e.file);
-  for (const auto& e : fs::directory_iterator(out))
-    if (e.path().extension() == ".vtp" || e.path().extension() == ".vtu") there.insert(e.path().filename().string());
+  for (const auto& e : fs::directory_iterator(out)) {
+    const std::string file = e.path().filename().string();
+    if (file.starts_with(name + "_") && (file.ends_with(".vtp") || file.ends_with(".vtu"))) there.insert(file);
+  }
   EXPECT_EQ(listed, there);
   EXPECT_EQ(entries.size(), 3u);  // first, half-way, last
   for (const auto& e : entries) {

@@ -131,14 +131,17 @@ kind = "wall"
 law = "repulsive"
 slip = "free-slip"
 velocity = [0.25, 0, "sin(t)"]
+[phases.lid]
+kind = "wall"
 [interactions]
 kernel = "wendland-c2"
 water-water = 3
 water-steel = { radius = 2, kernel = "cubic-spline", drag = 0.5 }
 floor-water = { radius = 2.5 }
+lid-water = 2.5
 [[fill]]
 phase = "floor"
-shape = { sides = ["bottom", "top"], layers = 2 }
+shape = { sides = ["bottom"], layers = 2 }
 [[fill]]
 phase = "sand"
 shape = { points = [[0, 0.5, 1], [0.5, 0.5, 1]] }
@@ -154,9 +157,47 @@ perturb = 0.2
 seed = 7
 velocity = { log-profile = { friction-velocity = 0.5, roughness = 1e-5, over-ground = false } }
 pressure = "1000*y"
+[[fill]]
+phase = "lid"
+shape = { sides = ["top"] }
 [[forcing]]
 phase = "water"
 acceleration = [0.1, "t", "x*y*z"]
+[[probe]]
+name = "crest"
+phase = "water"
+at = [0, 0.5, 1]
+every = 0.01
+start = 0.5
+[[profile]]
+name = "line"
+phase = "water"
+from = [0, 0, 1]
+to = [0, 1, 1]
+count = 11
+every = 0.02
+start = 0.25
+[[profile]]
+name = "slices"
+phase = "sand"
+box = { min = [-1, 0, 0.5], max = [1, 0.5, 1.5] }
+along = "z"
+[[grid]]
+name = "plane"
+phase = "water"
+min = [-1, 0, 1]
+max = [1, 1, 1]
+spacing = 0.2
+every = 0.03
+start = 0.75
+[[wall-shear]]
+name = "lid"
+phase = "water"
+wall = "lid"
+side = "top"
+count = 7
+every = 0.04
+start = 1
 [time]
 end = 2
 step = 1e-4
@@ -221,6 +262,31 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.fills.at(3).pressure.formula, "1000*y");
   EXPECT_EQ(scene.forcings.at(0).phase, "water");
   EXPECT_EQ(scene.forcings.at(0).acceleration[1].formula, "t");
+  const Probe& probe = scene.measuring.probes.at(0);
+  EXPECT_EQ(probe.name, "crest");
+  EXPECT_EQ(probe.phase, "water");
+  EXPECT_EQ(probe.at, (Vec3{0, 0.5, 1}));
+  EXPECT_EQ(probe.every, 0.01);
+  EXPECT_EQ(probe.start, 0.5);
+  const Profile& line = scene.measuring.profiles.at(0);
+  EXPECT_EQ(line.from, (Vec3{0, 0, 1}));
+  EXPECT_EQ(line.to, (Vec3{0, 1, 1}));
+  EXPECT_EQ(line.count, 11);
+  EXPECT_FALSE(line.box.has_value());
+  const Profile& slices = scene.measuring.profiles.at(1);
+  EXPECT_EQ(slices.box->min, (Vec3{-1, 0, 0.5}));
+  EXPECT_EQ(slices.box->max, (Vec3{1, 0.5, 1.5}));
+  EXPECT_EQ(slices.along, 2u);
+  const Grid& grid = scene.measuring.grids.at(0);
+  EXPECT_EQ(*grid.min, (Vec3{-1, 0, 1}));
+  EXPECT_EQ(*grid.max, (Vec3{1, 1, 1}));
+  EXPECT_EQ(grid.spacing, 0.2);
+  const WallShear& shear = scene.measuring.wall_shears.at(0);
+  EXPECT_EQ(shear.wall, "lid");
+  EXPECT_TRUE(shear.top);
+  EXPECT_EQ(shear.count, 7);
+  EXPECT_EQ(shear.every, 0.04);
+  EXPECT_EQ(shear.start, 1);
   EXPECT_EQ(scene.time.fixed_step, 1e-4);
   EXPECT_EQ(scene.time.safety, 0.5);
   EXPECT_EQ(scene.time.largest_speed, 3);

@@ -1,0 +1,188 @@
+#include "measure/instrument.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace barchan {
+namespace {
+
+/// Builds the instruments of one scene.
+class Maker {
+ public:
+  Maker(const Scene& scene, const Bounds& bounds, const std::vector<double>& sound_speeds)
+      : scene_(scene), bounds_(bounds), sound_speeds_(sound_speeds) {}
+
+  Instrument common(const Measured& measured, InstrumentKind kind, const std::string& prefix) const {
+    Instrument i;
+    i.kind = kind;
+    i.name = measured.name;
+    i.stem = prefix + "_" + measured.name;
+    i.phase = number(measured.phase);
+    i.phase_name = measured.phase;
+    const double history = scene_.output.history_every > 0 ? scene_.output.history_every : scene_.time.end / 100.0;
+    i.every = measured.every > 0 ? measured.every : history;
+    i.start = measured.start;
+    i.dimensions = scene_.dimensions;
+    i.has_pressure = scene_.phases[i.phase].kind == PhaseKind::fluid;
+    for (const Interaction& pair : scene_.interactions)
+      if (pair.a == measured.phase && pair.b == measured.phase) {
+        i.kernel = pair.kernel;
+        i.radius = pair.radius * scene_.spacing;
+      }
+    return i;
+  }
+
+  Instrument probe(const Probe& p) const {
+    Instrument i = common(p, InstrumentKind::probe, "probe");
+    i.rows = i.points = {p.at};
+    return i;
+  }
+
+  Instrument profile(const Profile& p) const {
+    Instrument i = common(p, p.box ? InstrumentKind::slices : InstrumentKind::line, "profile");
+    if (p.box) {
+      i.axis = p.along;
+      i.low = p.box->min;
+      i.high = p.box->max;
+      const double length = i.high[i.axis] - i.low[i.axis];
+      const std::size_t n = whole(p.count, length);
+      for (std::size_t k = 0; k < n; ++k) {
+        Vec3 x = 0.5 * (i.low + i.high);
+        x[i.axis] = i.low[i.axis] + (static_cast<double>(k) + 0.5) * length / static_cast<double>(n);
+        i.rows.push_back(x);
+      }
+      return i;
+    }
+    const Vec3 along = p.to - p.from;
+    const std::size_t n = p.count > 0 ? static_cast<std::size_t>(p.count) : whole(0, norm(along)) + 1;
+    for (std::size_t k = 0; k < n; ++k)
+      i.rows.push_back(p.from + (static_cast<double>(k) / static_cast<double>(n - 1)) * along);
+    i.points = i.rows;
+    return i;
+  }
+
+  Instrument grid(const Grid& g) const {
+    Instrument i = common(g, InstrumentKind::grid, "grid");
+    i.low = g.min.value_or(bounds_.low);
+    i.high = g.max.value_or(bounds_.high);
+    const double spacing = g.spacing > 0 ? g.spacing : scene_.spacing;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double side = d < dimensions() ? i.high[d] - i.low[d] : 0.0;
+      const double steps = std::round(side / spacing);
+      i.count[d] = side > 0 ? static_cast<std::size_t>(std::max(steps, 1.0)) + 1 : 1;
+      i.step[d] = i.count[d] > 1 ? side / static_cast<double>(i.count[d] - 1) : spacing;
+    }
+    for (std::size_t z = 0; z < i.count[2]; ++z)
+      for (std::size_t y = 0; y < i.count[1]; ++y)
+        for (std::size_t x = 0; x < i.count[0]; ++x)
+          i.rows.push_back(i.low + Vec3{static_cast<double>(x) * i.step[0], static_cast<double>(y) * i.step[1],
+                                        static_cast<double>(z) * i.step[2]});
+    i.points = i.rows;
+    return i;
+  }
+
+  /// Columns along x; in each, points no more than a spacing apart along x and, in three dimensions, along z.
+  Instrument wall_shear(const WallShear& w) const {
+    Instrument i = common(w, InstrumentKind::wall_shear, "wall_shear");
+    const Phase& fluid = scene_.phases[i.phase];
+    i.wall = number(w.wall);
+    i.inward = w.top ? -1.0 : 1.0;
+    i.density = fluid.density;
+    // Monaghan's viscosity as a kinematic one, as the fluid's passes have it.
+    const double artificial =
+        fluid.artificial_viscosity * 0.5 * i.radius * sound_speeds_[i.phase] / (2.0 * (scene_.dimensions + 2));
+    i.viscosity = fluid.density * (fluid.viscosity + artificial);
+    i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
+    const Vec3 size = bounds_.high - bounds_.low;
+    const std::size_t columns = whole(w.count, size[0]);
+    const double width = size[0] / static_cast<double>(columns);
+    const std::size_t across = whole(0, width * (1.0 - 1e-9)), deep = dimensions() == 3 ? whole(0, size[2]) : 1;
+    i.points_per_row = across * deep;
+    for (std::size_t c = 0; c < columns; ++c) {
+      Vec3 x = 0.5 * (bounds_.low + bounds_.high);
+      x[1] = w.top ? bounds_.high[1] : bounds_.low[1];
+      const double left = bounds_.low[0] + static_cast<double>(c) * width;
+      x[0] = left + 0.5 * width;
+      i.rows.push_back(x);
+      for (std::size_t a = 0; a < across; ++a)
+        for (std::size_t b = 0; b < deep; ++b) {
+          x[0] = left + (static_cast<double>(a) + 0.5) * width / static_cast<double>(across);
+          if (deep > 1) x[2] = bounds_.low[2] + (static_cast<double>(b) + 0.5) * size[2] / static_cast<double>(deep);
+          i.points.push_back(x);
+        }
+    }
+    return i;
+  }
+
+ private:
+  std::size_t dimensions() const { return static_cast<std::size_t>(scene_.dimensions); }
+  std::size_t number(const std::string& name) const {
+    std::size_t k = 0;
+    while (k + 1 < scene_.phases.size() && scene_.phases[k].name != name) ++k;
+    return k;
+  }
+  /// `count`, or as many as there are spacings in the length.
+  std::size_t whole(int count, double length) const {
+    if (count > 0) return static_cast<std::size_t>(count);
+    return static_cast<std::size_t>(std::max(std::round(length / scene_.spacing), 1.0));
+  }
+
+  const Scene& scene_;
+  const Bounds& bounds_;
+  const std::vector<double>& sound_speeds_;
+};
+
+}  // namespace
+
+std::vector<std::string> Instrument::files() const {
+  switch (kind) {
+    case InstrumentKind::probe: return {stem + ".csv"};
+    case InstrumentKind::grid: return {stem + ".vti"};
+    default: return {stem + ".csv", stem + ".vtp"};
+  }
+}
+
+std::vector<Instrument> make_instruments(const Scene& scene, const Bounds& bounds,
+                                         const std::vector<double>& sound_speeds) {
+  const Maker maker(scene, bounds, sound_speeds);
+  std::vector<Instrument> instruments;
+  for (const Probe& p : scene.measuring.probes) instruments.push_back(maker.probe(p));
+  for (const Profile& p : scene.measuring.profiles) instruments.push_back(maker.profile(p));
+  for (const Grid& g : scene.measuring.grids) instruments.push_back(maker.grid(g));
+  for (const WallShear& w : scene.measuring.wall_shears) instruments.push_back(maker.wall_shear(w));
+  return instruments;
+}
+
+std::string kind_name(InstrumentKind kind) {
+  switch (kind) {
+    case InstrumentKind::probe: return "probe";
+    case InstrumentKind::line:
+    case InstrumentKind::slices: return "profile";
+    case InstrumentKind::grid: return "grid";
+    case InstrumentKind::wall_shear: return "wall-shear";
+  }
+  return "";
+}
+
+std::string to_text(const Instrument& i) {
+  const char* rows = i.kind == InstrumentKind::wall_shear ? "columns"
+                     : i.kind == InstrumentKind::slices   ? "slices"
+                                                          : "points";
+  char text[160];
+  std::snprintf(text, sizeof text, "%zu %s, every %g s from %g s", i.rows.size(), rows, i.every, i.start);
+  if (i.kind == InstrumentKind::probe) std::snprintf(text, sizeof text, "every %g s", i.every);
+  return kind_name(i.kind) + " " + i.name + " (" + i.phase_name + ", " + text + ")";
+}
+
+std::vector<std::string> not_measured(const std::vector<Instrument>& instruments) {
+  std::vector<std::string> words;
+  for (const InstrumentKind kind :
+       {InstrumentKind::probe, InstrumentKind::line, InstrumentKind::grid, InstrumentKind::wall_shear})
+    if (std::none_of(instruments.begin(), instruments.end(),
+                     [&](const Instrument& i) { return kind_name(i.kind) == kind_name(kind); }))
+      words.push_back(kind_name(kind));
+  return words;
+}
+
+}  // namespace barchan

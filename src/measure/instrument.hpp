@@ -1,0 +1,69 @@
+// What the plan makes of a scene's probes, profiles, grids and wall shear: places, intervals, files.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "neighbours/cell_grid.hpp"
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+enum class InstrumentKind { probe, line, slices, grid, wall_shear };
+
+/// One instrument. It has rows: places for which it keeps averages, one line each in its files.
+///
+/// Fluids are interpolated at `points`, `points_per_row` consecutive ones a row, whose mean is the row's sample. Slices
+/// have no points: the particles in [low, high), cut into rows along `axis`, are samples themselves.
+struct Instrument {
+  InstrumentKind kind = InstrumentKind::probe;
+  std::string name;
+  std::string stem;       // of its files: "profile_NAME"
+  std::size_t phase = 0;  // number of the phase that is measured
+  std::string phase_name;
+  double every = 0, start = 0;  // s
+  int dimensions = 2;
+  bool has_pressure = true;  // grains have none
+  std::vector<Vec3> rows;    // m: place of each row
+  std::vector<Vec3> points;  // m
+  std::size_t points_per_row = 1;
+
+  // interpolation
+  KernelKind kernel = KernelKind::wendland_c2;
+  double radius = 0;  // m, of the phase with itself; at a wall half as much again
+
+  // slices
+  std::size_t axis = 1;
+  Vec3 low{}, high{};  // m
+
+  // grid
+  std::array<std::size_t, 3> count{1, 1, 1};
+  Vec3 step{};  // m
+
+  // wall shear
+  std::size_t wall = 0;  // number of the wall's phase
+  double inward = 1;     // y of the normal into the fluid
+  double viscosity = 0;  // Pa s, dynamic; with what artificial viscosity adds
+  double density = 0;    // kg/m3, at rest
+
+  /// Numbers that a sample of a row has: velocity (or shear stress) by component, pressure; slices have the distance
+  /// from the row's place before them.
+  std::size_t quantities() const {
+    return static_cast<std::size_t>(dimensions) + (kind == InstrumentKind::slices ? 2 : 1);
+  }
+  std::vector<std::string> files() const;
+};
+
+/// Carries a checked scene's requests out: only here is decided where and when is measured. The phases' sound speeds
+/// are what artificial viscosity needs.
+std::vector<Instrument> make_instruments(const Scene& scene, const Bounds& bounds,
+                                         const std::vector<double>& sound_speeds);
+
+std::string kind_name(InstrumentKind kind);  ///< the scene's word, "wall-shear"
+/// "profile mid (air, 41 rows, every 0.001 s from 0.02 s)".
+std::string to_text(const Instrument& instrument);
+/// Kinds of instrument that the scene does not ask for, by their words.
+std::vector<std::string> not_measured(const std::vector<Instrument>& instruments);
+
+}  // namespace barchan

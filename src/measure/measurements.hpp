@@ -1,0 +1,68 @@
+// Takes samples of a simulation when they are due and writes what they average to. It only reads the simulation.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "measure/averages.hpp"
+#include "measure/fit.hpp"
+#include "measure/instrument.hpp"
+#include "measure/table.hpp"
+#include "output/history.hpp"
+#include "time/simulation.hpp"
+
+namespace barchan {
+
+class Measurements {
+ public:
+  /// For the instruments of the simulation's plan.
+  explicit Measurements(const Simulation& simulation);
+
+  /// Makes the probes' files in the folder, which is there. Throws OutputError.
+  void open(const std::filesystem::path& directory);
+
+  /// Takes the samples that are due at the simulation's time: the first step at or after start + k every. Never changes
+  /// the length of a step. With open() the probes' rows are written. The same bits on any number of threads.
+  void sample(const Simulation& simulation);
+
+  /// Replaces the files of averages, each whole or not at all. Throws OutputError.
+  void write(const std::filesystem::path& directory, double time);
+
+  /// Means and fluctuations of an instrument so far, one row a place; nan where nothing was sampled.
+  Table table(std::size_t instrument);
+
+  const std::vector<Instrument>& instruments() const { return instruments_; }
+  const Accumulators& accumulators() const { return memory_; }
+  double seconds() const { return seconds_; }  ///< s of wall time spent in sample() and write()
+
+ private:
+  struct Place {  // of an instrument's first row in the accumulators
+    std::size_t row = 0, mean = 0, comoment = 0;
+  };
+  using Sample = std::array<double, 5>;
+
+  Average average(std::size_t instrument, std::size_t row);
+  bool due(std::size_t instrument, double time);
+  Lookup& lookup(std::size_t instrument, const Simulation& simulation);
+  void read_points(std::size_t instrument, const Simulation& simulation);
+  void take_points(std::size_t instrument);
+  void take_slices(std::size_t instrument, const Simulation& simulation);
+  void write_probe(std::size_t instrument, double time);
+
+  std::vector<Instrument> instruments_;
+  std::vector<Place> places_;
+  Accumulators memory_;
+
+  struct Searched {
+    std::size_t phase;
+    double radius;
+    Lookup lookup;
+    long step;  // for which it was made
+  };
+  std::vector<Searched> lookups_;  // one a phase and radius
+  std::vector<Reading> readings_;  // of the instrument at hand, by point; then by row
+  std::vector<History> probes_;
+  double seconds_ = 0;
+};
+
+}  // namespace barchan
