@@ -18,10 +18,10 @@ auto with_kernel(KernelKind kind, double radius, int dimensions, F&& f) {
 }
 
 /// A kernel ready for a pair loop: made once a pass, chosen once a row.
-template <class T = double>
-class ReadyKernel {
+template <class T>
+class ReadyKernelOf {
  public:
-  ReadyKernel(KernelKind kind, double radius, int dimensions)
+  ReadyKernelOf(KernelKind kind, double radius, int dimensions)
       : kind_(kind), spline_(radius, dimensions), wendland_(radius, dimensions) {}
   template <class F>
   BARCHAN_SIMD_INLINE auto operator()(F&& f) const {
@@ -38,5 +38,6 @@ class ReadyKernel {
   CubicSpline<T> spline_;
   WendlandC2<T> wendland_;
 };
+using ReadyKernel = ReadyKernelOf<double>;
 
 }  // namespace barchan

@@ -75,8 +75,8 @@ BARCHAN_SIMD_INLINE Stress<Dim> advance(const Stress<Dim>& s, Four time, const S
   return r;
 }
 
-std::vector<ReadyKernel<double>>& ready_kernels(std::span<const ElasticNeighbour> neighbours, int dimensions) {
-  thread_local std::vector<ReadyKernel<double>> kernels;
+std::vector<ReadyKernel>& ready_kernels(std::span<const ElasticNeighbour> neighbours, int dimensions) {
+  thread_local std::vector<ReadyKernel> kernels;
   kernels.reserve(16);
   kernels.clear();
   for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);

@@ -7,6 +7,7 @@
 #include "kernels/kernel.hpp"
 #include "laws/consistent_fluid.hpp"
 #include "laws/plain_fluid.hpp"
+#include "passes/fluid_finish.hpp"
 #include "passes/fours.hpp"
 
 namespace barchan {
@@ -33,7 +34,7 @@ const T* records_of(const FluidNeighbour& e) {
 
 /// The raw sums of one entry's row: without the kernel's constant factor.
 template <int Dim, template <int> class Law, class T>
-BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernel<T>& ready,
+BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernelOf<T>& ready,
                                  const typename Law<Dim>::template Own<LanesOf<T>>& own, LanesOf<T> unit,
                                  typename Law<Dim>::template Sums<LanesOf<T>>& out) {
   using R = MotionRecord<Dim>;
@@ -53,138 +54,12 @@ BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, con
 constexpr std::size_t most_entries = 16;
 
 template <class T>
-std::vector<ReadyKernel<T>>& ready_kernels(std::span<const FluidNeighbour> neighbours, int dimensions) {
-  thread_local std::vector<ReadyKernel<T>> kernels;
+std::vector<ReadyKernelOf<T>>& ready_kernels(std::span<const FluidNeighbour> neighbours, int dimensions) {
+  thread_local std::vector<ReadyKernelOf<T>> kernels;
   kernels.reserve(most_entries);
   kernels.clear();
   for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);
   return kernels;
-}
-
-Four determinant(const std::array<Four, 3>& m) { return m[0] * m[2] - m[1] * m[1]; }
-Four determinant(const std::array<Four, 6>& m) {
-  return m[0] * (m[2] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[3]) + m[3] * (m[1] * m[4] - m[2] * m[3]);
-}
-
-/// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
-BARCHAN_SIMD_INLINE std::array<Four, 4> inverse_symmetric(const std::array<Four, 3>& m) {
-  const Four s = Four(1.0) / determinant(m), xy = -m[1] * s;
-  return {m[2] * s, xy, xy, m[0] * s};
-}
-BARCHAN_SIMD_INLINE std::array<Four, 9> inverse_symmetric(const std::array<Four, 6>& m) {
-  const Four xx = m[0], xy = m[1], yy = m[2], xz = m[3], yz = m[4], zz = m[5];
-  const Four a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
-  const Four s = Four(1.0) / (xx * a + xy * b + xz * c);
-  const Four d = (xx * zz - xz * xz) * s, e = (xy * xz - xx * yz) * s, f = (xx * yy - xy * xy) * s;
-  return {a * s, b * s, c * s, b * s, d, e, c * s, e, f};
-}
-
-template <int Dim>
-struct Rates {
-  std::array<Four, Dim> acceleration, shift;
-  Four density;
-};
-
-template <int Dim>
-BARCHAN_SIMD_INLINE std::array<Four, Dim> shift_of(const std::array<Four, Dim>& concentration,
-                                                   const FluidParameters& q) {
-  std::array<Four, Dim> du;
-  Four speed2(0.0);
-  for (std::size_t d = 0; d < Dim; ++d) {
-    du[d] = Four(-q.shift_speed * q.smoothing_length) * concentration[d];
-    speed2 += du[d] * du[d];
-  }
-  const Four limit(q.shift_limit);
-  const Four s = simd::select(speed2 > limit * limit, limit / simd::sqrt(speed2), Four(1.0));
-  for (auto& u : du) u *= s;
-  return du;
-}
-
-template <int Dim>
-BARCHAN_SIMD_INLINE Rates<Dim> finish(const typename PlainFluid<Dim>::template Sums<Four>& s, double, Four rho,
-                                      const FluidParameters& q, std::array<Four, Dim*(Dim + 1) / 2>&) {
-  Rates<Dim> r;
-  r.shift = shift_of<Dim>(s.concentration, q);
-  const Four specific = Four(1.0) / rho;
-  for (std::size_t d = 0; d < Dim; ++d)
-    r.acceleration[d] = (Four(2.0) * s.viscous[d] - s.pressure[d]) * specific + Four(q.gravity[d] + q.acceleration[d]);
-  r.density = rho * s.divergence + Four(2.0 * q.diffusivity / (q.sound_speed * q.sound_speed)) * s.diffusion;
-  return r;
-}
-
-/// det(-M) of a full neighbourhood is 1, perturbed by a fifth of a spacing 0.8 to 1.2. Below this there is a void
-/// (behind a grain that has left, say): corrections would raise the local speed of sound, and with it break the step's
-/// limit.
-constexpr double least_determinant = 0.6;
-
-/// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
-constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
-  return d >= e ? d * (d + 1) / 2 + e : e * (e + 1) / 2 + d;
-}
-
-template <int Dim>
-BARCHAN_SIMD_INLINE Rates<Dim> finish(const typename ConsistentFluid<Dim>::template Sums<Four>& s, double mu, Four rho,
-                                      const FluidParameters& q, std::array<Four, Dim*(Dim + 1) / 2>& anisotropy) {
-  Rates<Dim> r;
-  r.shift = shift_of<Dim>(s.concentration, q);
-  // A particle among grains in flight may have too few neighbours to invert anything: it goes uncorrected, M = -1.
-  auto moment = s.moment;
-  const Four sign(Dim == 2 ? 1.0 : -1.0);
-  const auto whole = sign * determinant(moment) > Four(least_determinant);
-  for (std::size_t d = 0; d < Dim; ++d)
-    for (std::size_t e = 0; e <= d; ++e) {
-      const std::size_t m = moment_index(d, e);
-      moment[m] = simd::select(whole, moment[m], Four(d == e ? -1.0 : 0.0));
-      anisotropy[m] = simd::mask_zero(whole, anisotropy[m]);
-    }
-  const auto inverse = inverse_symmetric(moment);
-  Four trace(0.0), weighted_trace(0.0);
-  for (std::size_t d = 0; d < Dim; ++d) {
-    trace += moment[moment_index(d, d)];
-    for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * moment[moment_index(d, e)];
-  }
-  weighted_trace = simd::min(weighted_trace + trace, Four(0.5) * trace);  // both negative
-  const Four per_trace = Four(1.0) / trace;
-  const Four laplace_v = Four(-2.0 * Dim * mu) / (weighted_trace * rho), laplace_p = Four(-2.0 * Dim) * per_trace;
-  const Four specific = Four(1.0) / rho;
-  const double c2 = q.sound_speed * q.sound_speed;
-  std::array<Four, Dim> grad_p;
-  std::array<std::array<Four, Dim>, Dim> grad_v;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    grad_p[d] = inverse[d * Dim] * s.pressure[0];
-    for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
-    for (std::size_t e = 0; e < Dim; ++e) {
-      grad_v[d][e] = s.velocity[d * Dim] * inverse[e];
-      for (std::size_t f = 1; f < Dim; ++f)
-        grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
-    }
-  }
-  Four divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
-  for (std::size_t d = 0; d < Dim; ++d) {
-    divergence += grad_v[d][d];
-    along_p += r.shift[d] * grad_p[d];
-    dynamic -= (grad_p[d] - Four(q.reference_density * q.gravity[d])) * s.concentration[d];
-    Four friction = s.viscous[d], transported(0.0);
-    for (std::size_t e = 0; e < Dim; ++e) {
-      friction -= grad_v[d][e] * s.weighted[e];
-      transported += r.shift[e] * grad_v[d][e];
-      squared += grad_v[d][e] * grad_v[e][d];
-    }
-    r.acceleration[d] =
-        laplace_v * friction - grad_p[d] * specific + Four(q.gravity[d] + q.acceleration[d]) + transported;
-  }
-  // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
-  r.density = -rho * divergence + Four(q.diffusivity / c2) * laplace_p * dynamic +
-              Four(q.source_diffusivity / c2 * q.reference_density) * squared + along_p * Four(1.0 / c2);
-  // The next step's weights; they stay positive: no entry of A beyond a half.
-  const Four scale = Four(-0.5 * (Dim + 2) * Dim) * per_trace;
-  for (std::size_t d = 0; d < Dim; ++d)
-    for (std::size_t e = 0; e <= d; ++e) {
-      const std::size_t m = moment_index(d, e);
-      const Four a = scale * moment[m] + Four(d == e ? 0.5 * (Dim + 2) : 0.0);
-      anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a, Four(0.5)), Four(-0.5)));
-    }
-  return r;
 }
 
 template <int Dim, template <int> class Law, class T>
@@ -241,7 +116,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       for (std::size_t c = 0; c < kept; ++c) anisotropy[c] = load_four(skew[c], first, count);
       if constexpr (Dim == 2) anisotropy[2] = -anisotropy[0];
     }
-    const auto r = finish<Dim>(s, mu, load_four(rho, first, count), q, anisotropy);
+    const auto r = finish<Dim, Four>(s, mu, load_four(rho, first, count), q, anisotropy);
     if constexpr (L::corrected)
       for (std::size_t c = 0; c < kept; ++c) store_four(anisotropy[c], skew[c], first, count);
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -259,7 +134,7 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   std::array<double*, Dim> a{};
   for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = solid.column(Field::acceleration, d);
   const double inverse_mass = 1.0 / solid.mass();
-  const ReadyKernel<double> kernel(e.kernel, e.radius, Dim);
+  const ReadyKernel kernel(e.kernel, e.radius, Dim);
   const auto n = static_cast<std::int64_t>(solid.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::int64_t i = 0; i < n; ++i) {

@@ -1,5 +1,6 @@
 #include "passes/integrate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -104,6 +105,21 @@ void drift(PhaseParticles& phase, double time) {
 
 double kick(PhaseParticles& phase, double half_kick) {
   return phase.dimensions() == 2 ? kick_all<2>(phase, half_kick) : kick_all<3>(phase, half_kick);
+}
+
+void hold_inside(PhaseParticles& phase, const Sides& sides) {
+  const auto n = static_cast<std::int64_t>(phase.size());
+  for (int d = 0; d < phase.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    const double low = sides.low[c] + sides.margin, high = sides.high[c] - sides.margin;
+    double *x = phase.column(Field::position, d), *v = phase.column(Field::velocity, d);
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t k = 0; k < n; ++k) {
+      const double place = x[k], speed = v[k];
+      v[k] = place < low ? std::max(speed, 0.0) : place > high ? std::min(speed, 0.0) : speed;
+      x[k] = place < low ? low : place > high ? high : place;
+    }
+  }
 }
 
 }  // namespace barchan

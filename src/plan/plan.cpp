@@ -68,13 +68,29 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
-std::vector<Field> fields_of(const Phase& phase) {
+/// Whether the fluid is turbulent or touches a wall that says how it rubs.
+bool has_eddies(const Scene& scene, const Phase& fluid) {
+  if (fluid.kind != PhaseKind::fluid) return false;
+  bool any = fluid.turbulence != Turbulence::none;
+  for (const auto& i : scene.interactions)
+    for (const auto& p : scene.phases)
+      if (p.kind == PhaseKind::wall && (p.roughness || p.shear_stress))
+        any = any || (i.a == fluid.name && i.b == p.name) || (i.b == fluid.name && i.a == p.name);
+  if (any && fluid.scheme != FluidScheme::consistent)
+    throw SceneError(scene.file + ": phases." + fluid.name +
+                     ".scheme: eddy viscosity, rough walls and given shear stresses need corrected operators; expected "
+                     "\"consistent\"");
+  return any;
+}
+
+std::vector<Field> fields_of(const Phase& phase, bool eddies) {
   using enum Field;
   switch (phase.kind) {
     case PhaseKind::fluid: {
       std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
       if (phase.shifting > 0) f.push_back(shift_velocity);
       if (phase.scheme == FluidScheme::consistent) f.push_back(anisotropy);
+      if (eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
       if (phase.energy) f.insert(f.end(), {energy, energy_rate});
       return f;
     }
@@ -152,7 +168,6 @@ void refuse_what_is_missing(const Scene& scene) {
     throw SceneError(scene.file + ": " + key + " is not available yet; expected " + instead);
   };
   for (const auto& p : scene.phases) {
-    if (p.turbulence != "none") refuse("phases." + p.name + ".turbulence = \"" + p.turbulence + "\"", "\"none\"");
     if (p.artificial_stress != 0) refuse("phases." + p.name + ".artificial-stress", "0");
   }
   if (scene.output.checkpoint_every > 0) refuse("output.checkpoint-every", "no such key");
@@ -171,6 +186,7 @@ void add_passes(const Scene& scene, Plan& plan) {
   pass("wall motion", any_kind(PhaseKind::wall));
   pass("neighbours", true);
   pass("pack", true);
+  pass("eddies", std::any_of(plan.phases.begin(), plan.phases.end(), [](const PlanPhase& p) { return p.eddies; }));
   pass("extension into walls", any_law(Law::boundary));
   pass("extension into solids", any_law(Law::coupling));
   pass("fluid rates", any_kind(PhaseKind::fluid));
@@ -205,7 +221,8 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.kind = p.kind;
     q.count = blocks[k].position.size();
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
-    q.fields = fields_of(p);
+    q.eddies = has_eddies(scene, p);
+    q.fields = fields_of(p, q.eddies);
     if (p.kind == PhaseKind::fluid) q.sound_speed = p.sound_speed.value_or(10.0 * plan.largest_speed);
     if (p.kind == PhaseKind::elastic) q.sound_speed = compression_speed(p);
     if (p.kind == PhaseKind::grains) {

@@ -65,7 +65,11 @@ Phase take_phase(const toml::table& table, const std::string& name) {
   take_number(table, "background-pressure", phase.background_pressure);
   phase.scheme = take_choice(table, "scheme", phase.scheme,
                              {{"plain", FluidScheme::plain}, {"consistent", FluidScheme::consistent}});
-  phase.turbulence = table["turbulence"].value_or(phase.turbulence);
+  phase.turbulence = take_choice(table, "turbulence", phase.turbulence,
+                                 {{"none", Turbulence::none},
+                                  {"mixing-length", Turbulence::mixing_length},
+                                  {"smagorinsky", Turbulence::smagorinsky}});
+  take_number(table, "smagorinsky", phase.smagorinsky);
   take_number(table, "young", phase.young);
   take_number(table, "poisson", phase.poisson);
   take_number(table, "artificial-stress", phase.artificial_stress);
@@ -76,6 +80,8 @@ Phase take_phase(const toml::table& table, const std::string& name) {
       take_choice(table, "law", phase.wall_law, {{"adami", WallLaw::adami}, {"repulsive", WallLaw::repulsive}});
   phase.slip = take_choice(table, "slip", phase.slip, {{"no-slip", Slip::no_slip}, {"free-slip", Slip::free_slip}});
   phase.wall_velocity = take_vector_expression(table, "velocity");
+  if (table.contains("shear-stress")) phase.shear_stress = take_vector(table, "shear-stress");
+  phase.roughness = table["roughness"].value<double>();
   return phase;
 }
 

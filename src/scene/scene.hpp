@@ -30,6 +30,7 @@ enum class EquationOfState { linear, tait };
 enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
 enum class Slip { no_slip, free_slip };
 enum class FluidScheme { plain, consistent };  // docs/method.md
+enum class Turbulence { none, mixing_length, smagorinsky };
 
 /// Per-phase parameters. Those of another kind keep their defaults and are not read.
 struct Phase {
@@ -48,8 +49,9 @@ struct Phase {
   double shifting = 1.0;                   // strength of particle shifting, 0 switches it off
   double background_pressure = 0.0;        // in rho0 c^2
   FluidScheme scheme = FluidScheme::plain;
-  bool enclosed = false;            // fills a closed space: its mean density is kept
-  std::string turbulence = "none";  // "none"; others come with the air work
+  bool enclosed = false;  // fills a closed space: its mean density is kept
+  Turbulence turbulence = Turbulence::none;
+  double smagorinsky = 0.15;  // C_s of nu_t = (C_s dx)^2 |S|
 
   // elastic
   double young = 0.0;  // Pa
@@ -64,7 +66,11 @@ struct Phase {
   // wall
   WallLaw wall_law = WallLaw::adami;
   Slip slip = Slip::no_slip;
-  VectorExpression wall_velocity;  // m/s, a function of time
+  VectorExpression wall_velocity;    // m/s, a function of time
+  std::optional<Vec3> shear_stress;  // Pa, on the fluid, instead of no slip
+
+  // wall and grains
+  std::optional<double> roughness;  // m, z0 of the logarithmic law; empty: smooth wall, a thirtieth of a grain
 };
 
 // ---- the interaction matrix

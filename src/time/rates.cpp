@@ -83,6 +83,9 @@ void keep_mean_density(PhaseParticles& p) {
   for (std::int64_t k = 0; k < n; ++k) rate[k] -= mean;
 }
 
+/// A wall whose stress is given leaves the fluid's velocity along it alone.
+bool given_friction(const Phase& wall) { return wall.roughness || wall.shear_stress; }
+
 }  // namespace
 
 void Simulation::pack() {
@@ -113,11 +116,24 @@ void Simulation::pack() {
   // Accelerations are gathered from several laws; extension into a solid still needs the last ones.
 }
 
+void Simulation::find_eddies() {
+  for (auto& f : fluids_) {
+    if (f.eddy_neighbours.empty()) continue;
+    auto& p = particles_[f.phase];
+    f.largest_viscosity = pack_eddies(p, eddies_[f.phase], *f.ground, f.eddies);
+    eddies_[f.phase].fill_images(p.size(), neighbours_.grid(f.phase));
+    for (auto& e : f.eddy_neighbours)
+      if (e.wall && e.wall->size() > 0)
+        for (int d = 0; d < plan_.dimensions; ++d)
+          e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
+  }
+}
+
 void Simulation::extend_into_walls() {
   for (auto& x : extensions_) {
     if (particles_[x.phase].kind() != PhaseKind::wall) continue;
     extend_into_solid(particles_[x.phase], extended_[x.phase], x.sources, scene_.domain.gravity,
-                      scene_.phases[x.phase].slip);
+                      given_friction(scene_.phases[x.phase]) ? Slip::free_slip : scene_.phases[x.phase].slip);
     extended_[x.phase].fill_images(neighbours_.grid(x.phase), plan_.dimensions);
   }
 }
@@ -155,7 +171,8 @@ void Simulation::rate_fluids() {
         else varies = true;
     }
     auto& p = particles_[f.phase];
-    if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
+    if (!f.eddy_neighbours.empty()) eddy_rates(p, motion_[f.phase], eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
+    else if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
     else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
     if (s.enclosed) keep_mean_density(p);
     if (!varies) continue;
@@ -209,6 +226,11 @@ void Simulation::react() {
   for (auto& x : extensions_)
     for (const auto& fluid : x.felt)
       fluid_reaction(particles_[x.phase], extended_[x.phase], fluid, scene_.phases[x.phase].kind == PhaseKind::grains);
+  for (auto& x : extensions_)
+    for (std::size_t c = 0; c < x.felt.size(); ++c)
+      if (plan_.phases[x.felt_fluids[c]].eddies && scene_.phases[x.phase].kind == PhaseKind::grains)
+        eddy_reaction(particles_[x.phase], extended_[x.phase], x.felt[c], eddies_[x.felt_fluids[c]],
+                      x.felt[c].viscosity);
 }
 
 }  // namespace barchan

@@ -18,6 +18,7 @@ enum Pass : std::size_t {
   pass_walls,
   pass_neighbours,
   pass_pack,
+  pass_eddies,
   pass_extend_walls,
   pass_extend_solids,
   pass_fluid,
@@ -35,6 +36,7 @@ constexpr std::array<const char*, pass_count> pass_names{"kick and drift",
                                                          "wall motion",
                                                          "neighbours",
                                                          "pack",
+                                                         "eddies",
                                                          "extension into walls",
                                                          "extension into solids",
                                                          "fluid rates",
@@ -73,6 +75,8 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   make_state(blocks);
   wire();
   for (const auto& l : plan_.limits) limit_counts_[l.name] = 0;
+  for (const auto& f : fluids_)
+    if (!f.eddy_neighbours.empty()) limit_counts_[f.viscous_limit] = 0;
   for (const char* name : {"force", "output", "fixed"}) limit_counts_[name] = 0;
   dt_ = plan_.step();
   rates(true);
@@ -96,6 +100,7 @@ void Simulation::rates(bool first) {
   timed(pass_walls, [&] { move_walls(); });
   timed(pass_neighbours, [&] { find_neighbours(first); });
   timed(pass_pack, [&] { pack(); });
+  timed(pass_eddies, [&] { find_eddies(); });
   timed(pass_extend_walls, [&] { extend_into_walls(); });
   timed(pass_extend_solids, [&] { extend_into_grains(); });
   timed(pass_fluid, [&] { rate_fluids(); });
@@ -120,6 +125,11 @@ void Simulation::choose_step(double largest) {
     limit("fixed", plan_.fixed_step);
   } else {
     for (const auto& l : plan_.limits) limit(l.name, l.value);
+    for (const auto& f : fluids_)
+      if (f.largest_viscosity > 0) {
+        const double h = f.parameters.smoothing_length;
+        limit(f.viscous_limit, scene_.time.safety * StepConstants::viscous * h * h / f.largest_viscosity);
+      }
     double shortest = 1e300;
     for (const auto& p : plan_.phases)
       if (p.kind != PhaseKind::wall) shortest = std::min(shortest, p.smoothing_length);
@@ -164,6 +174,9 @@ void Simulation::kick_and_drift() {
       barchan::kick_and_drift(p, 0.5 * dt_, p.kind() == PhaseKind::elastic ? 0.5 * dt_ : dt_, nullptr);
     }
   }
+  for (const auto& f : fluids_)
+    if (scene_.phases[f.phase].scheme == FluidScheme::consistent && f.held.any())
+      hold_inside(particles_[f.phase], f.held);
 }
 
 void Simulation::strain_bodies() {
@@ -197,7 +210,10 @@ void Simulation::find_neighbours(bool force) {
     if (compact_[k]) compact_[k]->resize(particles_[k].size(), images);
     if (extended_[k].stride() > 0) extended_[k].resize(particles_[k].size(), images);
     if (stress_[k].stride() > 0) stress_[k].resize(particles_[k].size(), images);
+    if (plan_.phases[k].eddies) eddies_[k].resize(particles_[k].size(), images);
   }
+  for (auto& f : fluids_)
+    if (f.ground) f.ground->refresh(f.ground_phases);
 }
 
 void Simulation::kick() {

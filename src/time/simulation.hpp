@@ -11,6 +11,7 @@
 #include "neighbours/neighbours.hpp"
 #include "output/frame.hpp"
 #include "passes/drag.hpp"
+#include "passes/eddies.hpp"
 #include "passes/elastic.hpp"
 #include "passes/fluid.hpp"
 #include "passes/grains.hpp"
@@ -75,6 +76,7 @@ class Simulation {
   void move_walls();
   void find_neighbours(bool force);
   void pack();
+  void find_eddies();
   void extend_into_walls();
   void extend_into_grains();
   void rate_fluids();
@@ -89,6 +91,7 @@ class Simulation {
   void rates(bool first);
   void make_state(const std::vector<ParticleBlock>& blocks);
   void wire();
+  void wire_eddies(Fluid& fluid);
   PressureLaw pressure_law(std::size_t phase) const;
 
   template <class F>
@@ -100,6 +103,8 @@ class Simulation {
   Neighbours neighbours_;
   std::vector<RecordArray> motion_, extended_, stress_;   // by phase; extended: a solid as the fluid sees it
   std::vector<std::unique_ptr<CompactRecords>> compact_;  // by phase, mixed precision: what fluid_rates reads
+
+  std::vector<EddyRecords> eddies_;  // by phase
 
   std::vector<Fluid> fluids_;
   std::vector<Extension> extensions_;

@@ -33,6 +33,25 @@ void set_wall_geometry(PhaseParticles& wall, const Bounds& bounds) {
   }
 }
 
+/// Closes the sides that the wall stands behind.
+void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds) {
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    int outside = 0, axis = 0;
+    bool above = false;
+    for (int d = 0; d < wall.dimensions(); ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      const double x = wall.column(Field::position, d)[k];
+      if (bounds.periodic[c] || (x >= bounds.low[c] && x <= bounds.high[c])) continue;
+      ++outside;
+      axis = d;
+      above = x > bounds.high[c];
+    }
+    if (outside != 1) continue;
+    const auto c = static_cast<std::size_t>(axis);
+    (above ? sides.high[c] : sides.low[c]) = above ? bounds.high[c] : bounds.low[c];
+  }
+}
+
 /// Kernel contact for an entry: stiffness from the softer speed, damping from the restitution.
 KernelContact contact_law(const Scene& scene, const Plan& plan, const PlanEntry& e, double strength) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
@@ -107,6 +126,71 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
   }
 }
 
+namespace {
+
+Friction friction_with(const Phase& other) {
+  if (other.kind == PhaseKind::fluid) return Friction::fluid;
+  if (other.kind == PhaseKind::grains) return Friction::grains;
+  if (other.shear_stress) return Friction::driven;
+  if (other.slip == Slip::free_slip) return Friction::slip;
+  return other.roughness ? Friction::rough : Friction::smooth;
+}
+
+}  // namespace
+
+/// Its entries again with the friction of each, and the ground under it.
+void Simulation::wire_eddies(Fluid& f) {
+  const Phase& s = scene_.phases[f.phase];
+  const PlanPhase& q = plan_.phases[f.phase];
+  f.viscous_limit = "viscous " + s.name;
+  f.eddies.model = s.turbulence;
+  f.eddies.density = s.density;
+  f.eddies.viscosity = f.neighbours.front().viscosity / s.density;
+  f.eddies.spacing = plan_.spacing;
+  f.eddies.length = s.smagorinsky * plan_.spacing;
+  Sides sides;
+  bool particles = false;
+  for (const auto& n : f.neighbours) {
+    EddyNeighbour e;
+    e.pair = n;
+    for (std::size_t other = 0; other < particles_.size(); ++other) {
+      if (n.records != &motion_[other] && n.records != &extended_[other]) continue;
+      const Phase& o = scene_.phases[other];
+      e.friction = friction_with(o);
+      if (e.friction == Friction::fluid) {
+        if (plan_.phases[other].eddies) e.eddies = &eddies_[other];
+        e.root = std::sqrt(n.viscosity);
+      }
+      e.stress = o.shear_stress.value_or(Vec3{});
+      if (o.kind == PhaseKind::wall) e.wall = &particles_[other];
+      if (e.friction == Friction::grains) {
+        e.roughness = f.eddies.roughness = o.roughness.value_or(plan_.spacing / 30.0);
+        f.eddies.grain_reach = std::max(f.eddies.grain_reach, n.radius);
+      } else {
+        e.roughness = o.roughness.value_or(0.0);
+      }
+      const bool ground =
+          e.friction == Friction::rough || e.friction == Friction::smooth || e.friction == Friction::grains;
+      if (!ground) continue;
+      f.ground_phases.push_back(&particles_[other]);
+      if (o.kind == PhaseKind::wall) {
+        close_sides(sides, particles_[other], plan_.bounds);
+        const double* depth = particles_[other].column(Field::wall_depth);
+        particles =
+            particles || std::any_of(depth, depth + particles_[other].size(), [](double d) { return d <= 0.0; });
+      } else {
+        particles = true;
+      }
+    }
+    f.eddy_neighbours.push_back(e);
+  }
+  if (s.turbulence == Turbulence::mixing_length && f.ground_phases.empty())
+    throw SceneError(scene_.file + ": phases." + q.name +
+                     ".turbulence: a mixing length needs ground, and this fluid touches no wall with friction and no "
+                     "grains; expected such an entry in [interactions], or \"smagorinsky\"");
+  f.ground = std::make_unique<GroundDistance>(plan_.bounds, sides, plan_.spacing, particles);
+}
+
 void Simulation::wire() {
   const std::size_t phases = particles_.size();
   const int motion = plan_.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
@@ -120,12 +204,20 @@ void Simulation::wire() {
   std::vector<bool> read(phases, !mixed);
   for (const auto& e : plan_.entries)
     if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
+  const auto turbulent = [&](std::size_t k) { return particles_[k].has(Field::ground_distance); };
+  for (std::size_t k = 0; k < phases; ++k)
+    if (turbulent(k)) read.assign(phases, true);
+  eddies_.reserve(phases);
+  motion_.reserve(phases);
+  extended_.reserve(phases);
   for (std::size_t k = 0; k < phases; ++k) {
     const bool fluid = particles_[k].kind() == PhaseKind::fluid;
     motion_.emplace_back(read[k] || particles_[k].has(Field::energy) ? motion : 0);
-    compact_.push_back(mixed && (fluid || seen[k]) ? std::make_unique<CompactRecords>(plan_.bounds) : nullptr);
+    compact_.push_back(mixed && ((fluid && !turbulent(k)) || seen[k]) ? std::make_unique<CompactRecords>(plan_.bounds)
+                                                                      : nullptr);
     extended_.emplace_back(seen[k] ? motion : 0);
     stress_.emplace_back(particles_[k].kind() == PhaseKind::elastic ? stress : 0);
+    eddies_.emplace_back();
     wall_velocity_.push_back(compile(scene_.phases[k].wall_velocity));
   }
   for (const auto& f : scene_.forcings)
@@ -177,6 +269,11 @@ void Simulation::wire() {
         if (other == k) f.neighbours.insert(f.neighbours.begin(), n);
         else f.neighbours.push_back(n);
       }
+      for (const auto& e : plan_.entries)
+        if (e.law == Law::boundary && (e.a == k || e.b == k))
+          close_sides(f.held, particles_[e.a == k ? e.b : e.a], plan_.bounds);
+      f.held.margin = 0.02 * plan_.spacing;
+      if (q.eddies) wire_eddies(f);
       fluids_.push_back(std::move(f));
     } else if (seen[k]) {
       Extension x;
@@ -186,6 +283,7 @@ void Simulation::wire() {
         const std::size_t fluid = e.a == k ? e.b : e.a;
         const PairList* list = &neighbours_.list(static_cast<std::size_t>(e.a == k ? e.forward : e.backward));
         x.sources.push_back({list, &motion_[fluid], e.kernel, e.radius, scene_.phases[fluid].density});
+        if (e.law == Law::coupling) x.felt_fluids.push_back(fluid);
         if (e.law == Law::coupling)
           x.felt.push_back({list, &motion_[fluid], e.kernel, e.radius, viscosity(k, fluid), false});
       }

@@ -10,6 +10,15 @@ struct Simulation::Fluid {
   std::size_t phase = 0;
   std::vector<FluidNeighbour> neighbours;
   FluidParameters parameters{};
+  Sides held;  // the domain's sides that a wall closes
+
+  // a fluid with eddies
+  std::vector<EddyNeighbour> eddy_neighbours;  // empty: none
+  EddyParameters eddies;
+  std::vector<const PhaseParticles*> ground_phases;
+  std::unique_ptr<GroundDistance> ground;
+  double largest_viscosity = 0;  // m2/s
+  std::string viscous_limit;     // its name
 };
 
 /// A solid that some fluid sees: the fluids about it, and whether it feels them.
@@ -17,6 +26,7 @@ struct Simulation::Extension {
   std::size_t phase = 0;
   std::vector<ExtensionSource> sources;
   std::vector<FluidNeighbour> felt;  // for the reaction; empty for walls
+  std::vector<std::size_t> felt_fluids;
 };
 
 /// One direction of a contact entry.

@@ -90,6 +90,13 @@ velocity = { log-profile = { friction-velocity = 0.8, roughness = 3.3e-5 } }
 end = 10
 )toml";
 
+/// The same in turbulent air.
+inline const std::string turbulent_dune = [] {
+  std::string text = dune;
+  const std::string scheme = "scheme = \"consistent\"\n";
+  return text.insert(text.find(scheme), "turbulence = \"mixing-length\"\n");
+}();
+
 /// Two elastic squares that collide.
 inline const std::string squares = R"toml(
 spacing = 1e-3

@@ -63,9 +63,10 @@ const std::string mixed_dune = "precision = \"mixed\"\n" + small::dune;
 const std::string mixed_channel = "precision = \"mixed\"\n" + small::channel;
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
-                         testing::Values(std::pair{"Dune", &small::dune}, std::pair{"Channel", &small::channel},
-                                         std::pair{"Squares", &small::squares}, std::pair{"Grains", &small::grains},
-                                         std::pair{"MixedDune", &mixed_dune},
+                         testing::Values(std::pair{"Dune", &small::dune},
+                                         std::pair{"TurbulentDune", &small::turbulent_dune},
+                                         std::pair{"Channel", &small::channel}, std::pair{"Squares", &small::squares},
+                                         std::pair{"Grains", &small::grains}, std::pair{"MixedDune", &mixed_dune},
                                          std::pair{"MixedChannel", &mixed_channel}),
                          [](const auto& s) { return std::string(s.param.first); });
 

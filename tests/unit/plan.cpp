@@ -188,7 +188,7 @@ TEST(Plan, SaysWhichEntriesAreConsistent) {
   for (auto& b : blocks) b = {{{0.1, 0.05, 0}}, {{0, 0, 0}}, {}};
   Scene silent = s;
   silent.time.largest_speed = 10.0;
-  silent.phases[0].turbulence = "none";
+  silent.phases[0].turbulence = Turbulence::none;
   const Plan plan = make_plan(silent, blocks);
   EXPECT_TRUE(entry(plan, "air-air").consistency.consistent());
   EXPECT_FALSE(entry(plan, "sand-sand").consistency.consistent());
@@ -196,6 +196,26 @@ TEST(Plan, SaysWhichEntriesAreConsistent) {
   EXPECT_NE(text.find("consistent"), std::string::npos);
   EXPECT_NE(text.find("a contact law, not an approximation"), std::string::npos);
   EXPECT_NE(text.find("skipped"), std::string::npos);
+}
+
+TEST(Plan, EddiesAreThereOnlyIfAsked) {
+  const std::string floor = "[phases.floor]\nkind = \"wall\"\ndensity = 1\n";
+  const std::string below = "[[fill]]\nphase = \"floor\"\nshape = { sides = [\"left\"] }\n";
+  const std::string entries = "air-air = 3.0\nair-floor = 3.0\n";
+  const auto eddies = [](const Plan& plan) {
+    const auto& f = plan.phases[0].fields;
+    const bool fields = std::find(f.begin(), f.end(), Field::eddy_viscosity) != f.end();
+    EXPECT_EQ(fields, plan.phases[0].eddies);
+    EXPECT_EQ(fields, has(plan.passes, "eddies"));
+    return fields;
+  };
+  const std::string corrected = air + "scheme = \"consistent\"\n";
+  EXPECT_FALSE(eddies(plan_of(scene(corrected + floor, entries, {"air"}, below))));
+  EXPECT_TRUE(eddies(plan_of(scene(corrected + "turbulence = \"mixing-length\"\n" + floor, entries, {"air"}, below))));
+  EXPECT_TRUE(eddies(plan_of(scene(corrected + floor + "roughness = 1e-3\n", entries, {"air"}, below))));
+  EXPECT_TRUE(eddies(plan_of(scene(corrected + floor + "shear-stress = [1, 0]\n", entries, {"air"}, below))));
+  EXPECT_THROW(plan_of(scene(air + floor + "roughness = 1e-3\n", entries, {"air"}, below)), SceneError)
+      << "the plain scheme has no eddies";
 }
 
 TEST(Plan, RefusesWhatNoLawCanDo) {

@@ -44,7 +44,7 @@ TEST(SceneReader, ReadsTheDesignsExample) {
   EXPECT_EQ(scene.phases[0].name, "air");
   EXPECT_EQ(scene.phases[0].kind, PhaseKind::fluid);
   EXPECT_DOUBLE_EQ(scene.phases[0].viscosity, 1.48e-5);
-  EXPECT_EQ(scene.phases[0].turbulence, "mixing-length");
+  EXPECT_EQ(scene.phases[0].turbulence, Turbulence::mixing_length);
   EXPECT_FALSE(scene.phases[0].sound_speed.has_value());
   EXPECT_EQ(scene.phases[1].kind, PhaseKind::grains);
   EXPECT_DOUBLE_EQ(scene.phases[1].density, 2650);
@@ -110,7 +110,8 @@ shifting = 0.5
 background-pressure = 0.05
 enclosed = true
 scheme = "consistent"
-turbulence = "mixing-length"
+turbulence = "smagorinsky"
+smagorinsky = 0.1
 energy = true
 [phases.steel]
 kind = "elastic"
@@ -131,6 +132,8 @@ kind = "wall"
 law = "repulsive"
 slip = "free-slip"
 velocity = [0.25, 0, "sin(t)"]
+roughness = 1e-4
+shear-stress = [0.5, 0, -0.25]
 [phases.lid]
 kind = "wall"
 [interactions]
@@ -233,6 +236,8 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(water.scheme, FluidScheme::consistent);
   EXPECT_TRUE(water.energy);
   EXPECT_TRUE(water.enclosed);
+  EXPECT_EQ(water.turbulence, Turbulence::smagorinsky);
+  EXPECT_EQ(water.smagorinsky, 0.1);
   const Phase& steel = scene.phases.at(1);
   EXPECT_EQ(steel.young, 206e9);
   EXPECT_EQ(steel.poisson, 0.3);
@@ -246,6 +251,8 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(floor.slip, Slip::free_slip);
   EXPECT_EQ(floor.wall_velocity[0].value, 0.25);
   EXPECT_EQ(floor.wall_velocity[2].formula, "sin(t)");
+  EXPECT_EQ(floor.roughness, 1e-4);
+  EXPECT_EQ(floor.shear_stress, (Vec3{0.5, 0, -0.25}));
   EXPECT_EQ(floor.density, 1000) << "a wall without a density has that of the phase it interacts with";
   EXPECT_EQ(scene.interactions.at(0).kernel, KernelKind::wendland_c2);
   EXPECT_EQ(scene.interactions.at(1).kernel, KernelKind::cubic_spline);

@@ -1,0 +1,151 @@
+#include "passes/ground_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace barchan {
+
+GroundDistance::GroundDistance(const Bounds& bounds, const Sides& sides, double spacing, bool has_particles)
+    : bounds_(bounds), sides_(sides), spacing_(spacing) {
+  std::size_t cells = 1;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds.dimensions); ++d) {
+    const double size = bounds.high[d] - bounds.low[d];
+    diagonal_ += size * size;
+    count_[d] = std::max(1, static_cast<int>(std::floor(size / spacing + 1e-9)));
+    side_[d] = size / count_[d];
+    cells *= static_cast<std::size_t>(count_[d]);
+  }
+  diagonal_ = std::sqrt(diagonal_);
+  if (has_particles) {
+    nearest_.assign(cells, -1);
+    crowd_.assign(cells, 0);
+  }
+}
+
+std::size_t GroundDistance::cell_of(const Vec3& x, std::array<int, 3>& at) const {
+  std::size_t cell = 0;
+  at = {0, 0, 0};
+  for (std::size_t d = static_cast<std::size_t>(bounds_.dimensions); d-- > 0;) {
+    at[d] = std::clamp(static_cast<int>(std::floor((x[d] - bounds_.low[d]) / side_[d])), 0, count_[d] - 1);
+    cell = cell * static_cast<std::size_t>(count_[d]) + static_cast<std::size_t>(at[d]);
+  }
+  return cell;
+}
+
+double GroundDistance::squared(const Vec3& x, std::int32_t seed) const {
+  if (seed < 0) return 1e300;
+  const Vec3& s = seeds_[static_cast<std::size_t>(seed)];
+  double sum = 0.0;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
+    double r = x[d] - s[d];
+    const double period = bounds_.high[d] - bounds_.low[d];
+    if (bounds_.periodic[d]) r -= period * std::round(r / period);
+    sum += r * r;
+  }
+  return sum;
+}
+
+namespace {
+
+/// Calls f(cell) for the cells about `at`, periodic images taken back.
+template <class F>
+void around(const std::array<int, 3>& at, const std::array<int, 3>& count, const std::array<bool, 3>& periodic, F&& f) {
+  const int deep = count[2] > 1 ? 1 : 0;
+  for (int z = -deep; z <= deep; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        std::array<int, 3> b{at[0] + x, at[1] + y, at[2] + z};
+        bool inside = true;
+        for (std::size_t d = 0; d < 3; ++d) {
+          if (periodic[d]) b[d] = (b[d] + count[d]) % count[d];
+          inside = inside && b[d] >= 0 && b[d] < count[d];
+        }
+        if (inside)
+          f((static_cast<std::size_t>(b[2]) * static_cast<std::size_t>(count[1]) + static_cast<std::size_t>(b[1])) *
+                static_cast<std::size_t>(count[0]) +
+            static_cast<std::size_t>(b[0]));
+      }
+}
+
+}  // namespace
+
+void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
+  if (nearest_.empty()) return;
+  std::fill(nearest_.begin(), nearest_.end(), -1);
+  std::fill(crowd_.begin(), crowd_.end(), std::uint8_t{0});
+  seeds_.clear();
+  std::array<int, 3> at{};
+  const auto each = [&](auto&& f) {
+    for (const PhaseParticles* p : phases)
+      for (std::size_t k = 0; k < p->size(); ++k) {
+        if (p->kind() == PhaseKind::wall && p->column(Field::wall_depth)[k] > 0.0) continue;  // behind a side
+        Vec3 x{};
+        for (int d = 0; d < p->dimensions(); ++d) x[static_cast<std::size_t>(d)] = p->column(Field::position, d)[k];
+        f(*p, x);
+      }
+  };
+  each([&](const PhaseParticles&, const Vec3& x) {
+    auto& n = crowd_[cell_of(x, at)];
+    n = static_cast<std::uint8_t>(std::min(n + 1, 255));
+  });
+  each([&](const PhaseParticles& p, const Vec3& x) {
+    const std::size_t cell = cell_of(x, at);
+    if (p.kind() == PhaseKind::grains) {
+      int crowd = 0;
+      around(at, count_, bounds_.periodic, [&](std::size_t b) { crowd += crowd_[b]; });
+      if (crowd < 4) return;
+    }
+    if (nearest_[cell] < 0) nearest_[cell] = static_cast<std::int32_t>(seeds_.size());
+    seeds_.push_back(x);
+  });
+  propagate();
+}
+
+/// Sweeps to and fro until nothing changes (a few times; once more for each period crossed).
+void GroundDistance::propagate() {
+  const auto cells = static_cast<std::int64_t>(nearest_.size());
+  const auto visit = [&](std::int64_t c) {
+    const std::array<int, 3> at{static_cast<int>(c % count_[0]), static_cast<int>(c / count_[0] % count_[1]),
+                                static_cast<int>(c / count_[0] / count_[1])};
+    Vec3 centre{};
+    for (std::size_t d = 0; d < 3; ++d) centre[d] = bounds_.low[d] + (at[d] + 0.5) * side_[d];
+    std::int32_t& mine = nearest_[static_cast<std::size_t>(c)];
+    double least = squared(centre, mine);
+    const std::int32_t before = mine;
+    around(at, count_, bounds_.periodic, [&](std::size_t b) {
+      const std::int32_t theirs = nearest_[b];
+      if (theirs < 0 || theirs == mine) return;
+      const double s = squared(centre, theirs);
+      if (s < least) {
+        least = s;
+        mine = theirs;
+      }
+    });
+    return mine != before;
+  };
+  for (int round = 0; round < 8; ++round) {
+    bool changed = false;
+    for (std::int64_t c = 0; c < cells; ++c) changed = visit(c) || changed;
+    for (std::int64_t c = cells; c-- > 0;) changed = visit(c) || changed;
+    if (!changed) return;
+  }
+}
+
+double GroundDistance::distance(const Vec3& x) const {
+  double least = diagonal_;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
+    if (sides_.low[d] > -Sides::far) least = std::min(least, x[d] - sides_.low[d]);
+    if (sides_.high[d] < Sides::far) least = std::min(least, sides_.high[d] - x[d]);
+  }
+  if (!seeds_.empty()) {
+    std::array<int, 3> at{};
+    cell_of(x, at);
+    double squared_least = 1e300;
+    around(at, count_, bounds_.periodic,
+           [&](std::size_t b) { squared_least = std::min(squared_least, squared(x, nearest_[b])); });
+    least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
+  }
+  return std::max(least, 0.0);
+}
+
+}  // namespace barchan
