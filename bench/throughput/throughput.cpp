@@ -96,11 +96,11 @@ int main(int argc, char** argv) {
   omp_set_num_threads(threads);
 
   Scene scene = name == "air2d"              ? parse_scene(air(2, n, "plain", 2.9), name)
-                      : name == "air2d-consistent" ? parse_scene(air(2, n, "consistent", 2.6), name)
-                      : name == "air3d"            ? parse_scene(air(3, n, "plain", 2.86), name)
-                      : name == "grains2d"         ? parse_scene(grains(n), name)
-                      : name == "elastic2d"        ? parse_scene(elastic(n), name)
-                                                   : read_scene(name);
+                : name == "air2d-consistent" ? parse_scene(air(2, n, "consistent", 2.6), name)
+                : name == "air3d"            ? parse_scene(air(3, n, "plain", 2.86), name)
+                : name == "grains2d"         ? parse_scene(grains(n), name)
+                : name == "elastic2d"        ? parse_scene(elastic(n), name)
+                                             : read_scene(name);
   scene.precision = precision == "mixed" ? Precision::mixed : Precision::double_precision;
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);

@@ -1,5 +1,5 @@
-// Numbers below 2.2e-308 are flushed to zero: ahead of a wave front they fill whole arrays, and each costs a hundred times
-// an ordinary one.
+// Numbers below 2.2e-308 are flushed to zero: ahead of a wave front they fill whole arrays, and each costs a hundred
+// times an ordinary one.
 #pragma once
 
 #if defined(__SSE2__)
