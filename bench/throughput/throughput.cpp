@@ -12,10 +12,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "base/denormals.hpp"
 #include "scene/reader.hpp"
+#include "throughput/bare_air.hpp"
 #include "time/simulation.hpp"
 
 namespace {
@@ -60,19 +62,43 @@ std::string elastic(double n) {
   const double per_side = std::round(std::sqrt(n)), dx = 1.0 / per_side;
   return "dimensions = 2\nspacing = " + number(dx) +
          "\n[domain]\nsize = [2, 2]\n[phases.body]\nkind = \"elastic\"\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
-         "artificial-viscosity = 0.1\n[interactions]\nbody-body = 2.6\n[[fill]]\nphase = \"body\"\n"
+         "artificial-viscosity = 0.1\n[interactions]\nkernel = \"wendland-c2\"\nbody-body = 2.6\n[[fill]]\nphase = "
+         "\"body\"\n"
          "shape = { box = { min = [0.5, 0.5], max = [1.5, 1.5] } }\nvelocity = [\"0.1*sin(pi*(x-1))\", 0]\n[time]\nend "
          "= 10\n";
 }
 
-/// Neighbours within the radius itself: entries of the lists hold those in the skin too.
-double true_pairs(const Simulation& s) {
+/// Directed pairs within the radius itself: the simulation's lists hold those in the skin too.
+double true_pairs(Simulation& s) {
+  auto particles = s.phases();
+  Neighbours exact(s.plan().bounds, s.plan().directions, particles.size(), 1e-4, s.plan().spacing);
+  exact.update(particles, true);
   double pairs = 0;
-  for (const auto& e : s.plan().entries) {
-    const double skin = 1.0 + s.plan().skin;
-    pairs += static_cast<double>(s.pairs(e)) / std::pow(skin, s.plan().dimensions);
-  }
+  for (std::size_t k = 0; k < s.plan().directions.size(); ++k) pairs += static_cast<double>(exact.list(k).entries());
   return pairs;
+}
+
+/// CPU seconds of whole steps against those of a program that has only this air in it, step by step in turn.
+void compare_with_bare(Simulation& s, int steps) {
+  BareAir bare(s);
+  const auto seconds = [](auto&& work) {
+    timespec begin{}, end{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+    work();
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+    return static_cast<double>(end.tv_sec - begin.tv_sec) + 1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
+  };
+  std::vector<double> ratios;
+  for (int stretch = 0; stretch < 11; ++stretch) {
+    double whole = 0, alone = 0;
+    for (int k = 0; k < steps; ++k) {
+      whole += seconds([&] { s.step(1.0); });
+      alone += seconds([&] { bare.step(); });
+    }
+    ratios.push_back(whole / alone);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  std::printf("%.4f\n", ratios[5]);
 }
 
 }  // namespace
@@ -92,10 +118,12 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json);
   std::string precision = "double";
   app.add_option("--precision", precision, "of the fluid's pair loops: double or mixed");
+  bool bare = false;
+  app.add_flag("--bare", bare, "CPU seconds over those of a program that has only this air in it (air2d, double)");
   CLI11_PARSE(app, argc, argv);
   omp_set_num_threads(threads);
 
-  Scene scene = name == "air2d"              ? parse_scene(air(2, n, "plain", 2.9), name)
+  Scene scene = name == "air2d"              ? parse_scene(air(2, n, "plain", 3.0), name)
                 : name == "air2d-consistent" ? parse_scene(air(2, n, "consistent", 2.6), name)
                 : name == "air3d"            ? parse_scene(air(3, n, "plain", 2.86), name)
                 : name == "grains2d"         ? parse_scene(grains(n), name)
@@ -106,6 +134,10 @@ int main(int argc, char** argv) {
   const Plan plan = make_plan(scene, blocks);
   Simulation s(scene, plan, blocks);
   for (int k = 0; k < warm; ++k) s.step(1.0);
+  if (bare) {
+    compare_with_bare(s, steps);
+    return 0;
+  }
   const auto clock = [&] {
     if (threads > 1) return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     double sum = 0;
@@ -122,7 +154,7 @@ int main(int argc, char** argv) {
   }
   std::sort(rates.begin(), rates.end());
   const double every = 5.0 * steps / std::max(1.0, static_cast<double>(s.neighbours().rebuilds() - rebuilds));
-  const double neighbours = true_pairs(s) / plan.particles();
+  const double pairs = true_pairs(s), neighbours = pairs / plan.particles();
   const double bytes = static_cast<double>(s.bytes()) / plan.particles();
   double fluid = 0, all = 0;
   for (std::size_t k = 0; k < before.size(); ++k) {
@@ -139,8 +171,9 @@ int main(int argc, char** argv) {
                              {"neighbours", neighbours},
                              {"particle_steps_per_second", rates[2]},
                              {"pairs_per_second", rates[2] * neighbours},
-                             {"pair_pass_pairs_per_second", fluid > 0 ? true_pairs(s) * 5.0 * steps / fluid : 0.0},
+                             {"pair_pass_pairs_per_second", fluid > 0 ? pairs * 5.0 * steps / fluid : 0.0},
                              {"steps_per_rebuild", every},
+                             {"skin", s.neighbours().skin()},
                              {"bytes_per_particle", bytes}};
     for (std::size_t k = 0; k < before.size(); ++k)
       if (const double t = s.processor_seconds()[k] - before[k]; t > 0) j["share"][s.seconds()[k].first] = t / all;
@@ -149,9 +182,9 @@ int main(int argc, char** argv) {
   }
   std::printf(
       "%-18s %9.0f particles  %d threads  %5.1f neighbours  %6.2f M particle-steps/s  %6.1f M pairs/s  "
-      "pair pass %6.1f M pairs/s  a rebuild every %.1f steps  %.0f B/particle\n",
+      "pair pass %6.1f M pairs/s  a rebuild every %.1f steps, skin %.3f  %.0f B/particle\n",
       name.c_str(), plan.particles(), threads, neighbours, rates[2] * 1e-6, rates[2] * neighbours * 1e-6,
-      fluid > 0 ? true_pairs(s) * 5.0 * steps / fluid * 1e-6 : 0.0, every, bytes);
+      fluid > 0 ? pairs * 5.0 * steps / fluid * 1e-6 : 0.0, every, s.neighbours().skin(), bytes);
   std::printf("  share of the step:");
   for (std::size_t k = 0; k < before.size(); ++k)
     if (const double t = s.processor_seconds()[k] - before[k]; t > 0.002 * all)

@@ -20,16 +20,17 @@ namespace barchan {
 
 template <int Dim>
 struct ConsistentFluid {
+  static constexpr bool needs_distance = true;
   static constexpr bool corrected = true;
   static constexpr int moments = Dim * (Dim + 1) / 2;
 
   template <class T>
   struct Sums {
-    std::array<T, moments> moment{};                 // sum V F r r: xx xy yy | xx xy yy xz yz zz
-    std::array<T, Dim> concentration{}, pressure{};  // B, P
-    std::array<T, Dim * Dim> velocity{};             // U, row: component of v, column: of r
-    std::array<T, Dim> viscous{}, weighted{};        // L_v, C
-    T diffusion{};                                   // L_p less its hydrostatic part
+    std::array<T, moments> moment;               // sum V F r r: xx xy yy | xx xy yy xz yz zz
+    std::array<T, Dim> concentration, pressure;  // B, P
+    std::array<T, Dim * Dim> velocity;           // U, row: component of v, column: of r
+    std::array<T, Dim> viscous, weighted;        // L_v, C
+    T diffusion;                                 // L_p less its hydrostatic part
 
     /// Adds the sums of one entry; see PlainFluid. The viscosity is the phase's, not the entry's.
     BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double, double, const std::array<double, 3>& weight) {

@@ -60,8 +60,8 @@ template <int Dim>
 struct ElasticStrain {
   template <class T>
   struct Sums {
-    std::array<T, Dim * Dim> gradient{};  // sum V F v_ab (x) r
-    T density{};                          // sum m F v_ab . r
+    std::array<T, Dim * Dim> gradient;  // sum V F v_ab (x) r
+    T density;                          // sum m F v_ab . r
   };
 
   template <class T>

@@ -17,13 +17,14 @@ namespace barchan {
 
 template <int Dim>
 struct PlainFluid {
+  static constexpr bool needs_distance = false;
   static constexpr bool corrected = false;
 
-  /// Sums over neighbours. T: a SIMD vector in the loop, a number after it.
+  /// Sums over neighbours, not initialised. T: a SIMD vector in the loop, a number after it.
   template <class T>
   struct Sums {
-    std::array<T, Dim> pressure{}, viscous{}, concentration{};  // sum V F (p_a+p_b) r, sum V F v_ab, sum V F r
-    T divergence{}, diffusion{};                                // sum V F v_ab.r, sum V F p_ab
+    std::array<T, Dim> pressure, viscous, concentration;  // sum V F (p_a+p_b) r, sum V F v_ab, sum V F r
+    T divergence, diffusion;                              // sum V F v_ab.r, sum V F p_ab
 
     /// Adds the sums of one entry: `scale` its kernel's constant factor, `mu` its viscosity [Pa s]; `diffuse` 0 or 1
     /// switches density diffusion. `weight` is rho0 g [Pa/m].

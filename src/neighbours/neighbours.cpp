@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simd/vec.hpp"
+
 namespace barchan {
 
 Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin,
@@ -14,7 +16,8 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
       lists_(directions_.size()),
       ranges_(phases),
       padding_(padding),
-      skin_(skin) {
+      skin_(skin),
+      widest_skin_(skin) {
   for (const auto& d : directions_) widest_ = std::max(widest_, d.radius * (1.0 + skin_));
   for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions) && widest_ > 0.0; ++d) {
     const double size = bounds_.high[d] - bounds_.low[d];
@@ -56,6 +59,42 @@ double Neighbours::apart(const Range& a, const Range& b) {
   return squared;
 }
 
+namespace {
+
+/// Least and largest of x - low - old over the places from begin to end.
+BARCHAN_SIMD_INLINE void displacements(const double* x, const float* old, std::uint32_t begin, std::uint32_t end,
+                                       double low, float& least, float& most) {
+  constexpr std::uint32_t width = 4;
+  using Wide = simd::Vec<double, width>;
+  using Short = simd::Vec<float, width>;
+  least = std::numeric_limits<float>::max();
+  most = -least;
+  if (end - begin < width) {
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const float moved = static_cast<float>(x[k] - low) - old[k];
+      least = moved < least ? moved : least;
+      most = moved > most ? moved : most;
+    }
+    return;
+  }
+  Short lower(least), upper(most);
+  for (std::uint32_t k = begin; k < end; k += width) {
+    const std::uint32_t at = std::min(k, end - width);  // the last vector overlaps the one before
+    const Short moved = simd::convert<float>(Wide::load(x + at) - Wide(low)) - Short::load(old + at);
+    lower = simd::min(moved, lower);
+    upper = simd::max(moved, upper);
+  }
+  for (int lane = 0; lane < static_cast<int>(width); ++lane) {
+    least = std::min(least, lower[lane]);
+    most = std::max(most, upper[lane]);
+  }
+}
+
+/// What sorting and searching cost, in evaluations of all pairs of one step; measured.
+double rebuild_cost(int dimensions) { return dimensions == 2 ? 1.5 : 1.0; }
+
+}  // namespace
+
 void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
   const CellGrid& grid = *grids_[phase];
   const auto& runs = grid.runs();
@@ -74,17 +113,8 @@ void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
     Range range;
     range.low.fill(0.0f);
     range.high.fill(0.0f);
-    for (std::size_t d = 0; d < dimensions; ++d) {
-      float least = std::numeric_limits<float>::max(), most = -least;
-      const double low = bounds_.low[d];
-      for (std::uint32_t k = run.begin; k < run.end; ++k) {
-        const float moved = static_cast<float>(x[d][k] - low) - old[d][k];
-        least = moved < least ? moved : least;
-        most = moved > most ? moved : most;
-      }
-      range.low[d] = least;
-      range.high[d] = most;
-    }
+    for (std::size_t d = 0; d < dimensions; ++d)
+      displacements(x[d], old[d], run.begin, run.end, bounds_.low[d], range.low[d], range.high[d]);
     run_ranges_[static_cast<std::size_t>(q)] = range;
   }
   for (auto& range : ranges_[phase]) range.clear();
@@ -130,9 +160,10 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
       for (int z = 0; z < mz; ++z)
         for (int y = 0; y < my; ++y)
           for (int x = 0; x < mx; ++x) {
-            const Range& other = ranges_[direction.b][static_cast<std::size_t>(
-                (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
-                xs[static_cast<std::size_t>(x)])];
+            const long near = (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
+                              xs[static_cast<std::size_t>(x)];
+            if (direction.a == direction.b && near < q) continue;  // seen from there
+            const Range& other = ranges_[direction.b][static_cast<std::size_t>(near)];
             if (other.low[0] > other.high[0]) continue;
             valid = valid && apart(own, other) < most * most;
           }
@@ -141,8 +172,36 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
   return valid;
 }
 
+/// A step costs (1 + s)^D pairs of the skin s and a rebuild every k s steps: least where D (1 + s)^(D-1) = cost/(k
+/// s^2).
+void Neighbours::choose_skin() {
+  const double per_skin = static_cast<double>(kept_ + 1) / skin_;
+  const double best = std::sqrt(rebuild_cost(bounds_.dimensions) / (bounds_.dimensions * std::max(per_skin, 1.0)));
+  // The search rounds to single precision: nine tenths of the skin count (see still_valid), the rest must cover that.
+  double extent = 0.0, shortest = widest_;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d)
+    extent = std::max(extent, bounds_.high[d] - bounds_.low[d]);
+  for (const auto& d : directions_) shortest = std::min(shortest, d.radius);
+  const double least = std::max(0.02, 5.0e-6 * extent / shortest);
+  skin_ = std::min(std::clamp(best, least, std::max(least, 1.5 * skin_)), widest_skin_);
+}
+
 bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
-  if (!force && rebuilds_ > 0 && still_valid(particles)) return false;
+  constexpr long patience = 64;  // steps after which lists that are still good are made anew with a thinner skin
+  const bool first = rebuilds_ == 0 || force;
+  if (!first && still_valid(particles)) {
+    ++kept_;
+    if (!adapts_ || kept_ < patience) return false;
+    const double wide = skin_;
+    choose_skin();
+    if (skin_ > 0.8 * wide) {
+      skin_ = wide;
+      return false;
+    }
+  } else if (!first && adapts_) {
+    choose_skin();
+  }
+  kept_ = 0;
   for (std::size_t p = 0; p < grids_.size(); ++p)
     if (grids_[p]) grids_[p]->sort(particles[p]);
   for (std::size_t q = 0; q < directions_.size(); ++q) {

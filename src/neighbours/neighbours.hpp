@@ -23,6 +23,11 @@ class Neighbours {
   Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin, double spacing,
              std::size_t padding = simd::native_width<double>);
 
+  /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most
+  /// as wide as given. It depends on positions alone, like everything here.
+  void adapt_skin() { adapts_ = true; }
+  double skin() const { return skin_; }
+
   /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it
   /// did; then particles have new places. The decision depends on positions alone.
   bool update(std::vector<PhaseParticles>& particles, bool force);
@@ -44,6 +49,7 @@ class Neighbours {
     void clear();
     void widen(const Range& other);
   };
+  void choose_skin();
   static double apart(const Range& a, const Range& b);
   bool still_valid(const std::vector<PhaseParticles>& particles);
   void measure(const PhaseParticles& particles, std::size_t phase);
@@ -56,8 +62,9 @@ class Neighbours {
   std::vector<std::vector<Range>> ranges_;  // by phase, block
   std::vector<Range> run_ranges_;
   std::size_t padding_;
-  double skin_, widest_ = 0.0;
-  long rebuilds_ = 0;
+  double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
+  bool adapts_ = false;
+  long rebuilds_ = 0, kept_ = 0;  // kept: steps that the lists have lived
 };
 
 }  // namespace barchan

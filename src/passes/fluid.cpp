@@ -40,11 +40,25 @@ BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, con
   using R = MotionRecord<Dim>;
   ready([&](const auto& kernel) __attribute__((always_inline)) {
     typename Law<Dim>::template Sums<LanesOf<T>> sums{};
-    for_each_neighbour<R::size>(
-        row, records_of<T>(e), [&](const LanesOf<T>* b) __attribute__((always_inline)) {
+    for_each_staged<R::size>(
+        row, records_of<T>(e),
+        [&](const LanesOf<T>* b, LanesOf<T>* stage) __attribute__((always_inline)) {
           std::array<LanesOf<T>, Dim> r;
           const LanesOf<T> r2 = separation<Dim, T>(own.x, b + R::position, unit, r);
-          Law<Dim>::add(own, r, r2, kernel.slope(r2), b + R::velocity, b[R::pressure], b[R::volume], sums);
+          for (std::size_t d = 0; d < Dim; ++d) {
+            stage[d] = r[d];
+            stage[Dim + d] = b[R::velocity + d];
+          }
+          stage[2 * Dim] = b[R::pressure];
+          stage[2 * Dim + 1] = b[R::volume];
+          stage[2 * Dim + 2] = kernel.slope(r2);
+          if constexpr (Law<Dim>::needs_distance) stage[2 * Dim + 3] = r2;
+        },
+        [&](const LanesOf<T>* stage) __attribute__((always_inline)) {
+          std::array<LanesOf<T>, Dim> r;
+          for (std::size_t d = 0; d < Dim; ++d) r[d] = stage[d];
+          Law<Dim>::add(own, r, stage[2 * Dim + 3], stage[2 * Dim + 2], stage + Dim, stage[2 * Dim], stage[2 * Dim + 1],
+                        sums);
         });
     out = sums;
   });

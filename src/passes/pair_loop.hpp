@@ -33,6 +33,25 @@ BARCHAN_SIMD_INLINE void for_each_neighbour(PairList::Row row, const RecordArray
   for_each_neighbour<Fields>(row, records.data(), std::forward<F>(f));
 }
 
+/// The same in two stages: `begin` (loads, distance, kernel) for several vectors, then `end` for them. The long chain
+/// of operations from a list's entry to the kernel's value is then off the way of the sums: a processor's window holds
+/// two or three vectors, too few to hide that chain.
+template <int Fields, class T, class Begin, class End>
+BARCHAN_SIMD_INLINE void for_each_staged(PairList::Row row, const T* data, Begin&& begin, End&& end) {
+  using V = LanesOf<T>;
+  constexpr std::size_t most = 12, fields = 12;
+  V stage[most * fields];
+  for (const std::uint32_t* q = row.begin; q != row.end;) {
+    std::size_t n = 0;
+    for (; n < most && q != row.end; ++n, q += V::width) {
+      V record[Fields];
+      simd::load_transposed<Fields>(data, Fields / PairList::stride, q, record);
+      begin(record, stage + n * fields);
+    }
+    for (std::size_t k = 0; k < n; ++k) end(stage + k * fields);
+  }
+}
+
 /// x_a - x_b by component, and its square.
 template <int Dim>
 BARCHAN_SIMD_INLINE Lanes separation(const std::array<Lanes, Dim>& x_a, const Lanes* x_b, std::array<Lanes, Dim>& r) {

@@ -20,7 +20,7 @@ constexpr Key table[] = {
     {"", "dimensions", as_integer, "", "2", "Dimensions of space, 2 or 3; vectors have as many components.",
      {.at_least = 2, .at_most = 3}},
     {"", "spacing", as_number, "m", "required", "Distance between neighbouring particles, dx.", positive},
-    {"", "precision", as_word, "", "double", "Arithmetic of the pair loops; the state is always kept in double precision.",
+    {"", "precision", as_word, "", "mixed", "Arithmetic of the pair loops; the state is always kept in double precision.",
      {}, "double|mixed"},
     {"", "domain", as_section, "", "required", "The box of the computation."},
     {"", "phases", as_named_sections, "", "required",

@@ -239,7 +239,7 @@ struct Scene {
   std::string state = "";  // pvstate that scripts/run renders; empty: none
   int dimensions = 2;
   double spacing = 0.0;  // m, dx
-  Precision precision = Precision::double_precision;
+  Precision precision = Precision::mixed;
   Domain domain;
   std::vector<Phase> phases;
   std::vector<Interaction> interactions;

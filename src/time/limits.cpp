@@ -17,8 +17,8 @@ std::vector<StepLimit> initial_limits(const Scene& scene, const Plan& plan) {
     const double h = p.smoothing_length;
     switch (p.kind) {
       case PhaseKind::fluid: {
-        add("acoustic " + p.name, StepConstants::acoustic * plan.spacing / (p.sound_speed + plan.largest_speed),
-            "0.45 dx/(c + u): sound crosses a spacing");
+        add("acoustic " + p.name, StepConstants::acoustic * h / (p.sound_speed + plan.largest_speed),
+            "0.4 h/(c + u): sound crosses a spacing");
         const double nu = s.viscosity + s.artificial_viscosity * h * p.sound_speed / (2.0 * (plan.dimensions + 2));
         if (nu > 0) add("viscous " + p.name, StepConstants::viscous * h * h / nu, "0.125 h2/nu: momentum diffuses");
         break;

@@ -10,7 +10,7 @@ namespace barchan {
 /// Courant numbers and the like, one place. Each was measured with the schemes of this code (docs/method.md).
 struct StepConstants {
   static constexpr double theta = 1.25;     // of the centring diffusion theta c^2 dt; 1 is the bare leapfrog
-  static constexpr double acoustic = 0.45;  // dx/(c + u), as long as h > 1.1 dx (docs/method.md)
+  static constexpr double acoustic = 0.40;  // h/(c + u) (docs/method.md)
   static constexpr double viscous = 0.125;  // h^2/nu (Morris et al. 1997)
   static constexpr double force = 0.25;     // sqrt(h/|a|) (Monaghan 1992)
   static constexpr double elastic = 0.25;   // h/c_P, h the smallest of the body's entries

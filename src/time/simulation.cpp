@@ -72,6 +72,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
                   scene.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>) {
   for (const char* name : pass_names) seconds_.emplace_back(name, 0.0);
   processor_seconds_.assign(pass_count, 0.0);
+  neighbours_.adapt_skin();
   make_state(blocks);
   wire();
   for (const auto& l : plan_.limits) limit_counts_[l.name] = 0;
