@@ -10,7 +10,8 @@ struct Simulation::Fluid {
   std::size_t phase = 0;
   std::vector<FluidNeighbour> neighbours;
   FluidParameters parameters{};
-  Sides held;  // the domain's sides that a wall closes
+  Sides held;     // the domain's sides that a wall closes
+  Relief relief;  // curved ground
 
   // a fluid with eddies
   std::vector<EddyNeighbour> eddy_neighbours;  // empty: none
