@@ -219,6 +219,45 @@ def logarithmic_layer(friction_velocity, n=40):
     report(name, "consistent", n, "pressure noise/rho U2", math.sqrt(numpy.mean(noise)) / (rho * top**2), .003, seconds)
 
 
+# ---- hills -----------------------------------------------------------------------------------------------------------
+
+def potential_flow(length, height, h, slope, modes):
+    """Ideal flow of mean velocity 1 along a flat lid at y = height over a periodic hill y = h(x), even about length/2: (u, v) of x, y.
+
+    Harmonic functions that satisfy lid and period, sin k(x - length/2) cosh k(height - y), collocated on the ground, least squares."""
+    k = 2 * math.pi * numpy.arange(1, modes + 1) / length
+    def basis(x, y):
+        x, y = numpy.atleast_1d(x) - length / 2, numpy.atleast_1d(y)
+        down, up = numpy.exp(-numpy.outer(y, k)), numpy.exp(-numpy.outer(2 * height - y, k))
+        return numpy.cos(numpy.outer(x, k)) * (down + up), -numpy.sin(numpy.outer(x, k)) * (down - up)
+    x = numpy.linspace(0, length, 8 * modes + 1)[1:-1]
+    (u, v), s = basis(x, h(x)), slope(x)
+    c, _, _, _ = numpy.linalg.lstsq(v - s[:, None] * u, s, rcond=None)
+    return lambda x, y: numpy.array([1 + basis(x, y)[0] @ c, basis(x, y)[1] @ c])
+
+
+def low_hill(n):
+    """Speed-up at the crest and slow-down at the foot (mean of both sides) against potential flow, means of the last 1.5 s."""
+    length, height, middle, foot = 20., 5., 10., 1.7
+    h = lambda x: .1 / (1 + (x - middle) ** 2)
+    exact = potential_flow(length, height, h, lambda x: -.2 * (x - middle) / (1 + (x - middle) ** 2) ** 2, 300)
+    frames, seconds = run("low_hill", [f"spacing={1 / n!r}"], "air", keep=lambda t: t > 6.5)
+    for over in (0, .1):
+        def relative(u):
+            return {name: numpy.mean([u(middle + s) for s in places]) / u(1e-3) - 1
+                    for name, places in (("speed-up at the crest", [0]), ("slow-down at the foot", [-foot, foot]))}
+        true = relative(lambda x: exact(x, h(x) + over)[0, 0])
+        got = relative(lambda x: numpy.mean([local_fit(f.x, f["velocity"][:, 0], (x, h(x) + over), 2.6 / n) for f in frames]))
+        for name in true:
+            if options.verbose:
+                print(name, over, true[name], got[name])
+            where = "on the ground" if over == 0 else f"{over} L above it"
+            report("low hill, H/L = 0.1", "consistent", n, f"{name}, {where}, error/itself", abs(got[name] / true[name] - 1), .05, seconds)
+    f = frames[-1]
+    error = f["velocity"][:, :2].T - exact(f.x[:, 0], f.x[:, 1])
+    report("low hill, H/L = 0.1", "consistent", n, "rms error of the velocity/U", math.sqrt((error**2).sum(axis=0).mean()), .001, seconds)
+
+
 # ---- waves -----------------------------------------------------------------------------------------------------------
 
 BOX = """dimensions = {dimensions}
@@ -326,6 +365,7 @@ CASES = {"cavity": lambda: [cavity(n) for n in (50, 100) if n <= options.largest
          "taylor-green": taylor_green,
          "waves": lambda: [waves(n) for n in (20, 40)],
          "abc": lambda: [abc(n) for n in (16, 32)],
+         "low-hill": lambda: [low_hill(n) for n in (10, 20)],
          "logarithmic-layer": lambda: [logarithmic_layer(us) for us in (.2, .4, .8)]}
 
 

@@ -13,6 +13,20 @@ std::array<double, 2> Terrain::slopes(double x, double z) const {
           solid_ ? (ground_.height(x, z + step_) - ground_.height(x, z - step_)) / (2.0 * step_) : 0.0};
 }
 
+std::array<double, 3> Terrain::bend(double x, double z) const {
+  const double reach = 4.0 * step_, most = 0.25 / reach;
+  const auto left = slopes(x - reach, z), right = slopes(x + reach, z), here = slopes(x, z);
+  std::array<double, 3> b{(right[0] - left[0]) / (2.0 * reach), 0.0, 0.0};
+  if (solid_) {
+    const auto back = slopes(x, z - reach), front = slopes(x, z + reach);
+    b[1] = 0.5 * (right[1] - left[1] + front[0] - back[0]) / (2.0 * reach);
+    b[2] = (front[1] - back[1]) / (2.0 * reach);
+  }
+  for (double& value : b)
+    value = std::clamp(value / std::sqrt(1.0 + here[0] * here[0] + here[1] * here[1]), -most, most);
+  return b;
+}
+
 /// Newton's steps on the tangent plane, damped where the ground is bent more sharply than the depth.
 Vec3 Terrain::foot(const Vec3& x) const {
   Vec3 best{x[0], height(x[0], x[2]), x[2]}, at = best;

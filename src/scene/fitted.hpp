@@ -20,6 +20,9 @@ class Terrain {
   Vec3 foot(const Vec3& x) const;
   /// The two slopes dh/dx, dh/dz.
   std::array<double, 2> slopes(double x, double z) const;
+  /// Second derivatives xx, xz, zz over sqrt(1 + slope^2), 1/m. Taken over a spacing to each side, and no larger than a
+  /// quarter of a spacing bends: an edge is round to the particles.
+  std::array<double, 3> bend(double x, double z) const;
 
  private:
   Ground ground_;

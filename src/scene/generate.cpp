@@ -127,11 +127,13 @@ void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed
   const Terrain terrain(Ground(bed, scene.domain), scene.domain, scene.spacing);
   block.normal.resize(first, Vec3{});
   block.depth.resize(first, 0.0);
+  block.bend.resize(first, {});
   for (std::size_t i = first; i < block.position.size(); ++i) {
-    const Vec3 out = terrain.foot(block.position[i]) - block.position[i];
+    const Vec3 foot = terrain.foot(block.position[i]), out = foot - block.position[i];
     const double depth = norm(out);
     block.normal.push_back(depth > 0.0 ? 1.0 / depth * out : Vec3{});
     block.depth.push_back(depth);
+    block.bend.push_back(terrain.bend(foot[0], foot[2]));
   }
 }
 
@@ -178,6 +180,7 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     else if (!block.depth.empty()) {
       block.normal.resize(block.position.size(), Vec3{});
       block.depth.resize(block.position.size(), 0.0);
+      block.bend.resize(block.position.size(), {});
     }
   }
   return blocks;

@@ -107,6 +107,7 @@ class Simulation {
   std::vector<std::unique_ptr<CompactRecords>> compact_;  // by phase, mixed precision: what fluid_rates reads
 
   std::vector<EddyRecords> eddies_;  // by phase
+  std::vector<SurfaceBend> bends_;   // by phase, of fitted walls
 
   std::vector<Fluid> fluids_;
   std::vector<Extension> extensions_;

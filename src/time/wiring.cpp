@@ -126,6 +126,13 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
         p.column(Field::density)[i] = rho;
       }
     }
+    bends_.emplace_back();
+    if (!block.bend.empty()) {
+      bends_.back().first = p.id().empty() ? 0 : p.id()[0];
+      for (const auto& b : block.bend)
+        if (plan_.dimensions == 2) bends_.back().values.push_back(b[0]);
+        else bends_.back().values.insert(bends_.back().values.end(), b.begin(), b.end());
+    }
     if (q.kind == PhaseKind::wall) set_wall_geometry(p, plan_.bounds, block);
     if (q.kind == PhaseKind::fluid) {
       const PressureLaw law = pressure_law(k);
@@ -322,6 +329,7 @@ void Simulation::wire() {
         if (e.law == Law::coupling)
           x.felt.push_back({list, &motion_[fluid], e.kernel, e.radius, viscosity(k, fluid), false});
       }
+      if (k < bends_.size()) x.bend = bends_[k];
       extensions_.push_back(std::move(x));
     }
     if (p.kind() == PhaseKind::elastic) {

@@ -28,6 +28,7 @@ struct Simulation::Extension {
   std::vector<ExtensionSource> sources;
   std::vector<FluidNeighbour> felt;  // for the reaction; empty for walls
   std::vector<std::size_t> felt_fluids;
+  SurfaceBend bend;  // of a curved wall
 };
 
 /// One direction of a contact entry.
