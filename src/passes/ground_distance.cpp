@@ -74,6 +74,7 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
   std::fill(nearest_.begin(), nearest_.end(), -1);
   std::fill(crowd_.begin(), crowd_.end(), std::uint8_t{0});
   seeds_.clear();
+  surfaces_ = false;
   normals_.clear();
   std::array<int, 3> at{};
   const auto each = [&](auto&& f) {
@@ -106,6 +107,7 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
     if (nearest_[cell] < 0) nearest_[cell] = static_cast<std::int32_t>(seeds_.size());
     seeds_.push_back(x);
     normals_.push_back(normal);
+    surfaces_ = surfaces_ || dot(normal, normal) > 0.0;
   });
   propagate();
 }
@@ -176,9 +178,16 @@ double GroundDistance::distance(const Vec3& x) const {
   if (!seeds_.empty()) {
     std::array<int, 3> at{};
     cell_of(x, at);
-    around(at, count_, bounds_.periodic, [&](std::size_t b) {
-      if (nearest_[b] >= 0) least = std::min(least, from_seed(x, static_cast<std::size_t>(nearest_[b])));
-    });
+    if (surfaces_) {
+      around(at, count_, bounds_.periodic, [&](std::size_t b) {
+        if (nearest_[b] >= 0) least = std::min(least, from_seed(x, static_cast<std::size_t>(nearest_[b])));
+      });
+    } else {
+      double squared_least = 1e300;
+      around(at, count_, bounds_.periodic,
+             [&](std::size_t b) { squared_least = std::min(squared_least, squared(x, nearest_[b])); });
+      least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
+    }
   }
   return std::max(least, 0.0);
 }

@@ -41,7 +41,8 @@ class GroundDistance {
   std::vector<std::uint8_t> crowd_;    // by cell: particles in it
   std::vector<Vec3> seeds_;
   std::vector<Vec3>
-      normals_;  // by seed: of the surface, on which the seed then lies; zero: a particle with no known surface
+      normals_;            // by seed: of the surface that it lies on; zero: of a particle, whose surface is not known
+  bool surfaces_ = false;  // some seed has a normal
 };
 
 /// Whether a wall particle stands behind a side of the domain, so that the side itself is the wall's surface.

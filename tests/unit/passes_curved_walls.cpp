@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "passes/ground_distance.hpp"
 #include "passes/relief.hpp"
 #include "passes/wall_normals.hpp"
 #include "passes/walls.hpp"
@@ -68,6 +69,30 @@ TEST(WallNormals, PointOutOfADiscAcrossTheSeam) {
       EXPECT_NEAR(norm(n), 1.0, 1e-12);
       EXPECT_GT(dot(n, out) / norm(out), 0.97) << "stairs and all";
     }
+  }
+}
+
+/// Two rows of a wall round a disc that touches no side; the second says nothing that the first does not.
+TEST(GroundDistance, IsThatToTheSurfaceOfAFittedWall) {
+  const Bounds b = box(2, {60, 60, 0}, {true, false, false});
+  std::vector<Vec3> rows;
+  for (const double r : {19.5, 18.5})
+    for (int k = 0; k < 125; ++k)
+      rows.push_back({30 + r * std::cos(k * 0.05026548), 30 + r * std::sin(k * 0.05026548), 0});
+  auto wall = phase(PhaseKind::wall, 2, rows, 1.0, {Field::wall_normal, Field::wall_depth});
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Vec3 out = rows[k] - Vec3{30, 30, 0};
+    wall.column(Field::wall_depth)[k] = 20.0 - norm(out);
+    for (int d = 0; d < 2; ++d) wall.column(Field::wall_normal, d)[k] = out[static_cast<std::size_t>(d)] / norm(out);
+  }
+  GroundDistance ground(b, Sides{}, 1.0, true);
+  const PhaseParticles* phases[] = {&wall};
+  ground.refresh(phases);
+  Uniform random(7);
+  for (const Vec3& x : scattered(b, 3000, random)) {
+    const double r = norm(x - Vec3{30, 30, 0});
+    if (r < 20.05 || r > 29) continue;  // the seam is nearer to some place beyond
+    EXPECT_NEAR(ground.distance(x), r - 20.0, 0.02 + 0.01 * (r - 20.0));
   }
 }
 
