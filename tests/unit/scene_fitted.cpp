@@ -35,7 +35,7 @@ TEST(FittedRows, FillTheAirAndKeepApart) {
   const auto blocks = generate(scene);
   const auto &air = blocks[0].position, &wall = blocks[1].position;
   // 4 x 2 m^2 less a ground 0.43 m high in the mean
-  EXPECT_NEAR(static_cast<double>(air.size()) * 0.01, 4 * (2 - 0.43), 0.01);
+  EXPECT_NEAR(static_cast<double>(air.size()) * 0.01, 4 * (2 - 0.43), 0.05) << "whole rows";
   EXPECT_EQ(wall.size(), 4u * 40u);
   const PeriodicSpace space(scene.domain);
   double least = 1e300;
