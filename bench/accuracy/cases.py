@@ -266,16 +266,16 @@ def low_hill(n):
 RUSHIL = {3: (1.17, "separates, back at 6.5 H"), 5: (.684, "about to separate"), 8: (.421, "attached")}  # 2 H/L; Khurshudyan et al. 1981
 
 
-def rushil(ratio, n=8):
-    """Speed-up at the crest and the flow behind it, means of the last 0.3 s; a table without bounds."""
-    height, crest, dx = .117, 2.106, .117 / n
+def rushil(ratio, n=8, overrides=(), crest=2.106):
+    """Speed-up at the crest and the flow behind it, means from 0.5 s on; a table without bounds."""
+    height, dx = .117, .117 / n
     a = ratio * height
     m = height / a + math.hypot(height / a, 1)
     t = numpy.linspace(0, a, 20001)
     share = a * a / (t * t + m * m * (a * a - t * t))
     profile = .5 * t * (1 + share), .5 * m * numpy.sqrt(a * a - t * t) * (1 - share)
     ground = lambda s: numpy.interp(abs(s), *profile, right=0.)
-    frames, seconds = run("rushil", [f"fill.0.shape.dune.length={2 * a!r}", f"spacing={dx!r}"], "air", keep=lambda t: t > .5)
+    frames, seconds = run("rushil", [f"fill.0.shape.dune.length={2 * a!r}", f"spacing={dx!r}", *overrides], "air", keep=lambda t: t > .5)
     def speed(s, z):
         near = [abs(f.x[:, 0] - crest - s) < 2.6 * dx for f in frames]
         return numpy.mean([local_fit(f.x[k], f["velocity"][k, 0], (crest + s, ground(s) + z), 2.6 * dx) for f, k in zip(frames, near)])
@@ -292,6 +292,11 @@ def rushil(ratio, n=8):
     tell(name, "mixing length", n, "reversed flow behind the crest, z = dx/2", f"{back[0]:.2f} to {back[-1]:.2f} H" if len(back) else "none", seen, seconds)
     tell(name, "mixing length", n, "least speed behind the crest, z = dx/2, over upstream",
          f"{u.min() / speed(far, .5 * dx):.2f} at {s[u.argmin()] / height:.2f} H", "", seconds)
+
+
+def rushil_fine():
+    """The steepest hill with twelve spacings in its height, in a shorter and lower domain."""
+    rushil(3, 12, ["domain.size=[3.9, 0.702]", "fill.0.shape.dune.at=1.3", "time.end=0.7"], 1.3)
 
 
 # ---- waves -----------------------------------------------------------------------------------------------------------
@@ -402,7 +407,7 @@ CASES = {"cavity": lambda: [cavity(n) for n in (50, 100) if n <= options.largest
          "waves": lambda: [waves(n) for n in (20, 40)],
          "abc": lambda: [abc(n) for n in (16, 32)],
          "low-hill": lambda: [low_hill(n) for n in (10, 20)],
-         "rushil": lambda: [rushil(ratio) for ratio in RUSHIL],
+         "rushil": lambda: [*(rushil(ratio) for ratio in RUSHIL), rushil_fine()],
          "logarithmic-layer": lambda: [logarithmic_layer(us) for us in (.2, .4, .8)]}
 
 

@@ -130,12 +130,14 @@ void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const s
   const auto* bed = std::get_if<BedShape>(&fill.shape);
   const bool wall = phase.kind == PhaseKind::wall && bed;
   const bool rest = phase.kind == PhaseKind::fluid && std::holds_alternative<TheRestShape>(fill.shape);
+  const bool tried = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
+                                 [](const Fill& f) { return f.packing == Packing::fitted; });  // told there
   if (report.touched(dotted + ".shape") || report.touched(dotted + ".packing")) return;
   if (!wall && !rest)
     report(dotted + ".packing",
            "fitted rows follow the ground; expected a bed of a wall, or \"the-rest\" of a fluid over one");
   else if (fitted_bed(scene, k) >= 0 && wall) report(dotted + ".packing", "a second ground; expected one fitted bed");
-  else if (rest && fitted_bed(scene, k) < 0)
+  else if (rest && fitted_bed(scene, k) < 0 && !tried)
     report(
         dotted + ".packing",
         "no ground to follow; expected an earlier fill of a wall with shape = { bed = ... } and packing = \"fitted\"");
