@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "particles/particles.hpp"
 #include "neighbours/cell_grid.hpp"
+#include "particles/particles.hpp"
 
 namespace barchan {
 
