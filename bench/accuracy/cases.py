@@ -82,6 +82,11 @@ def report(case, scheme, n, what, value, bound, seconds, at_least=False):
           f"{'' if good else 'MISSED'} | {seconds:.1f} |", flush=True)
 
 
+def tell(case, scheme, n, what, value, beside, seconds):
+    """A figure without a bound, with what others found."""
+    print(f"| {case} | {scheme} | {n} | {what} | {value} | {beside} | | {seconds:.1f} |", flush=True)
+
+
 def local_fit(x, values, at, radius):
     """Moving least squares, linear, Wendland C2 weights: the field at `at`."""
     d = x[:, :2] - numpy.asarray(at)
@@ -219,6 +224,81 @@ def logarithmic_layer(friction_velocity, n=40):
     report(name, "consistent", n, "pressure noise/rho U2", math.sqrt(numpy.mean(noise)) / (rho * top**2), .003, seconds)
 
 
+# ---- hills -----------------------------------------------------------------------------------------------------------
+
+def potential_flow(length, height, h, slope, modes):
+    """Ideal flow of mean velocity 1 along a flat lid at y = height over a periodic hill y = h(x), even about length/2: (u, v) of x, y.
+
+    Harmonic functions that satisfy lid and period, sin k(x - length/2) cosh k(height - y), collocated on the ground, least squares."""
+    k = 2 * math.pi * numpy.arange(1, modes + 1) / length
+    def basis(x, y):
+        x, y = numpy.atleast_1d(x) - length / 2, numpy.atleast_1d(y)
+        down, up = numpy.exp(-numpy.outer(y, k)), numpy.exp(-numpy.outer(2 * height - y, k))
+        return numpy.cos(numpy.outer(x, k)) * (down + up), -numpy.sin(numpy.outer(x, k)) * (down - up)
+    x = numpy.linspace(0, length, 8 * modes + 1)[1:-1]
+    (u, v), s = basis(x, h(x)), slope(x)
+    c, _, _, _ = numpy.linalg.lstsq(v - s[:, None] * u, s, rcond=None)
+    return lambda x, y: numpy.array([1 + basis(x, y)[0] @ c, basis(x, y)[1] @ c])
+
+
+def low_hill(n):
+    """Speed-up at the crest and slow-down at the foot (mean of both sides) against potential flow, means of the last 1.5 s."""
+    length, height, middle, foot = 20., 5., 10., 1.7
+    h = lambda x: .1 / (1 + (x - middle) ** 2)
+    exact = potential_flow(length, height, h, lambda x: -.2 * (x - middle) / (1 + (x - middle) ** 2) ** 2, 300)
+    frames, seconds = run("low_hill", [f"spacing={1 / n!r}"], "air", keep=lambda t: t > 6.5)
+    for over in (0, .1):
+        def relative(u):
+            return {name: numpy.mean([u(middle + s) for s in places]) / u(1e-3) - 1
+                    for name, places in (("speed-up at the crest", [0]), ("slow-down at the foot", [-foot, foot]))}
+        true = relative(lambda x: exact(x, h(x) + over)[0, 0])
+        got = relative(lambda x: numpy.mean([local_fit(f.x, f["velocity"][:, 0], (x, h(x) + over), 2.6 / n) for f in frames]))
+        for name in true:
+            if options.verbose:
+                print(name, over, true[name], got[name])
+            where = "on the ground" if over == 0 else f"{over} L above it"
+            report("low hill, H/L = 0.1", "consistent", n, f"{name}, {where}, error/itself", abs(got[name] / true[name] - 1), .05, seconds)
+    f = frames[-1]
+    error = f["velocity"][:, :2].T - exact(f.x[:, 0], f.x[:, 1])
+    report("low hill, H/L = 0.1", "consistent", n, "rms error of the velocity/U", math.sqrt((error**2).sum(axis=0).mean()), .001, seconds)
+
+
+RUSHIL = {3: (1.17, "separates, back at 6.5 H"), 5: (.684, "about to separate"), 8: (.421, "attached")}  # 2 H/L; Khurshudyan et al. 1981
+
+
+def rushil(ratio, n=8, overrides=(), crest=2.106):
+    """Speed-up at the crest and the flow behind it, means from 0.5 s on; a table without bounds."""
+    height, dx = .117, .117 / n
+    a = ratio * height
+    m = height / a + math.hypot(height / a, 1)
+    t = numpy.linspace(0, a, 20001)
+    share = a * a / (t * t + m * m * (a * a - t * t))
+    profile = .5 * t * (1 + share), .5 * m * numpy.sqrt(a * a - t * t) * (1 - share)
+    ground = lambda s: numpy.interp(abs(s), *profile, right=0.)
+    frames, seconds = run("rushil", [f"fill.0.shape.dune.length={2 * a!r}", f"spacing={dx!r}", *overrides], "air", keep=lambda t: t > .5)
+    def speed(s, z):
+        near = [abs(f.x[:, 0] - crest - s) < 2.6 * dx for f in frames]
+        return numpy.mean([local_fit(f.x[k], f["velocity"][k, 0], (crest + s, ground(s) + z), 2.6 * dx) for f, k in zip(frames, near)])
+    name, rule, seen = f"RUSHIL, a/H = {ratio}", *RUSHIL[ratio]
+    far = -a - 6 * height
+    for z in (height / 6, height / 2, height):
+        tell(name, "mixing length", n, f"speed-up at the crest, z = {z / height:.2g} H", f"{speed(0, z) / speed(far, z) - 1:.3f}",
+             f"2 H/L = {rule}", seconds)
+    s = numpy.arange(0, 12, .25) * height
+    u = numpy.array([speed(x, .5 * dx) for x in s])
+    if options.verbose:
+        print(numpy.column_stack([s / height, u]).round(2).tolist())
+    back = s[u < 0] / height
+    tell(name, "mixing length", n, "reversed flow behind the crest, z = dx/2", f"{back[0]:.2f} to {back[-1]:.2f} H" if len(back) else "none", seen, seconds)
+    tell(name, "mixing length", n, "least speed behind the crest, z = dx/2, over upstream",
+         f"{u.min() / speed(far, .5 * dx):.2f} at {s[u.argmin()] / height:.2f} H", "", seconds)
+
+
+def rushil_fine():
+    """The steepest hill with twelve spacings in its height, in a shorter and lower domain."""
+    rushil(3, 12, ["domain.size=[3.9, 0.702]", "fill.0.shape.dune.at=1.3", "time.end=0.7"], 1.3)
+
+
 # ---- waves -----------------------------------------------------------------------------------------------------------
 
 BOX = """dimensions = {dimensions}
@@ -326,6 +406,8 @@ CASES = {"cavity": lambda: [cavity(n) for n in (50, 100) if n <= options.largest
          "taylor-green": taylor_green,
          "waves": lambda: [waves(n) for n in (20, 40)],
          "abc": lambda: [abc(n) for n in (16, 32)],
+         "low-hill": lambda: [low_hill(n) for n in (10, 20)],
+         "rushil": lambda: [*(rushil(ratio) for ratio in RUSHIL), rushil_fine()],
          "logarithmic-layer": lambda: [logarithmic_layer(us) for us in (.2, .4, .8)]}
 
 

@@ -74,21 +74,30 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
   std::fill(nearest_.begin(), nearest_.end(), -1);
   std::fill(crowd_.begin(), crowd_.end(), std::uint8_t{0});
   seeds_.clear();
+  surfaces_ = false;
+  normals_.clear();
   std::array<int, 3> at{};
   const auto each = [&](auto&& f) {
     for (const PhaseParticles* p : phases)
       for (std::size_t k = 0; k < p->size(); ++k) {
-        if (p->kind() == PhaseKind::wall && p->column(Field::wall_depth)[k] > 0.0) continue;  // behind a side
-        Vec3 x{};
-        for (int d = 0; d < p->dimensions(); ++d) x[static_cast<std::size_t>(d)] = p->column(Field::position, d)[k];
-        f(*p, x);
+        if (p->kind() == PhaseKind::wall && behind_a_side(*p, k, bounds_, spacing_)) continue;
+        const double depth = p->kind() == PhaseKind::wall ? p->column(Field::wall_depth)[k] : 0.0;
+        if (depth > 0.8 * spacing_) continue;  // the first row has the surface
+        Vec3 x{}, normal{};
+        for (int d = 0; d < p->dimensions(); ++d) {
+          const auto c = static_cast<std::size_t>(d);
+          x[c] = p->column(Field::position, d)[k];
+          if (depth > 0.0) normal[c] = p->column(Field::wall_normal, d)[k];
+          x[c] += depth * normal[c];
+        }
+        f(*p, x, normal);
       }
   };
-  each([&](const PhaseParticles&, const Vec3& x) {
+  each([&](const PhaseParticles&, const Vec3& x, const Vec3&) {
     auto& n = crowd_[cell_of(x, at)];
     n = static_cast<std::uint8_t>(std::min(n + 1, 255));
   });
-  each([&](const PhaseParticles& p, const Vec3& x) {
+  each([&](const PhaseParticles& p, const Vec3& x, const Vec3& normal) {
     const std::size_t cell = cell_of(x, at);
     if (p.kind() == PhaseKind::grains) {
       int crowd = 0;
@@ -97,6 +106,8 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
     }
     if (nearest_[cell] < 0) nearest_[cell] = static_cast<std::int32_t>(seeds_.size());
     seeds_.push_back(x);
+    normals_.push_back(normal);
+    surfaces_ = surfaces_ || dot(normal, normal) > 0.0;
   });
   propagate();
 }
@@ -131,6 +142,33 @@ void GroundDistance::propagate() {
   }
 }
 
+/// From a particle: less half a spacing. From a piece of a surface: the height over its plane, half a spacing (and what
+/// a slope stretches it by) to either side.
+double GroundDistance::from_seed(const Vec3& x, std::size_t seed) const {
+  Vec3 r{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
+    r[d] = x[d] - seeds_[seed][d];
+    const double period = bounds_.high[d] - bounds_.low[d];
+    if (bounds_.periodic[d]) r[d] -= period * std::round(r[d] / period);
+  }
+  const double over = dot(normals_[seed], r);
+  if (!(dot(normals_[seed], normals_[seed]) > 0.0)) return norm(r) - 0.5 * spacing_;
+  const double beside = std::max(std::sqrt(std::max(dot(r, r) - over * over, 0.0)) - 0.75 * spacing_, 0.0);
+  return std::hypot(std::max(over, 0.0), beside);
+}
+
+bool behind_a_side(const PhaseParticles& wall, std::size_t k, const Bounds& bounds, double spacing) {
+  double outside2 = 0.0;
+  for (int d = 0; d < wall.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    if (bounds.periodic[c]) continue;
+    const double x = wall.column(Field::position, d)[k];
+    const double out = std::max({bounds.low[c] - x, x - bounds.high[c], 0.0});
+    outside2 += out * out;
+  }
+  return outside2 > 0.0 && std::abs(std::sqrt(outside2) - wall.column(Field::wall_depth)[k]) < 1e-6 * spacing;
+}
+
 double GroundDistance::distance(const Vec3& x) const {
   double least = diagonal_;
   for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
@@ -140,10 +178,16 @@ double GroundDistance::distance(const Vec3& x) const {
   if (!seeds_.empty()) {
     std::array<int, 3> at{};
     cell_of(x, at);
-    double squared_least = 1e300;
-    around(at, count_, bounds_.periodic,
-           [&](std::size_t b) { squared_least = std::min(squared_least, squared(x, nearest_[b])); });
-    least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
+    if (surfaces_) {
+      around(at, count_, bounds_.periodic, [&](std::size_t b) {
+        if (nearest_[b] >= 0) least = std::min(least, from_seed(x, static_cast<std::size_t>(nearest_[b])));
+      });
+    } else {
+      double squared_least = 1e300;
+      around(at, count_, bounds_.periodic,
+             [&](std::size_t b) { squared_least = std::min(squared_least, squared(x, nearest_[b])); });
+      least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
+    }
   }
   return std::max(least, 0.0);
 }

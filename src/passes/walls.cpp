@@ -9,12 +9,20 @@ namespace {
 template <int Dim>
 struct Sums {
   Lanes weight{0.0}, pressure{0.0}, depth2{0.0};  // sum W, sum W (p + rho (g-a).r), sum W phi_a^2
+  Lanes lever{0.0};                               // curved walls: sum W rho (phi_a + phi_w)
   std::array<Lanes, Dim> velocity{}, sloped{};    // sum W v, sum W phi_a (v - v_wall)
 };
 
-template <int Dim>
+/// Acceleration towards the fluid of what follows the surface at the velocity u: u.H.u.
+template <std::size_t Dim>
+double turn(const double* bend, const std::array<double, Dim>& u) {
+  if constexpr (Dim == 2) return bend[0] * u[0] * u[0];
+  else return bend[0] * u[0] * u[0] + 2.0 * bend[1] * u[0] * u[2] + bend[2] * u[2] * u[2];
+}
+
+template <int Dim, bool Curved>
 void extend(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids, const Vec3& gravity,
-            Slip slip) {
+            Slip slip, const SurfaceBend& bend) {
   using R = MotionRecord<Dim>;
   const bool has_depth = solid.has(Field::wall_depth), accelerates = solid.kind() == PhaseKind::elastic;
   const bool is_grain = solid.kind() == PhaseKind::grains;
@@ -60,6 +68,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
               }
               const Lanes w_phi = w * phi;
               s.weight += w;
+              if constexpr (Curved) s.lever = simd::fma(w * Lanes(fluid.density), phi - behind, s.lever);
               s.pressure = simd::fma(w, p, s.pressure);
               s.depth2 = simd::fma(w_phi, phi, s.depth2);
               for (std::size_t d = 0; d < Dim; ++d) {
@@ -78,7 +87,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
     record[R::pressure] = simd::sum(s.pressure) / weight;
     const double depth2 = simd::sum(s.depth2);
     std::array<double, Dim> mean, stuck;
-    double mean_normal = 0.0, stuck_normal = 0.0;
+    double mean_normal = 0.0, stuck_normal = 0.0, wall_normal = 0.0;
     for (std::size_t d = 0; d < Dim; ++d) {
       mean[d] = simd::sum(s.velocity[d]) / weight;
       stuck[d] = is_grain                      ? v_wall[d]
@@ -86,6 +95,13 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
                                                : 2.0 * v_wall[d] - mean[d];
       mean_normal += mean[d] * normal[d];
       stuck_normal += stuck[d] * normal[d];
+      wall_normal += v_wall[d] * normal[d];
+    }
+    if constexpr (Curved) {
+      std::array<double, Dim> along;
+      for (std::size_t d = 0; d < Dim; ++d) along[d] = mean[d] - v_wall[d] - (mean_normal - wall_normal) * normal[d];
+      const auto at = static_cast<std::size_t>(solid.id()[k] - bend.first) * SurfaceBend::components(Dim);
+      record[R::pressure] += turn<Dim>(&bend.values[at], along) * simd::sum(s.lever) / weight;
     }
     for (std::size_t d = 0; d < Dim; ++d)
       record[R::velocity + d] = slip == Slip::no_slip ? stuck[d] : mean[d] + (stuck_normal - mean_normal) * normal[d];
@@ -95,9 +111,11 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
 }  // namespace
 
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
-                       const Vec3& gravity, Slip slip) {
-  if (solid.dimensions() == 2) extend<2>(solid, own, fluids, gravity, slip);
-  else extend<3>(solid, own, fluids, gravity, slip);
+                       const Vec3& gravity, Slip slip, const SurfaceBend& bend) {
+  const bool curved = slip == Slip::free_slip && !bend.values.empty();
+  const auto extended = solid.dimensions() == 2 ? (curved ? extend<2, true> : extend<2, false>)
+                                                : (curved ? extend<3, true> : extend<3, false>);
+  extended(solid, own, fluids, gravity, slip, bend);
 }
 
 }  // namespace barchan

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scene/checks.hpp"
+#include "scene/fitted.hpp"
 
 namespace barchan {
 namespace {
@@ -18,7 +19,7 @@ std::string number_text(double value) {
 }
 
 /// The shape must be one, and companions (dune, layers) need the shape that they belong to.
-void check_shape_keys(const std::string& shape, const Report& report) {
+void check_shape_keys(const std::string& shape, bool fitted, const Report& report) {
   std::string first;
   for (const char* name : shape_names) {
     if (!report.has(shape + "." + name)) continue;
@@ -34,8 +35,12 @@ void check_shape_keys(const std::string& shape, const Report& report) {
     report(shape + ".dune", "a dune without a bed; expected bed = DEPTH beside it");
   if (report.has(shape + ".from") && first != "bed")
     report(shape + ".from", "a lower bound without a bed; expected bed = DEPTH beside it");
-  if (report.has(shape + ".layers") && first != "sides")
-    report(shape + ".layers", "layers without sides; expected sides = [...] beside it");
+  if (report.has(shape + ".layers") && first != "sides" && !(first == "bed" && fitted))
+    report(shape + ".layers", first == "bed"
+                                  ? "a bed of rows is as deep as it is; expected packing = \"fitted\" or no layers"
+                                  : "layers without sides; expected sides = [...] beside it");
+  if (report.has(shape + ".from") && first == "bed" && fitted)
+    report(shape + ".from", "fitted rows are as deep as their layers; expected layers = NUMBER");
   const bool nothing =
       first.empty() && !report.has(shape + ".dune") && !report.has(shape + ".from") && !report.has(shape + ".layers");
   if (nothing && !report.touched(shape))
@@ -109,13 +114,37 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   if (phase.kind != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
   const bool continuous = phase.kind == PhaseKind::fluid || phase.kind == PhaseKind::elastic;
-  const bool close = fill.packing != Packing::square;
+  const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   if (close && !continuous && placed)
     report(dotted + ".packing", "cube, points and sides place their particles themselves; expected \"rows\"");
+}
+
+/// Fitted rows need a ground that is a surface: a wall's bed, and for a fluid such a bed before it.
+void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const std::string& dotted,
+                  const Report& report) {
+  const Fill& fill = scene.fills[k];
+  const auto* bed = std::get_if<BedShape>(&fill.shape);
+  const bool wall = phase.kind == PhaseKind::wall && bed;
+  const bool rest = phase.kind == PhaseKind::fluid && std::holds_alternative<TheRestShape>(fill.shape);
+  const bool tried = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
+                                 [](const Fill& f) { return f.packing == Packing::fitted; });  // told there
+  if (report.touched(dotted + ".shape") || report.touched(dotted + ".packing")) return;
+  if (!wall && !rest)
+    report(dotted + ".packing",
+           "fitted rows follow the ground; expected a bed of a wall, or \"the-rest\" of a fluid over one");
+  else if (fitted_bed(scene, k) >= 0 && wall) report(dotted + ".packing", "a second ground; expected one fitted bed");
+  else if (rest && fitted_bed(scene, k) < 0 && !tried)
+    report(
+        dotted + ".packing",
+        "no ground to follow; expected an earlier fill of a wall with shape = { bed = ... } and packing = \"fitted\"");
+  else if (wall && scene.spacing > 0.0 && !report.touched("spacing") && !report.touched("domain")) {
+    const std::string misfit = misfit_of_ground(scene, *bed);
+    if (!misfit.empty()) report(dotted + ".shape.bed", misfit);
+  }
 }
 
 }  // namespace
@@ -129,13 +158,14 @@ void check_fills(const Scene& scene, const Report& report) {
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     const Phase* phase =
         found == scene.phases.end() || report.touched("phases." + fill.phase + ".kind") ? nullptr : &*found;
-    if (report.is_section(shape)) check_shape_keys(shape, report);
+    if (report.is_section(shape)) check_shape_keys(shape, fill.packing == Packing::fitted, report);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && bed->dune)
       check_dune(*bed->dune, shape + ".dune", scene, report);
     if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
       check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);
     if (phase) check_phase_of(fill, *phase, dotted, report);
+    if (phase && fill.packing == Packing::fitted) check_fitted(scene, k, *phase, dotted, report);
   }
 }
 

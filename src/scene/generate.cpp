@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/errors.hpp"
+#include "scene/fitted.hpp"
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
@@ -121,7 +122,35 @@ void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& f
   }
 }
 
+/// Where the surface of a fitted wall is, seen from each of its particles.
+void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed, const Scene& scene) {
+  const Terrain terrain(Ground(bed, scene.domain), scene.domain, scene.spacing);
+  block.normal.resize(first, Vec3{});
+  block.depth.resize(first, 0.0);
+  block.bend.resize(first, {});
+  for (std::size_t i = first; i < block.position.size(); ++i) {
+    const Vec3 foot = terrain.foot(block.position[i]), out = foot - block.position[i];
+    const double depth = norm(out);
+    block.normal.push_back(depth > 0.0 ? 1.0 / depth * out : Vec3{});
+    block.depth.push_back(depth);
+    block.bend.push_back(terrain.bend(foot[0], foot[2]));
+  }
+}
+
 }  // namespace
+
+std::vector<double> fitted_heights(const Scene& scene, const std::array<int, 2>& counts) {
+  std::vector<double> heights;
+  const int fill = fitted_bed(scene, scene.fills.size());
+  if (fill < 0) return heights;
+  const Ground ground(std::get<BedShape>(scene.fills[static_cast<std::size_t>(fill)].shape), scene.domain);
+  const Vec3 &low = scene.domain.origin, &size = scene.domain.size;
+  for (int k = 0; k <= counts[1]; ++k)
+    for (int i = 0; i <= counts[0]; ++i)
+      heights.push_back(low[1] + ground.height(low[0] + size[0] * i / std::max(counts[0], 1),
+                                               low[2] + size[2] * k / std::max(counts[1], 1)));
+  return heights;
+}
 
 std::vector<ParticleBlock> generate(const Scene& scene) {
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
@@ -146,6 +175,13 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);
     check_values(block, first, k, scene);
+    if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
+      append_surface(block, first, *bed, scene);
+    else if (!block.depth.empty()) {
+      block.normal.resize(block.position.size(), Vec3{});
+      block.depth.resize(block.position.size(), 0.0);
+      block.bend.resize(block.position.size(), {});
+    }
   }
   return blocks;
 }

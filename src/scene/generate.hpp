@@ -8,9 +8,12 @@
 namespace barchan {
 
 struct ParticleBlock {
-  std::vector<Vec3> position;    // m
-  std::vector<Vec3> velocity;    // m/s
-  std::vector<double> pressure;  // Pa, initial; empty when no fill of the phase gives one
+  std::vector<Vec3> position;      // m
+  std::vector<Vec3> velocity;      // m/s
+  std::vector<double> pressure{};  // Pa, initial; empty when no fill of the phase gives one
+  std::vector<Vec3> normal{};      // of fitted walls: towards the nearest place of the surface; zero: not known
+  std::vector<double> depth{};     // m, the distance to it; both empty when no fill of the phase is a fitted wall
+  std::vector<std::array<double, 3>> bend{};  // 1/m, as depth: second derivatives of the height, over sqrt(1 + slope^2)
 };
 
 /// Carries out the fills of the scene in order. Two-dimensional scenes have z = 0. Particle k of the scene gets id k,
@@ -22,5 +25,9 @@ std::vector<ParticleBlock> generate(const Scene& scene);
 /// Height of the ground (bed and dune of the first fill that has one) over the domain's bottom at x, z; 0 without a
 /// bed.
 double ground_height(const Scene& scene, double x, double z);
+
+/// Heights (m, as coordinates) of the ground that fitted rows follow, at the nodes of a grid over the domain: counts[0]
+/// intervals along x, counts[1] along z (0 in two dimensions), x fastest, both ends. Empty without such a ground.
+std::vector<double> fitted_heights(const Scene& scene, const std::array<int, 2>& counts);
 
 }  // namespace barchan

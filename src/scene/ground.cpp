@@ -36,6 +36,25 @@ double Ground::height(double x, double z) const {
   return bed_.depth + height;
 }
 
+namespace {
+
+/// The hills of Khurshudyan, Snyder & Nekrasov 1981 (RUSHIL), half as long as `a`: with m = H/a + sqrt((H/a)^2 + 1),
+///   x = t/2 (1 + a^2/(t^2 + m^2 (a^2 - t^2))),  z = m/2 sqrt(a^2 - t^2) (1 - a^2/(t^2 + m^2 (a^2 - t^2))),  |t| <= a.
+double rushil(double s, double height, double a) {
+  s = std::abs(s);
+  if (s >= a) return 0.0;
+  const double m = height / a + std::hypot(height / a, 1.0);
+  const auto share = [&](double t) { return a * a / (t * t + m * m * (a * a - t * t)); };
+  double low = 0.0, high = a;  // x grows with t
+  for (int k = 0; k < 60; ++k) {
+    const double t = 0.5 * (low + high);
+    (0.5 * t * (1.0 + share(t)) < s ? low : high) = t;
+  }
+  return 0.5 * m * std::sqrt(a * a - low * low) * (1.0 - share(low));
+}
+
+}  // namespace
+
 /// Height of the dune alone, `s` metres downwind of its crest.
 double Ground::profile(double s) const {
   const DuneShape& dune = *bed_.dune;
@@ -48,6 +67,7 @@ double Ground::profile(double s) const {
       if (s >= 0.0) return s < lee ? H * (1.0 - s / lee) : 0.0;
       return s > -windward ? 0.5 * H * (1.0 + std::cos(pi * s / windward)) : 0.0;
     }
+    case DuneShape::Form::rushil: return rushil(s, H, 0.5 * L);
     case DuneShape::Form::formula: break;
   }
   return 0.0;

@@ -94,8 +94,9 @@ constexpr Key table[] = {
     {"fill", "shape", as_word | as_section, "", "required",
      "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed).", {}, "the-rest"},
     {"fill", "packing", as_word, "", "rows",
-     "Square lattice, close-packed lattice, or random without overlap (up to 0.5 of the area or 0.35 of the volume). "
-     "Fluids and elastic bodies take rows.", {}, "rows|staggered|random"},
+     "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
+     "follow the ground: a bed of a wall, and the fluid above it. Fluids and elastic bodies take rows or fitted.", {},
+     "rows|staggered|random|fitted"},
     {"fill", "perturb", as_number, "spacings", "0", "Every coordinate is moved by a random number of at most this size.",
      {.at_least = 0.0, .at_most = 0.5}},
     {"fill", "seed", as_integer, "", "1", "Seed of the random numbers.", {.at_least = 0, .at_most = 4294967295.0}},
@@ -118,11 +119,12 @@ constexpr Key table[] = {
     {"fill.shape", "sides", as_words, "", "",
      "Layers of wall particles outside the domain. bottom and top: y; left and right: x; back and front: z.", {},
      "bottom|top|left|right|front|back"},
-    {"fill.shape", "layers", as_integer, "", "3", "Only with sides: number of layers.", {.at_least = 1, .at_most = 16}},
+    {"fill.shape", "layers", as_integer, "", "3; of a bed 4", "Only with sides or a fitted bed: number of layers.", {.at_least = 1, .at_most = 16}},
     {"fill.shape", "mesh", as_text, "", "", "A surface from a file; not available yet."},
     {"fill.shape.dune", "form", as_word, "", "cosine",
      "cosine: H/2 (1 + cos(2 pi (x - at)/L)); gaussian: L is the width at half height; asymmetric: windward half cosine, straight slip "
-     "face, L from toe to toe; formula.", {}, "cosine|gaussian|asymmetric|formula"},
+     "face, L from toe to toe; rushil: the hills of Khurshudyan et al. 1981, L from toe to toe; formula.", {},
+     "cosine|gaussian|asymmetric|rushil|formula"},
     {"fill.shape.dune", "height", as_number, "m", "required but for a formula", "Height H of the crest over the bed.", positive},
     {"fill.shape.dune", "length", as_number, "m", "required but for a formula", "Length L.", positive},
     {"fill.shape.dune", "at", as_number, "m", "required but for a formula", "x of the crest."},

@@ -80,7 +80,7 @@ std::string misfit_of_period(const Scene& scene, std::size_t axis) {
     return text;
   };
   std::string text;
-  const bool only_staggered = staggered && !hangs(Packing::square);
+  const bool only_staggered = staggered && !hangs(Packing::square) && !hangs(Packing::fitted);
   if (axis == 0 || !only_staggered) text = misfit(scene.spacing, "spacings");
   if (text.empty() && axis != 0 && staggered)
     text = misfit(period_of(Packing::hexagonal, scene.dimensions, axis, scene.spacing), "staggered double rows");

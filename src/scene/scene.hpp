@@ -125,7 +125,7 @@ struct TheRestShape {};  // the domain less what earlier fills hold
 
 /// Height of the ground above the bed as a function of x (and z in 3D), in metres.
 struct DuneShape {
-  enum class Form { cosine, gaussian, asymmetric, formula } form = Form::cosine;
+  enum class Form { cosine, gaussian, asymmetric, rushil, formula } form = Form::cosine;
   double height = 0, length = 0, at = 0;  // m; `at` is the crest's x
   double slip_face_angle = 33.0;          // degrees, asymmetric only
   Expression formula;                     // formula only: height over the bed, m
@@ -133,13 +133,14 @@ struct DuneShape {
 struct BedShape {
   double depth = 0;  // m, from the domain's bottom
   double from = 0;   // m over the bottom: nothing below it (a floor that another fill made)
+  int layers = 4;    // of fitted rows
   std::optional<DuneShape> dune;
 };
 
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
                            FormulaShape, SidesShape, BedShape, TheRestShape>;
 
-enum class Packing { square, hexagonal, random };  // rows, staggered rows, random without overlap
+enum class Packing { square, hexagonal, random, fitted };  // rows, staggered rows, without overlap, along the ground
 
 /// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
 struct LogProfile {

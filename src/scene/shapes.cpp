@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "scene/fitted.hpp"
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
@@ -167,7 +168,17 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
 std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {
   const Fill& fill = scene.fills[k];
   std::vector<Vec3> places;
-  if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
+  if (fill.packing == Packing::fitted) {
+    const int below = fitted_bed(scene, k);
+    if (const auto* bed = std::get_if<BedShape>(&fill.shape)) {
+      places = fitted_wall(scene, *bed);
+    } else if (below >= 0) {
+      places = fitted_fluid(scene, std::get<BedShape>(scene.fills[static_cast<std::size_t>(below)].shape));
+      std::erase_if(places, [&](const Vec3& x) {
+        return occupied.inside.owner_near(x, rest_distance * scene.spacing, below) >= 0;
+      });
+    }
+  } else if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
     places = points->at;
   } else if (const auto* cube = std::get_if<CubeShape>(&fill.shape)) {
     places = cube_places(*cube, scene.dimensions, scene.spacing);

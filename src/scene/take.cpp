@@ -51,6 +51,7 @@ DuneShape take_dune(const toml::table& table) {
                           {{"cosine", DuneShape::Form::cosine},
                            {"gaussian", DuneShape::Form::gaussian},
                            {"asymmetric", DuneShape::Form::asymmetric},
+                           {"rushil", DuneShape::Form::rushil},
                            {"formula", DuneShape::Form::formula}});
   take_number(table, "height", dune.height);
   take_number(table, "length", dune.length);
@@ -84,6 +85,7 @@ Shape take_shape(const toml::table& table) {
     BedShape bed;
     bed.depth = number(table, "bed");
     if (table.contains("from")) bed.from = number(table, "from");
+    bed.layers = table["layers"].value_or(bed.layers);
     if (const toml::table* dune = table["dune"].as_table()) bed.dune = take_dune(*dune);
     return bed;
   }
@@ -112,9 +114,11 @@ Fill take_fill(const toml::table& table) {
   fill.phase = table["phase"].value_or(std::string());
   fill.shape = TheRestShape{};
   if (const toml::table* shape = table["shape"].as_table()) fill.shape = take_shape(*shape);
-  fill.packing =
-      take_choice(table, "packing", fill.packing,
-                  {{"rows", Packing::square}, {"staggered", Packing::hexagonal}, {"random", Packing::random}});
+  fill.packing = take_choice(table, "packing", fill.packing,
+                             {{"rows", Packing::square},
+                              {"staggered", Packing::hexagonal},
+                              {"random", Packing::random},
+                              {"fitted", Packing::fitted}});
   take_number(table, "perturb", fill.perturb);
   fill.seed = table["seed"].value_or(fill.seed);
   fill.velocity = take_vector_expression(table, "velocity");

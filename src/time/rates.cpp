@@ -133,7 +133,7 @@ void Simulation::extend_into_walls() {
   for (auto& x : extensions_) {
     if (particles_[x.phase].kind() != PhaseKind::wall) continue;
     extend_into_solid(particles_[x.phase], extended_[x.phase], x.sources, scene_.domain.gravity,
-                      given_friction(scene_.phases[x.phase]) ? Slip::free_slip : scene_.phases[x.phase].slip);
+                      given_friction(scene_.phases[x.phase]) ? Slip::free_slip : scene_.phases[x.phase].slip, x.bend);
     extended_[x.phase].fill_images(neighbours_.grid(x.phase), plan_.dimensions);
   }
 }

@@ -178,6 +178,8 @@ void Simulation::kick_and_drift() {
   for (const auto& f : fluids_)
     if (scene_.phases[f.phase].scheme == FluidScheme::consistent && f.held.any())
       hold_inside(particles_[f.phase], f.held);
+  for (const auto& f : fluids_)
+    if (f.relief.exists()) hold_above(particles_[f.phase], f.relief, f.held.margin);
 }
 
 void Simulation::strain_bodies() {

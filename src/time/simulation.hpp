@@ -16,6 +16,7 @@
 #include "passes/fluid.hpp"
 #include "passes/grains.hpp"
 #include "passes/integrate.hpp"
+#include "passes/relief.hpp"
 #include "passes/walls.hpp"
 #include "plan/plan.hpp"
 #include "scene/formula.hpp"
@@ -92,6 +93,7 @@ class Simulation {
   void make_state(const std::vector<ParticleBlock>& blocks);
   void wire();
   void wire_eddies(Fluid& fluid);
+  Relief relief_under(std::size_t fluid) const;
   PressureLaw pressure_law(std::size_t phase) const;
 
   template <class F>
@@ -105,6 +107,7 @@ class Simulation {
   std::vector<std::unique_ptr<CompactRecords>> compact_;  // by phase, mixed precision: what fluid_rates reads
 
   std::vector<EddyRecords> eddies_;  // by phase
+  std::vector<SurfaceBend> bends_;   // by phase, of fitted walls
 
   std::vector<Fluid> fluids_;
   std::vector<Extension> extensions_;

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "kernels/kernel.hpp"
+#include "passes/wall_normals.hpp"
 
 namespace barchan {
 
@@ -13,9 +14,16 @@ namespace {
 
 std::array<Formula, 3> compile(const VectorExpression& e) { return {Formula(e[0]), Formula(e[1]), Formula(e[2])}; }
 
-/// Distance behind the domain's sides and the direction back, for a wall particle outside the domain.
-void set_wall_geometry(PhaseParticles& wall, const Bounds& bounds) {
+/// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
+/// particle outside the domain.
+void set_wall_geometry(PhaseParticles& wall, const Bounds& bounds, const ParticleBlock& block) {
   for (std::size_t k = 0; k < wall.size(); ++k) {
+    if (k < block.depth.size() && block.depth[k] > 0.0) {
+      wall.column(Field::wall_depth)[k] = block.depth[k];
+      for (int d = 0; d < wall.dimensions(); ++d)
+        wall.column(Field::wall_normal, d)[k] = block.normal[k][static_cast<std::size_t>(d)];
+      continue;
+    }
     double depth2 = 0;
     std::array<double, 3> out{};
     for (int d = 0; d < wall.dimensions(); ++d) {
@@ -34,8 +42,9 @@ void set_wall_geometry(PhaseParticles& wall, const Bounds& bounds) {
 }
 
 /// Closes the sides that the wall stands behind.
-void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds) {
+void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds, double spacing) {
   for (std::size_t k = 0; k < wall.size(); ++k) {
+    if (!behind_a_side(wall, k, bounds, spacing)) continue;
     int outside = 0, axis = 0;
     bool above = false;
     for (int d = 0; d < wall.dimensions(); ++d) {
@@ -117,13 +126,30 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
         p.column(Field::density)[i] = rho;
       }
     }
-    if (q.kind == PhaseKind::wall) set_wall_geometry(p, plan_.bounds);
+    bends_.emplace_back();
+    if (!block.bend.empty()) {
+      bends_.back().first = p.id().empty() ? 0 : p.id()[0];
+      for (const auto& b : block.bend)
+        if (plan_.dimensions == 2) bends_.back().values.push_back(b[0]);
+        else bends_.back().values.insert(bends_.back().values.end(), b.begin(), b.end());
+    }
+    if (q.kind == PhaseKind::wall) set_wall_geometry(p, plan_.bounds, block);
     if (q.kind == PhaseKind::fluid) {
       const PressureLaw law = pressure_law(k);
       for (std::size_t i = 0; i < q.count; ++i) p.column(Field::pressure)[i] = law(p.column(Field::density)[i]);
     }
     particles_.push_back(std::move(p));
   }
+  // Walls inside the domain along which the fluid slips need to know which way they face.
+  std::vector<PhaseParticles*> walls;
+  bool slips = false;
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    if (particles_[k].kind() != PhaseKind::wall) continue;
+    const Phase& s = scene_.phases[k];
+    walls.push_back(&particles_[k]);
+    slips = slips || s.slip == Slip::free_slip || s.roughness || s.shear_stress;
+  }
+  if (slips) find_wall_normals(walls, plan_.bounds, plan_.spacing);
 }
 
 namespace {
@@ -137,6 +163,22 @@ Friction friction_with(const Phase& other) {
 }
 
 }  // namespace
+
+/// The ground of fitted rows, if the fluid feels the wall that it is of.
+Relief Simulation::relief_under(std::size_t fluid) const {
+  for (const auto& e : plan_.entries) {
+    if (e.law != Law::boundary || (e.a != fluid && e.b != fluid)) continue;
+    const std::string& wall = scene_.phases[e.a == fluid ? e.b : e.a].name;
+    for (const auto& fill : scene_.fills) {
+      if (fill.phase != wall || fill.packing != Packing::fitted) continue;
+      std::array<int, 2> counts{};
+      for (std::size_t c = 0; c < (plan_.dimensions == 3 ? 2 : 1); ++c)
+        counts[c] = static_cast<int>(std::ceil(2.0 * scene_.domain.size[2 * c] / plan_.spacing));
+      return {plan_.bounds, counts, fitted_heights(scene_, counts)};
+    }
+  }
+  return {};
+}
 
 /// Its entries again with the friction of each, and the ground under it.
 void Simulation::wire_eddies(Fluid& f) {
@@ -174,10 +216,9 @@ void Simulation::wire_eddies(Fluid& f) {
       if (!ground) continue;
       f.ground_phases.push_back(&particles_[other]);
       if (o.kind == PhaseKind::wall) {
-        close_sides(sides, particles_[other], plan_.bounds);
-        const double* depth = particles_[other].column(Field::wall_depth);
-        particles =
-            particles || std::any_of(depth, depth + particles_[other].size(), [](double d) { return d <= 0.0; });
+        close_sides(sides, particles_[other], plan_.bounds, plan_.spacing);
+        for (std::size_t i = 0; i < particles_[other].size() && !particles; ++i)
+          particles = !behind_a_side(particles_[other], i, plan_.bounds, plan_.spacing);
       } else {
         particles = true;
       }
@@ -271,8 +312,9 @@ void Simulation::wire() {
       }
       for (const auto& e : plan_.entries)
         if (e.law == Law::boundary && (e.a == k || e.b == k))
-          close_sides(f.held, particles_[e.a == k ? e.b : e.a], plan_.bounds);
+          close_sides(f.held, particles_[e.a == k ? e.b : e.a], plan_.bounds, plan_.spacing);
       f.held.margin = 0.02 * plan_.spacing;
+      if (s.scheme == FluidScheme::consistent) f.relief = relief_under(k);
       if (q.eddies) wire_eddies(f);
       fluids_.push_back(std::move(f));
     } else if (seen[k]) {
@@ -287,6 +329,7 @@ void Simulation::wire() {
         if (e.law == Law::coupling)
           x.felt.push_back({list, &motion_[fluid], e.kernel, e.radius, viscosity(k, fluid), false});
       }
+      if (k < bends_.size()) x.bend = bends_[k];
       extensions_.push_back(std::move(x));
     }
     if (p.kind() == PhaseKind::elastic) {

@@ -10,7 +10,8 @@ struct Simulation::Fluid {
   std::size_t phase = 0;
   std::vector<FluidNeighbour> neighbours;
   FluidParameters parameters{};
-  Sides held;  // the domain's sides that a wall closes
+  Sides held;     // the domain's sides that a wall closes
+  Relief relief;  // curved ground
 
   // a fluid with eddies
   std::vector<EddyNeighbour> eddy_neighbours;  // empty: none
@@ -27,6 +28,7 @@ struct Simulation::Extension {
   std::vector<ExtensionSource> sources;
   std::vector<FluidNeighbour> felt;  // for the reaction; empty for walls
   std::vector<std::size_t> felt_fluids;
+  SurfaceBend bend;  // of a curved wall
 };
 
 /// One direction of a contact entry.

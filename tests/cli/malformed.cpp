@@ -54,6 +54,14 @@ std::string shear(const std::string& from, const std::string& to) {
               from, to);
 }
 
+/// The square over a fitted hill, with one thing changed.
+std::string hill(const std::string& from, const std::string& to) {
+  const std::string ground = with(with(square_text, "air-air = 3.0\n", "air-air = 3.0\nair-hill = 3.0\n"),
+                                  "density = 1\n", "density = 1\n[phases.hill]\nkind = \"wall\"\n");
+  const std::string bed = "[[fill]]\nphase = \"hill\"\nshape = { bed = 0.3 }\npacking = \"fitted\"\n[[fill]]";
+  return with(with(with(ground, "[[fill]]", bed), "\"the-rest\"", "\"the-rest\"\npacking = \"fitted\""), from, to);
+}
+
 const std::vector<Malformed>& malformed_scenes() {
   static const std::vector<Malformed> scenes = {
 #include "malformed_scenes.inc"
