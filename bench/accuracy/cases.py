@@ -216,14 +216,14 @@ def couette(n):
 # ---- Taylor-Green ----------------------------------------------------------------------------------------------------
 
 def taylor_green(sizes=(50, 100, 200)):
-    """L1 of the speed at t = 1 and the decay rate of the kinetic energy's root, mean of two seeds.
+    """L1 of the speed at t = 1 and the decay rate of the kinetic energy's root, mean of two seeds (one at 200 spacings).
 
     The exact solution is incompressible: at a fixed sound speed the error ends at the square of the Mach number, so the sound speed
     grows with the resolution, 10 U at 50 spacings, 20 U at 100, 40 U at 200."""
     errors = {}
     for n in [n for n in sizes if n <= options.largest]:
         e, rate, total = [], [], 0
-        for seed in (1, 2):
+        for seed in (1, 2) if n < 200 else (1,):
             frames, seconds = run("taylor_green", [f"spacing={1 / n!r}", f"fill.0.seed={seed}",
                                                    f"phases.fluid.sound-speed={10 * max(n, 50) / 50:g}"])
             f, total = frames[-1], total + seconds
@@ -497,7 +497,7 @@ def two_phase_column(ratio, perturb):
 
 def bed_at_rest(turbulence):
     """The farthest way of a grain of scenes/flat_bed.toml in 0.2 s without wind."""
-    overrides = ["fill.3.velocity.log-profile.friction-velocity=0", "time.end=0.2", "output.every=0.01"]
+    overrides = ["fill.3.velocity.log-profile.friction-velocity=0", "time.end=0.2", "output.every=0.001"]
     if turbulence != "none":
         overrides.append(f"phases.air.turbulence={turbulence}")
     frames, seconds = run("flat_bed", overrides, "sand")
@@ -508,7 +508,7 @@ def bed_at_rest(turbulence):
         way[:, 0] -= .06 * numpy.round(way[:, 0] / .06)
         farthest = max(farthest, numpy.linalg.norm(way, axis=1).max() / 5e-4)
     name = f"bed at rest, {'laminar' if turbulence == 'none' else turbulence} air"
-    report(name, "consistent", 120, "farthest way of a grain/d in 0.2 s", farthest, 1e-3, seconds)
+    report(name, "consistent", 120, "farthest way of a grain/d in 0.2 s, every ms", farthest, 1e-3, seconds)
     report(name, "consistent", 120, "fastest grain at the end, m/s", numpy.linalg.norm(frames[-1]["velocity"], axis=1).max(), None, seconds)
 
 
