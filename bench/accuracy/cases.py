@@ -454,7 +454,7 @@ def backward_step(re):
     u, y = narrow["velocity_mean_x [m/s]"], narrow["y [m]"] - 1
     mean = ((u[1:] + u[:-1]) / 2 * numpy.diff(y)).sum()
     real = 2 * mean / (2 / re)
-    x, tau = floor["x [m]"] - 12, floor["shear_stress_mean [Pa]"]
+    x, tau = floor["x [m]"] - 12, floor["shear_stress_mean_x [Pa]"]
     x, tau = x[x > .3], tau[x > .3]  # behind the eddy in the corner
     k = numpy.flatnonzero((tau[:-1] < 0) & (tau[1:] >= 0))[0]
     reattachment = x[k] + (x[k + 1] - x[k]) * tau[k] / (tau[k] - tau[k + 1])
