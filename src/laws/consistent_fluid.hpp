@@ -59,8 +59,14 @@ struct ConsistentFluid {
   template <class T>
   static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, T p_b,
                                       T volume_b, Sums<T>& s) {
+    add_difference(a, r, r2, f, v_b, a.p - p_b, volume_b, s);
+  }
+
+  /// The same for a given difference of pressure.
+  template <class T>
+  static BARCHAN_SIMD_INLINE void add_difference(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b,
+                                                 T dp, T volume_b, Sums<T>& s) {
     const T vf = volume_b * f;
-    const T dp = a.p - p_b;
     T lopsided = simd::broadcast<T>(0.0);  // r.A.r
     std::size_t q = 0;
     for (std::size_t d = 0; d < Dim; ++d) {

@@ -6,6 +6,7 @@
 
 #include "kernels/kernel.hpp"
 #include "laws/consistent_fluid.hpp"
+#include "laws/joined_fluids.hpp"
 #include "laws/plain_fluid.hpp"
 #include "passes/fluid_finish.hpp"
 #include "passes/fours.hpp"
@@ -76,7 +77,20 @@ std::vector<ReadyKernelOf<T>>& ready_kernels(std::span<const FluidNeighbour> nei
   return kernels;
 }
 
-template <int Dim, template <int> class Law, class T>
+/// The first particle of pairs across an interface; rho: its density, so that it carries its own weight exactly.
+template <int Dim, class T>
+BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_own(
+    const typename ConsistentFluid<Dim>::template Own<LanesOf<T>>& own, const FluidNeighbour& e,
+    const FluidParameters& q, double rho) {
+  using V = LanesOf<T>;
+  typename JoinedFluids<Dim>::template Own<V> joined{own, {}, {}, {}};
+  for (std::size_t d = 0; d < Dim; ++d) joined.weight[d] = simd::broadcast<V>(rho * q.gravity[d]);
+  joined.ratio = simd::broadcast<V>(e.joined / q.reference_density);
+  joined.share = simd::broadcast<V>(2.0 * q.reference_density / (q.reference_density + e.joined));
+  return joined;
+}
+
+template <int Dim, template <int> class Law, class T, bool Joined = false>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
            const FluidParameters& q) {
   using L = Law<Dim>;
@@ -119,11 +133,25 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
           for (std::size_t d = 0; d < Dim; ++d)
             for (std::size_t m = 0; m < d; ++m) own.anisotropy[moment_index(d, m)] *= simd::broadcast<V>(2.0);
         }
+        if constexpr (Joined) {
+          if (e.joined > 0) {
+            const auto across = joined_own<Dim, T>(own, e, q, rho[k]);
+            sum_row<Dim, JoinedFluids, T>(row, e, kernels[c], across, unit, sums[lane]);
+            continue;
+          }
+        }
         sum_row<Dim, Law, T>(row, e, kernels[c], own, unit, sums[lane]);
       }
-      if (any)
-        s.take(reduce<typename L::template Sums<Four>, T>(sums), kernels[c].slope_factor(), e.viscosity,
-               e.diffuse ? 1.0 : 0.0, weight);
+      if (any) {
+        auto raw = reduce<typename L::template Sums<Four>, T>(sums);
+        if constexpr (Joined)
+          if (e.joined > 0)
+            for (std::size_t d = 0; d < Dim; ++d) {  // the Laplacian's own factor is this phase's viscosity
+              raw.viscous[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
+              raw.weighted[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
+            }
+        s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+      }
     }
     std::array<Four, moments> anisotropy;
     if constexpr (L::corrected) {
@@ -170,7 +198,10 @@ template <class T>
 void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
               const FluidParameters& q, FluidScheme scheme) {
   const bool plain = scheme == FluidScheme::plain, flat = fluid.dimensions() == 2;
-  if (flat && plain) rates<2, PlainFluid>(fluid, own, unit, neighbours, q);
+  const bool joined = std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
+  if (joined && flat) rates<2, ConsistentFluid, T, true>(fluid, own, unit, neighbours, q);
+  else if (joined) rates<3, ConsistentFluid, T, true>(fluid, own, unit, neighbours, q);
+  else if (flat && plain) rates<2, PlainFluid>(fluid, own, unit, neighbours, q);
   else if (flat) rates<2, ConsistentFluid>(fluid, own, unit, neighbours, q);
   else if (plain) rates<3, PlainFluid>(fluid, own, unit, neighbours, q);
   else rates<3, ConsistentFluid>(fluid, own, unit, neighbours, q);

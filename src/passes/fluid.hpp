@@ -19,6 +19,7 @@ struct FluidNeighbour {
   double viscosity;                         // Pa s, of the pair
   bool diffuse;                             // density diffusion acts across this entry
   const CompactRecords* compact = nullptr;  // the same records for mixed precision, null in double
+  double joined = 0;                        // kg/m3: density at rest of another fluid, consistent scheme; 0: no fluid
 };
 
 struct FluidParameters {

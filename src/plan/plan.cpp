@@ -80,6 +80,13 @@ bool has_eddies(const Scene& scene, const Phase& fluid) {
     throw SceneError(scene.file + ": phases." + fluid.name +
                      ".scheme: eddy viscosity, rough walls and given shear stresses need corrected operators; expected "
                      "\"consistent\"");
+  for (const auto& i : scene.interactions)
+    for (const auto& p : scene.phases)
+      if (any && p.kind == PhaseKind::fluid && p.density != fluid.density &&
+          ((i.a == fluid.name && i.b == p.name) || (i.b == fluid.name && i.a == p.name)))
+        throw SceneError(scene.file + ": interactions." + i.a + "-" + i.b +
+                         ": a turbulent fluid cannot touch one of another density yet; expected turbulence = \"none\", "
+                         "or no such entry");
   return any;
 }
 

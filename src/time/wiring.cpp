@@ -88,10 +88,70 @@ KernelContact contact_law(const Scene& scene, const Plan& plan, const PlanEntry&
   return law;
 }
 
+/// Where a fluid begins along gravity, and what lies on it: its pressure at rest follows.
+struct Surface {
+  bool hydrostatic = false;
+  double potential = 0;  // g.x of the surface, m2/s2: the smallest of the fluid
+  double pressure = 0;   // Pa, there
+  double density = 0, sound_speed = 0;
+  bool linear = true;
+
+  /// Weight of what lies above the places where g.x has this value; of the compressible column, rho = rho_s
+  /// exp(gz/c^2), when the equation of state is linear.
+  double pressure_at(double place) const {
+    const double c2 = sound_speed * sound_speed;
+    if (!linear) return pressure + density * (place - potential);
+    return pressure + (density * c2 + pressure) * std::expm1((place - potential) / c2);
+  }
+};
+
+/// One of each phase. A fluid under another fluid with which it has an entry carries its weight.
+std::vector<Surface> find_surfaces(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks) {
+  const Vec3& g = scene.domain.gravity;
+  std::vector<Surface> surfaces(blocks.size());
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Phase& s = scene.phases[k];
+    Surface& surface = surfaces[k];
+    bool perturbed = false;
+    for (const auto& f : scene.fills) {
+      if (f.phase != s.name) continue;
+      surface.hydrostatic = surface.hydrostatic || f.hydrostatic;
+      perturbed = perturbed || f.perturb > 0;
+    }
+    if (s.kind != PhaseKind::fluid || !surface.hydrostatic || blocks[k].position.empty()) continue;
+    surface.density = s.density;
+    surface.sound_speed = plan.phases[k].sound_speed;
+    surface.linear = s.equation_of_state == EquationOfState::linear;
+    const auto highest = std::min_element(blocks[k].position.begin(), blocks[k].position.end(),
+                                          [&](const Vec3& a, const Vec3& b) { return dot(g, a) < dot(g, b); });
+    surface.potential = dot(g, *highest) - 0.5 * scene.spacing * norm(g);
+    for (std::size_t d = 0; d < 3; ++d) {  // disturbed rows: where the lattice has its surface
+      if (!perturbed || g[d] == 0 || std::abs(g[d]) < norm(g)) continue;
+      const double row = surface.potential / g[d] - scene.domain.origin[d];
+      surface.potential = g[d] * (scene.domain.origin[d] + scene.spacing * std::round(row / scene.spacing));
+    }
+    order.push_back(k);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return surfaces[a].potential < surfaces[b].potential; });
+  for (std::size_t k = 0; k < order.size(); ++k)
+    for (std::size_t above = k; above-- > 0;) {
+      const std::size_t a = order[k], b = order[above];
+      if (std::none_of(plan.entries.begin(), plan.entries.end(),
+                       [&](const PlanEntry& e) { return (e.a == a && e.b == b) || (e.a == b && e.b == a); }))
+        continue;
+      surfaces[a].pressure = surfaces[b].pressure_at(surfaces[a].potential);
+      break;
+    }
+  return surfaces;
+}
+
 }  // namespace
 
 void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
   std::int64_t first = 0;
+  const std::vector<Surface> surfaces = find_surfaces(scene_, plan_, blocks);
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const PlanPhase& q = plan_.phases[k];
     const Phase& s = scene_.phases[k];
@@ -106,24 +166,16 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
       }
     if (p.has(Field::density)) std::fill_n(p.column(Field::density), q.count, s.density);
     if (q.kind == PhaseKind::fluid) {
-      bool hydrostatic = false;
-      for (const auto& f : scene_.fills) hydrostatic = hydrostatic || (f.phase == s.name && f.hydrostatic);
-      const Vec3& g = scene_.domain.gravity;
-      double top = 1e300;  // the smallest g.x in the domain is the surface
-      for (std::size_t i = 0; i < q.count; ++i) top = std::min(top, dot(g, block.position[i]));
-      top -= 0.5 * scene_.spacing * norm(g);
+      const Surface& surface = surfaces[k];
       const double c2 = q.sound_speed * q.sound_speed;
       for (std::size_t i = 0; i < q.count; ++i) {
-        double pressure = block.pressure.empty() ? 0.0 : block.pressure[i];
-        double rho = s.density;
-        if (s.equation_of_state == EquationOfState::linear) {
-          // The compressible column: rho = rho0 exp(depth g / c^2).
-          rho = hydrostatic ? s.density * std::exp((dot(g, block.position[i]) - top) / c2) : s.density + pressure / c2;
-        } else {
-          if (hydrostatic) pressure = s.density * (dot(g, block.position[i]) - top);
-          rho = s.density * std::pow(1.0 + s.tait_exponent * pressure / (s.density * c2), 1.0 / s.tait_exponent);
-        }
-        p.column(Field::density)[i] = rho;
+        const double pressure = surface.hydrostatic ? surface.pressure_at(dot(scene_.domain.gravity, block.position[i]))
+                                : block.pressure.empty() ? 0.0
+                                                         : block.pressure[i];
+        p.column(Field::density)[i] =
+            s.equation_of_state == EquationOfState::linear
+                ? s.density + pressure / c2
+                : s.density * std::pow(1.0 + s.tait_exponent * pressure / (s.density * c2), 1.0 / s.tait_exponent);
       }
     }
     bends_.emplace_back();
@@ -299,13 +351,15 @@ void Simulation::wire() {
         const std::size_t other = e.a == k ? e.b : e.a;
         const int direction = e.a == k ? e.forward : e.backward;
         const bool solid = particles_[other].kind() != PhaseKind::fluid;
-        FluidNeighbour n{&neighbours_.list(static_cast<std::size_t>(direction)),
-                         solid ? &extended_[other] : &motion_[other],
-                         e.kernel,
-                         e.radius,
-                         viscosity(k, other),
-                         solid || other == k,
-                         compact_[other].get()};
+        FluidNeighbour n{
+            &neighbours_.list(static_cast<std::size_t>(direction)),
+            solid ? &extended_[other] : &motion_[other],
+            e.kernel,
+            e.radius,
+            viscosity(k, other),
+            solid || other == k,
+            compact_[other].get(),
+            !solid && other != k && s.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
         // The phase's own entry comes first: its viscosity is the phase's.
         if (other == k) f.neighbours.insert(f.neighbours.begin(), n);
         else f.neighbours.push_back(n);

@@ -70,6 +70,7 @@ TEST_P(Steps, AllocateNothing) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Steps,
                          testing::Values(std::pair{"Dune", &small::dune},
                                          std::pair{"TurbulentDune", &small::turbulent_dune},
+                                         std::pair{"TwoFluids", &small::two_fluids},
                                          std::pair{"Channel", &small::channel}, std::pair{"Squares", &small::squares},
                                          std::pair{"Grains", &small::grains}),
                          [](const auto& s) { return std::string(s.param.first); });

@@ -97,6 +97,54 @@ inline const std::string turbulent_dune = [] {
   return text.insert(text.find(scheme), "turbulence = \"mixing-length\"\n");
 }();
 
+/// Air that blows over water in a channel.
+inline const std::string two_fluids = R"toml(
+spacing = 0.01
+[domain]
+size = [0.3, 0.2]
+periodic = ["x"]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-3
+sound-speed = 20
+scheme = "consistent"
+[phases.air]
+kind = "fluid"
+density = 1
+viscosity = 1e-3
+sound-speed = 20
+scheme = "consistent"
+[phases.wall]
+kind = "wall"
+[interactions]
+kernel = "wendland-c2"
+water-water = 2.6
+air-air = 2.6
+water-air = 2.6
+water-wall = 2.6
+air-wall = 2.6
+[[fill]]
+phase = "wall"
+shape = { sides = ["bottom", "top"], layers = 3 }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [0.3, 0.1] } }
+perturb = 0.1
+velocity = ["0.5*sin(2*pi*x/0.3)", 0]
+pressure = "hydrostatic"
+[[fill]]
+phase = "air"
+shape = "the-rest"
+perturb = 0.1
+velocity = ["1 + sin(2*pi*x/0.3)", 0]
+pressure = "hydrostatic"
+[time]
+end = 10
+largest-speed = 2
+)toml";
+
 /// Two elastic squares that collide.
 inline const std::string squares = R"toml(
 spacing = 1e-3

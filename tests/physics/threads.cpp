@@ -65,6 +65,7 @@ const std::string mixed_channel = "precision = \"mixed\"\n" + small::channel;
 INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
                          testing::Values(std::pair{"Dune", &small::dune},
                                          std::pair{"TurbulentDune", &small::turbulent_dune},
+                                         std::pair{"TwoFluids", &small::two_fluids},
                                          std::pair{"Channel", &small::channel}, std::pair{"Squares", &small::squares},
                                          std::pair{"Grains", &small::grains}, std::pair{"MixedDune", &mixed_dune},
                                          std::pair{"MixedChannel", &mixed_channel}),

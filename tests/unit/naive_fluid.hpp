@@ -16,6 +16,7 @@ struct Entry {
   KernelKind kernel;
   double radius, viscosity;
   bool diffuse;
+  double joined = 0;  // density of another fluid across an interface (src/laws/joined_fluids.hpp), 0: none
 };
 
 struct Rates {
@@ -130,8 +131,17 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
     Vec3 B{}, P{}, C{}, L_v{};
     double L_p = 0.0;
     for_neighbours(cast, a, k, entries,
-                   [&](const Entry&, const PhaseParticles& b, std::size_t j, const Vec3& r, double f) {
-                     const double vf = volume(b, j) * f, p_ab = p_a - b.column(Field::pressure)[j];
+                   [&](const Entry& e, const PhaseParticles& b, std::size_t j, const Vec3& r, double f) {
+                     const double vf = volume(b, j) * f;
+                     double p_ab = p_a - b.column(Field::pressure)[j], friction = 1.0;
+                     if (e.joined > 0) {
+                       const double own = rho * dot(q.gravity, r), theirs = own * e.joined / q.reference_density;
+                       const double low = std::min(own, theirs), high = std::max(own, theirs);
+                       const double beyond = p_ab > high ? p_ab - high : p_ab < low ? p_ab - low : 0.0;
+                       const double jump = beyond + 0.01 * (p_ab - beyond - 0.5 * (own + theirs));
+                       p_ab = own + 2.0 * q.reference_density / (q.reference_density + e.joined) * jump;
+                       friction = e.viscosity / entries.front().viscosity;
+                     }
                      const Vec3 v_ab = v_a - sets::vector(b, Field::velocity, j);
                      double w = 1.0;
                      for (std::size_t d = 0; d < dim; ++d) w += r[d] * dot(A[d], r) / dot(r, r);
@@ -141,8 +151,8 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
                      }
                      B = B + vf * r;
                      P = P + vf * p_ab * r;
-                     C = C + vf * w * r;
-                     L_v = L_v + vf * w * v_ab;
+                     C = C + friction * vf * w * r;
+                     L_v = L_v + friction * vf * w * v_ab;
                      L_p += vf * (p_ab - q.reference_density * dot(q.gravity, r));
                    });
     keep_shift(out, B, q);

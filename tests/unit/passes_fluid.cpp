@@ -172,6 +172,96 @@ TEST(FluidPassFields, NoShiftFieldNoShift) {
   EXPECT_NE(cast.phases[0].column(Field::acceleration, 0)[3], 0.0);
 }
 
+/// Two fluids, the light one (phase 0) above y = `surface`, the heavy one below.
+Cast light_over_heavy(int dimensions, double surface, Uniform& random,
+                      std::size_t padding = simd::native_width<double>) {
+  const Bounds b = dimensions == 2 ? box(2, {9, 10, 0}, {true, false, false}) : box(3, {6, 8, 7}, {true, false, true});
+  std::array<std::vector<Vec3>, 2> places;
+  for (const Vec3& x : lattice(b, 1.0, 0.2, random)) places[x[1] > surface ? 0 : 1].push_back(x);
+  std::vector<PhaseParticles> two;
+  for (const int k : {0, 1}) {
+    two.push_back(phase(PhaseKind::fluid, dimensions, places[static_cast<std::size_t>(k)], k == 0 ? 1.2 : 1200.0,
+                        {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
+                         Field::shift_velocity, Field::anisotropy},
+                        1000 * k));
+    std::fill_n(two.back().column(Field::density), two.back().size(), two.back().mass());
+  }
+  return Cast(b, std::move(two), {{0, 0, 3.0}, {0, 1, 2.6}, {1, 1, 3.0}, {1, 0, 2.6}}, 0.1, padding);
+}
+
+// Two fluids joined by an entry: random fields, so that pressure differences lie on both sides of what is weight.
+TEST(JoinedFluids, EqualTheNaiveSums) {
+  for (const int dimensions : {2, 3}) {
+    for (const bool mixed : {false, true}) {
+      Uniform random(15);
+      Cast cast = light_over_heavy(dimensions, dimensions == 2 ? 5.0 : 4.0, random,
+                                   mixed ? simd::native_width<float> : simd::native_width<double>);
+      for (auto& p : cast.phases) {
+        randomise(p, Field::velocity, -2, 2, random);
+        randomise(p, Field::pressure, -9000, 9000, random);
+        randomise(p, Field::anisotropy, -0.2, 0.2, random);
+      }
+      cast.pack();
+      std::vector<CompactRecords> compact(2, CompactRecords(cast.bounds));
+      for (std::size_t p = 0; p < 2; ++p) {
+        const std::size_t n = cast.phases[p].size(), images = cast.neighbours.grid(p).images();
+        compact[p].resize(n, images);
+        dimensions == 2 ? compact[p].copy<2>(cast.motion[p], n + images)
+                        : compact[p].copy<3>(cast.motion[p], n + images);
+      }
+      FluidParameters q = parameters(dimensions);
+      q.reference_density = 1.2;
+      const auto spline = KernelKind::wendland_c2;
+      const std::vector<FluidNeighbour> neighbours{
+          {&cast.list(0), &cast.motion[0], spline, 3.0, 0.7, true, &compact[0]},
+          {&cast.list(1), &cast.motion[1], spline, 2.6, 1.3, false, &compact[1], 1200.0}};
+      const auto expected =
+          naive::consistent_rates(cast, 0, {{0, spline, 3.0, 0.7, true}, {1, spline, 2.6, 1.3, false, 1200.0}}, q);
+      auto& fluid = cast.phases[0];
+      if (mixed) fluid_rates(fluid, compact[0], neighbours, q, FluidScheme::consistent);
+      else fluid_rates(fluid, cast.motion[0], neighbours, q, FluidScheme::consistent);
+      const double rounding = mixed ? 1e-5 : 1e-12;
+      for (int d = 0; d < dimensions; ++d)
+        EXPECT_LT(difference(fluid.column(Field::acceleration, d), expected.acceleration[static_cast<std::size_t>(d)]),
+                  rounding);
+      EXPECT_LT(difference(fluid.column(Field::density_rate), expected.density), rounding);
+    }
+  }
+}
+
+// At rest, whatever the arrangement: the weight of the heavy fluid accelerates neither. Of the pull towards the middle
+// between two particles, a hundredth of the weights' difference, a fraction is left.
+TEST(JoinedFluids, StayAtRest) {
+  for (const std::size_t who : {0u, 1u}) {
+    Uniform random(16);
+    Cast cast = light_over_heavy(2, 5.0, random);
+    const double g = 9.81, surface = 5.0;
+    for (auto& p : cast.phases)
+      for (std::size_t k = 0; k < p.size(); ++k)
+        p.column(Field::pressure)[k] = p.mass() * g * (surface - position(p, k)[1]);
+    cast.pack();
+    FluidParameters q = bare();
+    q.reference_density = cast.phases[who].mass();
+    q.gravity = {0, -g, 0};
+    const auto wendland = KernelKind::wendland_c2;
+    const std::size_t own = who == 0 ? 0 : 2;
+    const std::vector<FluidNeighbour> neighbours{
+        {&cast.list(own), &cast.motion[who], wendland, 3.0, 0, true},
+        {&cast.list(own + 1), &cast.motion[1 - who], wendland, 2.6, 0, false, nullptr, cast.phases[1 - who].mass()}};
+    auto& fluid = cast.phases[who];
+    fluid_rates(fluid, cast.motion[who], neighbours, q, FluidScheme::consistent);
+    int near = 0;
+    for (std::size_t k = 0; k < fluid.size(); ++k) {
+      const double y = position(fluid, k)[1];
+      if (y < 3.6 || y > 6.4) continue;
+      ++near;
+      EXPECT_LT(std::hypot(fluid.column(Field::acceleration, 0)[k], fluid.column(Field::acceleration, 1)[k]),
+                0.005 * g);
+    }
+    EXPECT_GT(near, 5);
+  }
+}
+
 /// A perturbed block of fluid with given pressure and velocity, rates by the consistent scheme, twice, so that the
 /// weights of the Laplacian are those of this arrangement.
 class ConsistentBlock {

@@ -224,6 +224,11 @@ TEST(Plan, RefusesWhatNoLawCanDo) {
   EXPECT_THROW(plan_of(scene(air + wall, "air-air = 3.0\nfloor-floor = 3.0\n", {"air"},
                              "[[fill]]\nphase = \"floor\"\nshape = { sides = [\"left\"] }\n")),
                SceneError);
+  const std::string turbulent = air + "scheme = \"consistent\"\nturbulence = \"smagorinsky\"\n";
+  const std::string water = "[phases.water]\nkind = \"fluid\"\ndensity = 1000\nscheme = \"consistent\"\n";
+  const std::string own = "air-air = 3.0\nwater-water = 3.0\n";
+  EXPECT_NO_THROW(plan_of(scene(turbulent + water, own, {"air", "water"})));
+  EXPECT_THROW(plan_of(scene(turbulent + water, own + "air-water = 3.0\n", {"air", "water"})), SceneError);
 }
 
 }  // namespace
