@@ -21,6 +21,7 @@ namespace barchan {
 
 template <int Dim>
 struct JoinedFluids {
+  static constexpr bool needs_distance = true;
   static constexpr bool corrected = true;
   static constexpr double middling = 0.01;
 
