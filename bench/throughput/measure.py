@@ -143,7 +143,7 @@ def plot(results):
             axes.axvline(value, linestyle=style, color="#444444" if precision == "double" else "#999999", linewidth=1,
                          label=f"limit, whole step, {d}D, {precision}")
     axes.set_xlabel("million pairs a second, one core")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="lower right")
     figure.savefig(ROOT / "docs/gallery/performance.png", dpi=110)
 
 
