@@ -35,7 +35,9 @@ GROWTH = {"2D": ("air2d", [1e4, 1e5, 1e6, 4e6]), "3D": ("air3d", [1e5, 1e6])}
 
 def throughput(build, options):
     out = subprocess.run([build / "bench/throughput", *options, "--json"], capture_output=True, text=True, check=True)
-    return json.loads(out.stdout)
+    result = json.loads(out.stdout)
+    result["case"] = pathlib.PurePath(result["case"]).name
+    return result
 
 
 def limit(build, dimensions):
