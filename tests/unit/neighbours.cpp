@@ -310,6 +310,28 @@ TEST(Skin, BodiesThatCrossAGapMeet) {
   EXPECT_GT(cast.neighbours.rebuilds(), 2);
 }
 
+// Particles that hardly move get a thin skin, fast ones a wide one again, and no list misses anybody meanwhile.
+TEST(Skin, FollowsTheMotion) {
+  Cast cast = two_hundred(0.1);
+  cast.neighbours.adapt_skin();
+  Uniform random(10);
+  const auto shake = [&](int steps, double most) {
+    for (int step = 0; step < steps; ++step) {
+      auto& p = cast.phases[0];
+      for (int d = 0; d < 2; ++d)
+        for (std::size_t k = 0; k < p.size(); ++k) p.column(Field::position, d)[k] += random(-most, most);
+      cast.neighbours.update(cast.phases, false);
+      cast.pack();
+      if (step % 4 == 0) expect_complete(cast, 0, 2.0, 2.5);
+    }
+  };
+  shake(140, 1e-6);
+  EXPECT_LT(cast.neighbours.skin(), 0.04);
+  EXPECT_LT(cast.neighbours.rebuilds(), 5);
+  shake(60, 0.03);
+  EXPECT_GT(cast.neighbours.skin(), 0.09);
+}
+
 TEST(Skin, APositionThatIsNotFiniteRebuilds) {
   Cast cast = two_hundred(0.1);
   cast.phases[0].column(Field::position, 0)[5] = std::numeric_limits<double>::infinity();
