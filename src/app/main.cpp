@@ -80,7 +80,7 @@ int dispatch(int argc, char** argv) {
   auto* c_plan = app.add_subcommand("plan", "show what a scene would run and what it costs; run nothing");
   c_plan->add_option("scene", scene, "scene file (.toml)")->required();
   int threads = 0;
-  c_plan->add_option("--threads", threads, "number of threads of the estimate (default: those that run takes)")
+  c_plan->add_option("--threads", threads, "number of threads that the estimate is for (default: those that run takes)")
       ->check(CLI::Range(1, 4096));
   c_plan->add_flag("--json", json, "as JSON");
   add_set(c_plan);

@@ -97,7 +97,8 @@ TEST_F(Commands, PlanTakesThreadsAndPassesWarningsOn) {
   EXPECT_EQ(run("plan s.toml --threads 0"), 2);
 }
 
-/// The title that a scene has from a file name which is no UTF-8 cannot be written as JSON: an exception that is not ours.
+/// The title that a scene has from a file name which is no UTF-8 cannot be written as JSON: an exception that is not
+/// ours.
 TEST_F(Commands, ExceptionOfALibraryHasAStatus) {
   write("\xff.toml", square_text);
   EXPECT_EQ(run("plan --json '\xff.toml'"), 5);

@@ -1,5 +1,6 @@
 // [[forcing]] acts on every kind of phase that moves, and a bed of grains comes to rest with the defaults.
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <cmath>
 
@@ -7,6 +8,12 @@
 
 namespace barchan {
 namespace {
+
+struct OneThread {
+  int before = omp_get_max_threads();
+  OneThread() { omp_set_num_threads(1); }
+  ~OneThread() { omp_set_num_threads(before); }
+};
 
 /// One particle far from everything, of the given kind.
 std::string lonely(const std::string& kind, const std::string& force) {
@@ -28,6 +35,7 @@ acceleration = )" +
 }
 
 TEST(Forces, ActOnGrainsAndBodies) {
+  const OneThread one;  // a handful of particles
   const std::string kinds[] = {"kind = \"grains\"\ndensity = 2650\n",
                                "kind = \"elastic\"\ndensity = 1000\nyoung = 1e6\n", "kind = \"fluid\"\ndensity = 1\n"};
   for (const std::string& kind : kinds) {
@@ -44,8 +52,10 @@ TEST(Forces, ActOnGrainsAndBodies) {
   }
 }
 
-/// A heap that falls 5 mm: with the default restitution nothing moves faster than 2 cm/s after 0.4 s; with 1 grains still fly.
+/// A heap that falls 5 mm: with the default restitution nothing moves faster than 2 cm/s after 0.4 s; with 1 grains
+/// still fly.
 TEST(Forces, BedComesToRestWithTheDefaults) {
+  const OneThread one;
   std::string text = small::grains;
   text.erase(text.find("restitution = 0.6\n"), std::string("restitution = 0.6\n").size());
   const auto speed_after = [&](const std::vector<std::string>& overrides) {
