@@ -205,6 +205,7 @@ void add_passes(const Scene& scene, Plan& plan) {
   pass("reaction on solids", any_law(Law::coupling));
   pass("drag", std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.drag > 0; }));
   pass("kick", true);
+  pass("watch", true);
 }
 
 }  // namespace
