@@ -184,7 +184,7 @@ void Watch::make_pairs() {
     const bool turned = wall(e.a);
     const bool at_wall = wall(e.a) || wall(e.b);
     pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward, e.law == Law::elastic,
-                      (at_wall ? WatchBounds::wall_depth : WatchBounds::coincidence) * see_.plan.spacing});
+                      (at_wall ? WatchBounds::wall_depth : WatchBounds::coincidence) * see_.plan.spacing, e.radius});
   }
 }
 
@@ -192,18 +192,22 @@ double Watch::speed_bound(const Guard& g, double dt) const { return std::min(g.s
 
 void Watch::look(const Moment& now) {
   const double fastest = look_at_phases(now);
+  // Two particles that were apart have come nearer by twice their way at most, and half as much again for those that
+  // were faster in between.
+  const double way_since = 3.0 * std::max(fastest, last_fastest_) * (now.time - last_time_);
+  for (auto& pair : pairs_) pair.left -= way_since;
+  last_fastest_ = fastest;
   // A grain or a body must not get through half a spacing unseen.
   const double way = fastest * now.dt, most = WatchBounds::body_way * see_.plan.spacing;
   next_ = now.step + (way * longest_interval > most ? std::max(1L, static_cast<long>(most / way)) : longest_interval);
-  if (++looks_ % 2 == 0) look_at_pairs(now, false);
+  const bool keeps = now.step - good_.step() >= keep_interval;
+  if (++looks_ % 2 == 0 || keeps) look_at_pairs(now, false);
   look_at_energy(now);
-  if (now.step - good_.step() < keep_interval) return;
-  look_at_pairs(now, true);
-  good_.keep(see_.particles, now.time, now.step);
+  if (keeps) good_.keep(see_.particles, now.time, now.step);
 }
 
 void Watch::look_closely(const Moment& now) {
-  look_at_phases(now);
+  last_fastest_ = look_at_phases(now);
   look_at_pairs(now, true);
   look_at_energy(now);
   good_.keep(see_.particles, now.time, now.step);
@@ -245,7 +249,7 @@ double Watch::look_at_phases(const Moment& now) {
   return fastest_solid;
 }
 
-bool Watch::too_near(const Apart& pair) const {
+bool Watch::too_near(Apart& pair) const {
   const PairList& list = see_.neighbours.list(static_cast<std::size_t>(pair.list));
   const auto& records = pair.stress ? see_.stress : see_.motion;
   const RecordArray &own = records[pair.a], &others = records[pair.b];
@@ -253,36 +257,48 @@ bool Watch::too_near(const Apart& pair) const {
   const double least = see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
                        : pair.stress             ? least_separation<3, 16>(n, list, own, others)
                                                  : least_separation<3, 8>(n, list, own, others);
-  return least < pair.distance * pair.distance;
+  pair.left = std::sqrt(std::min(least, pair.reach * pair.reach)) - pair.distance;
+  return pair.left < 0.0;
 }
 
 void Watch::look_at_pairs(const Moment& now, bool all) {
-  for (const Apart& pair : pairs_)
-    if (too_near(pair)) tell_pair(pair, now);
+  for (Apart& pair : pairs_)
+    if ((all || pair.left < 0.0) && too_near(pair)) tell_pair(pair, now);
   for (const Guard& g : guards_)
     if (g.own_list >= 0) look_for_pairing(g, now, all);
 }
 
 /// The square of the distance (m2) of a fluid particle to the nearest of its phase.
-double Watch::nearest(const Guard& g, std::size_t k) const {
+template <std::size_t Dim>
+double Watch::nearest_in(const Guard& g, std::size_t k) const {
   const PhaseParticles& p = see_.particles[g.phase];
   const CellGrid& grid = see_.neighbours.grid(g.phase);
+  const Image* images = grid.image_list().data();
+  const auto x = columns<Dim>(p, Field::position);
   const auto row = see_.neighbours.list(static_cast<std::size_t>(g.own_list)).row(k);
+  const std::size_t n = p.size(), all = n + grid.images();
   double least = 1e300;
   for (const std::uint32_t* q = row.begin; q != row.end; ++q) {
-    const std::size_t b = *q / PairList::stride, image = b - p.size();
-    if (b >= p.size() && image >= grid.images()) continue;  // the dummy
-    const std::size_t source = b < p.size() ? b : grid.image_list()[image].source;
+    const std::size_t b = *q / PairList::stride;
     double r2 = 0.0;
-    for (int d = 0; d < p.dimensions(); ++d) {
-      const auto c = static_cast<std::size_t>(d);
-      const double* x = p.column(Field::position, d);
-      const double shift = b < p.size() ? 0.0 : grid.image_list()[image].shift[c] * grid.period()[c];
-      r2 += (x[k] - x[source] - shift) * (x[k] - x[source] - shift);
+    if (b < n) {
+      for (std::size_t d = 0; d < Dim; ++d) r2 += (x[d][k] - x[d][b]) * (x[d][k] - x[d][b]);
+    } else if (b < all) {
+      const Image& image = images[b - n];
+      for (std::size_t d = 0; d < Dim; ++d) {
+        const double r = x[d][k] - x[d][image.source] - image.shift[d] * grid.period()[d];
+        r2 += r * r;
+      }
+    } else {
+      continue;  // the dummy
     }
-    least = std::min(least, r2);
+    least = r2 < least ? r2 : least;
   }
   return least;
+}
+
+double Watch::nearest(const Guard& g, std::size_t k) const {
+  return see_.plan.dimensions == 2 ? nearest_in<2>(g, k) : nearest_in<3>(g, k);
 }
 
 double Watch::strongest_force(const Moment& now) const {

@@ -93,6 +93,8 @@ class Watch {
     int list = -1;
     bool stress = false;    // whose records
     double distance = 0.0;  // m
+    double reach = 0.0;     // m, of the list
+    double left = -1.0;     // m, what they may still approach each other before it is time to look
   };
   struct Part {
     double squares = 0.0, fastest = 0.0, lightest = 1e300, densest = -1e300, wrong = 0.0;
@@ -117,9 +119,11 @@ class Watch {
   void look_at_pairs(const Moment& now, bool all);
   void look_at_energy(const Moment& now);
   double strongest_force(const Moment& now) const;
-  bool too_near(const Apart& pair) const;
+  bool too_near(Apart& pair) const;
   void look_for_pairing(const Guard& g, const Moment& now, bool all) const;
   double nearest(const Guard& g, std::size_t k) const;
+  template <std::size_t Dim>
+  double nearest_in(const Guard& g, std::size_t k) const;
   void note_density(const Guard& g, double error, const Moment& now);
 
   // the slow part: who it is, and in which words
@@ -136,13 +140,13 @@ class Watch {
   std::vector<Force> forces_;
   KeptState good_;
   long next_ = 1, looks_ = 0;
-  double mass_ = 0.0;                          // kg of what moves
-  double start_energy_ = 0.0;                  // J: kinetic and elastic at the beginning, and what disorder may free
-  double start_speed_ = 0.0;                   // m/s, from it
-  double drag_ = 0.0;                          // m/s2, of walls that pull with a given stress
-  double forced_ = 0.0;                        // m/s that forces can have given so far
-  double last_time_ = 0.0, wall_speed_ = 0.0;  // s, m/s
-  double energy_ = 0.0;                        // J, kinetic, at the last look
+  double mass_ = 0.0;          // kg of what moves
+  double start_energy_ = 0.0;  // J: kinetic and elastic at the beginning, and what disorder may free
+  double start_speed_ = 0.0;   // m/s, from it
+  double drag_ = 0.0;          // m/s2, of walls that pull with a given stress
+  double forced_ = 0.0;        // m/s that forces can have given so far
+  double last_time_ = 0.0, last_fastest_ = 0.0, wall_speed_ = 0.0;  // s, m/s
+  double energy_ = 0.0;                                             // J, kinetic, at the last look
   Extreme extreme_;
 };
 
