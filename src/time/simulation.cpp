@@ -101,7 +101,8 @@ void Simulation::step(double largest) {
   rates(false);
   timed(pass_kick, [&] { kick(0.5 * dt_); });
   if (!std::isfinite(largest_acceleration_)) watch_->explain(moment());
-  if (watch_->due(steps_)) timed(pass_watch, [&] { watch_->look(moment()); });
+  if (watch_->due(steps_) || largest_acceleration_ * dt_ > watch_->signal_speed())
+    timed(pass_watch, [&] { watch_->look(moment()); });
 }
 
 /// Everything that is evaluated at the new positions; passes that have nothing to do are left out.
@@ -187,7 +188,12 @@ void Simulation::check_start() {
   try {
     if (!std::isfinite(largest_acceleration_)) watch_->explain(moment());
     check();
-    stable_step();
+    const double dt = stable_step();
+    if (largest_acceleration_ * dt > watch_->signal_speed())
+      throw BreakdownError(watch_->most_accelerated(moment()) + ": in the first step of " + brief(dt) +
+                           " s it gains more than the signal speed, " + brief(watch_->signal_speed()) +
+                           " m/s: lower the [[forcing]] or the pressure of the fills, or raise the sound speed or the "
+                           "contact-speed");
   } catch (const BreakdownError& e) {
     throw SceneError(scene_.file + ": the scene is wrong at its start: " + e.what());
   }

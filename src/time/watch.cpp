@@ -188,27 +188,37 @@ void Watch::make_pairs() {
   }
 }
 
+double Watch::signal_speed() const {
+  double largest = 0.0;
+  for (const auto& g : guards_) largest = std::max(largest, g.signal_speed);
+  return largest;
+}
+
 double Watch::speed_bound(const Guard& g, double dt) const { return std::min(g.signal_speed, g.way / dt); }
 
 void Watch::look(const Moment& now) {
   const double fastest = look_at_phases(now);
-  // Two particles that were apart have come nearer by twice their way at most, and half as much again for those that
+  // Two that were apart have come nearer by twice the way of the fastest at most, and half as much again for those that
   // were faster in between.
   const double way_since = 3.0 * std::max(fastest, last_fastest_) * (now.time - last_time_);
   for (auto& pair : pairs_) pair.left -= way_since;
   last_fastest_ = fastest;
-  // A grain or a body must not get through half a spacing unseen.
-  const double way = fastest * now.dt, most = WatchBounds::body_way * see_.plan.spacing;
-  next_ = now.step + (way * longest_interval > most ? std::max(1L, static_cast<long>(most / way)) : longest_interval);
+  const double way = 2.0 * fastest * now.dt;  // in the next step
   const bool keeps = now.step - good_.step() >= keep_interval;
-  if (++looks_ % 2 == 0 || keeps) look_at_pairs(now, false);
+  look_at_pairs(now, way * longest_interval);
+  if (++looks_ % 2 == 0 || keeps) look_at_pairing(now, false);
   look_at_energy(now);
   if (keeps) good_.keep(see_.particles, now.time, now.step);
+  next_ = now.step + longest_interval;
+  for (const auto& pair : pairs_)  // none may be near and apart again unseen
+    if (pair.left < way * longest_interval)
+      next_ = std::min(next_, now.step + std::max(1L, static_cast<long>(pair.left / way)));
 }
 
 void Watch::look_closely(const Moment& now) {
   last_fastest_ = look_at_phases(now);
-  look_at_pairs(now, true);
+  look_at_pairs(now, 1e300);
+  look_at_pairing(now, true);
   look_at_energy(now);
   good_.keep(see_.particles, now.time, now.step);
 }
@@ -261,9 +271,13 @@ bool Watch::too_near(Apart& pair) const {
   return pair.left < 0.0;
 }
 
-void Watch::look_at_pairs(const Moment& now, bool all) {
+/// Looks at those that may come too near within a way (m).
+void Watch::look_at_pairs(const Moment& now, double way) {
   for (Apart& pair : pairs_)
-    if ((all || pair.left < 0.0) && too_near(pair)) tell_pair(pair, now);
+    if (pair.left <= way && too_near(pair)) tell_pair(pair, now);
+}
+
+void Watch::look_at_pairing(const Moment& now, bool all) const {
   for (const Guard& g : guards_)
     if (g.own_list >= 0) look_for_pairing(g, now, all);
 }

@@ -1,9 +1,10 @@
 // The watch over a run: stops it within 20 steps of the first particle that is wrong.
 //
 // Every few steps (8 at most) one loop over positions, velocities and densities compares each particle with the bounds
-// of its phase. Every second time the pair lists of grains and bodies are searched for particles in one place, and a
-// sample of each fluid for particles in pairs. Only when a bound is exceeded is the particle looked for, so that all
-// this costs less than a hundredth of a step. A state that passed everything is kept every 64 steps.
+// of its phase. The pair lists of grains and bodies are searched for particles in one place as soon as the fastest can
+// have got there. Every second time a sample of each fluid is searched for particles in pairs. Only when a bound is
+// exceeded is the particle looked for, so that all this costs less than a hundredth of a step. A state that passed
+// everything is kept every 64 steps.
 #pragma once
 
 #include <array>
@@ -56,6 +57,8 @@ class Watch {
 
   /// Whether a look is due after this step.
   bool due(long step) const { return step >= next_; }
+  /// The largest signal speed of all phases (m/s): what changes a speed by more in one step is not to wait for a look.
+  double signal_speed() const;
   /// The look of a step: throws BreakdownError if a particle is wrong. Keeps a good state now and then. Allocates
   /// nothing.
   void look(const Moment& now);
@@ -116,7 +119,8 @@ class Watch {
   void make_pairs();
   double speed_bound(const Guard& g, double dt) const;
   double look_at_phases(const Moment& now);  // returns the fastest grain or body, m/s
-  void look_at_pairs(const Moment& now, bool all);
+  void look_at_pairs(const Moment& now, double way);
+  void look_at_pairing(const Moment& now, bool all) const;
   void look_at_energy(const Moment& now);
   double strongest_force(const Moment& now) const;
   bool too_near(Apart& pair) const;

@@ -22,10 +22,10 @@ std::string text_of(const Vec3& x, int dimensions) {
   return text + ") m";
 }
 
-double speed_of(const PhaseParticles& p, std::size_t k) {
-  double v2 = 0.0;
-  for (int d = 0; d < p.dimensions(); ++d) v2 += p.column(Field::velocity, d)[k] * p.column(Field::velocity, d)[k];
-  return std::sqrt(v2);
+double size_of(const PhaseParticles& p, std::size_t k, Field vector) {
+  double squares = 0.0;
+  for (int d = 0; d < p.dimensions(); ++d) squares += p.column(vector, d)[k] * p.column(vector, d)[k];
+  return std::sqrt(squares);
 }
 
 const char* one_of(PhaseKind kind) {
@@ -67,8 +67,8 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
   const Plan& plan = see_.plan;
   const std::string key = "phases." + p.name() + ".";
   const bool fluid = p.kind() == PhaseKind::fluid, grains = p.kind() == PhaseKind::grains;
-  for (int d = 0; d < p.dimensions(); ++d)
-    for (const Field f : {Field::position, Field::velocity, Field::acceleration})
+  for (const Field f : {Field::acceleration, Field::velocity, Field::position})
+    for (int d = 0; d < p.dimensions(); ++d)
       if (!std::isfinite(p.column(f, d)[k]))
         return ": " + std::string(info(f).name) + " is not finite; the step was too long or particles overlap: lower " +
                step_key() + ", raise " +
@@ -94,9 +94,10 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
            "; no wall with which it interacts holds it there: add a wall on that side and an entry of \"" + p.name() +
            "\" with it in [interactions], or enlarge domain.size";
   }
-  const double speed = speed_of(p, k);
+  const double speed = size_of(p, k, Field::velocity);
   if (!(speed <= g.signal_speed)) {
-    const std::string found = " is faster (" + brief(speed) + " m/s) than ";
+    const std::string found = " is faster (" + brief(speed) + " m/s, with an acceleration of " +
+                              brief(size_of(p, k, Field::acceleration)) + " m/s2) than ";
     if (fluid)
       return found + "sound (" + brief(g.signal_speed) +
              " m/s); the flow ran away, or the scene has too slow a sound: " + "raise " + key +
@@ -235,7 +236,7 @@ void Watch::look_at_energy(const Moment& now) {
   }
   double walls = 0.0;
   for (const auto& p : see_.particles)
-    if (p.kind() == PhaseKind::wall && p.size() > 0) walls = std::max(walls, speed_of(p, 0));
+    if (p.kind() == PhaseKind::wall && p.size() > 0) walls = std::max(walls, size_of(p, 0, Field::velocity));
   wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
   const double bound = WatchBounds::energy * 0.5 * mass_ * speed * speed;
