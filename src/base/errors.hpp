@@ -1,4 +1,4 @@
-// The four ways in which a run ends badly, one type each. `main` turns them into the exit status of the contract.
+// The three ways in which a run ends badly, one type each. `main` turns them into the exit status of the contract.
 #pragma once
 
 #include <stdexcept>
@@ -11,7 +11,7 @@ struct SceneError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The run broke down (exit status 3): non-finite value, escaped particle, collapsed time step.
+/// The run broke down (exit status 3): a particle is wrong (time/watch.hpp), or the time step collapsed.
 struct BreakdownError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
