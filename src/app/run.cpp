@@ -15,6 +15,7 @@
 #include "base/version.hpp"
 #include "measure/measurements.hpp"
 #include "output/history.hpp"
+#include "output/numbers.hpp"
 #include "output/run_report.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
@@ -33,6 +34,11 @@ double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Where the first bad state of a run goes; not listed in the series.
+fs::path bad_file(const fs::path& directory, const Scene& scene) {
+  return directory / (scene.name + (scene.output.format == FrameFormat::vtp ? "_bad.vtp" : "_bad.vtu"));
 }
 
 /// All that a run writes, and where it stands.
@@ -54,11 +60,16 @@ class Run {
     int status = 0;
     try {
       status = loop();
+      if (last_frame_step_ != simulation_.steps()) {
+        simulation_.check();
+        write_frame();
+      }
     } catch (const BreakdownError& e) {
-      reason_ = std::string("breakdown: ") + e.what();
+      const std::string message = e.what() + write_bad_state();
+      reason_ = "breakdown: " + message;
       finish();
       progress_.end(reason_);
-      throw;
+      throw BreakdownError(message);
     } catch (const OutputError& e) {
       reason_ = std::string("output failed: ") + e.what();
       progress_.end(reason_);
@@ -78,18 +89,18 @@ class Run {
     if (measurements_) measurements_->sample(simulation_);
     write_frame();
     write_row();
+    const auto due = [&](double next) { return simulation_.time() * (1.0 + 1e-12) >= next; };
     while (simulation_.time() < end * (1.0 - 1e-12)) {
       const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
       const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
       simulation_.step(std::min(next_frame, next_row) - simulation_.time());
+      if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
       if (measurements_) measurements_->sample(simulation_);
-      const double now = simulation_.time() * (1.0 + 1e-12);
-      if (now >= next_row) {
-        simulation_.check();
+      if (due(next_row)) {
         write_row();
         ++rows_due;
       }
-      if (now >= next_frame) {
+      if (due(next_frame)) {
         write_frame();
         ++frames_due;
       }
@@ -110,16 +121,34 @@ class Run {
     return status;
   }
 
+  /// A breakdown: the last good state joins the series, the first bad one stands beside it. What to say of them.
+  std::string write_bad_state() {
+    const long good = simulation_.good_step();
+    if (good > last_frame_step_) {
+      series_.write(simulation_.good_frame(frames_++));
+      if (measurements_) measurements_->write(directory_, simulation_.good_time());
+      last_frame_step_ = good;
+      last_frame_time_ = simulation_.good_time();
+    }
+    series_.finish();
+    barchan::write_frame(bad_file(directory_, scene_), simulation_.frame(frames_), scene_.output.format,
+                         scene_.output.compress);
+    return "; last good state: " + series_.last_file() + " (t = " + brief(last_frame_time_) + " s, step " +
+           std::to_string(last_frame_step_) +
+           "), first bad state: " + bad_file(directory_, scene_).filename().string() +
+           " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";
+  }
+
   void write_frame() {
     series_.write(simulation_.frame(frames_++));
     if (measurements_) measurements_->write(directory_, simulation_.time());
     last_frame_step_ = simulation_.steps();
+    last_frame_time_ = simulation_.time();
   }
   void write_row() { history_.row(simulation_.history_row()); }
 
-  /// The last state, the series and the report.
+  /// The report, when the series is whole.
   void finish() {
-    if (last_frame_step_ != simulation_.steps()) write_frame();
     series_.finish();
     const Plan& plan = simulation_.plan();
     RunReport r;
@@ -142,14 +171,15 @@ class Run {
       r.pairs[e.name] = static_cast<long>(simulation_.pairs(e));
       pairs += static_cast<double>(simulation_.pairs(e));
     }
-    r.passes = plan.passes;
     r.steps = simulation_.steps();
     r.simulated_time = simulation_.time();
     double stepping = 0;
-    for (const auto& [name, seconds] : simulation_.seconds()) {
+    for (std::size_t k = 0; k < simulation_.seconds().size(); ++k) {
+      const auto& [name, seconds] = simulation_.seconds()[k];
       stepping += seconds;
-      for (const auto& planned : plan.passes)
-        if (planned == name) r.seconds.emplace_back(name, seconds);
+      if (simulation_.executed()[k] == 0) continue;
+      r.passes.push_back(name);
+      r.seconds.emplace_back(name, seconds);
     }
     r.seconds.emplace_back("output (waiting)", series_.seconds_waiting());
     r.seconds.emplace_back("output (behind)", series_.seconds_writing());
@@ -174,6 +204,8 @@ class Run {
     r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.neighbours().rebuilds());
     r.budgets["bytes_per_particle"] = static_cast<double>(simulation_.bytes()) / std::max(plan.particles(), 1.0);
     r.end_reason = reason_;
+    r.warnings = simulation_.warnings().texts();
+    for (const auto& w : r.warnings) std::cerr << "barchan: warning: " << w << '\n';
     write_run_report(directory_ / "run.json", r);
   }
 
@@ -186,6 +218,7 @@ class Run {
   std::optional<Measurements> measurements_;  // empty: the scene measures nothing
   int frames_ = 0;
   long last_frame_step_ = -1;
+  double last_frame_time_ = 0;
   std::string reason_;
 };
 
@@ -206,13 +239,14 @@ int run(const RunOptions& options) {
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
-  simulation.check();
+  simulation.check_start();
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::error_code ignored;
-  fs::remove(directory / "TERMINATE", ignored);  // one that an earlier run left
+  fs::remove(directory / "TERMINATE", ignored);  // what an earlier run left
+  for (const char* suffix : {"_bad.vtp", "_bad.vtu"}) fs::remove(directory / (scene.name + suffix), ignored);
   return Run(scene, plan, simulation, directory, options.quiet).go();
 }
 

@@ -20,6 +20,7 @@ std::string to_json(const RunReport& r) {
       {"scene",
        {{"title", r.scene_title}, {"file", r.scene_file}, {"state", r.scene_state}, {"spacing", r.scene_spacing}}},
       {"end_reason", r.end_reason},
+      {"warnings", Json(r.warnings)},
       {"steps", r.steps},
       {"simulated_time", r.simulated_time},
       {"particles", Json(r.particles)},

@@ -20,7 +20,7 @@ struct RunReport {
   std::map<std::string, long> particles;  // by phase
   std::map<std::string, long> pairs;      // by matrix entry, "air-sand": directed pairs of the last list
   std::map<std::string, std::vector<std::string>> fields;  // by phase
-  std::vector<std::string> passes;                         // in the order of the step
+  std::vector<std::string> passes;                         // that were executed, in the order of the step
 
   // the run
   long steps = 0;
@@ -37,7 +37,8 @@ struct RunReport {
     long samples = 0;                // moments at which was measured
   };
   std::vector<Measured> measured;
-  std::string end_reason;  // "end", "breakdown: ...", "SIGINT", ...
+  std::vector<std::string> warnings;  // what a user should know before the results are used
+  std::string end_reason;             // "end", "breakdown: ...", "SIGINT", ...
 };
 
 /// The document that write_run_report writes. What is not finite becomes null.

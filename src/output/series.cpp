@@ -168,5 +168,9 @@ void SeriesWriter::finish() {
 double SeriesWriter::seconds_writing() const { return work_->writing; }
 double SeriesWriter::seconds_waiting() const { return work_->waiting; }
 long SeriesWriter::frames() const { return work_->whole; }
+std::string SeriesWriter::last_file() const {
+  const Lock lock(work_->mutex);
+  return work_->entries.empty() ? "" : work_->entries.back().file;
+}
 
 }  // namespace barchan

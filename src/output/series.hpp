@@ -34,6 +34,7 @@ class SeriesWriter {
   double seconds_writing() const;  ///< time the writer's thread spent
   double seconds_waiting() const;  ///< time write() and finish() blocked the caller
   long frames() const;             ///< whole frames, kept ones included
+  std::string last_file() const;   ///< of the last whole frame; "" if none. After finish()
 
  private:
   struct Work;

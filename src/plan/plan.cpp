@@ -181,6 +181,7 @@ void add_passes(const Scene& scene, Plan& plan) {
   pass("bulk speed",
        std::any_of(scene.forcings.begin(), scene.forcings.end(), [](const Forcing& f) { return f.hold_bulk_speed; }));
   pass("kick", true);
+  pass("watch", true);
 }
 
 }  // namespace

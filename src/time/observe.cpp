@@ -1,20 +1,12 @@
-// What a Simulation tells: frames, rows of history.csv, checks.
+// What a Simulation tells: frames, rows of history.csv, warnings.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "base/errors.hpp"
 #include "time/wiring.hpp"
 
 namespace barchan {
 
 namespace {
-
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
 
 /// Sum of f(k) in an order that only n decides.
 template <class F>
@@ -41,6 +33,7 @@ std::uint64_t Simulation::pairs(const PlanEntry& e) const {
 std::size_t Simulation::bytes() const {
   std::size_t total = neighbours_.bytes();
   for (const auto& p : particles_) total += p.bytes();
+  if (watch_) total += watch_->bytes();
   for (const auto* set : {&motion_, &extended_, &stress_})
     for (const auto& r : *set) total += r.bytes();
   return total;
@@ -83,12 +76,7 @@ Frame Simulation::frame(int index) const {
       f.phase.push_back(static_cast<std::int32_t>(k));
     }
   }
-  std::vector<Field> fields{Field::velocity, Field::density, Field::pressure, Field::smoothing_length};
-  for (const auto& name : scene_.output.fields) {
-    const auto field = find_field(name);
-    if (field && *field != Field::position && std::find(fields.begin(), fields.end(), *field) == fields.end())
-      fields.push_back(*field);
-  }
+  const std::vector<Field> fields = frame_fields(scene_);
   for (const Field field : fields) {
     const FieldInfo& about = info(field);
     FrameField out;
@@ -188,49 +176,24 @@ std::vector<double> Simulation::history_row() const {
   return row;
 }
 
-void Simulation::check() const {
-  for (std::size_t k = 0; k < particles_.size(); ++k) {
-    const auto& p = particles_[k];
-    if (p.kind() == PhaseKind::wall) continue;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      std::string place;
-      for (int d = 0; d < plan_.dimensions; ++d) place += (d ? ", " : "") + number(p.column(Field::position, d)[i]);
-      const auto who = [&] {
-        return "particle " + std::to_string(p.id()[i]) + " of phase \"" + p.name() + "\" at (" + place +
-               ") m, t = " + number(time_) + " s, step " + std::to_string(steps_);
-      };
-      for (int d = 0; d < plan_.dimensions; ++d) {
-        const auto c = static_cast<std::size_t>(d);
-        const double x = p.column(Field::position, d)[i];
-        for (const Field f : {Field::position, Field::velocity, Field::acceleration})
-          if (!std::isfinite(p.column(f, d)[i]))
-            throw BreakdownError(who() + ": " + std::string(info(f).name) +
-                                 " is not finite; the step was too long or particles overlap: lower time.safety, raise "
-                                 "sound-speed or density-diffusion of the phase");
-        const double margin = 0.5 * plan_.spacing;
-        if (!plan_.bounds.periodic[c] && (x < plan_.bounds.low[c] - margin || x > plan_.bounds.high[c] + margin))
-          throw BreakdownError(who() + " escaped through the " + (x < plan_.bounds.low[c] ? "lower" : "upper") +
-                               " side of " + "xyz"[d] +
-                               "; there is no wall that holds it, or it moves too fast for the contact: add a "
-                               "wall on that side, enlarge domain.size, or raise contact-speed or sound-speed");
-      }
-      if (p.kind() == PhaseKind::fluid) {
-        double speed2 = 0.0;
-        for (int d = 0; d < plan_.dimensions; ++d) speed2 += std::pow(p.column(Field::velocity, d)[i], 2);
-        if (speed2 > std::pow(plan_.phases[k].sound_speed, 2))
-          throw BreakdownError(who() + " is faster (" + number(std::sqrt(speed2)) + " m/s) than sound (" +
-                               number(plan_.phases[k].sound_speed) +
-                               " m/s); the flow ran away: raise sound-speed, viscosity or artificial-viscosity");
-      }
-      if (p.has(Field::density)) {
-        const double rho = p.column(Field::density)[i];
-        if (!(rho > 0.0) || !std::isfinite(rho))
-          throw BreakdownError(who() + ": density " + number(rho) +
-                               " kg/m3 is impossible; the pressure ran away: raise "
-                               "sound-speed, or lower time.safety");
-      }
-    }
-  }
+Frame Simulation::good_frame(int index) {
+  KeptState& good = watch_->good();
+  const double time = time_;
+  const long step = steps_;
+  good.exchange(particles_);
+  time_ = good.time();
+  steps_ = good.step();
+  Frame f = frame(index);
+  good.exchange(particles_);
+  time_ = time;
+  steps_ = step;
+  return f;
+}
+
+Warnings Simulation::warnings() const {
+  Warnings all;
+  watch_->report(all);
+  return all;
 }
 
 }  // namespace barchan

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "kernels/kernel.hpp"
+#include "output/numbers.hpp"
 #include "time/limits.hpp"
 #include "time/wiring.hpp"
 
@@ -31,6 +32,7 @@ enum Pass : std::size_t {
   pass_drag,
   pass_hold,
   pass_kick,
+  pass_watch,
   pass_count
 };
 constexpr std::array<const char*, pass_count> pass_names{"kick and drift",
@@ -50,7 +52,8 @@ constexpr std::array<const char*, pass_count> pass_names{"kick and drift",
                                                          "reaction on solids",
                                                          "drag",
                                                          "bulk speed",
-                                                         "kick"};
+                                                         "kick",
+                                                         "watch"};
 
 double thread_seconds() {
   timespec t{};
@@ -65,6 +68,7 @@ void Simulation::timed(std::size_t pass, F&& verb) {
   const auto start = std::chrono::steady_clock::now();
   const double processor = thread_seconds();
   verb();
+  ++executed_[pass];
   processor_seconds_[pass] += thread_seconds() - processor;
   seconds_[pass].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -76,6 +80,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
                   scene.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>) {
   for (const char* name : pass_names) seconds_.emplace_back(name, 0.0);
   processor_seconds_.assign(pass_count, 0.0);
+  executed_.assign(pass_count, 0);
   neighbours_.adapt_skin();
   make_state(blocks);
   wire();
@@ -86,6 +91,8 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   dt_ = plan_.step();
   rates(true);
   rates(true);  // the weights of the consistent Laplacian are those of the pass before
+  watch_ = std::make_unique<Watch>(Watch::Sight{scene_, plan_, particles_, neighbours_, motion_, stress_});
+  kick(0.0);  // moves nothing; finds the largest acceleration, which limits the first step
 }
 
 Simulation::~Simulation() = default;
@@ -96,30 +103,50 @@ void Simulation::step(double largest) {
   time_ += dt_;
   ++steps_;
   rates(false);
-  timed(pass_kick, [&] { kick(); });
+  timed(pass_kick, [&] { kick(0.5 * dt_); });
+  if (!std::isfinite(largest_acceleration_)) watch_->explain(moment());
+  if (watch_->due(steps_) || largest_acceleration_ * dt_ > watch_->signal_speed())
+    timed(pass_watch, [&] { watch_->look(moment()); });
 }
 
-/// Everything that is evaluated at the new positions.
+/// Everything that is evaluated at the new positions; passes that have nothing to do are left out.
 void Simulation::rates(bool first) {
+  const auto any_kind = [&](PhaseKind kind) {
+    return std::any_of(particles_.begin(), particles_.end(), [&](const auto& p) { return p.kind() == kind; });
+  };
+  const auto any_contact = [&](bool repulsion) {
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [&](const Contact& c) { return c.is_repulsion == repulsion; });
+  };
+  const auto is_wall = [&](const Extension& x) { return particles_[x.phase].kind() == PhaseKind::wall; };
+  const bool walls = std::any_of(extensions_.begin(), extensions_.end(), is_wall);
+  const bool solids = !std::all_of(extensions_.begin(), extensions_.end(), is_wall);
+  const bool eddies =
+      std::any_of(fluids_.begin(), fluids_.end(), [](const Fluid& f) { return !f.eddy_neighbours.empty(); });
+  const bool surface = std::any_of(fluids_.begin(), fluids_.end(), [](const Fluid& f) { return f.surface != nullptr; });
+  const bool held = std::any_of(fluids_.begin(), fluids_.end(), [](const Fluid& f) { return f.hold.any(); });
+  const bool energy = std::any_of(fluids_.begin(), fluids_.end(),
+                                  [&](const Fluid& f) { return particles_[f.phase].has(Field::energy); });
   if (!first && !bodies_.empty()) timed(pass_strain, [&] { strain_bodies(); });
-  timed(pass_walls, [&] { move_walls(); });
+  if (any_kind(PhaseKind::wall)) timed(pass_walls, [&] { move_walls(); });
   timed(pass_neighbours, [&] { find_neighbours(first); });
   timed(pass_pack, [&] { pack(); });
-  timed(pass_eddies, [&] { find_eddies(); });
-  timed(pass_extend_walls, [&] { extend_into_walls(); });
-  timed(pass_extend_solids, [&] { extend_into_grains(); });
-  timed(pass_fluid, [&] { rate_fluids(); });
-  timed(pass_surface, [&] { find_free_surfaces(); });
-  timed(pass_energy, [&] { rate_energies(); });
-  timed(pass_repel, [&] { repel_from_walls(); });
-  timed(pass_elastic, [&] { stress_bodies(); });
-  timed(pass_contacts, [&] { touch(); });
-  timed(pass_reaction, [&] { react(); });
-  timed(pass_drag, [&] { drag_grains(); });
-  timed(pass_hold, [&] { hold_bulk_speeds(); });
+  if (eddies) timed(pass_eddies, [&] { find_eddies(); });
+  if (walls) timed(pass_extend_walls, [&] { extend_into_walls(); });
+  if (solids) timed(pass_extend_solids, [&] { extend_into_grains(); });
+  if (!fluids_.empty()) timed(pass_fluid, [&] { rate_fluids(); });
+  if (surface) timed(pass_surface, [&] { find_free_surfaces(); });
+  if (energy) timed(pass_energy, [&] { rate_energies(); });
+  if (any_contact(true)) timed(pass_repel, [&] { repel_from_walls(); });
+  if (!bodies_.empty()) timed(pass_elastic, [&] { stress_bodies(); });
+  if (any_contact(false) || any_kind(PhaseKind::grains)) timed(pass_contacts, [&] { touch(); });
+  if (solids) timed(pass_reaction, [&] { react(); });
+  if (!drags_.empty()) timed(pass_drag, [&] { drag_grains(); });
+  if (held) timed(pass_hold, [&] { hold_bulk_speeds(); });
 }
 
-void Simulation::choose_step(double largest) {
+/// The step that stability allows (s). Throws BreakdownError when it collapsed.
+double Simulation::stable_step() {
   double dt = 1e300;
   ruling_.clear();
   const auto limit = [&](const std::string& name, double value) {
@@ -130,24 +157,30 @@ void Simulation::choose_step(double largest) {
   };
   if (plan_.fixed_step > 0) {
     limit("fixed", plan_.fixed_step);
-  } else {
-    for (const auto& l : plan_.limits) limit(l.name, l.value);
-    for (const auto& f : fluids_)
-      if (f.largest_viscosity > 0) {
-        const double h = f.parameters.smoothing_length;
-        limit(f.viscous_limit, scene_.time.safety * StepConstants::viscous * h * h / f.largest_viscosity);
-      }
-    double shortest = 1e300;
-    for (const auto& p : plan_.phases)
-      if (p.kind != PhaseKind::wall) shortest = std::min(shortest, p.smoothing_length);
-    if (largest_acceleration_ > 0)
-      limit("force", scene_.time.safety * StepConstants::force * std::sqrt(shortest / largest_acceleration_));
-    if (dt < 1e-6 * plan_.step())
-      throw BreakdownError("the time step collapsed to " + std::to_string(dt) + " s at t = " + std::to_string(time_) +
-                           " s, ruled by " + ruling_ +
-                           "; a particle feels an enormous force: lower time.safety, raise "
-                           "the sound speed or look for overlapping bodies");
+    return dt;
   }
+  for (const auto& l : plan_.limits) limit(l.name, l.value);
+  for (const auto& f : fluids_)
+    if (f.largest_viscosity > 0) {
+      const double h = f.parameters.smoothing_length;
+      limit(f.viscous_limit, scene_.time.safety * StepConstants::viscous * h * h / f.largest_viscosity);
+    }
+  double shortest = 1e300;
+  for (const auto& p : plan_.phases)
+    if (p.kind != PhaseKind::wall) shortest = std::min(shortest, p.smoothing_length);
+  if (largest_acceleration_ > 0)
+    limit("force", scene_.time.safety * StepConstants::force * std::sqrt(shortest / largest_acceleration_));
+  if (dt < 1e-6 * plan_.step())
+    throw BreakdownError("the time step collapsed to " + brief(dt) + " s (less than a millionth of " +
+                         brief(plan_.step()) + " s), ruled by the limit \"" + ruling_ +
+                         "\": " + watch_->most_accelerated(moment()) +
+                         "; an enormous force acts: lower time.safety or the [[forcing]], raise the sound speed or the "
+                         "contact-speed, or look for fills that overlap");
+  return dt;
+}
+
+void Simulation::choose_step(double largest) {
+  double dt = stable_step();
   // The last steps before an output share what is left, so that none is tiny.
   const double left = std::ceil(largest / dt * (1.0 - 1e-9));
   if (left * dt > largest) {
@@ -157,6 +190,21 @@ void Simulation::choose_step(double largest) {
   }
   dt_ = dt;
   ++limit_counts_[ruling_];
+}
+
+void Simulation::check_start() {
+  try {
+    if (!std::isfinite(largest_acceleration_)) watch_->explain(moment());
+    check();
+    const double dt = stable_step();
+    if (largest_acceleration_ * dt > watch_->signal_speed())
+      throw BreakdownError(watch_->most_accelerated(moment()) + ": in the first step of " + brief(dt) +
+                           " s it gains more than the signal speed, " + brief(watch_->signal_speed()) +
+                           " m/s: lower the [[forcing]] or the pressure of the fills, or raise the sound speed or the "
+                           "contact-speed");
+  } catch (const BreakdownError& e) {
+    throw SceneError(scene_.file + ": the scene is wrong at its start: " + e.what());
+  }
 }
 
 // ---- kick, drift, kick
@@ -226,12 +274,11 @@ void Simulation::find_neighbours(bool force) {
     if (f.ground) f.ground->refresh(f.ground_phases);
 }
 
-void Simulation::kick() {
+void Simulation::kick(double time) {
   double largest = 0.0;
   for (auto& p : particles_)
-    if (p.kind() != PhaseKind::wall) largest = std::max(largest, barchan::kick(p, 0.5 * dt_));
+    if (p.kind() != PhaseKind::wall) largest = std::max(largest, barchan::kick(p, time));
   largest_acceleration_ = largest;
-  if (!std::isfinite(largest)) check();
 }
 
 }  // namespace barchan

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warnings.hpp"
 #include "neighbours/neighbours.hpp"
 #include "output/frame.hpp"
 #include "passes/drag.hpp"
@@ -20,6 +21,7 @@
 #include "passes/walls.hpp"
 #include "plan/plan.hpp"
 #include "scene/formula.hpp"
+#include "time/watch.hpp"
 
 namespace barchan {
 
@@ -49,6 +51,8 @@ class Simulation {
 
   /// Directed pairs of an entry in its current lists (those in the skin too).
   std::uint64_t pairs(const PlanEntry& entry) const;
+  /// How often each pass was executed, in the order of the step; those that the scene does not need never are.
+  const std::vector<long>& executed() const { return executed_; }
   /// Seconds of wall time by pass, in the order of the step.
   const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
   /// Seconds of processor time of the calling thread by pass; what a benchmark on a busy machine can trust.
@@ -60,8 +64,16 @@ class Simulation {
   /// Names and values of one row of history.csv.
   static std::vector<std::string> history_columns(const Plan& plan);
   std::vector<double> history_row() const;
-  /// Throws BreakdownError if a value is not finite or a particle left the domain.
-  void check() const;
+  /// Throws BreakdownError if the present state is wrong (time/watch.hpp); the watch of step() looks now and then only.
+  void check() { watch_->look_closely(moment()); }
+  /// The same before the first step, when the scene is to blame: throws SceneError.
+  void check_start();
+  /// The last state that passed all checks: its step and time, and its frame. Needs a check() or check_start() before.
+  long good_step() const { return watch_->good().step(); }
+  double good_time() const { return watch_->good().time(); }
+  Frame good_frame(int index);
+  /// What is remarkable so far.
+  Warnings warnings() const;
 
  private:
   struct Fluid;
@@ -71,6 +83,7 @@ class Simulation {
   struct Drag;
 
   // the verbs of a step, in order
+  double stable_step();
   void choose_step(double largest);
   void kick_and_drift();
   void strain_bodies();
@@ -89,9 +102,10 @@ class Simulation {
   void react();
   void drag_grains();
   void hold_bulk_speeds();
-  void kick();
+  void kick(double time);
 
   void rates(bool first);
+  Moment moment() const { return {time_, dt_, steps_}; }
   void make_state(const std::vector<ParticleBlock>& blocks);
   void wire();
   void wire_eddies(Fluid& fluid);
@@ -128,6 +142,8 @@ class Simulation {
   double largest_acceleration_ = 0;
   std::string ruling_;
   std::map<std::string, long> limit_counts_;
+  std::unique_ptr<Watch> watch_;
+  std::vector<long> executed_;
   std::vector<std::pair<std::string, double>> seconds_;
   std::vector<double> processor_seconds_;
 };

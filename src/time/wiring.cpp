@@ -41,31 +41,14 @@ void set_wall_geometry(PhaseParticles& wall, const Bounds& bounds, const Particl
   }
 }
 
-/// Closes the sides that the wall stands behind.
-void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds, double spacing) {
-  for (std::size_t k = 0; k < wall.size(); ++k) {
-    if (!behind_a_side(wall, k, bounds, spacing)) continue;
-    int outside = 0, axis = 0;
-    bool above = false;
-    for (int d = 0; d < wall.dimensions(); ++d) {
-      const auto c = static_cast<std::size_t>(d);
-      const double x = wall.column(Field::position, d)[k];
-      if (bounds.periodic[c] || (x >= bounds.low[c] && x <= bounds.high[c])) continue;
-      ++outside;
-      axis = d;
-      above = x > bounds.high[c];
-    }
-    if (outside != 1) continue;
-    const auto c = static_cast<std::size_t>(axis);
-    (above ? sides.high[c] : sides.low[c]) = above ? bounds.high[c] : bounds.low[c];
-  }
-}
-
-/// Kernel contact for an entry: stiffness from the softer speed, damping from the restitution.
+/// Kernel contact for an entry: stiffness of the softer of the phases that move, damping from the restitution.
 KernelContact contact_law(const Scene& scene, const Plan& plan, const PlanEntry& e, double strength) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
   const bool a_moves = a.kind != PhaseKind::wall, b_moves = b.kind != PhaseKind::wall;
-  const PlanPhase& soft = a.kind == PhaseKind::grains ? plan.phases[e.a] : plan.phases[e.b];
+  const auto stiffness_of = [&](std::size_t k) {
+    return plan.phases[k].mass * std::pow(plan.phases[k].sound_speed, 2);
+  };
+  const PlanPhase& soft = plan.phases[!b_moves || (a_moves && stiffness_of(e.a) <= stiffness_of(e.b)) ? e.a : e.b];
   const double d = scene.spacing;
   const double m_a = plan.phases[e.a].mass, m_b = plan.phases[e.b].mass;
   const double reduced = a_moves && b_moves ? m_a * m_b / (m_a + m_b) : (a_moves ? m_a : m_b);
@@ -148,6 +131,25 @@ std::vector<Surface> find_surfaces(const Scene& scene, const Plan& plan, const s
 }
 
 }  // namespace
+
+void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds, double spacing) {
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    if (!behind_a_side(wall, k, bounds, spacing)) continue;
+    int outside = 0, axis = 0;
+    bool above = false;
+    for (int d = 0; d < wall.dimensions(); ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      const double x = wall.column(Field::position, d)[k];
+      if (bounds.periodic[c] || (x >= bounds.low[c] && x <= bounds.high[c])) continue;
+      ++outside;
+      axis = d;
+      above = x > bounds.high[c];
+    }
+    if (outside != 1) continue;
+    const auto c = static_cast<std::size_t>(axis);
+    (above ? sides.high[c] : sides.low[c]) = above ? bounds.high[c] : bounds.low[c];
+  }
+}
 
 void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
   std::int64_t first = 0;

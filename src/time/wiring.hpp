@@ -7,6 +7,9 @@
 
 namespace barchan {
 
+/// Closes the sides of the domain that the wall stands behind.
+void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds, double spacing);
+
 /// A fluid phase: its entries and parameters.
 struct Simulation::Fluid {
   std::size_t phase = 0;

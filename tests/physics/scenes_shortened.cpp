@@ -80,8 +80,10 @@ class EveryScene : public ::testing::TestWithParam<std::string> {};
 TEST_P(EveryScene, TakesStepsInTheLibrary) {
   Drive drive(GetParam());
   auto& simulation = drive.simulation();
-  for (int k = 0; k < 10; ++k) simulation.step(1e300);
-  EXPECT_NO_THROW(simulation.check());
+  ASSERT_NO_THROW(simulation.check_start());
+  ASSERT_NO_THROW(for (int k = 0; k < 40; ++k) simulation.step(1e300));
+  ASSERT_NO_THROW(simulation.check());
+  EXPECT_TRUE(simulation.warnings().texts().empty());
   const auto columns = Simulation::history_columns(drive.plan());
   const auto row = simulation.history_row();
   ASSERT_EQ(row.size(), columns.size());
@@ -121,6 +123,10 @@ TEST_P(EveryScene, RunsInTheProgram) {
   const auto report = report_of(out);
   EXPECT_EQ(report["end_reason"], "end");
   EXPECT_GE(report["steps"].get<long>(), 6);
+  EXPECT_TRUE(report["warnings"].empty()) << report["warnings"];
+  // What was executed is what the plan promised.
+  const Scene scene = read_scene(testing::scene_file(GetParam()));
+  EXPECT_EQ(report["passes"].get<std::vector<std::string>>(), make_plan(scene, generate(scene)).passes);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, ::testing::ValuesIn(all_scenes()), [](const auto& test) {
