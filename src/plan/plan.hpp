@@ -77,7 +77,6 @@ struct Plan {
   double particles() const;
   double step() const;    ///< the smallest limit, s (or the fixed step)
   double fixed_step = 0;  // s, 0: none
-  double estimated_bytes = 0;
 };
 
 /// Decides. Throws SceneError for what no law can do (fluid-grains without a fluid's own entry, wall-wall, ...).
