@@ -140,7 +140,7 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
     int n = 0;
     for (long s = -1; s <= 1; ++s) {
       long b = at + s;
-      if (bounds_.periodic[axis]) b = (b + count) % count;
+      if (bounds_.periodic[axis]) b += b < 0 ? count : b >= count ? -count : 0;
       if (b >= 0 && b < count) out[static_cast<std::size_t>(n++)] = b;
     }
     return n;

@@ -26,7 +26,9 @@
 #pragma GCC diagnostic pop
 #endif
 
+#if !defined(BARCHAN_SIMD_INLINE)  // the build defines it as plain inline for the sanitizers
 #define BARCHAN_SIMD_INLINE inline __attribute__((always_inline))
+#endif
 
 namespace barchan::simd {
 
