@@ -63,8 +63,9 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
 
 /// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of
 /// the divergence must not pump it up. Sums in blocks, in an order that the number of particles decides.
-void keep_mean_density(PhaseParticles& p, std::vector<double>& parts) {
+void keep_mean_density(PhaseParticles& p) {
   constexpr std::int64_t block = 4096;
+  static std::vector<double> parts;
   double* rate = p.column(Field::density_rate);
   const auto n = static_cast<std::int64_t>(p.size());
   const std::int64_t blocks = (n + block - 1) / block;
@@ -173,7 +174,7 @@ void Simulation::rate_fluids() {
     if (!f.eddy_neighbours.empty()) eddy_rates(p, motion_[f.phase], eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
     else if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
     else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
-    if (s.enclosed) keep_mean_density(p, f.rate_sums);
+    if (s.enclosed) keep_mean_density(p);
     if (!varies) continue;
     for (const auto& force : forcings_) {
       if (force.phase != f.phase) continue;

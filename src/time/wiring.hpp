@@ -21,7 +21,6 @@ struct Simulation::Fluid {
   double largest_viscosity = 0;  // m2/s
   std::string viscous_limit;     // its name
 
-  std::vector<double> rate_sums;  // density rates of an enclosed fluid, summed by block
 };
 
 /// A solid that some fluid sees: the fluids about it, and whether it feels them.
