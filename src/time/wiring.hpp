@@ -26,7 +26,6 @@ struct Simulation::Fluid {
   std::unique_ptr<GroundDistance> ground;
   double largest_viscosity = 0;  // m2/s
   std::string viscous_limit;     // its name
-
 };
 
 /// A solid that some fluid sees: the fluids about it, and whether it feels them.
