@@ -37,7 +37,8 @@ struct KernelContact {
         : stiffness(c.stiffness), damping(c.damping), rest_value(c.rest_value), inverse_slope(c.inverse_slope) {}
   };
 
-  /// Adds the force [N] on a: r = x_a - x_b, v = v_a - v_b, w and f the kernel and its gradient factor at r.
+  /// Adds the force [N] on a: r = x_a - x_b, v = v_a - v_b, w and f the kernel and its gradient factor at r. r2 > 0, in
+  /// the range of simd::inverse_sqrt.
   template <class T, std::size_t Dim>
   static void add(const Constants<T>& c, const std::array<T, Dim>& r, T r2, const std::array<T, Dim>& v, T w, T f,
                   std::array<T, Dim>& force) {
@@ -47,7 +48,7 @@ struct KernelContact {
     T vr(0.0);
     for (std::size_t d = 0; d < Dim; ++d) vr = fma(v[d], r[d], vr);
     // -dU/dr e_r = -K g g' e_r; dashpot -c |W'(r)/W'(d)| v_n e_r with v_n = v.r/r: one factor 1/r of each is in slope.
-    const T inverse_r = inverse_sqrt(r2 + T(1e-300));
+    const T inverse_r = inverse_sqrt(r2);
     const T touching = touch(overlap);
     const T magnitude = slope * fma(c.damping * touching, vr * inverse_r, -c.stiffness * overlap);
     for (std::size_t d = 0; d < Dim; ++d) force[d] = fma(magnitude, r[d], force[d]);

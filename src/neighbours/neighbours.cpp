@@ -140,7 +140,7 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
     int n = 0;
     for (long s = -1; s <= 1; ++s) {
       long b = at + s;
-      if (bounds_.periodic[axis]) b = (b + count) % count;
+      if (bounds_.periodic[axis]) b += b < 0 ? count : b >= count ? -count : 0;
       if (b >= 0 && b < count) out[static_cast<std::size_t>(n++)] = b;
     }
     return n;
@@ -202,11 +202,14 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
     choose_skin();
   }
   kept_ = 0;
-  for (std::size_t p = 0; p < grids_.size(); ++p)
-    if (grids_[p]) grids_[p]->sort(particles[p]);
+  for (std::size_t p = 0; p < grids_.size(); ++p) {
+    if (!grids_[p]) continue;
+    PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
+    grids_[p]->sort(particles[p]);
+  }
   for (std::size_t q = 0; q < directions_.size(); ++q) {
     const auto& d = directions_[q];
-    const auto dummy = static_cast<std::uint32_t>(particles[d.b].size() + grids_[d.b]->images());
+    const std::uint32_t dummy = PairList::dummy_index(particles[d.b].size(), grids_[d.b]->images());
     lists_[q].build(*grids_[d.a], particles[d.a].size(), *grids_[d.b], d.a == d.b, d.radius * (1.0 + skin_), dummy,
                     padding_, bounds_.dimensions);
   }

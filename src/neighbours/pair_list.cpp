@@ -1,7 +1,9 @@
 #include "neighbours/pair_list.hpp"
 
 #include <array>
+#include <string>
 
+#include "base/errors.hpp"
 #include "simd/vec.hpp"
 
 namespace barchan {
@@ -14,6 +16,14 @@ using Indices = simd::Vec<std::int32_t, lanes>;
 // Positions of the search are rounded to float; the radius is widened by more than that rounding.
 constexpr double rounding_allowance = 1.0e-5;
 }  // namespace
+
+std::uint32_t PairList::dummy_index(std::size_t particles, std::size_t images) {
+  if (particles > last_index || images > last_index - particles)
+    throw SceneError("a phase of " + std::to_string(particles) + " particles and " + std::to_string(images) +
+                     " periodic images is too large: a list of neighbours counts to " + std::to_string(last_index) +
+                     "; expected a larger spacing or a smaller domain");
+  return static_cast<std::uint32_t>(particles + images);
+}
 
 /// Candidates of a few particles that stand close together: positions and indices, copied side by side once for all of
 /// them, padded to whole vectors with places out of reach.

@@ -20,6 +20,11 @@ class PairList {
   static constexpr std::size_t chunk = 1024;  // particles
   /// A neighbour is listed as `stride` times its index: where its record begins in an array of records of that size.
   static constexpr std::uint32_t stride = 8;
+  /// The largest index that can be listed in 32 bits: 2^29 - 1.
+  static constexpr std::size_t last_index = 0xffffffffu / stride;
+
+  /// The index of the dummy record behind `particles` and `images`. Throws SceneError when a list cannot hold it.
+  static std::uint32_t dummy_index(std::size_t particles, std::size_t images);
 
   struct Row {
     const std::uint32_t* begin;

@@ -40,7 +40,7 @@ struct FieldInfo {
   std::string_view symbol;
   std::string_view unit;
   Rank rank;
-  bool is_state;  // part of the state: in a checkpoint, permuted by sorting
+  bool is_state;  // a step starts from it; false: a pass derives it anew (for a reader: nothing is chosen by it yet)
   std::string_view meaning;
 };
 

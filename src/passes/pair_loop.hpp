@@ -52,13 +52,18 @@ BARCHAN_SIMD_INLINE void for_each_staged(PairList::Row row, const T* data, Begin
   }
 }
 
-/// x_a - x_b by component, and its square.
+/// Added to every squared distance (m^2): particles in one place are 3e-19 m apart for the kernels and laws, which
+/// divide by the distance. Their r is zero, so that a force along r is zero as well, in both precisions. Within the
+/// range of simd::inverse_sqrt; lost in the rounding of every distance that matters.
+inline constexpr double least_square = 1.0e-37;
+
+/// x_a - x_b by component, and its square (plus least_square).
 template <int Dim>
 BARCHAN_SIMD_INLINE Lanes separation(const std::array<Lanes, Dim>& x_a, const Lanes* x_b, std::array<Lanes, Dim>& r) {
-  Lanes r2(0.0);
+  Lanes r2(least_square);
   for (std::size_t d = 0; d < Dim; ++d) {
     r[d] = x_a[d] - x_b[d];
-    r2 = d == 0 ? r[d] * r[d] : simd::fma(r[d], r[d], r2);
+    r2 = simd::fma(r[d], r[d], r2);
   }
   return r2;
 }
@@ -70,10 +75,10 @@ BARCHAN_SIMD_INLINE LanesOf<T> separation(const std::array<LanesOf<T>, Dim>& x_a
   if constexpr (std::is_same_v<T, double>) {
     return separation<Dim>(x_a, x_b, r);
   } else {
-    LanesOf<T> r2(T(0));
+    auto r2 = simd::broadcast<LanesOf<T>>(least_square);
     for (std::size_t d = 0; d < Dim; ++d) {
       r[d] = unit * simd::convert<T>(simd::bit_cast<std::int32_t>(x_a[d]) - simd::bit_cast<std::int32_t>(x_b[d]));
-      r2 = d == 0 ? r[d] * r[d] : simd::fma(r[d], r[d], r2);
+      r2 = simd::fma(r[d], r[d], r2);
     }
     return r2;
   }

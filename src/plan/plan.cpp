@@ -210,8 +210,8 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     if (p.kind == PhaseKind::fluid) q.sound_speed = p.sound_speed.value_or(10.0 * plan.largest_speed);
     if (p.kind == PhaseKind::elastic) q.sound_speed = compression_speed(p);
     if (p.kind == PhaseKind::grains) {
-      // A bed as deep as the domain is compressed by a thousandth of a spacing at its bottom, and a grain at the
-      // largest speed overlaps a tenth.
+      // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s.
+      // The speed of the grains is not looked at: `contact-speed` is there for fast ones.
       double weight = 0;
       for (std::size_t d = 0; d < 3; ++d) weight += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
       q.sound_speed = p.contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));

@@ -59,7 +59,7 @@ class Validator {
                       const std::string& here) {
     std::vector<std::string> names;
     for (const Key* key : keys_of(section)) names.emplace_back(key->name);
-    const std::string near = nearest(name.str(), names);
+    std::string near = nearest(name.str(), names);
     std::string meant = near;
     if (meant.empty())
       for (const Key& key : all_keys())

@@ -26,7 +26,9 @@
 #pragma GCC diagnostic pop
 #endif
 
+#if !defined(BARCHAN_SIMD_INLINE)  // the build defines it as plain inline for the sanitizers
 #define BARCHAN_SIMD_INLINE inline __attribute__((always_inline))
+#endif
 
 namespace barchan::simd {
 
@@ -118,7 +120,8 @@ struct MaskStorage<T, W, Kind::halves, false> {
   using type = Halves<Mask<T, W / 2>>;
 };
 
-// Applies a lane-wise operator to the storage; integers wrap around.
+// Applies a lane-wise operator to the storage; integers wrap around. An operator cannot stand in parentheses:
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define BARCHAN_SIMD_ARITHMETIC(op)                                                                                  \
   if constexpr (kind<T, W> == Kind::halves) {                                                                        \
     return {{a.v.lo op b.v.lo, a.v.hi op b.v.hi}};                                                                   \
@@ -145,6 +148,7 @@ BARCHAN_SIMD_INLINE Vec<T, W> multiply(Vec<T, W> a, Vec<T, W> b) {
   BARCHAN_SIMD_ARITHMETIC(*)
 }
 #undef BARCHAN_SIMD_ARITHMETIC
+// NOLINTEND(bugprone-macro-parentheses)
 
 template <class T, int W>
 BARCHAN_SIMD_INLINE Vec<T, W> divide(Vec<T, W> a, Vec<T, W> b) {
@@ -394,14 +398,12 @@ BARCHAN_SIMD_INLINE std::uint32_t to_bits(Mask<T, W> m) {
       return static_cast<std::uint32_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)));
     else if constexpr (detail::bytes<T, W> == 32)
       return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(m.v)));
-    else
 #endif
 #if defined(__SSE2__)
-        if constexpr (detail::bytes<T, W> == 16 && sizeof(T) == 8)
+    if constexpr (detail::bytes<T, W> == 16 && sizeof(T) == 8)
       return static_cast<std::uint32_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(m.v)));
     else if constexpr (detail::bytes<T, W> == 16)
       return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(m.v)));
-    else
 #endif
     {
       std::uint32_t r = 0;
@@ -470,7 +472,6 @@ BARCHAN_SIMD_INLINE Vec<T, W> select(Mask<T, W> m, Vec<T, W> a, Vec<T, W> b) {
     else if constexpr (detail::bytes<T, W> == 32)
       return {reinterpret_cast<S>(_mm256_blendv_ps(reinterpret_cast<__m256>(b.v), reinterpret_cast<__m256>(a.v),
                                                    reinterpret_cast<__m256>(m.v)))};
-    else
 #endif
     {
       using M = typename Mask<T, W>::Storage;
@@ -639,16 +640,14 @@ BARCHAN_SIMD_INLINE Vec<T, W> inverse_sqrt(Vec<T, W> a) {
       return detail::refine_inverse_sqrt<4>(a, Vec<T, W>(_mm512_rsqrt14_pd(a.v)));
     else if constexpr (detail::bytes<T, W> == 64)
       return detail::refine_inverse_sqrt<2>(a, Vec<T, W>(_mm512_rsqrt14_ps(a.v)));
-    else
 #endif
 #if defined(__AVX2__) && defined(__FMA__)
-        if constexpr (detail::bytes<T, W> == 32 && sizeof(T) == 8)
+    if constexpr (detail::bytes<T, W> == 32 && sizeof(T) == 8)
       return detail::refine_inverse_sqrt<5>(a, Vec<T, W>(_mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a.v)))));
     else if constexpr (detail::bytes<T, W> == 32)
       return detail::refine_inverse_sqrt<2>(a, Vec<T, W>(_mm256_rsqrt_ps(a.v)));
-    else
 #endif
-      return Vec<T, W>(T(1)) / sqrt(a);
+    return Vec<T, W>(T(1)) / sqrt(a);
   }
 }
 
@@ -676,9 +675,9 @@ BARCHAN_SIMD_INLINE Vec<T, W> inverse(Vec<T, W> a) {
                 sizeof(T) == 4) {
     const Vec<T, W> y(_mm512_rcp14_ps(a.v));
     return fma(y, fnma(a, y, Vec<T, W>(T(1))), y);
-  } else
+  }
 #endif
-      if constexpr (detail::kind<T, W> == detail::Kind::halves)
+  if constexpr (detail::kind<T, W> == detail::Kind::halves)
     return typename Vec<T, W>::Storage{inverse(a.v.lo), inverse(a.v.hi)};
   else return Vec<T, W>(T(1)) / a;
 }
@@ -699,16 +698,16 @@ BARCHAN_SIMD_INLINE Vec<T, 4> sum(Vec<T, W> a, Vec<T, W> b, Vec<T, W> c, Vec<T, 
     const __m256d cd = _mm256_add_pd(_mm256_permute2f128_pd(c.v, d.v, 0x20), _mm256_permute2f128_pd(c.v, d.v, 0x31));
     const __m256d acbd = _mm256_hadd_pd(ab, cd);
     return {_mm256_permute4x64_pd(acbd, 0xd8)};
-  } else
+  }
 #endif
 #if defined(__SSE2__)
-      if constexpr (W == 4 && sizeof(T) == 4) {
+  if constexpr (W == 4 && sizeof(T) == 4) {
     const __m128 ab = _mm_add_ps(_mm_movelh_ps(a.v, b.v), _mm_movehl_ps(b.v, a.v));  // a0+a2 a1+a3 b0+b2 b1+b3
     const __m128 cd = _mm_add_ps(_mm_movelh_ps(c.v, d.v), _mm_movehl_ps(d.v, c.v));
     return {_mm_add_ps(_mm_shuffle_ps(ab, cd, 0x88), _mm_shuffle_ps(ab, cd, 0xdd))};
-  } else
+  }
 #endif
-      if constexpr (W > 4) {
+  if constexpr (W > 4) {
     return sum(lower(a) + upper(a), lower(b) + upper(b), lower(c) + upper(c), lower(d) + upper(d));
   } else {
     const T s[4] = {sum(a), sum(b), sum(c), sum(d)};
@@ -742,18 +741,18 @@ BARCHAN_SIMD_INLINE int compress_store(std::uint32_t* out, Mask<T, W> m, Vec<std
         _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), reinterpret_cast<__m512i>(index.v));
     std::memcpy(out, &packed, sizeof(packed));
     return std::popcount(bits);
-  } else
+  }
 #endif
 #if defined(__AVX512VL__)
-      if constexpr (W == 8) {
+  if constexpr (W == 8) {
     const std::uint32_t bits = to_bits(m);
     const __m256i packed = _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), reinterpret_cast<__m256i>(index.v));
     std::memcpy(out, &packed, sizeof(packed));
     return std::popcount(bits);
-  } else
+  }
 #endif
 #if defined(__AVX2__)
-      if constexpr (W == 8) {
+  if constexpr (W == 8) {
     const std::uint32_t bits = to_bits(m);
     const __m128i position = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(detail::compress_table.position[bits]));
     const __m256i packed =
@@ -768,9 +767,9 @@ BARCHAN_SIMD_INLINE int compress_store(std::uint32_t* out, Mask<T, W> m, Vec<std
         _mm_permutevar_ps(reinterpret_cast<__m128>(index.v), _mm_cvtepu8_epi32(_mm_cvtsi32_si128(position)));
     std::memcpy(out, &packed, sizeof(packed));
     return std::popcount(bits);
-  } else
+  }
 #endif
-      if constexpr (detail::kind<T, W> == detail::Kind::halves) {
+  if constexpr (detail::kind<T, W> == detail::Kind::halves) {
     const int n = compress_store(out, m.v.lo, lower(index));
     return n + compress_store(out + n, m.v.hi, upper(index));
   } else {
@@ -829,6 +828,7 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
         out[f + 2].v = _mm512_shuffle_f64x2(even_low, even_high, 0xdd);
         out[f + 3].v = _mm512_shuffle_f64x2(odd_low, odd_high, 0xdd);
       }
+      return;
     } else if constexpr (W == 16 && sizeof(T) == 4 && Fields % 8 == 0) {
       // a = {record(i)[f..f+7], record(j)[f..f+7]}; then 4 x 4 transposes inside the 128-bit lanes.
       const auto pair = [=](int i, int j, int f) __attribute__((always_inline)) {
@@ -852,10 +852,11 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
           out[f + k + 4].v = _mm512_shuffle_f32x4(u[k], w[k], 0xdd);
         }
       }
-    } else
+      return;
+    }
 #endif
 #if defined(__AVX2__)
-        if constexpr (W == 4 && sizeof(T) == 8) {
+    if constexpr (W == 4 && sizeof(T) == 8) {
       // {record(i)[f], record(i)[f+1], record(j)[f], record(j)[f+1]}: the insertion rides on the load.
       const auto pair = [=](int i, int j, int f) __attribute__((always_inline)) {
         return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(record(i) + f)), _mm_loadu_pd(record(j) + f),
@@ -866,6 +867,7 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
         out[f].v = _mm256_unpacklo_pd(a, b);
         out[f + 1].v = _mm256_unpackhi_pd(a, b);
       }
+      return;
     } else if constexpr (W == 8 && sizeof(T) == 4) {
       const auto pair = [=](int i, int j, int f) __attribute__((always_inline)) {
         return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(record(i) + f)), _mm_loadu_ps(record(j) + f),
@@ -880,14 +882,13 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
         out[f + 2].v = _mm256_shuffle_ps(AB, CD, 0x44);
         out[f + 3].v = _mm256_shuffle_ps(AB, CD, 0xee);
       }
-    } else
+      return;
+    }
 #endif
-    {
-      for (int f = 0; f < Fields; ++f) {
-        if constexpr (W == 1) out[f] = Vec<T, W>(record(0)[f]);
-        else
-          for (int k = 0; k < W; ++k) out[f].v[k] = record(k)[f];
-      }
+    for (int f = 0; f < Fields; ++f) {
+      if constexpr (W == 1) out[f] = Vec<T, W>(record(0)[f]);
+      else
+        for (int k = 0; k < W; ++k) out[f].v[k] = record(k)[f];
     }
   }
 }

@@ -455,7 +455,8 @@ void Simulation::wire() {
     if (e.law != Law::contact && e.law != Law::repulsive) continue;
     const auto law = [&] {
       if (e.law == Law::contact) return contact_law(scene_, plan_, e, 1.0);
-      // Ghosts push a fluid as hard as its sound speed times the largest speed, K = m c u / d^2, without damping.
+      // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
+      // automatic.
       KernelContact k = contact_law(scene_, plan_, e, 1.0);
       const std::size_t fluid = scene_.phases[e.a].kind == PhaseKind::fluid ? e.a : e.b;
       const PlanPhase& p = plan_.phases[fluid];

@@ -28,6 +28,7 @@ struct Malformed {
   std::string text;
   std::string message;  // FILE stands for the scene's file, FIELDS for the names of all fields
 };
+void PrintTo(const Malformed& scene, std::ostream* out) { *out << scene.name; }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())

@@ -25,6 +25,7 @@ struct Impact {
   double nearest;   // r_min/dx, exact
   double duration;  // contact time V/dx, exact
 };
+void PrintTo(const Impact& impact, std::ostream* out) { *out << impact.name; }
 
 /// What was seen of a collision.
 struct Seen {

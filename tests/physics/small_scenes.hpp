@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include "scene/generate.hpp"
@@ -210,6 +211,13 @@ velocity = ["0.2*sin(2*pi*x/0.04)", "-0.3*y/0.02"]
 [time]
 end = 10
 )toml";
+
+/// A scene as the parameter of a test.
+struct Named {
+  const char* name;
+  const std::string* text;
+};
+inline void PrintTo(const Named& scene, std::ostream* out) { *out << scene.name; }
 
 inline std::unique_ptr<Simulation> simulation(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const Scene scene = parse_scene(text, "test.toml", overrides);

@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <tuple>
 
+#include "base/errors.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace barchan {
@@ -71,6 +73,7 @@ struct Case {
   std::array<bool, 3> periodic;
   Vec3 low{0, 0, 0};
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 std::vector<Case> cases() {
   return {
@@ -219,6 +222,24 @@ TEST_P(Search, ListsStayCompleteWhileParticlesMove) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, Search, testing::ValuesIn(cases()), [](const auto& c) { return c.param.name; });
+
+// A list holds eight times an index in 32 bits (PairList::stride): the last that fits is 2^29 - 1.
+TEST(PairLists, RefuseMoreRecordsThanTheirIndicesCount) {
+  constexpr std::size_t limit = 536'870'911;
+  EXPECT_EQ(PairList::dummy_index(limit, 0), limit);
+  EXPECT_EQ(PairList::dummy_index(limit - 7, 7), limit);
+  EXPECT_EQ(std::uint64_t{PairList::stride} * limit, std::uint64_t{PairList::stride * PairList::dummy_index(limit, 0)});
+  const std::size_t most = std::numeric_limits<std::size_t>::max();
+  for (const auto& [particles, images] : {std::pair{limit + 1, std::size_t{0}}, std::pair{limit, std::size_t{1}},
+                                          std::pair{std::size_t{1} << 32, std::size_t{5}}, std::pair{most, most}}) {
+    try {
+      PairList::dummy_index(particles, images);
+      ADD_FAILURE() << particles << " and " << images << " were accepted";
+    } catch (const SceneError& error) {
+      EXPECT_NE(std::string(error.what()).find("counts to 536870911"), std::string::npos) << error.what();
+    }
+  }
+}
 
 Cast two_hundred(double skin) {
   Uniform random(7);

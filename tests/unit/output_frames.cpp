@@ -26,12 +26,17 @@ struct Way {
   FrameFormat format;
   bool compress;
   std::size_t particles;
+  std::string name() const {
+    return std::string(format == FrameFormat::vtp ? "vtp" : "vtu") + (compress ? "Compressed" : "Plain") +
+           std::to_string(particles);
+  }
 };
+void PrintTo(const Way& way, std::ostream* out) { *out << way.name(); }
 
 class RoundTrip : public testing::TestWithParam<Way> {};
 
 TEST_P(RoundTrip, ReturnsEveryBit) {
-  const auto [format, compress, particles] = GetParam();
+  const auto& [format, compress, particles] = GetParam();
   const TemporaryDirectory directory;
   const auto file = directory / (format == FrameFormat::vtp ? "frame.vtp" : "frame.vtu");
   const Frame written = frame(particles);
@@ -48,10 +53,8 @@ std::vector<Way> every_way() {
   return ways;
 }
 
-INSTANTIATE_TEST_SUITE_P(Frames, RoundTrip, testing::ValuesIn(every_way()), [](const auto& way) {
-  return std::string(way.param.format == FrameFormat::vtp ? "vtp" : "vtu") +
-         (way.param.compress ? "Compressed" : "Plain") + std::to_string(way.param.particles);
-});
+INSTANTIATE_TEST_SUITE_P(Frames, RoundTrip, testing::ValuesIn(every_way()),
+                         [](const auto& way) { return way.param.name(); });
 
 TEST(Frames, CompressionMakesThemSmaller) {
   const TemporaryDirectory directory;

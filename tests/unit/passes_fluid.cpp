@@ -16,7 +16,12 @@ struct Case {
   int dimensions;
   FluidScheme scheme;
   KernelKind kernel;
+  std::string name() const {
+    return (scheme == FluidScheme::plain ? "Plain" : "Consistent") + std::to_string(dimensions) + "D" +
+           (kernel == KernelKind::wendland_c2 ? "Wendland" : "Spline");
+  }
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name(); }
 
 class FluidPass : public testing::TestWithParam<Case> {};
 
@@ -88,6 +93,39 @@ TEST_P(FluidPass, EqualsTheNaiveSums) {
   EXPECT_LT(expected.limited, static_cast<int>(fluid.size()));
 }
 
+// A particle on the place of another, of its own phase and of the wall: rates are finite in both precisions.
+TEST_P(FluidPass, CoincidentParticlesKeepRatesFinite) {
+  const auto [dimensions, scheme, kernel] = GetParam();
+  for (const bool mixed : {false, true}) {
+    Uniform random(11);
+    Cast first = fluid_and_wall(dimensions, random);
+    auto& phases = first.phases;
+    for (int d = 0; d < dimensions; ++d) {
+      double* x = phases[0].column(Field::position, d);
+      x[1] = x[0];
+      phases[1].column(Field::position, d)[0] = x[2];
+    }
+    const std::size_t padding = mixed ? simd::native_width<float> : simd::native_width<double>;
+    Cast cast(first.bounds, std::move(phases), first.directions, 0.1, padding);
+    std::vector<CompactRecords> compact(2, CompactRecords(cast.bounds));
+    for (std::size_t p = 0; p < 2; ++p) {
+      const std::size_t n = cast.phases[p].size(), images = cast.neighbours.grid(p).images();
+      compact[p].resize(n, images);
+      dimensions == 2 ? compact[p].copy<2>(cast.motion[p], n + images) : compact[p].copy<3>(cast.motion[p], n + images);
+    }
+    const std::vector<FluidNeighbour> neighbours{
+        {&cast.list(0), &cast.motion[0], kernel, 3.0, 0.7, true, &compact[0]},
+        {&cast.list(1), &cast.motion[1], KernelKind::cubic_spline, 2.2, 1.9, false, &compact[1]}};
+    auto& fluid = cast.phases[0];
+    if (mixed) fluid_rates(fluid, compact[0], neighbours, parameters(dimensions), scheme);
+    else fluid_rates(fluid, cast.motion[0], neighbours, parameters(dimensions), scheme);
+    for (std::size_t k = 0; k < fluid.size(); ++k) {
+      EXPECT_TRUE(std::isfinite(fluid.column(Field::density_rate)[k])) << k;
+      for (int d = 0; d < dimensions; ++d) EXPECT_LT(std::abs(fluid.column(Field::acceleration, d)[k]), 1e4) << k;
+    }
+  }
+}
+
 TEST_P(FluidPass, MixedPrecisionEqualsTheNaiveSumsToSinglePrecision) {
   const auto [dimensions, scheme, kernel] = GetParam();
   Uniform random(11);
@@ -124,11 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, FluidPass,
                                          Case{2, FluidScheme::consistent, KernelKind::wendland_c2},
                                          Case{2, FluidScheme::consistent, KernelKind::cubic_spline},
                                          Case{3, FluidScheme::consistent, KernelKind::wendland_c2}),
-                         [](const auto& c) {
-                           return std::string(c.param.scheme == FluidScheme::plain ? "Plain" : "Consistent") +
-                                  std::to_string(c.param.dimensions) + "D" +
-                                  (c.param.kernel == KernelKind::wendland_c2 ? "Wendland" : "Spline");
-                         });
+                         [](const auto& c) { return c.param.name(); });
 
 // A few particles in the open, as air among flying grains: the gradient cannot be corrected, and nothing blows up.
 TEST(ConsistentOperators, ParticlesWithTooFewNeighboursGoUncorrected) {

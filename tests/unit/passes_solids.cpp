@@ -217,6 +217,29 @@ TEST_P(SolidPasses, ContactsEqualTheNaiveSums) {
     EXPECT_LT(difference(grains.column(Field::acceleration, d), expected[static_cast<std::size_t>(d)]), rounding);
 }
 
+// Two grains and a particle of the wall in one place: no direction, no force, whatever their velocities.
+TEST_P(SolidPasses, CoincidentGrainsFeelNothing) {
+  const int dimensions = GetParam();
+  for (const KernelKind kernel : {KernelKind::cubic_spline, KernelKind::wendland_c2}) {
+    const Bounds b = box(dimensions, {9, 8, 7}, {true, false, false});
+    const Vec3 place{4.3, 3.7, dimensions == 3 ? 2.9 : 0.0};
+    std::vector<PhaseParticles> two;
+    two.push_back(phase(PhaseKind::grains, dimensions, {place, place}, 1.0, {Field::velocity, Field::acceleration}));
+    two.push_back(phase(PhaseKind::wall, dimensions, {place}, 1.0, {Field::velocity}, 10));
+    two[0].column(Field::velocity, 0)[0] = 3.0;
+    Cast cast(b, std::move(two), {{0, 0, 1.1}, {0, 1, 1.1}});
+    const auto law = with_kernel<double>(kernel, 1.1, dimensions, [](const auto& w) {
+      return KernelContact{40.0, 0.9, w.value(1.0), 1.0 / std::abs(w.derivative(1.0))};
+    });
+    for (std::size_t q = 0; q < 2; ++q) {
+      ASSERT_EQ(cast.list(q).entries(), 2u);
+      contact_forces(cast.phases[0], cast.motion[0], cast.list(q), cast.motion[q], kernel, 1.1, law);
+      for (int d = 0; d < dimensions; ++d)
+        for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(cast.phases[0].column(Field::acceleration, d)[k], 0.0);
+    }
+  }
+}
+
 TEST_P(SolidPasses, ReactionEqualsTheNaiveSums) {
   const int dimensions = GetParam();
   for (const bool pores : {false, true}) {

@@ -39,15 +39,35 @@ Cast solid_under_fluids(PhaseKind kind, int dimensions, Uniform& random) {
   return Cast(b, std::move(p), {{0, 1, 3.0}, {0, 2, 2.2}});
 }
 
-class Extension : public testing::TestWithParam<std::tuple<int, Slip, PhaseKind>> {};
-INSTANTIATE_TEST_SUITE_P(Walls, Extension,
-                         testing::Combine(testing::Values(2, 3), testing::Values(Slip::no_slip, Slip::free_slip),
-                                          testing::Values(PhaseKind::wall, PhaseKind::elastic, PhaseKind::grains)));
+/// A solid and how the fluids slip along it.
+struct Solid {
+  int dimensions;
+  Slip slip;
+  PhaseKind kind;
+  std::string name() const {
+    return std::string(kind == PhaseKind::wall      ? "Wall"
+                       : kind == PhaseKind::elastic ? "Elastic"
+                                                    : "Grains") +
+           std::to_string(dimensions) + "D" + (slip == Slip::no_slip ? "NoSlip" : "FreeSlip");
+  }
+};
+void PrintTo(const Solid& solid, std::ostream* out) { *out << solid.name(); }
+
+std::vector<Solid> every_solid() {
+  std::vector<Solid> solids;
+  for (const int dimensions : {2, 3})
+    for (const Slip slip : {Slip::no_slip, Slip::free_slip})
+      for (const PhaseKind kind : {PhaseKind::wall, PhaseKind::elastic, PhaseKind::grains})
+        solids.push_back({dimensions, slip, kind});
+  return solids;
+}
+
+class Extension : public testing::TestWithParam<Solid> {};
+INSTANTIATE_TEST_SUITE_P(Walls, Extension, testing::ValuesIn(every_solid()),
+                         [](const auto& solid) { return solid.param.name(); });
 
 TEST_P(Extension, EqualsTheNaiveSums) {
-  const int dimensions = std::get<0>(GetParam());
-  const Slip slip = std::get<1>(GetParam());
-  const PhaseKind kind = std::get<2>(GetParam());
+  const auto [dimensions, slip, kind] = GetParam();
   const bool accelerates = kind == PhaseKind::elastic;  // the blows of grains are no motion of a boundary
   Uniform random(31);
   Cast cast = solid_under_fluids(kind, dimensions, random);

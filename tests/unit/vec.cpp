@@ -134,6 +134,19 @@ TYPED_TEST(Vectors, InverseRootsAreGoodToTwoUnits) {
   }
 }
 
+// The least squared distance that pair loops make (least_square in passes/pair_loop.hpp) is in the range, on estimates
+// and on the divider.
+TYPED_TEST(Vectors, InverseRootsReachTheEndsOfTheirRange) {
+  IN_TYPED_TEST;
+  for (const double a : {1.0e-37, 8.0e37}) {
+    const T exact = static_cast<T>(1.0 / std::sqrt(a)), unit = std::numeric_limits<T>::epsilon();
+    for (int k = 0; k < W; ++k) {
+      EXPECT_NEAR(inverse_sqrt(V(static_cast<T>(a)))[k] / exact, 1, 4 * unit) << a;
+      EXPECT_NEAR(root(V(static_cast<T>(a)))[k] * exact, 1, 5 * unit) << a;
+    }
+  }
+}
+
 TYPED_TEST(Vectors, ComparisonsAndMasks) {
   IN_TYPED_TEST;
   using M = typename TypeParam::M;
