@@ -25,10 +25,10 @@ if flat:
     for phase in series.phases("wall"):
         figure.particles(phase, colour=WALL, layer=3)
 
-# Vectors where there is fluid, its mean in cells of a fortieth of the width.
+# Vectors where there is fluid, its mean in cells of about a fortieth of the width.
 if flat:
     for number, phase in enumerate(fluids):
         mean, side = figure.mean_velocity(phase, fastest=3 * top)
         figure.arrows(mean, 0.95 * side / top, scale_of=None if number else top, colour=[1.0, 1.0, 1.0], name="arrow",
-                      thickness=1.3, centred=True)
+                      thickness=1.7, centred=True)
 figure.finish()

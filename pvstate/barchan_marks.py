@@ -189,11 +189,12 @@ class Marks:
         shown.WindowLocation = "Any Location"
         shown.Position = [x / width, (y + 14 * self.scale) / height]
 
-    def mean_velocity(self, phase, fastest, across=40):
-        """The mean velocity of one phase in square cells, `across` of them in the box's width; one point in each cell that is
+    def mean_velocity(self, phase, fastest):
+        """The mean velocity of one phase in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in each cell that is
         at least half full of particles slower than `fastest` (m/s). Returns the filter and the cells' side in metres."""
         x0, x1, y0, y1 = self.box[:4]
-        side = max((x1 - x0) / across, 3 * self.series.spacing)
+        across = max(min(40, (x1 - x0) / self.metres / 32), 4)
+        side = max((x1 - x0) / round(across), 3 * self.series.spacing)
         columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)
         mean = ProgrammableFilter(registrationName="mean velocity", Input=self.series.source(phase))
         mean.OutputDataSetType = "vtkPolyData"

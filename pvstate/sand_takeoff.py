@@ -15,8 +15,14 @@ grains = series.phases("grains")
 # The top of the scale, also the speed of the longest arrows: what nearly all moving grains stay below, but no less than what
 # lifts a grain by its own size, so that a bed at rest looks at rest.
 lift = math.sqrt(2 * 9.81 * series.spacing)
+# Not counted: grains three times as fast as the fluids, which drive them, or twenty times as fast as half of the others.
 speeds = series.speeds(grains)
-top = nice_ceiling(max(lift, percentile(speeds[speeds > 0.1 * lift], 98)))
+moving = speeds[speeds > 0.1 * lift]
+if series.phases("fluid") and len(moving):
+    moving = moving[moving <= max(lift, 3 * series.top_speed(series.phases("fluid")))]
+if len(moving):
+    moving = moving[moving <= 20 * max(lift, np.median(moving))]
+top = nice_ceiling(max(lift, percentile(moving, 98)))
 
 if flat:
     for phase in series.phases("fluid"):
