@@ -112,7 +112,7 @@ class Marks:
         """As particles(), of any source of points."""
         flat = self.series.two_dimensional
         if radius == "whole":   # a fluid looks like the continuum that it stands for, and stays off the axes
-            radius = 1.0 if self.pixels_per_spacing < 9 else 0.72
+            radius = 1.0 if self.pixels_per_spacing < 9 else 0.85
         if radius is None:
             radius = 0.5 if self.pixels_per_spacing > 9 or not flat else 0.72
         shown = Show(source, self.view)

@@ -105,7 +105,7 @@ def bar_ticks(low, high):
         step = (high - low) / count
         digits = step / 10.0 ** math.floor(math.log10(step)) if step > 0 else 0
         if any(abs(digits - m) < 1e-6 for m in (1, 2, 2.5, 3, 4, 5)) and abs(low / step - round(low / step)) < 1e-6:
-            return [low + k * step for k in range(count + 1)]
+            return [min(low + k * step, high) for k in range(count + 1)]   # ParaView drops a tick beyond the end by round-off
     return ticks(low, high, 5)
 
 

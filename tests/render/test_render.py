@@ -188,6 +188,18 @@ class Rendering(unittest.TestCase):
         frame = self.render(sorted(series.parent.glob("*.vtu"))[-1], ["airflow"])["airflow"]
         self.assertLess(np.abs(frame - picture)[int(0.1 * height):].mean(), 1e-4)
 
+    def test_a_run_that_broke_down_is_seen_in_its_domain(self):
+        good = self.render(self.scene("calm", COARSE_TANK), ["airflow"])["airflow"]
+        file, out = self.out / "wild.toml", self.out / "wild"
+        file.write_text(COARSE_TANK.replace("time.end = 0.01", "time = { end = 20, step = 0.03 }"))   # five times the limit
+        result = subprocess.run([PROGRAM, "run", file, "--out", out, "--quiet", "--threads", "1"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        for series in (out / "wild.pvd", *out.glob("wild_bad.vt?")):
+            picture = self.render(series, ["airflow"])["airflow"]
+            self.assertEqual(picture.shape, good.shape)
+            walls = np.abs(good - WALL).max(axis=2) < 0.06
+            self.assertGreater((np.abs(picture - WALL).max(axis=2) < 0.06)[walls].mean(), 0.8, f"{series}: another view")
+
     def test_a_single_frame(self):
         frame = sorted(self.dune.parent.glob("*.vtp"))[-1]
         of_series, of_frame = (self.render(file, ["airflow"])["airflow"] for file in (self.dune, frame))
