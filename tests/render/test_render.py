@@ -146,6 +146,15 @@ class Rendering(unittest.TestCase):
         for end, phase in zip(ends, ("sand", "air")):
             self.assertGreater(share(pictures["smoothing_length"], end), 0.03, f"smoothing_length: the {phase} is missing")
 
+    def test_the_state_of_the_page(self):
+        page = (SOURCE / "docs/seeing.md").read_text()
+        state = self.out / "pressure.py"
+        state.write_text(page.split("```python\n")[1].split("```")[0])
+        picture = self.render(self.dune, [str(state)])[str(state)]
+        height, width = picture.shape[:2]
+        colours = matplotlib.colormaps["coolwarm"](np.linspace(0, 1, 64))[:, :3]
+        self.assertGreater(share(picture[int(0.15 * height):int(0.5 * height), int(0.12 * width):int(0.96 * width)], colours), 0.5)
+
     def test_a_hidden_phase_is_not_shown(self):
         shown = self.render(self.dune, ["airflow"], "--hide", "sand")["airflow"]
         self.assertLess(share(shown, SAND, 0.03), 0.003, "the sand was hidden, yet there it is")
