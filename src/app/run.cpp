@@ -207,14 +207,14 @@ void check_restart(const std::string& restart, const fs::path& series) {
 
 int run(const RunOptions& options) {
   const Scene scene = read_scene(options.scene, options.overrides);
-  const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
-  if (!options.restart.empty()) check_restart(options.restart, directory / (scene.name + ".pvd"));
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
   // A thread for every two thousand particles: below that, waiting for each other costs more than it brings. The result
   // does not depend on it.
   const int useful = 1 + static_cast<int>(plan.particles() / 2000.0);
   omp_set_num_threads(options.threads > 0 ? options.threads : std::min(omp_get_max_threads(), useful));
+  const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
+  if (!options.restart.empty()) check_restart(options.restart, directory / (scene.name + ".pvd"));
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
   simulation.check();
