@@ -1,4 +1,4 @@
-"""Wind over sand: the air coloured by its speed with vectors on a regular grid, the grains in the colour of sand.
+"""Wind over sand, or any other fluid: it is coloured by its speed with vectors on a regular grid, grains in the colour of sand.
 
 Halik et al. 2015, figures 12-14. Open it in ParaView (File > Load State) or render it with pvstate/render.
 """
@@ -10,25 +10,25 @@ from barchan_view import *  # noqa: E402,F403
 
 series = start(__file__)
 figure = Figure(series, series.title)
-air = series.phases("fluid")
-top = series.top_speed(air)
+fluids = series.phases("fluid")
+top = series.top_speed(fluids)
 
-# The air overlaps a little, so that it is seen as the continuum that it stands for.
 flat = series.two_dimensional
-shown = [figure.particles(phase, radius=1.0 if flat else 0.25, array="velocity") for phase in air]
+shown = [figure.particles(phase, radius="whole" if flat else 0.25, array="velocity") for phase in fluids]
 if shown:
-    figure.colours(shown, "velocity", 0.0, top, "air speed (m/s)", preset="Viridis (matplotlib)")
+    figure.colours(shown, "velocity", 0.0, top, series.speed_title(fluids), preset="Viridis (matplotlib)")
 for phase in series.phases("grains"):
     figure.particles(phase, colour=SAND, layer=2)
 for phase in series.phases("elastic"):
-    figure.particles(phase, colour=[0.55, 0.57, 0.60], layer=2)
+    figure.particles(phase, colour=BODY, layer=2)
 if flat:
     for phase in series.phases("wall"):
         figure.particles(phase, colour=WALL, layer=3)
 
-# Vectors where there is air, its mean in cells of a fortieth of the width.
+# Vectors where there is fluid, its mean in cells of about a fortieth of the width.
 if flat:
-    for phase in air:
-        wind, side = figure.mean_velocity(phase)
-        figure.arrows(wind, 0.95 * side / top, colour=[1.0, 1.0, 1.0], name="wind", thickness=1.3, centred=True)
+    for number, phase in enumerate(fluids):
+        mean, side = figure.mean_velocity(phase, fastest=3 * top)
+        figure.arrows(mean, 0.95 * side / top, scale_of=None if number else top, colour=[1.0, 1.0, 1.0], name="arrow",
+                      thickness=1.7, centred=True)
 figure.finish()

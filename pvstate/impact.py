@@ -1,6 +1,8 @@
-"""Impact of bodies: their particles coloured by the velocity along the axis of the impact, in 2D or 3D.
+"""Impact of bodies in 2D or 3D: their particles coloured by the velocity along the axis of the motion, zero white, or by the
+speed where the motion has no such axis.
 
-Halik et al. 2015, figures 5-9. The axis is the one along which the velocities of the first frame differ most.
+Halik et al. 2015, figures 5-9. The axis is the direction that holds at least nine tenths of the sum of the squared velocities of the
+bodies over the series; it points along the fastest body of the first frame.
 """
 import os
 import sys
@@ -9,23 +11,53 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from barchan_view import *  # noqa: E402,F403
 
 series = start(__file__)
-figure = Figure(series, series.title, walls=False)
+flat = series.two_dimensional
+figure = Figure(series, series.title)
 bodies = series.phases("elastic") or series.phases("grains") or series.phases("fluid")
-first = series.first()
-begin = first["velocity"][np.isin(first["phase"], bodies)]
-axis = int(np.ptp(begin, axis=0).argmax()) if len(begin) else 0
-along = series.values("velocity", bodies)[:, axis]
-low, high = (np.percentile(along, [0.5, 99.5]) if len(along) else (0.0, 1.0))
-if high - low < 1e-12:
-    low, high = low - 0.5, high + 0.5
-step = nice_ceiling((high - low) / 5)
-low, high = step * math.floor(low / step + 1e-6), step * math.ceil(high / step - 1e-6)
 
-shown = [figure.particles(phase, radius=0.5, array="velocity", component="XYZ"[axis]) for phase in bodies]
-if shown:
-    figure.colours(shown, "velocity", low, high, f"velocity along {'xyz'[axis]} (m/s)",
-                   preset="Cool to Warm")
+
+def motion_axis(velocity, first):
+    """The unit vector of the common direction of the velocities, None without one."""
+    if not len(velocity) or not velocity.any():
+        return None
+    shares, directions = np.linalg.eigh(velocity.T @ velocity)
+    if shares[-1] < 0.9 * shares.sum():
+        return None
+    axis = directions[:, -1]
+    fastest = first[np.linalg.norm(first, axis=1).argmax()] if len(first) else axis
+    return axis if axis @ fastest >= 0 else -axis
+
+
+def name_of(axis):
+    """An axis in a title: x, y or z if it is one to a hundredth, else its components."""
+    nearest = int(np.abs(axis).argmax())
+    if abs(axis[nearest]) > 0.99:
+        return ("" if axis[nearest] > 0 else "-") + "xyz"[nearest]
+    return "(" + ", ".join(f"{c:.2f}" for c in axis[:2 if flat else 3]) + ")"
+
+
+velocity = series.values("velocity", bodies)
+first = series.first()
+axis = motion_axis(velocity, first["velocity"][np.isin(first["phase"], bodies)])
+if flat:
+    for phase in bodies:   # an outline, without which white discs would vanish on white
+        figure.particles(phase, radius=0.56, colour=BODY)
+shown = []
+for phase in bodies:
+    if axis is None:
+        shown.append(figure.particles(phase, radius=0.5, array="velocity", layer=1))
+    else:
+        along = "+".join(f"({c!r})*velocity_{'XYZ'[k]}" for k, c in enumerate(map(float, axis)))
+        source = series.calculated(series.source(phase), "along", along)
+        shown.append(figure.dots(source, radius=0.5, array="along", component=None, layer=1))
+if shown and axis is None:
+    figure.colours(shown, "velocity", 0.0, series.top_speed(bodies), series.speed_title(bodies), preset="Viridis (matplotlib)")
+elif shown:
+    top = nice_ceiling(percentile(np.abs(velocity @ axis), 99.5))
+    figure.colours(shown, "along", -top, top, f"velocity along {name_of(axis)} (m/s)", points=SIGNED)
 for phase in series.phases("fluid", "grains"):
     if phase not in bodies:
         figure.particles(phase, radius=0.2, colour=FAINT_AIR if series.phase_kinds[phase] == "fluid" else SAND)
+for phase in series.phases("wall"):   # in 3D small dots, through which the bodies are seen
+    figure.particles(phase, radius=None if flat else 0.12, colour=WALL, layer=2)
 figure.finish()

@@ -15,10 +15,14 @@ grains = series.phases("grains")
 # The top of the scale, also the speed of the longest arrows: what nearly all moving grains stay below, but no less than what
 # lifts a grain by its own size, so that a bed at rest looks at rest.
 lift = math.sqrt(2 * 9.81 * series.spacing)
-moving = series.values("velocity", grains)
-speeds = np.linalg.norm(moving, axis=1) if len(moving) else np.zeros(1)
-speeds = speeds[np.isfinite(speeds) & (speeds > 0.1 * lift)]
-top = nice_ceiling(max(lift, np.percentile(speeds, 98) if len(speeds) else 0.0))
+# Not counted: grains three times as fast as the fluids, which drive them, or twenty times as fast as half of the others.
+speeds = series.speeds(grains)
+moving = speeds[speeds > 0.1 * lift]
+if series.phases("fluid") and len(moving):
+    moving = moving[moving <= max(lift, 3 * series.top_speed(series.phases("fluid")))]
+if len(moving):
+    moving = moving[moving <= 20 * max(lift, np.median(moving))]
+top = nice_ceiling(max(lift, percentile(moving, 98)))
 
 if flat:
     for phase in series.phases("fluid"):
@@ -26,12 +30,12 @@ if flat:
     for phase in series.phases("wall"):
         figure.particles(phase, colour=WALL, layer=1)
 for phase in series.phases("elastic"):
-    figure.particles(phase, colour=[0.55, 0.57, 0.60], layer=2)
+    figure.particles(phase, colour=BODY, layer=2)
 
 shown = []
 for phase in grains:
+    figure.arrows(series.source(phase), 6 * series.spacing / top, scale_of=None if shown else top, name="arrow", thickness=0.8)
     shown.append(figure.particles(phase, array="velocity", layer=3))
-    arrows = figure.arrows(series.source(phase), 6 * series.spacing / top, colour=INK, name="velocity", thickness=0.8)
 if shown:
-    figure.colours(shown, "velocity", 0.0, top, "grain speed (m/s)", points=SAND_SPEED)
+    figure.colours(shown, "velocity", 0.0, top, series.speed_title(grains), points=SAND_SPEED)
 figure.finish()

@@ -2,6 +2,7 @@
 """How fast whole steps are, beside the limit loops, in one session: the tables and the plot of docs/performance.md.
 
     /usr/bin/python3 bench/throughput/measure.py BUILD [--only PART]... [--rounds 3] [--write]
+    /usr/bin/python3 bench/throughput/measure.py none --only none --write     # page and plot from the results, measures nothing
 
 BUILD holds bench/throughput and bench/limit_pairs (cmake --preset bench && ninja -C build-bench). Parts: steps, limit,
 threads, growth, bare. Runs are interleaved and medians taken over the rounds; results are kept part by part in
@@ -127,37 +128,41 @@ def page(results):
 
 
 def plot(results):
+    """Colours of Okabe & Ito (Color Universal Design, 2008) and a mark for each series, so that nobody needs to see the colours;
+    the legend stands above the axes, where it covers nothing."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as pyplot
-    names, ours = [], []
-    for name, r in results["steps"].items():
-        names.append(name)
-        ours.append(r["pairs_per_second"] / 1e6)
-    figure, axes = pyplot.subplots(figsize=(8, 4.2), layout="constrained")
-    axes.barh(names[::-1], ours[::-1], color="#4c72b0", label="whole step")
-    axes.plot([r["pair_pass_pairs_per_second"] / 1e6 for r in results["steps"].values()][::-1], names[::-1], "o", color="#dd8452",
-              label="pair pass alone")
-    for d, style in (("2", "--"), ("3", ":")):
-        forms = results["limit"][d]["forms"]
+    names = list(results["steps"])[::-1]
+    rates = [results["steps"][name] for name in names]
+    figure, axes = pyplot.subplots(figsize=(8, 4.8), layout="constrained")
+    axes.barh(names, [r["pairs_per_second"] / 1e6 for r in rates], color="#56B4E9", label="whole step")
+    axes.plot([r["pair_pass_pairs_per_second"] / 1e6 for r in rates], names, "D", color="#D55E00", label="pair pass alone")
+    limits = {}   # of the rows whose law the limit loop has
+    for d in ("2", "3"):
         for precision, key in (("double", "whole step, law of the air, list"), ("mixed", "whole step, law of the air, mixed")):
-            value = next(f["mega_pairs_per_second"] for k, f in forms.items() if k.startswith(key))
-            axes.axvline(value, linestyle=style, color="#444444" if precision == "double" else "#999999", linewidth=1,
-                         label=f"limit, whole step, {d}D, {precision}")
+            for name in names:
+                if name.startswith(f"air {d}D, plain") and name.endswith(precision):
+                    limits[name] = next(f["mega_pairs_per_second"] for k, f in results["limit"][d]["forms"].items() if k.startswith(key))
+    axes.plot(list(limits.values()), list(limits), "|", color="#000000", markersize=24, markeredgewidth=2.5,
+              label="limit loop of the same law, whole step")
     axes.set_xlabel("million pairs a second, one core")
-    axes.legend(fontsize=8, loc="lower right")
+    axes.legend(fontsize=9, loc="lower center", bbox_to_anchor=(0.3, 1.01), ncols=3, frameon=False)
     figure.savefig(ROOT / "docs/gallery/performance.png", dpi=110)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--only", action="append", choices=["steps", "threads", "growth", "bare"])
+    parser.add_argument("--only", action="append", choices=["none", "steps", "threads", "growth", "bare"],
+                        help="these parts; with none nothing is measured, and --write makes page and plot from what there is")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     for part in options.only or ["steps", "threads", "growth", "bare"]:
+        if part == "none":
+            continue
         results.update(measure(options.build.resolve(), part, options.rounds))
         RESULTS.write_text(json.dumps(results, indent=1) + "\n")
     text = page(results)

@@ -222,21 +222,29 @@ class Run {
   std::string reason_;
 };
 
+/// There are no checkpoints yet. "latest" starts at the beginning where no run was; where frames lie it is refused,
+/// because a new run would remove them.
+void check_restart(const std::string& restart, const fs::path& series) {
+  if (restart != "latest")
+    throw SceneError("--restart " + restart +
+                     ": checkpoints are not there yet; expected \"latest\", "
+                     "which starts at the beginning in a folder without a run");
+  if (fs::exists(series))
+    throw SceneError("--restart latest: " + series.string() +
+                     " is the series of an earlier run and there is no checkpoint to go on from; "
+                     "a new run would remove its frames; expected another --out, or no --restart to start anew");
+  std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
   const Scene scene = read_scene(options.scene, options.overrides);
-  if (!options.restart.empty()) {
-    if (options.restart != "latest")
-      throw SceneError("--restart " + options.restart +
-                       ": checkpoints are not there yet; only \"latest\" is accepted, "
-                       "which starts at the beginning when there is none");
-    std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
-  }
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
   use_threads(options.threads, plan);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
+  if (!options.restart.empty()) check_restart(options.restart, directory / (scene.name + ".pvd"));
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
   simulation.check_start();

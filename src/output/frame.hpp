@@ -1,6 +1,7 @@
 // A frame: a copy of what is to be written, made by the computation and owned by the writer from then on.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,9 +18,10 @@ struct FrameField {
 struct Frame {
   int index = 0;  // number in the series
   long step = 0;
-  double time = 0.0;             // s
-  std::vector<double> points;    // m, 3 a particle
-  std::vector<std::int64_t> id;  // stable from the first frame to the last
+  double time = 0.0;               // s
+  std::array<double, 6> domain{};  // m, lower and upper bound along x, y, z in turn; along z 0, 0 in 2D
+  std::vector<double> points;      // m, 3 a particle
+  std::vector<std::int64_t> id;    // stable from the first frame to the last
   std::vector<std::int32_t> phase;
   std::vector<std::string> phase_names;  // phase number -> name
   std::vector<std::string> phase_kinds;  // phase number -> fluid, elastic, grains, wall

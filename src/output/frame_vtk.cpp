@@ -101,6 +101,13 @@ vtkSmartPointer<Array> view(const char* name, const std::vector<T>& values, int 
   return array;
 }
 
+void add_domain(vtkFieldData* to, const std::array<double, 6>& domain) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("domain");
+  for (const double bound : domain) array->InsertNextValue(bound);
+  to->AddArray(array);
+}
+
 template <class Array, class T>
 void add_value(vtkFieldData* to, const char* name, T value) {
   vtkNew<Array> array;
@@ -163,6 +170,7 @@ void fill(vtkPointSet* data, const Frame& frame, FrameFormat format) {
   add_value<vtkDoubleArray>(about, "TimeValue", frame.time);
   add_value<vtkTypeInt64Array>(about, "step", static_cast<vtkTypeInt64>(frame.step));
   add_value<vtkIntArray>(about, "frame", frame.index);
+  add_domain(about, frame.domain);
   add_lines(about, "phase_names", frame.phase_names, format);
   add_lines(about, "phase_kinds", frame.phase_kinds, format);
   add_lines(about, "units", unit_lines(frame), format);
@@ -255,6 +263,8 @@ Frame frame_of(vtkPointSet* data) {
   if (auto* time = about->GetArray("TimeValue")) frame.time = time->GetComponent(0, 0);
   if (auto* step = about->GetArray("step")) frame.step = values_of<std::int64_t>(step).at(0);
   if (auto* index = about->GetArray("frame")) frame.index = values_of<int>(index).at(0);
+  if (auto* domain = about->GetArray("domain"); domain && domain->GetNumberOfValues() == 6)
+    std::ranges::copy(values_of<double>(domain), frame.domain.begin());
   frame.phase_names = lines_of(about, "phase_names");
   frame.phase_kinds = lines_of(about, "phase_kinds");
   const Lines units = lines_of(about, "units");

@@ -44,6 +44,10 @@ Frame Simulation::frame(int index) const {
   f.index = index;
   f.step = steps_;
   f.time = time_;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(plan_.dimensions); ++d) {
+    f.domain[2 * d] = plan_.bounds.low[d];
+    f.domain[2 * d + 1] = plan_.bounds.high[d];
+  }
   std::size_t n = 0;
   std::vector<std::size_t> written;
   for (std::size_t k = 0; k < particles_.size(); ++k) {

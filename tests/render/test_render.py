@@ -3,8 +3,10 @@
     test_render.py PROGRAM SOURCE_DIR
 
 Runs short scenes with PROGRAM, then renders their last frame with each state through pvstate/render. A picture must not be
-blank, must show the sand and the air where they are expected, and must not show a phase that was hidden.
+blank, must show the sand and the air where they are expected, and must not show a phase that was hidden. Single particles that
+went astray, coarse scenes and wrong commands have tests of their own.
 """
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,8 +16,37 @@ from pathlib import Path
 import matplotlib
 import matplotlib.image
 import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 
 PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+
+# Water that flows to the right at 1 m/s and up and down: spacing 0.1 m, so that arrows lie 1.2 m above the plane of the scene.
+COARSE_TANK = """
+spacing = 0.1
+domain = { size = [6.0, 2.0], periodic = ["x"] }
+phases.pond_water = { kind = "fluid", density = 1000, viscosity = 0.1, sound-speed = 10 }
+phases.walls = { kind = "wall" }
+interactions = { pond_water-pond_water = 2.6, pond_water-walls = 2.6 }
+fill = [{ phase = "walls", shape = { sides = ["bottom", "top"] } },
+        { phase = "pond_water", shape = "the-rest", velocity = ["1 + 0*x", "0.3*sin(x)"] }]
+time.end = 0.01
+output.format = "vtu"
+"""
+
+# Two discs between walls, one of them on its way to the other along the diagonal.
+DISCS = """
+spacing = 1e-3
+domain.size = [0.04, 0.03]
+phases.a = { kind = "elastic", density = 7870, young = 206e9, poisson = 0.3 }
+phases.b = { kind = "elastic", density = 7870, young = 206e9, poisson = 0.3 }
+phases.box = { kind = "wall" }
+interactions = { a-a = 2.4, b-b = 2.4, a-b = 1.1, a-box = 1.2, b-box = 1.2 }
+fill = [{ phase = "box", shape = { sides = ["bottom", "top", "left", "right"] } },
+        { phase = "a", shape = { disc = { centre = [0.010, 0.010], radius = 0.005 } }, velocity = [10, 10] },
+        { phase = "b", shape = { disc = { centre = [0.020, 0.020], radius = 0.005 } } }]
+time = { end = 1e-6, largest-speed = 15 }
+"""
 
 
 def run(scene, out, end):
@@ -23,10 +54,37 @@ def run(scene, out, end):
     return [PROGRAM, "run", SOURCE / "scenes" / f"{scene}.toml", "--out", out, "--quiet", "--set", f"time.end={end}"]
 
 
+def changed_series(series, out, change):
+    """A copy of a series whose frames went through change(data, velocity, points)."""
+    out.mkdir()
+    for file in sorted(series.parent.glob("*.vtp")):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(file))
+        reader.Update()
+        data = reader.GetOutput()
+        change(data, vtk_to_numpy(data.GetPointData().GetArray("velocity")), vtk_to_numpy(data.GetPoints().GetData()))
+        writer = vtkXMLPolyDataWriter()
+        writer.SetFileName(str(out / file.name))
+        writer.SetInputData(data)
+        writer.Write()
+    for name in (series.name, "run.json"):
+        shutil.copy(series.parent / name, out / name)
+    return out / series.name
+
+
+def of_phase(data, name):
+    """Which particles belong to a phase, by its name."""
+    names = data.GetFieldData().GetAbstractArray("phase_names")
+    number = [names.GetValue(k) for k in range(names.GetNumberOfValues())].index(name)
+    return np.flatnonzero(vtk_to_numpy(data.GetPointData().GetArray("phase")) == number)
+
+
 WIND, IMPACT = "dune", "impact_cubes"            # the scenes: air over sand; two bodies, one fast and one at rest
 
 
-SAND = np.array([0.86, 0.66, 0.34])        # as in pvstate/barchan_view.py
+SAND = np.array([0.86, 0.66, 0.34])        # as in pvstate/barchan_marks.py
+WALL, INK, MARK = (0.38, 0.38, 0.40), (0.13, 0.13, 0.15), (0.835, 0.369, 0.0)
+WHITE = (1.0, 1.0, 1.0)
 VIRIDIS = matplotlib.colormaps["viridis"](np.linspace(0, 1, 64))[:, :3]
 
 
@@ -62,7 +120,7 @@ class Rendering(unittest.TestCase):
                       "--out", target, *options])
         pictures = {}
         for state in states:
-            files = list(target.glob(f"{state}_*.png"))
+            files = list(target.glob(f"{Path(state).stem}_*.png"))
             self.assertEqual(len(files), 1, f"{state}: one picture of one frame")
             pictures[state] = matplotlib.image.imread(files[0])[:, :, :3]
             self.assertEqual(pictures[state].shape[1], 800, state)
@@ -88,6 +146,15 @@ class Rendering(unittest.TestCase):
         for end, phase in zip(ends, ("sand", "air")):
             self.assertGreater(share(pictures["smoothing_length"], end), 0.03, f"smoothing_length: the {phase} is missing")
 
+    def test_the_state_of_the_page(self):
+        page = (SOURCE / "docs/seeing.md").read_text()
+        state = self.out / "pressure.py"
+        state.write_text(page.split("```python\n")[1].split("```")[0])
+        picture = self.render(self.dune, [str(state)])[str(state)]
+        height, width = picture.shape[:2]
+        colours = matplotlib.colormaps["coolwarm"](np.linspace(0, 1, 64))[:, :3]
+        self.assertGreater(share(picture[int(0.15 * height):int(0.5 * height), int(0.12 * width):int(0.96 * width)], colours), 0.5)
+
     def test_a_hidden_phase_is_not_shown(self):
         shown = self.render(self.dune, ["airflow"], "--hide", "sand")["airflow"]
         self.assertLess(share(shown, SAND, 0.03), 0.003, "the sand was hidden, yet there it is")
@@ -95,19 +162,125 @@ class Rendering(unittest.TestCase):
         self.assertLess(share(shown, VIRIDIS), 0.02, "the air was hidden, yet there it is")
         self.assertGreater(share(shown, SAND), 0.03)
 
+    def scene(self, name, text):
+        """The series of a scene that is given as text."""
+        file = self.out / f"{name}.toml"
+        file.write_text(text)
+        self.command([PROGRAM, "run", file, "--out", self.out / name, "--quiet", "--threads", "1"])
+        return self.out / name / f"{name}.pvd"
+
     def test_impact(self):
         self.command(run(IMPACT, self.out / IMPACT, 1e-7))
         picture = self.render(self.out / IMPACT / f"{IMPACT}.pvd", ["impact"])["impact"]
-        fast, slow = picture[..., 0] - picture[..., 2] > 0.15, picture[..., 2] - picture[..., 0] > 0.15
-        for name, body in (("fast", fast), ("slow", slow)):
-            self.assertGreater(body.mean(), 0.03, f"the {name} body is missing")
+        body = picture[:, :int(0.84 * picture.shape[1])]   # without the colour bar
+        self.assertGreater((body[..., 0] - body[..., 2] > 0.15).mean(), 0.03, "the fast body, in red, is missing")
+        grey = (np.ptp(body, axis=2) < 0.03) & (body.max(axis=2) > 0.3) & (body.max(axis=2) < 0.98)
+        self.assertGreater(grey.mean(), 0.03, "the body at rest, in white with its shade, is missing")
+
+    def test_impact_along_a_diagonal_between_walls(self):
+        picture = self.render(self.scene("discs", DISCS), ["impact"])["impact"]
+        self.assertGreater(share(picture, WALL), 0.10, "the walls are missing")
+        self.assertGreater(share(picture, [0.75, 0.21, 0.20], 0.12), 0.02, "the moving disc is missing")
+        self.assertGreater(share(picture, [0.97, 0.97, 0.97], 0.01), 0.02, "the disc at rest is missing")
+
+    def test_arrows_of_a_coarse_scene(self):
+        series = self.scene("tank", COARSE_TANK)
+        picture = self.render(series, ["airflow"])["airflow"]
+        height, width = picture.shape[:2]
+        water = picture[int(0.25 * height):int(0.60 * height), int(0.12 * width):int(0.95 * width)]
+        self.assertGreater(share(water, VIRIDIS), 0.80, "the water is missing")
+        self.assertGreater(share(water, WHITE, 0.02), 0.01, "the arrows are missing")
+        right = picture[int(0.88 * height):, int(0.70 * width):int(0.95 * width)]
+        self.assertGreater(share(right, INK, 0.1), 0.005, "the scale of the arrows is missing")
+
+        # One frame of the series, a .vtu here, gives the same picture but for its title.
+        frame = self.render(sorted(series.parent.glob("*.vtu"))[-1], ["airflow"])["airflow"]
+        self.assertLess(np.abs(frame - picture)[int(0.1 * height):].mean(), 1e-4)
+
+    def test_a_run_that_broke_down_is_seen_in_its_domain(self):
+        good = self.render(self.scene("calm", COARSE_TANK), ["airflow"])["airflow"]
+        file, out = self.out / "wild.toml", self.out / "wild"
+        file.write_text(COARSE_TANK.replace("time.end = 0.01", "time = { end = 20, step = 0.03 }"))   # five times the limit
+        result = subprocess.run([PROGRAM, "run", file, "--out", out, "--quiet", "--threads", "1"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        for series in (out / "wild.pvd", *out.glob("wild_bad.vt?")):
+            picture = self.render(series, ["airflow"])["airflow"]
+            self.assertEqual(picture.shape, good.shape)
+            walls = np.abs(good - WALL).max(axis=2) < 0.06
+            self.assertGreater((np.abs(picture - WALL).max(axis=2) < 0.06)[walls].mean(), 0.8, f"{series}: another view")
+
+    def test_a_single_frame(self):
+        frame = sorted(self.dune.parent.glob("*.vtp"))[-1]
+        of_series, of_frame = (self.render(file, ["airflow"])["airflow"] for file in (self.dune, frame))
+        self.assertLess(np.abs(of_series - of_frame)[int(0.1 * len(of_series)):].mean(), 0.01)
+
+    def test_one_particle_astray_changes_neither_view_nor_colours(self):
+        def fling(data, velocity, points):
+            for phase in ("air", "sand"):
+                far, fast = of_phase(data, phase)[[100, 200]]
+                points[far, :2], velocity[far, :2] = (1000.0, 300.0), (1e6, 1e6)
+                velocity[fast, 0] = 1e6
+            lost = of_phase(data, "air")[300]
+            points[lost], velocity[lost] = np.nan, np.nan
+
+        def without_bounds(data, *_):
+            data.GetFieldData().RemoveArray("domain")
+
+        states = ["airflow", "sand_takeoff", "smoothing_length"]
+        unbounded = changed_series(self.dune, self.out / "unbounded", without_bounds)
+        for series, name, states in ((self.dune, "flung", states), (unbounded, "unbounded_flung", states[:1])):
+            expected = self.render(series, states)
+            found = self.render(changed_series(series, self.out / name, fling), states)
+            for state in states:
+                self.assertEqual(found[state].shape, expected[state].shape, f"{name}, {state}: another view")
+                different = (np.abs(found[state] - expected[state]).max(axis=2) > 0.1).mean()
+                self.assertLess(different, 0.01, f"{name}, {state}: another view or other colours")
+
+    def test_arrows_stay_off_the_numbers_of_the_axes(self):
+        """Grains at the left edge that fly to the left, against the same grains at rest."""
+        def still(_, velocity, __):
+            velocity[:] = 0.0
+
+        def fly(data, velocity, points):
+            velocity[:] = 0.0
+            sand = of_phase(data, "sand")
+            velocity[sand[points[sand, 0] < 0.012], 0] = -5.0
+
+        window = ["--window", "0.005,0.035,0.001,0.015"]
+        before, after = (self.render(changed_series(self.dune, self.out / name, change), ["sand_takeoff"], *window)
+                         ["sand_takeoff"] for name, change in (("still", still), ("flying", fly)))
+        height, width = before.shape[:2]
+        rows = slice(int(0.1 * height), int(0.7 * height))
+        inside = slice(int(0.10 * width), int(0.5 * width))
+        self.assertGreater(share(after[rows, inside], INK, 0.1), share(before[rows, inside], INK, 0.1) + 0.005, "no arrows")
+        beside = slice(0, int(0.075 * width))
+        self.assertLess(np.abs(before[rows, beside] - after[rows, beside]).mean(), 1e-3, "an arrow crosses the axis")
+
+    def test_kernels_lie_within_the_plot(self):
+        """In the second window the air is a strip at the top that is lower than its kernel; that kernel is not drawn."""
+        for window in ([], ["--window", "0.0465,0.0535,0.0057,0.0087"]):
+            picture = self.render(self.dune, ["smoothing_length"], *window)["smoothing_length"]
+            rows, columns = np.nonzero(np.abs(picture - MARK).max(axis=2) < 0.12)
+            self.assertGreater(len(rows), 100, "the kernels are missing")
+            left, right, bottom, top = 70, 20, 92, 36   # margins of a wide picture of 800 pixels
+            height, width = picture.shape[:2]
+            self.assertTrue(rows.min() >= top - 1 and rows.max() <= height - bottom + 1 and columns.min() >= left - 1
+                            and columns.max() <= width - right + 1, f"{window}: a kernel leaves the plot")
 
     def test_wrong_commands_say_what_is_wrong(self):
-        for words, expected in ((["nowhere.pvd"], "nowhere.pvd"), ([self.dune, "--state", "sunset"], "airflow"),
-                                ([self.dune, "--frames", "100000"], "frames 0 to"), ([self.dune, "--size", "big"], "1600x900")):
+        text = self.out / "notes.txt"
+        text.write_text("no series")
+        frame = sorted(self.dune.parent.glob("*.vtp"))[-1]
+        for words, expected in ((["nowhere.pvd"], "nowhere.pvd"), ([text], ".pvd"), ([self.dune, "--state", "sunset"], "airflow"),
+                                ([self.dune, "--frames", "100000"], "frames 0 to"), ([self.dune, "--size", "big"], "1600x900"),
+                                ([frame, "--film"], "single frame"),
+                                ([self.dune, "--window", "0,1"], "X0,X1,Y0,Y1"), ([self.dune, "--window", "a,b,c,d"], "X0,X1,Y0,Y1"),
+                                ([self.dune, "--window", "1,0,0,1"], "X0 < X1"), ([self.dune, "--window", "0,nan,0,1"], "X0,X1"),
+                                ([self.dune, "--window", "5,6,5,6"], "shows nothing"), ([self.dune, "--hide", "snow"], "no phase 'snow'")):
             result = subprocess.run([SOURCE / "pvstate/render", *words], capture_output=True, text=True)
             self.assertEqual(result.returncode, 2, words)
             self.assertIn(expected, result.stderr)
+            self.assertNotIn("Traceback", result.stderr)
 
 
 if __name__ == "__main__":

@@ -62,6 +62,7 @@ inline Frame frame(std::size_t n, int index = 3, unsigned seed = 1) {
   f.index = index;
   f.step = 1234567890123L + index;
   f.time = 0.1 * index;
+  f.domain = {-0.1, 0.3, 0.0, 1e-300, 0.7, 2.0};
   f.phase_names = {"air", "sand grains", "Wände"};
   f.phase_kinds = {"fluid", "grains", "wall"};
   f.fields = {{"velocity", "m/s", 3, {}}, {"density", "kg/m3", 1, {}}, {"stress", "Pa", 6, {}}, {"marker", "", 1, {}}};
@@ -88,6 +89,7 @@ inline void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(a.index, b.index);
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.domain, b.domain);
   EXPECT_TRUE(same_bits(a.points, b.points));
   EXPECT_EQ(a.id, b.id);
   EXPECT_EQ(a.phase, b.phase);

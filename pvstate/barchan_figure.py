@@ -1,0 +1,202 @@
+"""The layout of a figure in a render view: title, time, camera, axes."""
+
+import math
+import os
+
+import numpy as np
+from paraview.simple import (AnnotateTimeFilter, AssignViewToLayout, CreateLayout, CreateRenderView, GetActiveView,
+                             GetAnimationScene, SetActiveView, Show, Text)
+
+from barchan_marks import INK, Marks, set_font
+from barchan_series import ticks
+
+
+class Figure(Marks):
+    """One render view laid out as a figure: title and time above, the data with axes, the colour bar below or beside."""
+
+    def __init__(self, series, title, window=None, walls=True):
+        self.series = series
+        self.view = self._empty_view()
+        self.size = self._size(window, walls)
+        self.scale = min(max(self.size[0] / 1600.0, 0.35), 2.5)   # of letters and lines
+        view = self.view
+        view.SuppressRendering = 1   # until finish()
+        view.UseColorPaletteForBackground = 0
+        view.BackgroundColorMode = "Single Color"
+        view.Background = [1.0, 1.0, 1.0]
+        view.OrientationAxesVisibility = 0
+        view.CenterAxesVisibility = 0
+        view.UseFXAA = 1
+        self._heading(title)
+        if series.two_dimensional:
+            self._camera_2d()
+        else:
+            self._camera_3d()
+
+    # -- layout
+
+    @staticmethod
+    def _empty_view():
+        """The active view, or a new one in a new tab when that already shows something."""
+        view = GetActiveView()
+        if view is None or not hasattr(view, "CameraParallelScale") or any(r.Visibility for r in view.Representations):
+            busy = view is not None
+            view = CreateRenderView()
+            if busy:
+                AssignViewToLayout(view=view, layout=CreateLayout(name="Barchan"))
+        return view
+
+    def _size(self, window, walls):
+        series = self.series
+        self.box = series.bounds(series.phases("fluid", "grains", "elastic", *(["wall"] if walls else [])) or [0])
+        window = series.wanted_window(self.box) or window
+        if window is not None:
+            self.box[:4] = window
+        series.window = list(self.box)
+        if series.two_dimensional:
+            extent = self.box[1] - self.box[0], self.box[3] - self.box[2]
+        else:
+            extent = [np.ptp(self._corners() @ direction) for direction in self._directions()[:2]]
+        aspect = extent[0] / max(extent[1], 1e-30)
+        self.wide = series.two_dimensional and aspect > 1.6
+        wanted = os.environ.get("BARCHAN_SIZE", "")
+        if not wanted:
+            size = list(self.view.ViewSize)
+        else:
+            width, _, height = wanted.partition("x")
+            width = int(width)
+            unit = width / 1600.0
+            if height:
+                size = [width, int(height)]
+            else:   # the height that the data fill
+                left, right, bottom, top = (m * unit for m in self._margins_1600())
+                size = [width, (width - left - right) / aspect + bottom + top]
+                size[1] = min(max(size[1], 0.25 * width), width)
+            size = [int(s) // 2 * 2 for s in size]   # video wants even numbers
+            self.view.ViewSize = size
+        return size
+
+    def _margins_1600(self):
+        """left, right, bottom, top in pixels of a picture 1600 wide."""
+        if not self.series.two_dimensional:
+            return (40, 250, 40, 85)
+        return (140, 40, 185, 72) if self.wide else (140, 230, 95, 72)
+
+    def _margins(self):
+        return tuple(m * self.scale for m in self._margins_1600())
+
+    def _heading(self, title):
+        width, height = self.size
+        left, right, _, top = self._margins()
+        text = Text(registrationName="title", Text=title)
+        shown = Show(text, self.view)
+        set_font(shown, 26 * self.scale, Bold=0)
+        shown.WindowLocation = "Any Location"
+        shown.Position = [left / width, 1 - 0.68 * top / height]
+
+        end = abs(self.series.times[-1])
+        factor, unit = (1e6, "µs") if end < 2e-3 else (1e3, "ms") if end < 10 else (1.0, "s")
+        digits = min(max(2 - math.floor(math.log10(end * factor)), 0), 3) if end > 0 else 0   # three figures
+        time = AnnotateTimeFilter(registrationName="time", Input=self.series.reader)
+        time.Scale = factor
+        time.Format = "t = {time:." + str(digits) + "f} " + unit
+        longest = len(f"t = {end * factor:.{digits}f} {unit}")
+        shown = Show(time, self.view)
+        set_font(shown, 24 * self.scale)
+        shown.WindowLocation = "Any Location"
+        shown.Position = [1 - (right + 14.5 * self.scale * longest) / width, 1 - 0.68 * top / height]
+
+    # -- camera
+
+    def _camera_2d(self):
+        view, box = self.view, self.box
+        width, height = self.size
+        left, right, bottom, top = self._margins()
+        across, up = max(width - left - right, 1), max(height - bottom - top, 1)
+        self.metres = max((box[1] - box[0]) / across, (box[3] - box[2]) / up)   # a pixel
+        self.pixels_per_spacing = self.series.spacing / self.metres
+        self.across, self.up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+        x = 0.5 * (box[0] + box[1]) + 0.5 * (right - left) * self.metres
+        y = 0.5 * (box[2] + box[3]) + 0.5 * (top - bottom) * self.metres
+        self.focus = np.array([x, y, 0.0])
+        view.InteractionMode = "2D"
+        view.CameraParallelProjection = 1
+        view.CameraFocalPoint = [x, y, 0.0]
+        # Above all layers, of which arrows are the highest (some 12 spacings), whatever the size of the scene.
+        view.CameraPosition = [x, y, 2 * max(box[1] - box[0], box[3] - box[2]) + 100 * self.series.spacing]
+        view.CameraViewUp = [0.0, 1.0, 0.0]
+        view.CameraParallelScale = 0.5 * height * self.metres
+        self._axes()
+
+    def _axes(self):
+        box = self.box
+        milli = max(box[1] - box[0], box[3] - box[2]) < 1.0
+        unit, factor = ("mm", 1e3) if milli else ("m", 1.0)
+        axes = self.view.AxesGrid
+        axes.Visibility = 1
+        axes.UseCustomBounds = 1
+        axes.CustomBounds = [*box[:4], 0.0, 0.0]
+        axes.FacesToRender = 4        # the plane of the scene
+        axes.AxesToLabel = 3          # below and at the left
+        axes.ShowGrid, axes.ShowTicks, axes.ShowEdges = 0, 1, 1
+        axes.GridColor = INK
+        away = " " * max(0, round(6.5 * self.scale - 2.5))   # ParaView sets the title too near to the labels
+        axes.XTitle, axes.YTitle, axes.ZTitle = f"x ({unit})", f"y ({unit})" + away, ""
+        axes.DataScale = [1 / factor] * 3
+        for axis, low, high in (("X", box[0], box[1]), ("Y", box[2], box[3])):
+            set_font(axes, 19 * self.scale, axis + "Label")
+            set_font(axes, 20 * self.scale, axis + "Title")
+            pixels = (high - low) / self.metres
+            places = ticks(low * factor, high * factor, min(8, max(2, pixels / (95 * self.scale))))
+            setattr(axes, axis + "AxisUseCustomLabels", 1)
+            setattr(axes, axis + "AxisLabels", places)
+
+    @staticmethod
+    def _directions():
+        """Of a 3D picture: to the right, upwards, to the eye."""
+        towards = np.array([0.35, 0.42, 0.84]) / np.linalg.norm([0.35, 0.42, 0.84])
+        across = np.cross([0.0, 1.0, 0.0], towards)
+        across /= np.linalg.norm(across)
+        return across, np.cross(towards, across), towards
+
+    def _corners(self):
+        return np.array([[x, y, z] for x in self.box[0:2] for y in self.box[2:4] for z in self.box[4:6]])
+
+    def _camera_3d(self):
+        view, box = self.view, self.box
+        width, height = self.size
+        left, right, bottom, top = self._margins()
+        across, up, towards = self._directions()
+        corners = self._corners()
+        centre = corners.mean(axis=0)
+        metres = max(np.ptp(corners @ across) / max(width - left - right, 1), np.ptp(corners @ up) / max(height - bottom - top, 1))
+        self.metres, self.across, self.up = metres, across, up
+        self.pixels_per_spacing = self.series.spacing / metres
+        focus = centre + across * 0.5 * (right - left) * metres + up * 0.5 * (top - bottom) * metres
+        self.focus = focus
+        size = np.linalg.norm([box[1] - box[0], box[3] - box[2], box[5] - box[4]])
+        view.InteractionMode = "3D"
+        view.CameraParallelProjection = 1
+        view.CameraFocalPoint = focus
+        view.CameraPosition = focus + towards * 3 * size
+        view.CameraViewUp = [0.0, 1.0, 0.0]
+        view.CameraParallelScale = 0.5 * height * metres
+        view.CenterOfRotation = centre
+        view.AxesGrid.Visibility = 0
+
+    def place_of_pixel(self, x, y):
+        """The point (m) of the picture's plane at x pixels from the left and y from below."""
+        return (self.focus + self.across * (x - 0.5 * self.size[0]) * self.metres
+                + self.up * (y - 0.5 * self.size[1]) * self.metres)
+
+    # -- end
+
+    def finish(self):
+        """Shows the last frame: a film begins where it likes, a first look should see something."""
+        self.view.ViewTime = self.series.times[-1]
+        scene = GetAnimationScene()
+        scene.UpdateAnimationUsingDataTimeSteps()
+        scene.AnimationTime = self.series.times[-1]
+        self.view.SuppressRendering = 0
+        SetActiveView(self.view)
+        return self.view

@@ -1,0 +1,267 @@
+"""What a figure draws into its view: discs, arrows with their scale, kernels, colours."""
+
+import os
+
+import numpy as np
+from paraview.simple import (ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
+                             ProgrammableSource, Show, Text)
+
+from barchan_series import bar_ticks, round_floor
+
+SAND = [0.86, 0.66, 0.34]           # ochre
+WALL = [0.38, 0.38, 0.40]
+BODY = [0.55, 0.57, 0.60]
+FAINT_AIR = [0.80, 0.87, 0.93]
+INK = [0.13, 0.13, 0.15]
+MARK = [0.835, 0.369, 0.0]          # vermilion of Okabe & Ito, Color Universal Design (2008)
+# Grains at rest have the colour of sand; the faster, the darker (luminance falls all the way).
+SAND_SPEED = [0.0, *SAND, 0.35, 0.84, 0.42, 0.16, 0.7, 0.62, 0.13, 0.16, 1.0, 0.28, 0.02, 0.20]
+# Zero is white; blue and red can be told apart by the colour-blind.
+SIGNED = [-1.0, 0.08, 0.32, 0.62, -0.5, 0.42, 0.67, 0.85, 0.0, 0.97, 0.97, 0.97,
+          0.5, 0.93, 0.52, 0.40, 1.0, 0.68, 0.07, 0.15]
+FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
+
+MEAN_VELOCITY = """
+import numpy as np
+from vtkmodules.numpy_interface import dataset_adapter as adapter
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.util.numpy_support import numpy_to_vtk
+x0, y0, side, columns, rows, least, fastest = {x0!r}, {y0!r}, {side!r}, {columns}, {rows}, {least!r}, {fastest!r}
+particles = inputs[0]
+if particles.GetNumberOfPoints():
+    x = np.asarray(particles.Points)
+    velocity = np.asarray(particles.PointData["velocity"])
+    column, row = ((x[:, k] - o) / side for k, o in ((0, x0), (1, y0)))
+    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+    inside &= (velocity ** 2).sum(axis=1) < fastest ** 2   # not a number is not below
+    velocity = velocity[inside]
+    cell = row[inside].astype(int) * columns + column[inside].astype(int)
+    count = np.bincount(cell, minlength=columns * rows)
+    mean = np.stack([np.bincount(cell, velocity[:, k], columns * rows) for k in range(3)], axis=1)
+    full = np.flatnonzero(count > least)
+    centre = np.stack([x0 + (full % columns + 0.5) * side, y0 + (full // columns + 0.5) * side, 0.0 * full], axis=1)
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(centre, deep=True))
+    output.SetPoints(points)
+    output.PointData.append(mean[full] / count[full, None], "velocity")
+"""
+
+REACH = """
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+place, box = np.array({place!r}), np.array({box!r})
+points, lines, discs = vtkPoints(), vtkCellArray(), vtkCellArray()
+
+
+def circle(cells, x, radius, corners):
+    cells.InsertNextCell(corners)
+    for angle in np.linspace(0.0, 2.0 * np.pi, corners):
+        cells.InsertCellPoint(points.InsertNextPoint(x[0] + radius * np.cos(angle), x[1] + radius * np.sin(angle), x[2]))
+
+
+if inputs[0].GetNumberOfPoints():
+    x, h = np.asarray(inputs[0].Points), np.asarray(inputs[0].PointData["smoothing_length"])
+    whole = ((x[:, :2] - 2 * h[:, None] > box[0::2]) & (x[:, :2] + 2 * h[:, None] < box[1::2])).all(axis=1)
+    if whole.any():   # the kernel nearest to the place that the picture holds whole
+        x, h = x[whole], h[whole]
+        one = ((x[:, :2] - place) ** 2).sum(axis=1).argmin()
+        circle(lines, x[one], 2 * h[one], 97)
+        circle(discs, x[one], {radius!r}, 17)
+output.SetPoints(points)
+output.SetLines(lines)
+output.SetPolys(discs)
+"""
+
+ONE_ARROW = """
+from vtkmodules.vtkCommonCore import vtkPoints
+import numpy as np
+points = vtkPoints()
+points.InsertNextPoint({place!r})
+output.SetPoints(points)
+output.PointData.append(np.array([{velocity!r}]), "velocity")
+"""
+
+
+def set_font(owner, size, prefix="", **more):
+    """Font of a text, a colour bar or an axis; the properties of ParaView differ by a prefix only."""
+    if os.path.isfile(FONT):
+        setattr(owner, prefix + "FontFamily", "File")
+        setattr(owner, prefix + "FontFile", FONT)
+    setattr(owner, prefix + "FontSize", max(6, int(round(size))))
+    setattr(owner, prefix + "Color", INK)
+    for key, value in more.items():
+        setattr(owner, prefix + key, value)
+
+
+def paint(shown, colour):
+    """One colour for all of a representation, without light and shade."""
+    shown.ColorArrayName = ["POINTS", ""]
+    shown.DiffuseColor = shown.AmbientColor = colour
+
+
+class Marks:
+    """The drawing half of a Figure, which has series, view, box, size, scale, metres (a pixel) and wide."""
+
+    def particles(self, phase, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
+        """One phase as discs (balls in 3D). `radius` in spacings (None: touching, or overlapping where they are a
+        few pixels only; "whole": without gaps); `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
+        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity)
+
+    def dots(self, source, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
+        """As particles(), of any source of points."""
+        flat = self.series.two_dimensional
+        if radius == "whole":   # a fluid looks like the continuum that it stands for, and stays off the axes
+            radius = 1.0 if self.pixels_per_spacing < 9 else 0.85
+        if radius is None:
+            radius = 0.5 if self.pixels_per_spacing > 9 or not flat else 0.72
+        shown = Show(source, self.view)
+        shown.SetRepresentationType("Point Gaussian")
+        shown.ShaderPreset = "Plain circle" if flat else "Sphere"
+        shown.GaussianRadius = radius * self.series.spacing
+        shown.ScaleByArray = 0
+        shown.Opacity = opacity
+        if flat:
+            shown.Position = [0.0, 0.0, 0.05 * layer * self.series.spacing]
+        if array is None:
+            paint(shown, colour)
+        else:
+            ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array), separate=True)
+        return shown
+
+    # -- arrows
+
+    def arrows(self, source, metres_per_speed, scale_of=None, colour=None, layer=6, thickness=1.0, centred=False,
+               name="arrows"):
+        """Velocity vectors of a source's points: `metres_per_speed` is the length in metres of 1 m/s; an arrow starts at
+        its point or has its middle there. What of an arrow leaves the box is cut off. With `scale_of`, a speed (m/s), an
+        arrow of that speed (or a part of it that fits) and its value stand beside the colour bar."""
+        if scale_of:
+            self._arrow_scale(scale_of, metres_per_speed, thickness, name)
+        glyph = self._glyph(source, metres_per_speed, thickness, centred, name)
+        shown = Show(self.series.cut(glyph, name + " in the window", exact=True), self.view)
+        self._flat_arrow(shown, colour or INK, layer)
+        return shown
+
+    @staticmethod
+    def _glyph(source, metres_per_speed, thickness, centred, name):
+        glyph = Glyph(registrationName=name, Input=source, GlyphType="Arrow")
+        glyph.OrientationArray = ["POINTS", "velocity"]
+        glyph.ScaleArray = ["POINTS", "velocity"]
+        glyph.VectorScaleMode = "Scale by Magnitude"
+        glyph.ScaleFactor = metres_per_speed
+        glyph.GlyphMode = "All Points"
+        if centred:
+            glyph.GlyphTransform.Translate = [-0.5, 0.0, 0.0]
+        arrow = glyph.GlyphType
+        arrow.TipResolution, arrow.ShaftResolution = (8, 6)
+        arrow.TipLength, arrow.TipRadius, arrow.ShaftRadius = 0.32, 0.09 * thickness, 0.022 * thickness
+        return glyph
+
+    def _flat_arrow(self, shown, colour, layer):
+        shown.SetRepresentationType("Surface")
+        shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
+        if self.series.two_dimensional:
+            shown.Position = [0.0, 0.0, 2.0 * layer * self.series.spacing]
+        paint(shown, colour)
+
+    def _arrow_scale(self, speed, metres_per_speed, thickness, name):
+        """An arrow of a round speed with its value, at the right of the colour bar or below it."""
+        width, height = self.size
+        room = 0.13 * width if self.wide else 130 * self.scale        # pixels
+        pixels = speed * metres_per_speed / self.metres
+        if pixels > room:
+            speed = round_floor(speed * room / pixels)
+            pixels = speed * metres_per_speed / self.metres
+        x = 0.72 * width if self.wide else width - 170 * self.scale
+        y = 26 * self.scale if self.wide else 0.13 * height
+        place = self.place_of_pixel(x, y)
+        velocity = [float(c) for c in speed * self.across]
+        source = ProgrammableSource(registrationName="scale of the arrows")
+        source.OutputDataSetType = "vtkPolyData"
+        source.Script = ONE_ARROW.format(place=tuple(map(float, place)), velocity=velocity)
+        shown = Show(self._glyph(source, metres_per_speed, thickness, False, "one arrow"), self.view)
+        self._flat_arrow(shown, INK, 6)
+        value = f"{speed:g}".replace("e-0", "e-")
+        text = Text(registrationName="value of the arrow", Text=f"{name}: {value} m/s" if self.wide else f"{value} m/s")
+        shown = Show(text, self.view)
+        set_font(shown, 19 * self.scale)
+        shown.WindowLocation = "Any Location"
+        shown.Position = [x / width, (y + 14 * self.scale) / height]
+
+    def mean_velocity(self, phase, fastest):
+        """The mean velocity of one phase in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in each cell that is
+        at least half full of particles slower than `fastest` (m/s). Returns the filter and the cells' side in metres."""
+        x0, x1, y0, y1 = self.box[:4]
+        across = max(min(40, (x1 - x0) / self.metres / 32), 4)
+        side = max((x1 - x0) / round(across), 3 * self.series.spacing)
+        columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)
+        mean = ProgrammableFilter(registrationName="mean velocity", Input=self.series.source(phase))
+        mean.OutputDataSetType = "vtkPolyData"
+        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows,
+                                           fastest=float(fastest), least=0.5 * (side / self.series.spacing) ** 2)
+        return mean, side
+
+    # -- kernels
+
+    def reach(self, phase, place, colour=MARK, layer=6):
+        """A ring of radius 2h, where the kernel ends, about the particle of a phase that is nearest to a place [x, y] in each
+        frame; only of particles whose ring lies within the box."""
+        ring = ProgrammableFilter(registrationName="kernel of " + self.series.phase_names[phase],
+                                  Input=self.series.source(phase))
+        ring.OutputDataSetType = "vtkPolyData"
+        ring.Script = REACH.format(place=[float(x) for x in place], box=[float(x) for x in self.box[:4]],
+                                   radius=0.18 * self.series.spacing)
+        shown = Show(ring, self.view)
+        paint(shown, colour)
+        shown.Ambient, shown.Diffuse = 1.0, 0.0
+        shown.LineWidth = max(1.0, 3.0 * self.scale)
+        shown.Position = [0.0, 0.0, 0.05 * layer * self.series.spacing]
+        return shown
+
+    # -- colours
+
+    def colours(self, representations, array, low, high, title, preset=None, points=None, bar=True):
+        """One colour map for these representations, and its bar."""
+        for number, shown in enumerate(representations):
+            table = GetColorTransferFunction(array, shown, separate=True)
+            if points is not None:
+                table.RGBPoints = points
+                table.ColorSpace = "Lab"
+            else:
+                table.ApplyPreset(preset, True)
+            table.RescaleTransferFunction(low, high)
+            table.AutomaticRescaleRangeMode = "Never"
+            if number:
+                continue
+            if not bar:
+                shown.SetScalarBarVisibility(self.view, False)
+                continue
+            self._bar(GetScalarBar(table, self.view), title, low, high)
+            shown.SetScalarBarVisibility(self.view, True)
+
+    def _bar(self, bar, title, low, high):
+        width, height = self.size
+        bar.Title, bar.ComponentTitle = title, ""
+        bar.WindowLocation = "Any Location"
+        set_font(bar, 20 * self.scale, "Title")
+        set_font(bar, 19 * self.scale, "Label")
+        bar.ScalarBarThickness = max(4, int(16 * self.scale))
+        bar.DrawTickMarks, bar.DrawTickLabels = 1, 1
+        bar.AddRangeLabels = 0
+        bar.UseCustomLabels = 1
+        bar.CustomLabels = bar_ticks(low, high)
+        largest = max(abs(low), abs(high))
+        bar.LabelFormat = bar.RangeLabelFormat = "%-#.3g" if largest < 10 else "%.4g"
+        if largest >= 1:
+            bar.LabelFormat = "%g"
+        if self.wide:
+            bar.Orientation = "Horizontal"
+            bar.HorizontalTitle = 1
+            length = 0.36
+            bar.ScalarBarLength = length
+            bar.Position = [0.5 - length / 2, 16 * self.scale / height]
+        else:
+            bar.Orientation = "Vertical"
+            bar.ScalarBarLength = 0.5
+            bar.Position = [1 - 165 * self.scale / width, 0.22]

@@ -1,0 +1,360 @@
+"""The series that a state shows: its reader in ParaView, its phases, and the ranges of its values over a few frames.
+
+Colours and view must hold for all frames of a film, and one particle that went astray must not decide them. So:
+
+- statistics are taken over up to nine frames across the series;
+- the view is the box of the particles inside the domain (array `domain` of the frame's field data) and of the walls
+  around it. A series without that array has its box without outliers, see `within_reach`;
+- ranges of colours are percentiles of the particles inside that box.
+"""
+
+import glob
+import json
+import math
+import os
+import sys
+
+import numpy as np
+from paraview import servermanager
+from paraview.simple import Calculator, Clip, PVDReader, Threshold, XMLPolyDataReader, XMLUnstructuredGridReader
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+SAMPLES = 9                         # frames from which ranges are taken
+
+KIND_BY_NAME = {
+    "fluid": ("air", "gas", "wind", "water", "oil", "fluid", "liquid", "lubricant", "left-gas"),
+    "grains": ("sand", "grain", "dust", "snow", "gravel"),
+    "wall": ("wall", "ground", "boundary", "ghost", "bottom", "floor", "plate-fixed"),
+}
+
+
+class Wrong(Exception):
+    """The command or the file is wrong; the message says what. pvstate/render shows it alone and ends with status 2."""
+
+
+def find_series(state_file):
+    """The file to show. Raises Wrong with what was tried."""
+    chosen = os.environ.get("BARCHAN_SERIES")
+    if not chosen and "--series" in sys.argv[:-1]:
+        chosen = sys.argv[sys.argv.index("--series") + 1]
+    if chosen:
+        if not os.path.isfile(chosen):
+            raise Wrong(f"there is no series '{chosen}'")
+        return os.path.abspath(chosen)
+    places = [os.getcwd(), os.path.dirname(os.path.dirname(os.path.abspath(state_file)))]
+    found = [path for place in places for path in glob.glob(os.path.join(place, "out", "*", "*.pvd"))]
+    if not found:
+        raise Wrong("no series: set BARCHAN_SERIES to a .pvd, or run a scene first (looked for out/*/*.pvd in "
+                    + " and ".join(places) + ")")
+    return os.path.abspath(max(found, key=os.path.getmtime))
+
+
+def open_reader(path, name):
+    """The reader of a series (.pvd) or of a single frame (.vtp, .vtu)."""
+    ending = os.path.splitext(path)[1]
+    if ending == ".pvd":
+        return PVDReader(registrationName=name, FileName=path)
+    if ending == ".vtp":
+        return XMLPolyDataReader(registrationName=name, FileName=[path])
+    if ending == ".vtu":
+        return XMLUnstructuredGridReader(registrationName=name, FileName=[path])
+    raise Wrong(f"{path}: expected a series (.pvd) or a frame (.vtp, .vtu)")
+
+
+def kind_of(name):
+    """The kind of a phase by its name, for a series that does not say it."""
+    for kind, words in KIND_BY_NAME.items():
+        if any(word in name.lower() for word in words):
+            return kind
+    return "elastic"
+
+
+# ---- numbers -----------------------------------------------------------------------------------------------------------
+
+NICE = (1, 1.2, 1.6, 2, 2.4, 3, 3.6, 4, 5, 6, 7, 8, 9, 10, 12)
+
+
+def nice_ceiling(value):
+    """The next of 1, 1.2, 1.6, 2, 2.4, 3, 3.6, 4, 5, ... 10 times a power of ten."""
+    if not (value > 0 and math.isfinite(value)):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(m * power for m in NICE if m * power >= value * (1 - 1e-6))
+
+
+def round_floor(value):
+    """The next of 1, 2, 5 times a power of ten below a value."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-9))
+
+
+def ticks(low, high, count=6):
+    """Round numbers from low to high, about `count` of them."""
+    step = (high - low) / max(count, 1)
+    if step <= 0:
+        return [low]
+    power = 10.0 ** math.floor(math.log10(step))
+    step = min((m * power for m in (1, 2, 2.5, 5, 10)), key=lambda s: abs(math.log(s / step)))
+    first = math.ceil(low / step - 1e-9)
+    return [k * step for k in range(first, int(math.floor(high / step + 1e-9)) + 1)]
+
+
+def bar_ticks(low, high):
+    """As ticks(), but with one at each end where a round step allows it."""
+    for count in (5, 4, 6, 3, 7, 8):
+        step = (high - low) / count
+        digits = step / 10.0 ** math.floor(math.log10(step)) if step > 0 else 0
+        if any(abs(digits - m) < 1e-6 for m in (1, 2, 2.5, 3, 4, 5)) and abs(low / step - round(low / step)) < 1e-6:
+            return [min(low + k * step, high) for k in range(count + 1)]   # ParaView drops a tick beyond the end by round-off
+    return ticks(low, high, 5)
+
+
+def percentile(values, share):
+    """The finite value that `share` per cent do not exceed. Of 20 values or more it is never the largest (or, for a
+    share below 50, the smallest) one: a single particle decides nothing."""
+    values = np.asarray(values)[np.isfinite(values)]
+    if not len(values):
+        return 0.0
+    if len(values) < 20:
+        return float(values.max() if share >= 50 else values.min())
+    return float(np.percentile(values, share, method="lower" if share >= 50 else "higher"))
+
+
+def within_reach(points, spacing):
+    """Which points belong to the scene when no file says how large it is: those not farther from the middle 99 % of them
+    than half its size and ten spacings. All, if they are fewer than 50."""
+    if len(points) < 50:
+        return np.ones(len(points), dtype=bool)
+    low, high = np.percentile(points, [0.5, 99.5], axis=0)
+    reach = 0.5 * (high - low) + 10 * spacing
+    return ((points >= low - reach) & (points <= high + reach)).all(axis=1)
+
+
+# ---- the series --------------------------------------------------------------------------------------------------------
+
+def fetch(reader, time, path):
+    """The arrays of one frame by name: points, id, phase, velocity, smoothing_length, and what its field data say."""
+    reader.UpdatePipeline(time)
+    data = servermanager.Fetch(reader)
+    if data is None or not data.GetNumberOfPoints():
+        raise Wrong(f"no particles in {path} at time {time:g} s")
+    sample = {"points": vtk_to_numpy(data.GetPoints().GetData()).astype(float)}
+    for name in ("id", "phase", "velocity", "smoothing_length"):
+        array = data.GetPointData().GetArray(name)
+        if array is not None:
+            sample[name] = vtk_to_numpy(array).copy()
+    for name in ("phase", "velocity"):
+        if name not in sample:
+            raise Wrong(f"{path} has no point array '{name}': is it a series of Barchan?")
+    about = data.GetFieldData()
+    for name in ("phase_names", "phase_kinds"):
+        sample[name] = lines_of(about.GetAbstractArray(name))
+    domain = about.GetArray("domain")
+    if domain is not None and domain.GetNumberOfValues() == 6:
+        sample["domain"] = np.array([domain.GetValue(k) for k in range(6)])
+    sane = np.isfinite(sample["points"]).all(axis=1) & np.isfinite(sample["velocity"]).all(axis=1)
+    for name in ("points", "id", "phase", "velocity", "smoothing_length"):
+        if name in sample:
+            sample[name] = sample[name][sane]
+    return sample
+
+
+def lines_of(array):
+    """Lines of text in field data: strings (.vtp), or bytes with a newline between lines (.vtu)."""
+    if array is None:
+        return []
+    if array.IsA("vtkStringArray"):
+        return [array.GetValue(k) for k in range(array.GetNumberOfValues())]
+    return vtk_to_numpy(array).astype(np.uint8).tobytes().decode().split("\n")
+
+
+class Series:
+    """A series opened in ParaView: its reader, times, phases, spacing (m) and bounds (m)."""
+
+    def __init__(self, path):
+        self.path = path
+        self.name = os.path.splitext(os.path.basename(path))[0]
+        self.reader = open_reader(path, self.name)
+        self.times = [float(t) for t in np.atleast_1d(self.reader.TimestepValues)] or [0.0]
+        self.hidden = {name.strip() for name in os.environ.get("BARCHAN_HIDE", "").split(",")} - {""}
+
+        chosen = sorted({round(k) for k in np.linspace(0, len(self.times) - 1, SAMPLES)})
+        self._samples = [fetch(self.reader, self.times[k], path) for k in chosen]
+        first = self._samples[0]
+        self.phase_names = first["phase_names"] or ["phase"]
+        kinds = first["phase_kinds"]
+        self.phase_kinds = kinds if len(kinds) == len(self.phase_names) else [kind_of(name) for name in self.phase_names]
+        unknown = self.hidden - set(self.phase_names)
+        if unknown:
+            raise Wrong(f"no phase '{unknown.pop()}' to hide in {path}; it has " + ", ".join(self.phase_names))
+        self.two_dimensional = not any(s["points"][:, 2].any() for s in self._samples)
+        self.spacing = self._find_spacing(first)
+        self.domain = first.get("domain")
+        for sample in self._samples:
+            self._leave_out_strays(sample)
+        self._thresholds = {}
+        self.window = None              # [x0, x1, y0, y1, z0, z1] in metres: only these particles are drawn
+        self.title = self._from_run("title") or self.name.replace("_", " ").replace("-", " ").capitalize()
+
+    def _leave_out_strays(self, sample):
+        """Drops from a sample what decides neither view nor colours: particles that left the domain."""
+        points = sample["points"]
+        wall = np.isin(sample["phase"], [k for k, kind in enumerate(self.phase_kinds) if kind == "wall"])
+        keep = np.zeros(len(points), dtype=bool)
+        keep[wall] = within_reach(points[wall], self.spacing)   # walls stand outside the domain
+        if self.domain is not None:
+            low, high = self.domain[0::2] - self.spacing, self.domain[1::2] + self.spacing
+            keep[~wall] = ((points[~wall] >= low) & (points[~wall] <= high)).all(axis=1)
+        else:
+            keep[~wall] = within_reach(points[~wall], self.spacing)
+        for name in ("points", "id", "phase", "velocity", "smoothing_length"):
+            if name in sample:
+                sample[name] = sample[name][keep]
+
+    def _find_spacing(self, sample):
+        """What run.json says, else the median distance to the nearest neighbour in the most regular phase."""
+        said = self._from_run("spacing")
+        if isinstance(said, (int, float)) and said > 0:
+            return float(said)
+        medians = []
+        for phase in np.unique(sample["phase"]):
+            points = sample["points"][sample["phase"] == phase]
+            if len(points) < 2:
+                continue
+            nearest = []
+            for probe in points[np.linspace(0, len(points) - 1, min(len(points), 100)).astype(int)]:
+                squares = ((points - probe) ** 2).sum(axis=1)
+                squares[squares == 0] = np.inf
+                nearest.append(squares.min())
+            medians.append(float(np.sqrt(np.median(nearest))))
+        if not medians:
+            return float(sample.get("smoothing_length", [1.0])[0])
+        # A perturbed phase gives less than its spacing, a few lone particles give far more.
+        return max(m for m in medians if m < 1.5 * min(medians))
+
+    def _from_run(self, key):
+        """What the run's run.json says of its scene (title, spacing), None when it does not."""
+        try:
+            with open(os.path.join(os.path.dirname(self.path), "run.json"), encoding="utf-8") as file:
+                return json.load(file)["scene"].get(key)
+        except (OSError, ValueError, LookupError, TypeError, AttributeError):
+            return None
+
+    # -- phases
+
+    def phases(self, *kinds):
+        """Numbers of the phases of these kinds that are there and not hidden."""
+        return [k for k, (name, kind) in enumerate(zip(self.phase_names, self.phase_kinds))
+                if kind in kinds and name not in self.hidden]
+
+    def speed_title(self, phases):
+        """The title of a colour bar: whose speed it is, by name and kind."""
+        names = " and ".join(self.phase_names[k].replace("_", " ") for k in phases)
+        kinds = " and ".join(dict.fromkeys(self.phase_kinds[k] for k in phases))
+        return f"speed of {names}" + (f" ({kinds})" if kinds not in names else "") + ", m/s"
+
+    def source(self, phase):
+        """The particles of one phase inside the window, as a filter of the pipeline."""
+        if phase not in self._thresholds:
+            part = Threshold(registrationName=self.phase_names[phase], Input=self.reader)
+            part.Scalars = ["POINTS", "phase"]
+            part.LowerThreshold, part.UpperThreshold = phase - 0.5, phase + 0.5
+            if self.window is not None:   # what lies outside must not be drawn over the title and the axes
+                part = self.cut(part, self.phase_names[phase] + " in the window", exact=False)
+            self._thresholds[phase] = part
+        return self._thresholds[phase]
+
+    def cut(self, source, name, exact):
+        """What of a source lies in the window; `exact` cuts a cell in two, otherwise whole cells count."""
+        x0, x1, y0, y1, z0, z1 = self.window
+        margin = 100 * self.spacing if self.two_dimensional else 0.0   # pictures of 2D scenes have layers along z
+        box = Clip(registrationName=name, Input=source, ClipType="Box")
+        box.ClipType.Position = [x0, y0, z0 - margin]
+        box.ClipType.Length = [x1 - x0, y1 - y0, z1 - z0 + 2 * margin]
+        box.Invert, box.Exact = 1, int(exact)
+        return box
+
+    def calculated(self, source, name, function):
+        """The source with one more array of the points, for example `1000*smoothing_length`."""
+        calculator = Calculator(registrationName=name, Input=source)
+        calculator.ResultArrayName = name
+        calculator.Function = function
+        return calculator
+
+    # -- statistics over a few frames of the series, so that colours and camera hold still in a film
+
+    def first(self):
+        """The arrays of the first frame by name: points, id, phase, velocity, smoothing_length."""
+        return self._samples[0]
+
+    def values(self, name, phases):
+        """One array of point data of these phases, of all sampled frames together."""
+        parts = [s[name][np.isin(s["phase"], phases)] for s in self._samples if name in s]
+        return np.concatenate(parts) if parts else np.zeros(0)
+
+    def speeds(self, phases):
+        """Speeds (m/s) of the particles of these phases, of all sampled frames together."""
+        velocity = self.values("velocity", phases)
+        return np.linalg.norm(velocity, axis=1) if len(velocity) else np.zeros(0)
+
+    def top_speed(self, phases, share=99.5):
+        """A speed (m/s) that `share` per cent of the particles of these phases do not exceed, rounded up."""
+        return nice_ceiling(percentile(self.speeds(phases), share))
+
+    def bounds(self, phases):
+        """[x0, x1, y0, y1, z0, z1] in metres with half a spacing around, over the sampled frames; of all phases but walls within
+        the domain."""
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        for phase in phases:
+            points = self.values("points", [phase])
+            if not len(points):
+                continue
+            least, most = points.min(axis=0) - self.spacing / 2, points.max(axis=0) + self.spacing / 2
+            if self.domain is not None and self.phase_kinds[phase] != "wall":
+                least, most = np.maximum(least, self.domain[0::2]), np.minimum(most, self.domain[1::2])
+            low, high = np.minimum(low, least), np.maximum(high, most)
+        if not (low <= high).all():
+            low, high = np.full(3, -self.spacing / 2), np.full(3, self.spacing / 2)
+        if self.two_dimensional:
+            low[2] = high[2] = 0.0
+        return [float(bound) for pair in zip(low, high) for bound in pair]
+
+    def wanted_window(self, whole):
+        """The window that the user asked for, [x0, x1, y0, y1] in metres, None without; `whole` are the scene's bounds."""
+        words = os.environ.get("BARCHAN_WINDOW")
+        if not words:
+            return None
+        try:
+            window = [float(word) for word in words.split(",")]
+        except ValueError:
+            window = []
+        if len(window) != 4 or not np.isfinite(window).all() or window[0] >= window[1] or window[2] >= window[3]:
+            raise Wrong(f"window {words}: expected X0,X1,Y0,Y1 in metres with X0 < X1 and Y0 < Y1")
+        if not self.two_dimensional:
+            raise Wrong(f"window {words}: {self.path} is a 3D scene; a window is a part of a 2D scene")
+        if window[0] >= whole[1] or window[1] <= whole[0] or window[2] >= whole[3] or window[3] <= whole[2]:
+            raise Wrong(f"window {words} shows nothing: the scene lies in x {whole[0]:.4g} to {whole[1]:.4g} m, "
+                        f"y {whole[2]:.4g} to {whole[3]:.4g} m")
+        return window
+
+    def close_up(self, rows_below=9, rows_high=34, columns=96):
+        """A window [x0, x1, y0, y1] on the surface of the grains, about its highest place; all of the scene without grains."""
+        grains = self.phases("grains") or [k for k, kind in enumerate(self.phase_kinds) if kind == "grains"]
+        everything = self.bounds(self.phases("fluid", "grains", "elastic") or [0])
+        first = self._samples[0]
+        bed = first["points"][np.isin(first["phase"], grains)]
+        if not len(bed) or not self.two_dimensional:
+            return everything[:4]
+        dx = self.spacing
+        middle = 0.5 * (everything[0] + everything[1])
+        top = bed[:, 1].max()
+        crest = bed[bed[:, 1] > top - 0.5 * dx][:, 0]
+        centre = middle if np.ptp(crest) > 0.5 * (everything[1] - everything[0]) else float(np.median(crest))
+        width = min(columns * dx, everything[1] - everything[0])
+        x0 = min(max(centre - width / 2, everything[0]), everything[1] - width)
+        here = bed[(bed[:, 0] > x0) & (bed[:, 0] < x0 + width)]
+        low = max(everything[2], here[:, 1].max() - rows_below * dx - min(np.ptp(here[:, 1]), 0.1 * width))
+        flying = self.values("points", grains)
+        flying = flying[(flying[:, 0] > x0) & (flying[:, 0] < x0 + width)]
+        high = max(low + rows_high * dx, np.percentile(flying[:, 1], 99.9) + 3 * dx)
+        return [x0, x0 + width, low, min(high, low + 0.6 * width, everything[3])]

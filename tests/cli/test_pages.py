@@ -1,0 +1,132 @@
+"""The pages agree with the figures, with the tree and with each other.
+
+    test_pages.py PROGRAM SOURCE_DIR
+
+Figures that stand on several pages come from docs/figures.json, through docs/figures.py. Links lead to files and headings that are there.
+No page has a figure that was not measured. README and the program say the same of --restart.
+"""
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+PAGES = [*sorted(SOURCE.glob("*.md")), *sorted(SOURCE.glob("docs/**/*.md"))]
+
+
+def anchors(text):
+    """The anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ +(.*)$", re.sub(r"```.*?```", "", text, flags=re.S), flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in headings}
+
+
+class Pages(unittest.TestCase):
+    def copy(self):
+        """The pages, figures and results of the repository in a folder that a test may change."""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        root = Path(folder.name)
+        for page in PAGES:
+            (root / page.relative_to(SOURCE)).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(page, root / page.relative_to(SOURCE))
+        shutil.copy(SOURCE / "docs/figures.json", root / "docs/figures.json")
+        for part in ("bench/accuracy/results", "bench/throughput", "tests/instructions"):
+            shutil.copytree(SOURCE / part, root / part)
+        return root
+
+    @staticmethod
+    def figures(root, what="--check"):
+        return subprocess.run([sys.executable, SOURCE / "docs/figures.py", what, "--root", root], capture_output=True, text=True)
+
+    def test_figures_agree_with_their_file(self):
+        result = self.figures(SOURCE)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+    def test_a_page_that_disagrees_is_named(self):
+        root = self.copy()
+        page = root / "docs/validation.md"
+        right = page.read_text()
+        wrong, count = re.subn(r"(<!--fig dune\.crest [^\s>]+-->)[^<]*", r"\g<1>99.9", right)
+        self.assertEqual(count, 1)
+        page.write_text(wrong)
+        result = self.figures(root)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("docs/validation.md: dune.crest is 99.9", result.stdout)
+        self.assertEqual(self.figures(root, "--write").returncode, 0)
+        self.assertEqual(page.read_text(), right)
+
+    def test_a_new_measurement_makes_pages_disagree(self):
+        root = self.copy()
+        file = root / "bench/accuracy/results/taylor-green.json"
+        results = json.loads(file.read_text())
+        for row in results["rows"]:
+            row["value"] *= 2
+        file.write_text(json.dumps(results))
+        result = self.figures(root)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("README.md: taylor-green.50", result.stdout)
+        self.assertIn("docs/validation.md: taylor-green.50", result.stdout)
+
+    def test_tables_of_performance_are_those_of_the_results(self):
+        root = self.copy()
+        page = root / "docs/performance.md"
+        page.write_text(re.sub(r"(\| dune\.toml \| )\d+", r"\g<1>1", page.read_text(), count=1))
+        result = self.figures(root)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("docs/performance.md: the tables", result.stdout)
+
+    def test_wrong_marks_are_refused(self):
+        for text in ("<!--fig no.such .2f-->1<!--/fig-->", "<!--fig dune.crest .2f-->1"):
+            root = self.copy()
+            (root / "README.md").write_text(text)
+            result = self.figures(root)
+            self.assertEqual(result.returncode, 1, text)
+            self.assertIn("README.md", result.stderr)
+
+    def test_everything_was_measured(self):
+        for page in PAGES:
+            for number, line in enumerate(page.read_text().splitlines(), 1):
+                self.assertNotIn("not measured yet", line.lower(), f"{page.relative_to(SOURCE)}:{number}")
+
+    def test_links_lead_somewhere(self):
+        count = 0
+        for page in PAGES:
+            for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
+                if re.match(r"[a-z]+:", target):
+                    continue
+                name, _, anchor = target.partition("#")
+                file = (page.parent / name).resolve() if name else page
+                self.assertTrue(file.exists(), f"{page.relative_to(SOURCE)}: {target} is not there")
+                if anchor:
+                    self.assertIn(anchor, anchors(file.read_text()), f"{page.relative_to(SOURCE)}: {target}")
+                count += 1
+        self.assertGreater(count, 10)
+
+    def test_every_picture_of_the_gallery_has_its_command(self):
+        page = (SOURCE / "docs/gallery/README.md").read_text()
+        for picture in sorted((SOURCE / "docs/gallery").glob("*.png")):
+            self.assertIn(f"`{picture.name}`", page)
+
+    def test_restart_keeps_the_frames_of_an_earlier_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def start(*options):
+                return subprocess.run([PROGRAM, "run", SOURCE / "scenes/verification/couette.toml", "--out", folder, "--quiet",
+                                       "--threads", "1", *options], capture_output=True, text=True)
+
+            first = start("--set", "time.end=1e-4", "--restart", "latest")
+            self.assertEqual(first.returncode, 0, first.stderr)
+            self.assertIn("starting at the beginning", first.stderr)
+            before = {file: file.read_bytes() for file in Path(folder).iterdir()}
+            self.assertTrue(any(file.suffix == ".vtp" for file in before))
+            again = start("--set", "time.end=2e-4", "--restart", "latest")
+            self.assertEqual(again.returncode, 2, again.stderr)
+            self.assertIn("would remove its frames", again.stderr)
+            self.assertEqual(before, {file: file.read_bytes() for file in Path(folder).iterdir()})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
