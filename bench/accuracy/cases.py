@@ -17,12 +17,13 @@ import json
 import sys
 
 import cases_periodic
+import cases_surface
 import cases_walls
 from harness import HEAD, RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls):
+for topic in (cases_periodic, cases_walls, cases_surface):
     CASES.update(topic.CASES)
 
 

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import xml.etree.ElementTree as ElementTree
 
 import numpy
@@ -19,6 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENES = ROOT / "scenes/verification"
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 options = argparse.Namespace(program=None, runs=None, set=[], largest=200, verbose=False)  # cases.py fills it from its command line
+SECTIONS = ("fill", "forcing", "probe", "profile", "grid", "wall-shear")  # lists of sections of a scene
 rows = []  # what the case in hand has reported
 
 
@@ -43,6 +45,10 @@ class Frame:
 
     def __getitem__(self, name):
         return self.arrays[name]
+
+
+class Broken(RuntimeError):
+    """A run that did not reach its end; the message says why."""
 
 
 class Seconds(float):
@@ -77,16 +83,16 @@ def run_into(out, scene, overrides):
         if done.returncode != 0:
             print(done.stderr, file=sys.stderr)
             shutil.rmtree(out)
-            raise RuntimeError(f"{path.name} ended with status {done.returncode}: {done.stderr.strip()[:300]}")
+            raise Broken(f"{path.name} ended with status {done.returncode}: {done.stderr.strip()[:300]}")
     summary = json.loads(report_file.read_text())
     seconds = Seconds(user)
     seconds.work = float(summary["steps"]) * sum(summary["particles"].values())
     return path.stem, seconds
 
 
-def run(scene, overrides, phase=None, last=None, keep=lambda t: True, files=()):
+def run(scene, overrides, phase=None, last=None, keep=lambda t: True, files=(), also=()):
     """Runs a scene; returns the frames that `keep` takes and the user CPU seconds. With `files`, tables of the run (dictionaries of
-    columns) instead of frames."""
+    columns) instead of frames; with `also`, frames, those tables and the seconds."""
     overrides = list(overrides) + options.set
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch) / "run"
@@ -100,7 +106,8 @@ def run(scene, overrides, phase=None, last=None, keep=lambda t: True, files=()):
                    for e in ElementTree.parse(out / f"{name}.pvd").getroot().iter("DataSet")]
         if last:
             entries = entries[-last:]
-        return [Frame(out / file, t, phase) for t, file in entries if keep(t)], seconds
+        frames = [Frame(out / file, t, phase) for t, file in entries if keep(t)]
+        return (frames, [table(out / file) for file in also], seconds) if also else (frames, seconds)
 
 
 def table(path):
@@ -136,6 +143,40 @@ def tell(case, scheme, n, what, value, beside, seconds):
     rows.append({"case": case, "scheme": scheme, "n": n, "what": what, "value": str(value), "bound": beside, "good": True,
                  "seconds": round(float(seconds), 2), "rate": None})
     print(line(rows[-1]), flush=True)
+
+
+def attempt(case, scheme, n, measure):
+    """Calls measure(); a run that breaks down is a missed figure with the program's message, and the others go on."""
+    try:
+        measure()
+    except Broken as broken:
+        rows.append({"case": case, "scheme": scheme, "n": n, "what": "runs to the end", "value": str(broken).replace("|", "/")[:160],
+                     "bound": "status 0", "good": False, "seconds": 0., "rate": None})
+        print(line(rows[-1]), flush=True)
+
+
+def document(scene):
+    """A scene of scenes/ or scenes/verification/ as dictionaries."""
+    return tomllib.loads(next(p for p in (SCENES / f"{scene}.toml", ROOT / f"scenes/{scene}.toml") if p.exists()).read_text())
+
+
+def toml(scene):
+    """Text of a scene that is given as dictionaries: what `document` reads, changed."""
+    def value(v):
+        if isinstance(v, dict):
+            return "{ " + ", ".join(f"{k} = {value(x)}" for k, x in v.items()) + " }"
+        return "[" + ", ".join(value(x) for x in v) + "]" if isinstance(v, list) else json.dumps(v)
+    lines = [f"{k} = {value(v)}" for k, v in scene.items() if not isinstance(v, dict) and k not in SECTIONS]
+    for name, section in scene.items():
+        if name == "phases":
+            for phase, keys in section.items():
+                lines += [f"[phases.{phase}]"] + [f"{k} = {value(v)}" for k, v in keys.items()]
+        elif isinstance(section, dict):
+            lines += [f"[{name}]"] + [f"{k} = {value(v)}" for k, v in section.items()]
+        elif name in SECTIONS:
+            for keys in section:
+                lines += [f"[[{name}]]"] + [f"{k} = {value(v)}" for k, v in keys.items()]
+    return "\n".join(lines) + "\n"
 
 
 def local_fit(x, values, at, radius):
