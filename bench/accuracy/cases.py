@@ -16,6 +16,7 @@ import argparse
 import json
 import sys
 
+import cases_grains
 import cases_periodic
 import cases_surface
 import cases_walls
@@ -23,7 +24,7 @@ from harness import HEAD, RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls, cases_surface):
+for topic in (cases_periodic, cases_walls, cases_surface, cases_grains):
     CASES.update(topic.CASES)
 
 
