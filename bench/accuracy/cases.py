@@ -20,11 +20,12 @@ import cases_grains
 import cases_periodic
 import cases_surface
 import cases_walls
+import cases_wind
 from harness import HEAD, RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls, cases_surface, cases_grains):
+for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind):
     CASES.update(topic.CASES)
 
 
