@@ -192,6 +192,13 @@ void Simulation::rate_fluids() {
   }
 }
 
+void Simulation::find_free_surfaces() {
+  for (auto& f : fluids_)
+    if (f.surface)
+      f.surface->find(particles_[f.phase], neighbours_.grid(f.phase), *f.neighbours.front().list,
+                      f.neighbours.front().radius, surface_wholeness(scene_.phases[f.phase].scheme));
+}
+
 void Simulation::rate_energies() {
   for (const auto& f : fluids_)
     if (particles_[f.phase].has(Field::energy)) fluid_energy(particles_[f.phase], motion_[f.phase], f.neighbours);

@@ -81,6 +81,7 @@ class Simulation {
   void extend_into_walls();
   void extend_into_grains();
   void rate_fluids();
+  void find_free_surfaces();
   void rate_energies();
   void repel_from_walls();
   void stress_bodies();

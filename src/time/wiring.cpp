@@ -214,6 +214,13 @@ Friction friction_with(const Phase& other) {
   return other.roughness ? Friction::rough : Friction::smooth;
 }
 
+/// -tr M/Dim of a fluid's own entry on a lattice.
+double lattice_moment(const Plan& plan, std::size_t fluid) {
+  for (const auto& e : plan.entries)
+    if (e.a == fluid && e.b == fluid) return e.consistency.gradient_sum;
+  return 1.0;
+}
+
 }  // namespace
 
 /// The ground of fitted rows, if the fluid feels the wall that it is of.
@@ -346,6 +353,14 @@ void Simulation::wire() {
       f.parameters.shift_speed = (s.scheme == FluidScheme::consistent ? 2.0 : 4.0) * s.shifting * pace;
       f.parameters.shift_limit = 0.2 * pace;
       f.parameters.gravity = scene_.domain.gravity;
+      f.parameters.lattice_moment = lattice_moment(plan_, k);
+      if (q.free_surface) {
+        f.surface = std::make_unique<SurfaceFinder>();
+        f.parameters.loosening = 4.0 * q.sound_speed / q.smoothing_length;
+        f.parameters.void_pressure = pressure_law(k)(s.density);
+      } else {
+        f.parameters.void_pressure = -0.2 * s.density * speed * speed;
+      }
       for (const auto& e : plan_.entries) {
         if ((e.a != k && e.b != k) || e.law == Law::repulsive) continue;
         const std::size_t other = e.a == k ? e.b : e.a;
