@@ -34,7 +34,7 @@ struct FluidParameters {
   Vec3 acceleration;          // m/s2, further uniform body force
   double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole
   double loosening;           // 1/s, at which loose fluid loses its pressure (free surface); 0: none
-  double lattice_moment;  // -tr M/Dim on a lattice at rest, 1
+  double lattice_moment;      // -tr M/Dim on a lattice at rest, 1
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.

@@ -225,6 +225,8 @@ void add_passes(const Scene& scene, Plan& plan) {
   pass("contacts", any_law(Law::contact));
   pass("reaction on solids", any_law(Law::coupling));
   pass("drag", std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.drag > 0; }));
+  pass("bulk speed",
+       std::any_of(scene.forcings.begin(), scene.forcings.end(), [](const Forcing& f) { return f.hold_bulk_speed; }));
   pass("kick", true);
 }
 
@@ -251,6 +253,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.count = blocks[k].position.size();
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
     q.eddies = has_eddies(scene, p);
+    for (const auto& f : scene.forcings) q.held = q.held || (f.hold_bulk_speed && f.phase == p.name);
     q.free_surface = p.kind == PhaseKind::fluid && !p.enclosed && space_left;
     q.fields = fields_of(p, q.eddies, q.free_surface);
     if (p.kind == PhaseKind::fluid) q.sound_speed = p.sound_speed.value_or(10.0 * plan.largest_speed);

@@ -29,6 +29,7 @@ enum Pass : std::size_t {
   pass_contacts,
   pass_reaction,
   pass_drag,
+  pass_hold,
   pass_kick,
   pass_count
 };
@@ -48,6 +49,7 @@ constexpr std::array<const char*, pass_count> pass_names{"kick and drift",
                                                          "contacts",
                                                          "reaction on solids",
                                                          "drag",
+                                                         "bulk speed",
                                                          "kick"};
 
 double thread_seconds() {
@@ -114,6 +116,7 @@ void Simulation::rates(bool first) {
   timed(pass_contacts, [&] { touch(); });
   timed(pass_reaction, [&] { react(); });
   timed(pass_drag, [&] { drag_grains(); });
+  timed(pass_hold, [&] { hold_bulk_speeds(); });
 }
 
 void Simulation::choose_step(double largest) {

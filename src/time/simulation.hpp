@@ -88,6 +88,7 @@ class Simulation {
   void touch();
   void react();
   void drag_grains();
+  void hold_bulk_speeds();
   void kick();
 
   void rates(bool first);

@@ -214,6 +214,15 @@ Friction friction_with(const Phase& other) {
   return other.roughness ? Friction::rough : Friction::smooth;
 }
 
+/// From now on the fluid keeps the mean velocity along periodic axes that it has.
+void hold_as_it_is(BulkHold& hold, BlockMean& mean, const PhaseParticles& fluid, const Bounds& bounds) {
+  for (int d = 0; d < fluid.dimensions() && fluid.size() > 0; ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    hold.axes[c] = bounds.periodic[c];
+    if (hold.axes[c]) hold.velocity[c] = mean(fluid.column(Field::velocity, d), fluid.size());
+  }
+}
+
 /// -tr M/Dim of a fluid's own entry on a lattice.
 double lattice_moment(const Plan& plan, std::size_t fluid) {
   for (const auto& e : plan.entries)
@@ -321,7 +330,7 @@ void Simulation::wire() {
     wall_velocity_.push_back(compile(scene_.phases[k].wall_velocity));
   }
   for (const auto& f : scene_.forcings)
-    for (std::size_t k = 0; k < phases; ++k)
+    for (std::size_t k = 0; k < phases && !f.hold_bulk_speed; ++k)
       if (particles_[k].name() == f.phase) forcings_.push_back({k, compile(f.acceleration)});
 
   const auto viscosity = [&](std::size_t a, std::size_t b) {
@@ -385,6 +394,8 @@ void Simulation::wire() {
       f.held.margin = 0.02 * plan_.spacing;
       if (s.scheme == FluidScheme::consistent) f.relief = relief_under(k);
       if (q.eddies) wire_eddies(f);
+      for (const auto& force : scene_.forcings)
+        if (force.hold_bulk_speed && force.phase == s.name) hold_as_it_is(f.hold, f.mean, p, plan_.bounds);
       fluids_.push_back(std::move(f));
     } else if (seen[k]) {
       Extension x;

@@ -1,6 +1,7 @@
 // How a Simulation's phases are joined: what each verb walks over, made once from the plan.
 #pragma once
 
+#include "passes/means.hpp"
 #include "passes/surface.hpp"
 #include "time/simulation.hpp"
 
@@ -14,6 +15,9 @@ struct Simulation::Fluid {
   Sides held;                              // the domain's sides that a wall closes
   Relief relief;                           // curved ground
   std::unique_ptr<SurfaceFinder> surface;  // null: no free surface
+
+  BlockMean mean;  // of an enclosed fluid's density rates, of a held fluid's velocity
+  BulkHold hold;
 
   // a fluid with eddies
   std::vector<EddyNeighbour> eddy_neighbours;  // empty: none
