@@ -78,6 +78,11 @@ def profile(name, scheme, wind, frames, history, middle, width, seconds):
     t, bulk = history["time [s]"], history["air_mean_vx [m/s]"]
     late = bulk[t > .5 * wind.end]
     report(name, scheme, "", "bulk speed/that of the start, largest error in the second half", abs(late / bulk[0] - 1).max(), .01, seconds)
+    if "air_held_acceleration_x [m/s2]" in history:  # of all the air; what holds the wind up is what bed and grains take off it
+        push = history["air_held_acceleration_x [m/s2]"][t > .5 * wind.end].mean()
+        stress = push * len(frames[0].x) * wind.density * wind.dx**2 / wind.size[0]
+        tell(name, scheme, "", "stress that bed and grains take off the wind/(rho u*2), second half",
+             f"{stress / (wind.density * wind.friction**2):.2f}", "1 over the bed at rest", seconds)
 
 
 def flat_bed():
