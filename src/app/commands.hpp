@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "plan/plan.hpp"
+
 namespace barchan {
 
 struct RunOptions {
@@ -15,8 +17,12 @@ struct RunOptions {
   bool quiet = false;
 };
 
+/// Sets the number of threads: `wanted`, or for 0 one for every two thousand particles, as far as the machine has them.
+/// Below that, waiting for each other costs more than it brings. The result does not depend on it.
+void use_threads(int wanted, const Plan& plan);
+
 int run(const RunOptions& options);
-int plan(const std::string& scene, const std::vector<std::string>& overrides, bool json);
+int plan(const std::string& scene, const std::vector<std::string>& overrides, int threads, bool json);
 int generate(const std::string& scene, const std::string& file, const std::vector<std::string>& overrides);
 int compare(const std::string& a, const std::string& b, double tolerance, bool json);
 int schema();

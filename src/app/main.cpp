@@ -1,14 +1,18 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "app/commands.hpp"
+#include "app/guard.hpp"
 #include "base/denormals.hpp"
-#include "base/errors.hpp"
 #include "base/version.hpp"
+#include "scene/nearest.hpp"
 
 namespace {
 
@@ -20,12 +24,25 @@ void wait_politely(char** argv) {
   execv("/proc/self/exe", argv);  // returns only if it failed; then the run goes on as it is
 }
 
-}  // namespace
+/// For a first word that is no command: what was probably meant, and the commands. Empty: it is one, or an option.
+std::string not_a_command(const CLI::App& app, const std::string& word) {
+  if (word.starts_with('-')) return "";
+  std::vector<std::string> names;
+  std::string list = "commands:\n";
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == word) return "";
+    names.push_back(command->get_name());
+    list += "  " + names.back() + std::string(10 - std::min<std::size_t>(names.back().size(), 9), ' ') +
+            command->get_description() + '\n';
+  }
+  if (word.empty()) return "no command\n" + list;
+  const bool scene = word.ends_with(".toml");
+  const std::string meant = scene ? "barchan run " + word : barchan::nearest(word, names);
+  return "\"" + word + "\" is " + (scene ? "a scene, not a command" : "not a command") + barchan::did_you_mean(meant) +
+         '\n' + list;
+}
 
-int main(int argc, char** argv) {
-  barchan::flush_denormals();
-  wait_politely(argv);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
+int dispatch(int argc, char** argv) {
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
   app.set_version_flag("--version", [] {
     return "barchan " + barchan::version() + " (" + barchan::commit() + ")\ncompiler: " + barchan::compiler() +
@@ -33,8 +50,9 @@ int main(int argc, char** argv) {
   });
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done, 2 wrong scene or command, 3 the run broke down, 4 input/output failed,\n"
-      "130 or 143 stopped by a signal. A file named TERMINATE in the output folder ends a run well.");
+      "Exit status: 0 done, 1 compare: different, 2 wrong scene or command, 3 the run broke down,\n"
+      "4 input/output failed or out of memory, 5 a mistake in Barchan itself, 130 or 143 stopped by a signal.\n"
+      "A file named TERMINATE in the output folder ends a run well.");
 
   int status = 0;
   std::vector<std::string> overrides;
@@ -61,9 +79,12 @@ int main(int argc, char** argv) {
   double tolerance = 0.0;
   auto* c_plan = app.add_subcommand("plan", "show what a scene would run and what it costs; run nothing");
   c_plan->add_option("scene", scene, "scene file (.toml)")->required();
+  int threads = 0;
+  c_plan->add_option("--threads", threads, "number of threads that the estimate is for (default: those that run takes)")
+      ->check(CLI::Range(1, 4096));
   c_plan->add_flag("--json", json, "as JSON");
   add_set(c_plan);
-  c_plan->callback([&] { status = barchan::plan(scene, overrides, json); });
+  c_plan->callback([&] { status = barchan::plan(scene, overrides, threads, json); });
 
   auto* c_generate = app.add_subcommand("generate", "write the initial particles only");
   c_generate->add_option("scene", scene, "scene file (.toml)")->required();
@@ -81,23 +102,24 @@ int main(int argc, char** argv) {
 
   app.add_subcommand("schema", "print the JSON schema of a scene file")->callback([&] { status = barchan::schema(); });
 
+  if (const std::string what = not_a_command(app, argc > 1 ? argv[1] : ""); !what.empty()) {
+    std::cerr << "barchan: " << what << "`barchan COMMAND --help` says more.\n";
+    return 2;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);
     return code == 0 ? 0 : 2;
-  } catch (const barchan::SceneError& e) {
-    std::cerr << "barchan: " << e.what() << '\n';
-    return 2;
-  } catch (const barchan::BreakdownError& e) {
-    std::cerr << "barchan: " << e.what() << '\n';
-    return 3;
-  } catch (const barchan::OutputError& e) {
-    std::cerr << "barchan: " << e.what() << '\n';
-    return 4;
-  } catch (const std::bad_alloc&) {
-    std::cerr << "barchan: out of memory; see `barchan plan` for what the scene needs\n";
-    return 4;
   }
   return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  barchan::flush_denormals();
+  wait_politely(argv);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
+  return barchan::guarded(std::cerr, [&] { return dispatch(argc, argv); });
 }

@@ -15,11 +15,16 @@
 
 namespace barchan {
 
-int plan(const std::string& file, const std::vector<std::string>& overrides, bool json) {
+void use_threads(int wanted, const Plan& plan) {
+  const int useful = 1 + static_cast<int>(plan.particles() / 2000.0);
+  omp_set_num_threads(wanted > 0 ? wanted : std::min(omp_get_max_threads(), useful));
+}
+
+int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
   const Scene scene = read_scene(file, overrides);
   const auto blocks = generate(scene);
   Plan plan = make_plan(scene, blocks);
-  omp_set_num_threads(std::min(omp_get_max_threads(), 1 + static_cast<int>(plan.particles() / 2000.0)));
+  use_threads(threads, plan);
   const Estimate estimate = measure(scene, plan, blocks);
   std::cout << (json ? to_json(plan, scene, estimate) : to_text(plan, scene) + to_text(estimate));
   return 0;

@@ -202,10 +202,7 @@ int run(const RunOptions& options) {
   }
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
-  // A thread for every two thousand particles: below that, waiting for each other costs more than it brings. The result
-  // does not depend on it.
-  const int useful = 1 + static_cast<int>(plan.particles() / 2000.0);
-  omp_set_num_threads(options.threads > 0 ? options.threads : std::min(omp_get_max_threads(), useful));
+  use_threads(options.threads, plan);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);

@@ -1,4 +1,4 @@
-// The four ways in which a run ends badly, one type each. `main` turns them into the exit status of the contract.
+// The ways in which a run ends badly, one type each. app/guard.hpp turns them into the exit status of the contract.
 #pragma once
 
 #include <stdexcept>

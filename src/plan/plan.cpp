@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "plan/enclosed.hpp"
+#include "scene/couplings.hpp"
 #include "scene/formula.hpp"
 #include "time/limits.hpp"
 
@@ -45,8 +47,6 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(fluid, wall)) return (a.kind == wall ? a : b).wall_law == WallLaw::adami ? Law::boundary : Law::repulsive;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
-  if (is(wall, wall))
-    throw SceneError("interactions." + a.name + "-" + b.name + ": two walls do not interact; remove the entry");
   return Law::contact;
 }
 
@@ -68,54 +68,13 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
-/// Whether the fluid is turbulent or touches a wall that says how it rubs.
-bool has_eddies(const Scene& scene, const Phase& fluid) {
-  if (fluid.kind != PhaseKind::fluid) return false;
-  bool any = fluid.turbulence != Turbulence::none;
-  for (const auto& i : scene.interactions)
-    for (const auto& p : scene.phases)
-      if (p.kind == PhaseKind::wall && (p.roughness || p.shear_stress))
-        any = any || (i.a == fluid.name && i.b == p.name) || (i.b == fluid.name && i.a == p.name);
-  if (any && fluid.scheme != FluidScheme::consistent)
-    throw SceneError(scene.file + ": phases." + fluid.name +
-                     ".scheme: eddy viscosity, rough walls and given shear stresses need corrected operators; expected "
-                     "\"consistent\"");
-  for (const auto& i : scene.interactions)
-    for (const auto& p : scene.phases)
-      if (any && p.kind == PhaseKind::fluid && p.density != fluid.density &&
-          ((i.a == fluid.name && i.b == p.name) || (i.b == fluid.name && i.a == p.name)))
-        throw SceneError(scene.file + ": interactions." + i.a + "-" + i.b +
-                         ": a turbulent fluid cannot touch one of another density yet; expected turbulence = \"none\", "
-                         "or no such entry");
-  return any;
-}
-
-/// A fluid fills its space when the particles of all phases inside the domain make up its volume; else it has a free
-/// surface. The answer may be wrong at little harm: what is done at a surface is done where a neighbourhood is not
-/// whole.
-bool leaves_space(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
-  double room = 1.0;
-  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
-    room *= scene.domain.size[d] / scene.spacing;
-  double filled = 0.0;
-  for (const auto& block : blocks)
-    for (const Vec3& x : block.position) {
-      bool inside = true;
-      for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
-        inside = inside && x[d] >= scene.domain.origin[d] && x[d] <= scene.domain.origin[d] + scene.domain.size[d];
-      filled += inside ? 1.0 : 0.0;
-    }
-  return filled < 0.95 * room;
-}
-
-std::vector<Field> fields_of(const Phase& phase, bool eddies, bool free_surface) {
+std::vector<Field> fields_of(const Phase& phase, bool eddies) {
   using enum Field;
   switch (phase.kind) {
     case PhaseKind::fluid: {
       std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
       if (phase.shifting > 0) f.push_back(shift_velocity);
       if (phase.scheme == FluidScheme::consistent) f.push_back(anisotropy);
-      if (free_surface) f.insert(f.end(), {wholeness, surface_normal});
       if (eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
       if (phase.energy) f.insert(f.end(), {energy, energy_rate});
       return f;
@@ -153,14 +112,10 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.kernel = i.kernel;
     e.radius = i.radius * scene.spacing;
     e.drag = i.drag;
-    if (e.drag > 0 && e.law != Law::coupling)
-      throw SceneError(scene.file + ": interactions." + e.name +
-                       ".drag: only a fluid with grains has a drag; expected no drag here");
     e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
-    if (e.a == e.b && scene.phases[e.a].scheme == FluidScheme::consistent && i.kernel != KernelKind::wendland_c2)
-      throw SceneError(scene.file + ": interactions." + e.name +
-                       ": the consistent scheme has no pressure that keeps "
-                       "particles apart, and under the cubic spline they pair; expected kernel = \"wendland-c2\"");
+    const Phase& fluid = scene.phases[scene.phases[e.a].kind == PhaseKind::fluid ? e.a : e.b];
+    e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
+                  fluid.scheme == FluidScheme::consistent;
     const auto direction = [&](std::size_t from, std::size_t to) {
       plan.directions.push_back({from, to, e.radius});
       return static_cast<int>(plan.directions.size()) - 1;
@@ -180,23 +135,21 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (p.smoothing_length == 0)
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
-    const bool own =
-        std::any_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.a == k && e.b == k; });
-    if (p.kind == PhaseKind::fluid && !own)
-      throw SceneError("interactions: the fluid \"" + p.name + "\" has no entry with itself; add " + p.name + "-" +
-                       p.name + " = 3.0");
   }
 }
 
-/// Keys that a scene may hold but that nothing carries out yet are refused, not ignored.
-void refuse_what_is_missing(const Scene& scene) {
-  const auto refuse = [&](const std::string& key, const std::string& instead) {
-    throw SceneError(scene.file + ": " + key + " is not available yet; expected " + instead);
-  };
-  for (const auto& p : scene.phases) {
-    if (p.artificial_stress != 0) refuse("phases." + p.name + ".artificial-stress", "0");
-  }
-  if (scene.output.checkpoint_every > 0) refuse("output.checkpoint-every", "no such key");
+/// As the scene says, or else as the particles show.
+void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Plan& plan) {
+  PlanPhase& p = plan.phases[fluid];
+  const std::optional<bool>& said = scene.phases[fluid].enclosed;
+  const Enclosure seen = find_enclosure(scene, plan, blocks, fluid);
+  p.enclosed = said.value_or(seen.shut_in);
+  p.enclosure = said ? "as the scene says" : seen.why;
+  p.free_surface = !p.enclosed && seen.open;
+  if (p.free_surface) p.fields.insert(p.fields.end(), {Field::wholeness, Field::surface_normal});
+  if (said.value_or(false) && !seen.free_space.empty())
+    plan.warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
+                            ", so that the mean density should be free; leave the key out");
 }
 
 void add_passes(const Scene& scene, Plan& plan) {
@@ -233,7 +186,6 @@ void add_passes(const Scene& scene, Plan& plan) {
 }  // namespace
 
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
-  refuse_what_is_missing(scene);
   Plan plan;
   plan.dimensions = scene.dimensions;
   plan.spacing = scene.spacing;
@@ -244,7 +196,6 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.bounds.periodic = scene.domain.periodic;
   plan.largest_speed = largest_speed(scene, blocks);
   const double volume = std::pow(scene.spacing, scene.dimensions);
-  const bool space_left = leaves_space(scene, blocks);
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& p = scene.phases[k];
     PlanPhase q;
@@ -254,8 +205,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
     q.eddies = has_eddies(scene, p);
     for (const auto& f : scene.forcings) q.held = q.held || (f.hold_bulk_speed && f.phase == p.name);
-    q.free_surface = p.kind == PhaseKind::fluid && !p.enclosed && space_left;
-    q.fields = fields_of(p, q.eddies, q.free_surface);
+    q.fields = fields_of(p, q.eddies);
     if (p.kind == PhaseKind::fluid) q.sound_speed = p.sound_speed.value_or(10.0 * plan.largest_speed);
     if (p.kind == PhaseKind::elastic) q.sound_speed = compression_speed(p);
     if (p.kind == PhaseKind::grains) {
@@ -266,7 +216,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
       q.sound_speed = p.contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
     }
     if (p.kind == PhaseKind::fluid && q.sound_speed <= 0)
-      throw SceneError("phases." + p.name +
+      throw SceneError(scene.file + ": phases." + p.name +
                        ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
                        "can be chosen; give sound-speed or time.largest-speed");
     plan.phases.push_back(q);
@@ -277,7 +227,11 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   for (const auto& p : plan.phases) sound_speeds.push_back(p.sound_speed);
   plan.instruments = make_instruments(scene, plan.bounds, sound_speeds);
   plan.limits = initial_limits(scene, plan);
-  if (plan.limits.empty() && plan.fixed_step == 0) throw SceneError("time: nothing limits the step; give time.step");
+  if (plan.limits.empty() && plan.fixed_step == 0)
+    throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");
+  for (std::size_t k = 0; k < plan.phases.size(); ++k)
+    if (plan.phases[k].kind == PhaseKind::fluid) enclose(scene, blocks, k, plan);
+  add_warnings(scene, plan);
   return plan;
 }
 

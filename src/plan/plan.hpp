@@ -29,6 +29,7 @@ struct Consistency {
   int neighbours = 0;
   double volume_sum = 0;    // sum V W, the particle itself included
   double gradient_sum = 0;  // -sum V x dW/dx
+  /// Within 3 % of the truth without any correction.
   bool consistent() const { return std::abs(volume_sum - 1) < 0.03 && std::abs(gradient_sum - 1) < 0.03; }
 };
 Consistency lattice_consistency(KernelKind kernel, double radius_in_spacings, int dimensions);
@@ -40,6 +41,7 @@ struct PlanEntry {
   KernelKind kernel = KernelKind::cubic_spline;
   double radius = 0;  // m
   Consistency consistency;
+  bool corrected = false;           // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                  // drag coefficient, 0: none
   int forward = -1, backward = -1;  // directions: a looks for b, b looks for a; -1: not needed
 };
@@ -54,6 +56,8 @@ struct PlanPhase {
   bool held = false;            // a fluid whose bulk speed is held
   bool free_surface = false;    // a fluid that does not fill its space
   bool eddies = false;          // a fluid whose viscosity varies, or with a wall whose stress is given
+  bool enclosed = false;        // a fluid whose mean density is kept
+  std::string enclosure = "";   // why it is enclosed or not, of a fluid
   std::vector<Field> fields;
 };
 
@@ -77,13 +81,17 @@ struct Plan {
   std::vector<Instrument> instruments;       // what is measured
   double skin = 0.1;
   double particles() const;
-  double step() const;    ///< the smallest limit, s (or the fixed step)
-  double fixed_step = 0;  // s, 0: none
-  double estimated_bytes = 0;
+  double step() const;                ///< the smallest limit, s (or the fixed step)
+  double fixed_step = 0;              // s, 0: none
+  std::vector<std::string> warnings;  // what the scene may mean otherwise, one sentence each
 };
 
-/// Decides. Throws SceneError for what no law can do (fluid-grains without a fluid's own entry, wall-wall, ...).
+/// Decides. What no law can do was refused when the scene was read (scene/check_physics.cpp). Throws SceneError where
+/// only the particles show a mistake: no speed to choose a sound speed from.
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks);
+
+/// Fills Plan::warnings; the last work of make_plan.
+void add_warnings(const Scene& scene, Plan& plan);
 
 /// The plan as a person reads it (estimate.hpp has it as JSON).
 std::string to_text(const Plan& plan, const Scene& scene);

@@ -1,5 +1,9 @@
 // The plan as a person reads it, and as JSON.
+#include <omp.h>
+
+#include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "plan/estimate.hpp"
@@ -34,6 +38,22 @@ std::string joined(const std::vector<std::string>& words) {
   return all.empty() ? "none" : all;
 }
 
+/// What the kernel sums of an entry mean.
+std::string meaning(const PlanEntry& e) {
+  if (e.corrected) return "corrected to first order by the consistent scheme";
+  if (e.law == Law::contact || e.law == Law::repulsive) return "a contact law, not an approximation";
+  if (e.consistency.consistent()) return "consistent";
+  if (e.law == Law::elastic && e.a != e.b) return "a contact law, not an approximation";
+  return "off by more than 3 %, and nothing corrects it";
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 std::string to_text(const Plan& plan, const Scene& scene) {
@@ -52,9 +72,12 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   for (const auto& e : plan.entries)
     t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), to_string(e.law).c_str(),
               kernel_name(e.kernel), e.radius / plan.spacing, e.consistency.neighbours, e.consistency.volume_sum,
-              e.consistency.gradient_sum,
-              e.consistency.consistent() ? "consistent" : "a contact law, not an approximation");
-  t += "\npasses  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
+              e.consistency.gradient_sum, meaning(e).c_str());
+  t += "\n";
+  for (const auto& p : plan.phases)
+    if (p.kind == PhaseKind::fluid)
+      t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
+  t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
   for (const auto& i : plan.instruments)
     t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
   t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
@@ -62,22 +85,40 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   for (const auto& l : plan.limits)
     t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value,
               l.name.c_str(), l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
+  for (const auto& w : plan.warnings) t += "warning: " + w + "\n";
   return t + "\n";
 }
 
 Estimate measure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks) {
   Estimate e;
+  e.threads = omp_get_max_threads();
+  // One thread does the work: several that wait for each other on a busy machine would count their waiting.
+  omp_set_num_threads(1);
   Simulation simulation(scene, plan, blocks);
-  const auto start = std::chrono::steady_clock::now();
-  double seconds = 0;
-  while (simulation.steps() < 200 && seconds < 2.0 && simulation.time() < scene.time.end * (1 - 1e-12)) {
-    simulation.step(scene.time.end - simulation.time());
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  constexpr int batch = 10;
+  constexpr long most_steps = 300;
+  constexpr double most_seconds = 2.0;
+  const auto processor = [] {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  };
+  const auto goes_on = [&] { return simulation.time() < scene.time.end * (1 - 1e-12); };
+  std::vector<double> seconds, lengths;  // of each batch: of processor time a step, and of simulated time a step
+  const double start = processor();
+  while (simulation.steps() < most_steps && processor() - start < most_seconds && goes_on()) {
+    const double before = processor(), time = simulation.time();
+    int steps = 0;
+    for (; steps < batch && processor() - start < most_seconds && goes_on(); ++steps)
+      simulation.step(scene.time.end - simulation.time());
+    seconds.push_back((processor() - before) / steps);
+    lengths.push_back((simulation.time() - time) / steps);
   }
-  const double steps = static_cast<double>(std::max(simulation.steps(), 1L));
-  e.particle_steps_per_second = plan.particles() * steps / seconds;
-  e.steps = scene.time.end / simulation.last_step();
-  e.seconds = e.steps * seconds / steps;
+  omp_set_num_threads(e.threads);
+  e.steps = scene.time.end / median(lengths);
+  e.processor_seconds = e.steps * median(seconds);
+  e.seconds = e.processor_seconds / e.threads;
+  e.particle_steps_per_second = plan.particles() / median(seconds);
   e.bytes = static_cast<double>(simulation.bytes());
   for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
   return e;
@@ -87,9 +128,11 @@ std::string to_text(const Estimate& e) {
   std::string t = "pairs  ";
   for (const auto& [name, count] : e.pairs)
     t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
-  t += line(
-      "\nmemory  %.1f MB\nrun     about %.0f steps, %.0f s at %.2f M particle-steps/s (measured on the first steps)\n",
-      e.bytes * 1e-6, e.steps, e.seconds, e.particle_steps_per_second * 1e-6);
+  t += line("\nmemory  %.1f MB\n", e.bytes * 1e-6);
+  t +=
+      line("run     about %.0f steps, %.3g s of processor time at %.2f M particle-steps/s (medians of the first steps)",
+           e.steps, e.processor_seconds, e.particle_steps_per_second * 1e-6);
+  t += e.threads == 1 ? "\n" : line(": %.3g s if %d threads share it evenly\n", e.seconds, e.threads);
   return t;
 }
 
@@ -106,6 +149,10 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
     q["mass"] = p.mass;
     q["sound_speed"] = p.sound_speed;
     q["smoothing_length"] = p.smoothing_length;
+    if (p.kind == PhaseKind::fluid) {
+      q["enclosed"] = p.enclosed;
+      q["enclosure"] = p.enclosure;
+    }
     q["fields"] = nlohmann::ordered_json::array();
     for (const Field f : p.fields) q["fields"].push_back(info(f).name);
     j["phases"][p.name] = q;
@@ -119,6 +166,8 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
     q["volume_sum"] = e.consistency.volume_sum;
     q["gradient_sum"] = e.consistency.gradient_sum;
     q["consistent"] = e.consistency.consistent();
+    q["corrected"] = e.corrected;
+    q["meaning"] = meaning(e);
     j["interactions"][e.name] = q;
   }
   for (const auto& [name, count] : estimate.pairs) j["interactions"][name]["pairs"] = count;
@@ -134,10 +183,13 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
                              {"start", i.start},
                              {"files", i.files()}});
   j["not_measured"] = not_measured(plan.instruments);
+  j["warnings"] = plan.warnings;
   j["step"] = plan.step();
   for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
   j["estimate"] = {{"steps", estimate.steps},
+                   {"threads", estimate.threads},
                    {"seconds", estimate.seconds},
+                   {"processor_seconds", estimate.processor_seconds},
                    {"particle_steps_per_second", estimate.particle_steps_per_second},
                    {"bytes", estimate.bytes}};
   return j.dump(2) + "\n";

@@ -9,8 +9,8 @@
 namespace barchan {
 namespace {
 
-const char* const shape_names[] = {"bed",  "box",    "disc",    "sphere", "ring", "polygon",
-                                   "cube", "points", "formula", "sides",  "mesh"};
+const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring",
+                                   "polygon", "cube", "points", "formula", "sides"};
 
 std::string number_text(double value) {
   char text[32];
@@ -29,8 +29,6 @@ void check_shape_keys(const std::string& shape, bool fitted, const Report& repor
     }
     first = name;
   }
-  if (report.has(shape + ".mesh"))
-    report(shape + ".mesh", "meshes are not available yet; expected another shape, as polygon or formula");
   if (report.has(shape + ".dune") && first != "bed")
     report(shape + ".dune", "a dune without a bed; expected bed = DEPTH beside it");
   if (report.has(shape + ".from") && first != "bed")
@@ -110,7 +108,10 @@ void check_sizes(const Fill& fill, const std::string& shape, const Scene& scene,
 void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dotted, const Report& report) {
   const bool wall = phase.kind == PhaseKind::wall;
   if (wall && report.has(dotted + ".velocity"))
-    report(dotted + ".velocity", "a wall is moved by its phase; expected phases." + phase.name + ".velocity");
+    report(dotted + ".velocity", "a wall has no initial velocity; expected no such key (phases." + phase.name +
+                                     ".velocity lets the wall's surface slide)");
+  if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random)
+    report(dotted + ".seed", "nothing here is random; expected perturb above 0 or packing = \"random\" beside it");
   if (phase.kind != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
   const bool continuous = phase.kind == PhaseKind::fluid || phase.kind == PhaseKind::elastic;

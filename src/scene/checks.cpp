@@ -197,9 +197,7 @@ void check_forcings(const Scene& scene, const Report& report) {
     if (report.touched(dotted) || !report.has(dotted)) continue;
     const Phase* phase = find_phase(scene, scene.forcings[k].phase);
     if (!phase) report(dotted, unknown_phase(scene.forcings[k].phase, scene));
-    else if (phase->kind == PhaseKind::wall)
-      report(dotted, "a wall feels no force; expected a phase of another kind (phases." + phase->name +
-                         ".velocity moves the wall)");
+    else if (phase->kind == PhaseKind::wall) report(dotted, "a wall feels no force; expected a phase of another kind");
   }
 }
 
@@ -217,6 +215,8 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_interactions(scene, report);
   check_domain(scene, report);
   check_forcings(scene, report);
+  check_physics(scene, report);
+  check_walls(scene, report);
   check_measuring(scene, report);
 }
 

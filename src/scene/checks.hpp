@@ -34,6 +34,12 @@ std::string unknown_phase(const std::string& name, const Scene& scene);
 /// Of what is measured: places outside the domain, phases that cannot be measured, names that two files would share.
 void check_measuring(const Scene& scene, const Report& report);
 
+/// What no law can do, and keys that nothing reads where they stand: of fluids, grains, pairs and the time.
+void check_physics(const Scene& scene, const Report& report);
+
+/// The same of walls: keys that their law does not read, and velocities that would carry them away.
+void check_walls(const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

@@ -60,7 +60,7 @@ Phase take_phase(const toml::table& table, const std::string& name) {
   take_number(table, "artificial-viscosity", phase.artificial_viscosity);
   take_number(table, "artificial-viscosity-beta", phase.artificial_viscosity_beta);
   take_number(table, "density-diffusion", phase.density_diffusion);
-  phase.enclosed = table["enclosed"].value_or(phase.enclosed);
+  phase.enclosed = table["enclosed"].value<bool>();
   take_number(table, "shifting", phase.shifting);
   take_number(table, "background-pressure", phase.background_pressure);
   phase.scheme = take_choice(table, "scheme", phase.scheme,
@@ -72,7 +72,6 @@ Phase take_phase(const toml::table& table, const std::string& name) {
   take_number(table, "smagorinsky", phase.smagorinsky);
   take_number(table, "young", phase.young);
   take_number(table, "poisson", phase.poisson);
-  take_number(table, "artificial-stress", phase.artificial_stress);
   phase.energy = table["energy"].value_or(phase.energy);
   take_number(table, "restitution", phase.restitution);
   phase.contact_speed = table["contact-speed"].value<double>();
@@ -90,23 +89,39 @@ KernelKind take_kernel(const toml::table& table, KernelKind otherwise) {
                      {{"cubic-spline", KernelKind::cubic_spline}, {"wendland-c2", KernelKind::wendland_c2}});
 }
 
-std::vector<Interaction> take_interactions(const toml::table& table) {
-  const KernelKind common = take_kernel(table, KernelKind::cubic_spline);
+/// Kernel and radius (spacings) of a pair that does not give them; a radius of 0 must be given. Fluids: the least error
+/// at a given time (docs/accuracy.md), and no pairs. Contacts: eq. (16) of Halik et al. 2015; their stiffness grows
+/// less with the overlap under the cubic spline.
+Interaction recommended(const std::vector<Phase>& phases, const std::string& a, const std::string& b) {
+  Interaction pair{a, b};
+  bool fluid = false, repulsive = false, bodies = true;
+  for (const Phase& phase : phases) {
+    if (phase.name != a && phase.name != b) continue;
+    fluid = fluid || phase.kind == PhaseKind::fluid;
+    repulsive = repulsive || (phase.kind == PhaseKind::wall && phase.wall_law == WallLaw::repulsive);
+    bodies = bodies && phase.kind == PhaseKind::elastic;
+  }
+  pair.kernel = fluid ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
+  if (fluid) pair.radius = repulsive ? 0.0 : 2.1;
+  else pair.radius = bodies ? 0.0 : 1.1;
+  return pair;
+}
+
+std::vector<Interaction> take_interactions(const toml::table& table, const std::vector<Phase>& phases) {
   std::vector<Interaction> interactions;
-  for (const std::string& pair : written_order(table)) {
-    if (pair == "kernel") continue;
-    Interaction interaction;
-    const std::size_t dash = pair.find('-');
-    interaction.a = pair.substr(0, dash);
-    interaction.b = dash == std::string::npos ? "" : pair.substr(dash + 1);
-    interaction.kernel = common;
-    take_number(table, pair, interaction.radius);
-    if (const toml::table* entry = table[pair].as_table()) {
-      take_number(*entry, "radius", interaction.radius);
-      interaction.kernel = take_kernel(*entry, common);
-      take_number(*entry, "drag", interaction.drag);
+  for (const std::string& name : written_order(table)) {
+    if (name == "kernel") continue;
+    const std::size_t dash = name.find('-');
+    Interaction pair =
+        recommended(phases, name.substr(0, dash), dash == std::string::npos ? "" : name.substr(dash + 1));
+    pair.kernel = take_kernel(table, pair.kernel);
+    take_number(table, name, pair.radius);
+    if (const toml::table* entry = table[name].as_table()) {
+      take_number(*entry, "radius", pair.radius);
+      pair.kernel = take_kernel(*entry, pair.kernel);
+      take_number(*entry, "drag", pair.drag);
     }
-    interactions.push_back(interaction);
+    interactions.push_back(pair);
   }
   return interactions;
 }
@@ -132,7 +147,6 @@ OutputControl take_output(const toml::table& table) {
   output.fields = take_words(table, "fields");
   output.format = take_choice(table, "format", output.format, {{"vtp", FrameFormat::vtp}, {"vtu", FrameFormat::vtu}});
   output.compress = table["compress"].value_or(output.compress);
-  take_number(table, "checkpoint-every", output.checkpoint_every);
   output.walls = table["walls"].value_or(output.walls);
   return output;
 }
@@ -173,7 +187,7 @@ Scene take_scene(const toml::table& document, const std::string& file) {
   scene.domain = take_domain(section("domain"));
   for (const std::string& name : written_order(section("phases")))
     if (const toml::table* table = section("phases")[name].as_table()) scene.phases.push_back(take_phase(*table, name));
-  scene.interactions = take_interactions(section("interactions"));
+  scene.interactions = take_interactions(section("interactions"), scene.phases);
   if (const toml::array* fills = document["fill"].as_array())
     for (const toml::node& fill : *fills) scene.fills.push_back(fill.is_table() ? take_fill(*fill.as_table()) : Fill{});
   if (const toml::array* forcings = document["forcing"].as_array())

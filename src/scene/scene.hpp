@@ -44,29 +44,28 @@ struct Phase {
   EquationOfState equation_of_state = EquationOfState::linear;
   double tait_exponent = 7.0;
   double artificial_viscosity = 0.0;       // Monaghan's alpha
-  double artificial_viscosity_beta = 0.0;  // Monaghan's beta
+  double artificial_viscosity_beta = 0.0;  // Monaghan's beta, elastic only
   double density_diffusion = 0.05;         // delta of delta-SPH, 0 switches it off
   double shifting = 1.0;                   // strength of particle shifting, 0 switches it off
   double background_pressure = 0.0;        // in rho0 c^2
-  FluidScheme scheme = FluidScheme::plain;
-  bool enclosed = false;  // fills a closed space: its mean density is kept
+  FluidScheme scheme = FluidScheme::consistent;
+  std::optional<bool> enclosed;  // its mean density is kept; empty: the plan sees whether it is shut in
   Turbulence turbulence = Turbulence::none;
   double smagorinsky = 0.15;  // C_s of nu_t = (C_s dx)^2 |S|
 
   // elastic
   double young = 0.0;  // Pa
   double poisson = 0.0;
-  double artificial_stress = 0.0;  // epsilon of Gray et al. 2001, 0 switches it off
-  bool energy = false;             // fluid and elastic: integrate the internal energy (eq. 13)
+  bool energy = false;  // fluid and elastic: integrate the internal energy (eq. 13)
 
   // grains
-  double restitution = 1.0;             // of a head-on collision of two grains, 0 < e <= 1
+  double restitution = 0.7;             // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
   std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
 
   // wall
   WallLaw wall_law = WallLaw::adami;
   Slip slip = Slip::no_slip;
-  VectorExpression wall_velocity;    // m/s, a function of time
+  VectorExpression wall_velocity;    // m/s, a function of time: the surface slides, the particles stay in place
   std::optional<Vec3> shear_stress;  // Pa, on the fluid, instead of no slip
 
   // wall and grains
@@ -82,7 +81,7 @@ enum class KernelKind { cubic_spline, wendland_c2 };
 struct Interaction {
   std::string a, b;     // phase names as written, "air-sand"
   double radius = 0.0;  // kernel radius (support) in spacings, eq. (15)-(17)
-  KernelKind kernel = KernelKind::cubic_spline;
+  KernelKind kernel = KernelKind::wendland_c2;
   double drag = 0.0;  // fluid-grains: drag coefficient of a grain, 0 switches it off
 };
 
@@ -228,8 +227,7 @@ struct OutputControl {
   std::vector<std::string> fields;  // beside id, phase, velocity, smoothing_length, density, pressure
   FrameFormat format = FrameFormat::vtp;
   bool compress = true;
-  double checkpoint_every = 0.0;  // s of wall time; 0: none
-  bool walls = true;              // write wall particles too
+  bool walls = true;  // write wall particles too
 };
 
 enum class Precision { double_precision, mixed };

@@ -61,6 +61,25 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
   records.fill_images<Dim>(grid, x);
 }
 
+/// Adds the forces of [[forcing]] on a phase to its accelerations; `numbers`: those without a formula too, which the
+/// law of fluids has already.
+template <class Forces>
+void add_forces(PhaseParticles& p, std::size_t phase, const Forces& forces, double time, bool numbers) {
+  for (const auto& force : forces) {
+    if (force.phase != phase) continue;
+    for (int d = 0; d < p.dimensions(); ++d) {
+      const Formula& formula = force.acceleration[static_cast<std::size_t>(d)];
+      if (formula.is_constant() && !numbers) continue;
+      double* a = p.column(Field::acceleration, d);
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        Vec3 x{};
+        for (int e = 0; e < p.dimensions(); ++e) x[static_cast<std::size_t>(e)] = p.column(Field::position, e)[k];
+        a[k] += formula.is_constant() ? formula.constant() : formula(x, time);
+      }
+    }
+  }
+}
+
 /// A wall whose stress is given leaves the fluid's velocity along it alone.
 bool given_friction(const Phase& wall) { return wall.roughness || wall.shear_stress; }
 
@@ -141,32 +160,17 @@ void Simulation::rate_fluids() {
     q.diffusivity = StepConstants::theta * centring + delta;
     q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
     q.acceleration = {0, 0, 0};
-    bool varies = false;
     for (const auto& force : forcings_) {
       if (force.phase != f.phase) continue;
       for (std::size_t d = 0; d < 3; ++d)
         if (force.acceleration[d].is_constant()) q.acceleration[d] += force.acceleration[d].constant();
-        else varies = true;
     }
     auto& p = particles_[f.phase];
     if (!f.eddy_neighbours.empty()) eddy_rates(p, motion_[f.phase], eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
     else if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
     else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
-    if (s.enclosed) keep_mean_density(p, f.mean);
-    if (!varies) continue;
-    for (const auto& force : forcings_) {
-      if (force.phase != f.phase) continue;
-      for (int d = 0; d < plan_.dimensions; ++d) {
-        const Formula& formula = force.acceleration[static_cast<std::size_t>(d)];
-        if (formula.is_constant()) continue;
-        double* a = p.column(Field::acceleration, d);
-        for (std::size_t k = 0; k < p.size(); ++k) {
-          Vec3 x{};
-          for (int e = 0; e < plan_.dimensions; ++e) x[static_cast<std::size_t>(e)] = p.column(Field::position, e)[k];
-          a[k] += formula(x, time_);
-        }
-      }
-    }
+    if (plan_.phases[f.phase].enclosed) keep_mean_density(p, f.mean);
+    add_forces(p, f.phase, forcings_, time_, false);
   }
 }
 
@@ -188,7 +192,10 @@ void Simulation::repel_from_walls() {
 }
 
 void Simulation::stress_bodies() {
-  for (auto& b : bodies_) elastic_forces(particles_[b.phase], stress_[b.phase], b.neighbours, b.parameters);
+  for (auto& b : bodies_) {
+    elastic_forces(particles_[b.phase], stress_[b.phase], b.neighbours, b.parameters);
+    add_forces(particles_[b.phase], b.phase, forcings_, time_, true);
+  }
 }
 
 void Simulation::touch() {
@@ -197,6 +204,7 @@ void Simulation::touch() {
     if (p.kind() != PhaseKind::grains) continue;
     for (int d = 0; d < plan_.dimensions; ++d)
       std::fill_n(p.column(Field::acceleration, d), p.size(), scene_.domain.gravity[static_cast<std::size_t>(d)]);
+    add_forces(p, k, forcings_, time_, true);
   }
   for (const auto& c : contacts_)
     if (!c.is_repulsion)

@@ -230,6 +230,14 @@ double lattice_moment(const Plan& plan, std::size_t fluid) {
   return 1.0;
 }
 
+/// Whether the grains of the other phase resist the fluid by a form drag: that is then the whole of their friction. The
+/// logarithmic law of rough ground beside it would take the same momentum twice.
+bool has_form_drag(const Plan& plan, std::size_t fluid, std::size_t other) {
+  return std::any_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) {
+    return e.drag > 0 && ((e.a == fluid && e.b == other) || (e.a == other && e.b == fluid));
+  });
+}
+
 }  // namespace
 
 /// The ground of fitted rows, if the fluid feels the wall that it is of.
@@ -274,7 +282,8 @@ void Simulation::wire_eddies(Fluid& f) {
       e.stress = o.shear_stress.value_or(Vec3{});
       if (o.kind == PhaseKind::wall) e.wall = &particles_[other];
       if (e.friction == Friction::grains) {
-        e.roughness = f.eddies.roughness = o.roughness.value_or(plan_.spacing / 30.0);
+        const bool drag = has_form_drag(plan_, f.phase, other);
+        e.roughness = f.eddies.roughness = drag ? 0.0 : o.roughness.value_or(plan_.spacing / 30.0);
         f.eddies.grain_reach = std::max(f.eddies.grain_reach, n.radius);
       } else {
         e.roughness = o.roughness.value_or(0.0);

@@ -54,6 +54,14 @@ std::string shear(const std::string& from, const std::string& to) {
               from, to);
 }
 
+/// The square, periodic along x, with a floor that has more keys.
+std::string wall(const std::string& keys) {
+  return with(with(with(square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\"]"), "air-air = 3.0",
+                   "air-air = 2.1\nair-wall = 2.1"),
+              "[interactions]", "[phases.wall]\nkind = \"wall\"\n" + keys + "\n[interactions]") +
+         "[[fill]]\nphase = \"wall\"\nshape = { sides = [\"bottom\"] }\n";
+}
+
 /// The square over a fitted hill, with one thing changed.
 std::string hill(const std::string& from, const std::string& to) {
   const std::string ground = with(with(square_text, "air-air = 3.0\n", "air-air = 3.0\nair-hill = 3.0\n"),

@@ -22,6 +22,8 @@ kind = "fluid"
 density = 1000
 viscosity = 1e-3
 sound-speed = 20
+scheme = "plain"
+enclosed = false
 [phases.floor]
 kind = "wall"
 [interactions]
@@ -66,6 +68,7 @@ kind = "wall"
 kind = "wall"
 slip = "free-slip"
 [interactions]
+kernel = "cubic-spline"
 air-air = { radius = 3.0, kernel = "wendland-c2" }
 air-sand = 2.5
 sand-sand = 1.1

@@ -63,6 +63,7 @@ phase = "air"
 shape = "the-rest"
 [time]
 end = 1
+largest-speed = 1
 )";
 
 /// `text` with the first `from` replaced by `to`.

@@ -1,0 +1,163 @@
+// Physics that no law can do, and keys that nothing reads where they stand.
+#include <algorithm>
+#include <cstdio>
+
+#include "scene/checks.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+namespace {
+
+bool is_zero(const VectorExpression& vector) {
+  return std::all_of(vector.begin(), vector.end(),
+                     [](const Expression& e) { return !e.is_formula() && e.value == 0.0; });
+}
+
+/// The checks of one scene. A phase whose kind is not known and a pair that is not one are left out.
+class PhysicsChecker {
+ public:
+  PhysicsChecker(const Scene& scene, const Report& report)
+      : scene_(scene),
+        report_(report),
+        pairs_known_(!report.touched("interactions")),
+        sound_speed_known_(some_speed_is_known()) {}
+
+  void fluid(const Phase& fluid) {
+    const std::string dotted = place(fluid);
+    if (report_.has(dotted + ".tait-exponent") && fluid.equation_of_state != EquationOfState::tait)
+      tell(dotted + ".tait-exponent",
+           "the linear equation of state has no exponent; expected equation-of-state = \"tait\" beside it");
+    if (report_.has(dotted + ".smagorinsky") && fluid.turbulence != Turbulence::smagorinsky)
+      tell(dotted + ".smagorinsky", "nothing reads it; expected turbulence = \"smagorinsky\" beside it");
+    if (!sound_speed_known_ && !fluid.sound_speed)
+      tell(dotted + ".sound-speed",
+           "missing: nothing in the scene moves or weighs, so that none can be chosen; expected sound-speed or "
+           "time.largest-speed");
+    const bool eddies = has_eddies(scene_, fluid), plain = fluid.scheme == FluidScheme::plain;
+    if (pairs_known_ && eddies && plain)
+      tell(dotted + ".scheme",
+           "eddy viscosity, rough walls and given shear stresses need corrected operators; expected \"consistent\"");
+    if (fluid.energy && (!plain || eddies))
+      tell(dotted + ".energy",
+           "the internal energy of a fluid is computed with the plain sums only; expected scheme = \"plain\" and no "
+           "turbulence beside it, or no such key");
+    if (!pairs_known_) return;
+    if (!entry_between(scene_, fluid, fluid))
+      tell("interactions." + fluid.name + "-" + fluid.name,
+           "missing: a fluid needs an entry with itself; expected " + fluid.name + "-" + fluid.name + " = 2.1");
+    if (fluid.turbulence == Turbulence::mixing_length && !has_ground(fluid))
+      tell(dotted + ".turbulence",
+           "a mixing length needs ground, and this fluid touches no wall with friction and no grains; expected such an "
+           "entry in [interactions], or \"smagorinsky\"");
+  }
+
+  void grains(const Phase& grains) {
+    const std::string dotted = place(grains);
+    const bool read = std::any_of(scene_.phases.begin(), scene_.phases.end(), [&](const Phase& fluid) {
+      return has_eddies(scene_, fluid) && entry_between(scene_, grains, fluid);
+    });
+    if (pairs_known_ && report_.has(dotted + ".roughness") && !read)
+      tell(dotted + ".roughness",
+           "only a turbulent fluid feels how rough grains are; expected turbulence in a fluid that has an entry with "
+           "\"" +
+               grains.name + "\"");
+  }
+
+  void pair(const Interaction& pair, const Phase& a, const Phase& b) {
+    const std::string dotted = "interactions." + pair.a + "-" + pair.b;
+    const auto is = [&](PhaseKind k, PhaseKind l) {
+      return (a.kind == k && b.kind == l) || (a.kind == l && b.kind == k);
+    };
+    using enum PhaseKind;
+    if (report_.has(dotted + ".drag") && !is(fluid, grains))
+      tell(dotted + ".drag", "only a fluid with grains has a drag; expected no such key here");
+    const bool touches = (a.kind != fluid && b.kind != fluid && !is(elastic, elastic)) || repulsive(a) || repulsive(b);
+    if (pair.radius == 0.0)
+      tell(dotted + ".radius", std::string("missing: none is recommended for ") +
+                                   (touches ? "repulsive walls" : "elastic bodies") +
+                                   "; expected a number > 0 and <= 8 (spacings)");
+    else if (touches && pair.radius <= 1.0)
+      tell(
+          report_.has(dotted + ".radius") ? dotted + ".radius" : dotted,
+          "a contact needs a radius beyond one spacing, so that touching particles feel each other; expected more than "
+          "1, as 1.1 (eq. 16 of Halik et al. 2015)");
+    if (is(fluid, fluid)) fluids(pair, a, b, dotted);
+  }
+
+  void time() {
+    if (scene_.time.fixed_step && report_.has("time.safety"))
+      tell("time.safety", "a fixed step has no stability limit to multiply; expected either step or safety");
+  }
+
+ private:
+  static std::string place(const Phase& phase) { return "phases." + phase.name; }
+  static bool repulsive(const Phase& p) { return p.kind == PhaseKind::wall && p.wall_law == WallLaw::repulsive; }
+
+  void tell(const std::string& dotted, const std::string& what) const {
+    if (!report_.touched(dotted)) report_(dotted, what);
+  }
+
+  void fluids(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) const {
+    const bool consistent = a.scheme == FluidScheme::consistent || b.scheme == FluidScheme::consistent;
+    if ((consistent || has_eddies(scene_, a)) && pair.kernel != KernelKind::wendland_c2 && a.name == b.name)
+      tell(report_.has(dotted + ".kernel") ? dotted + ".kernel" : "interactions.kernel",
+           "the consistent scheme has no pressure that keeps particles apart, and under the cubic spline they pair (" +
+               pair.a + "-" + pair.b + "); expected \"wendland-c2\"");
+    if (a.density != b.density && (has_eddies(scene_, a) || has_eddies(scene_, b)))
+      tell(dotted,
+           "a turbulent fluid cannot touch one of another density yet; expected turbulence = \"none\", or no such "
+           "entry");
+    for (const Phase* fluid : {&a, &b})
+      if (a.name != b.name && fluid->scheme == FluidScheme::plain && (consistent || a.density != b.density))
+        tell(place(*fluid) + ".scheme",
+             "two fluids are joined by the consistent scheme only; expected \"consistent\", or no entry " + pair.a +
+                 "-" + pair.b);
+  }
+
+  bool has_ground(const Phase& fluid) const {
+    return std::any_of(scene_.phases.begin(), scene_.phases.end(), [&](const Phase& other) {
+      const bool ground = other.kind == PhaseKind::grains || (other.kind == PhaseKind::wall && !repulsive(other) &&
+                                                              other.slip == Slip::no_slip && !other.shear_stress);
+      return ground && entry_between(scene_, fluid, other);
+    });
+  }
+
+  /// What plan.cpp chooses a sound speed from, as far as the document says it. What is in doubt counts as known.
+  bool some_speed_is_known() const {
+    if (report_.touched("time") || report_.touched("domain") || report_.touched("fill") || report_.touched("phases"))
+      return true;
+    const auto moves = [](const Fill& f) {
+      return !is_zero(f.velocity) || (f.log_profile && f.log_profile->friction_velocity > 0.0);
+    };
+    return scene_.time.largest_speed > 0.0 || norm(scene_.domain.gravity) > 0.0 ||
+           std::any_of(scene_.fills.begin(), scene_.fills.end(), moves) ||
+           std::any_of(scene_.phases.begin(), scene_.phases.end(),
+                       [](const Phase& p) { return !is_zero(p.wall_velocity); });
+  }
+
+  const Scene& scene_;
+  const Report& report_;
+  bool pairs_known_, sound_speed_known_;
+};
+
+}  // namespace
+
+void check_physics(const Scene& scene, const Report& report) {
+  const auto kind_known = [&](const Phase& phase) { return !report.touched("phases." + phase.name + ".kind"); };
+  const bool all_known = std::all_of(scene.phases.begin(), scene.phases.end(), kind_known);
+  PhysicsChecker checker(scene, report);
+  for (const Phase& phase : scene.phases) {
+    if (!all_known || phase.kind != PhaseKind::fluid) continue;
+    checker.fluid(phase);
+  }
+  for (const Phase& phase : scene.phases)
+    if (all_known && phase.kind == PhaseKind::grains) checker.grains(phase);
+  for (const Interaction& pair : scene.interactions) {
+    const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
+    if (a && b && kind_known(*a) && kind_known(*b) && !report.touched("interactions." + pair.a + "-" + pair.b))
+      checker.pair(pair, *a, *b);
+  }
+  checker.time();
+}
+
+}  // namespace barchan

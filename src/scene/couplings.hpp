@@ -1,0 +1,18 @@
+// Who acts on whom in a scene: questions that the checks and the plan share.
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+/// The entry of two phases in either order; null when there is none.
+const Interaction* entry_between(const Scene& scene, const Phase& a, const Phase& b);
+
+/// Whether the phase has an entry with another phase of this kind.
+bool meets(const Scene& scene, const Phase& phase, PhaseKind kind);
+
+/// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
+/// `roughness` or `shear-stress`.
+bool has_eddies(const Scene& scene, const Phase& fluid);
+
+}  // namespace barchan

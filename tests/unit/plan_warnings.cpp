@@ -1,0 +1,167 @@
+// What the plan sees for itself and what it warns of: fluids that are shut in, kernels under which particles pair,
+// walls that hold nobody.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "plan/plan.hpp"
+#include "scene/reader.hpp"
+#include "unit/scene_texts.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::with;
+
+/// A closed box of water, full up to `top` (m), with one thing changed.
+Plan box(const std::string& from = "", const std::string& to = "", const std::string& top = "1") {
+  const std::string text = R"(spacing = 0.05
+[domain]
+size = [1, 1]
+gravity = [0, -10]
+[phases.water]
+kind = "fluid"
+density = 1000
+[phases.wall]
+kind = "wall"
+[interactions]
+water-water = 2.1
+water-wall = 2.1
+[[fill]]
+phase = "wall"
+shape = { sides = ["bottom", "top", "left", "right"] }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [1, )" +
+                           top + R"(] } }
+[time]
+end = 1
+)";
+  const Scene scene = parse_scene(from.empty() ? text : with(text, from, to), "box.toml");
+  return make_plan(scene, generate(scene));
+}
+
+bool warns(const Plan& plan, const std::string& of) {
+  return std::any_of(plan.warnings.begin(), plan.warnings.end(),
+                     [&](const std::string& w) { return w.find(of) != std::string::npos; });
+}
+
+TEST(PlanSees, AFluidThatIsShutIn) {
+  EXPECT_TRUE(box().phases[0].enclosed);
+  EXPECT_TRUE(box("shape = { box", "perturb = 0.5\nshape = { box").phases[0].enclosed) << "disturbed as far as may be";
+  const Plan staggered =
+      box("[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0]",
+          "[[fill]]\nphase = \"wall\"\npacking = \"staggered\"\nshape = { disc = { centre = [0.5, 0.5], "
+          "radius = 0.22 } }\n[[fill]]\nphase = \"water\"\nshape = \"the-rest\" #");
+  EXPECT_TRUE(staggered.phases[0].enclosed) << staggered.phases[0].enclosure;
+  EXPECT_TRUE(box().warnings.empty()) << box().warnings.front();
+}
+
+TEST(PlanSees, AFluidThatIsNotShutIn) {
+  EXPECT_FALSE(box("", "", "0.8").phases[0].enclosed) << "a pool";
+  EXPECT_NE(box("", "", "0.8").phases[0].enclosure.find("free space at"), std::string::npos);
+  EXPECT_FALSE(box("max = [1,", "max = [0.4,").phases[0].enclosed) << "a dam";
+  const Plan open = box("\"bottom\", \"top\"", "\"bottom\"");
+  EXPECT_FALSE(open.phases[0].enclosed) << "no lid";
+  EXPECT_NE(open.phases[0].enclosure.find("no wall that it feels beyond"), std::string::npos)
+      << open.phases[0].enclosure;
+  const Plan oil = box("[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [1, 1] } }",
+                       "[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [1, 0.5] } }\n"
+                       "[[fill]]\nphase = \"oil\"\nshape = \"the-rest\"\n"
+                       "[phases.oil]\nkind = \"fluid\"\ndensity = 900\n[interactions.oil-oil]\nradius = 2.1\n"
+                       "[interactions.water-oil]\nradius = 2.1\n[interactions.oil-wall]\nradius = 2.1");
+  EXPECT_FALSE(oil.phases[0].enclosed) << "each must give way to the other";
+  const Scene periodic =
+      parse_scene(with(testing::square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\", \"y\"]"), "p.toml");
+  EXPECT_FALSE(make_plan(periodic, generate(periodic)).phases[0].enclosed) << "no wall";
+}
+
+TEST(PlanSees, WhatTheSceneSaysGoesFirst) {
+  EXPECT_FALSE(box("density = 1000", "density = 1000\nenclosed = false").phases[0].enclosed);
+  EXPECT_EQ(box("density = 1000", "density = 1000\nenclosed = false").phases[0].enclosure, "as the scene says");
+  const Plan pool = box("density = 1000", "density = 1000\nenclosed = true", "0.8");
+  EXPECT_TRUE(pool.phases[0].enclosed);
+  EXPECT_TRUE(warns(pool, "phases.water.enclosed: there is free space at"));
+}
+
+TEST(PlanWarns, OfKernelsUnderWhichParticlesPair) {
+  const auto plan = [](const std::string& entry) { return box("water-water = 2.1", "water-water = " + entry); };
+  const std::string plain = "density = 1000\nscheme = \"plain\"";
+  const auto cubic = [&](const std::string& radius) {
+    return box("density = 1000\n[phases.wall]\nkind = \"wall\"\n[interactions]\nwater-water = 2.1",
+               plain + "\n[phases.wall]\nkind = \"wall\"\n[interactions]\nwater-water = { radius = " + radius +
+                   ", kernel = \"cubic-spline\" }");
+  };
+  EXPECT_TRUE(warns(cubic("3.0"), "interactions.water-water: under the cubic spline particles pair"));
+  EXPECT_TRUE(warns(cubic("2.6"), "particles pair"));
+  EXPECT_FALSE(warns(cubic("2.4"), "particles pair"));
+  EXPECT_FALSE(warns(plan("3.0"), "particles pair")) << "Wendland C2";
+  const Scene scene =
+      parse_scene(testing::square_text, "s.toml", {"phases.air.scheme=plain", "interactions.kernel=cubic-spline"});
+  const Plan square = make_plan(scene, generate(scene));
+  EXPECT_NE(to_text(square, scene).find("warning: " + square.warnings.front()), std::string::npos);
+}
+
+TEST(PlanWarns, OfWallsThatHoldNobody) {
+  const std::string sand = R"(spacing = 0.05
+[domain]
+size = [1, 1]
+gravity = [0, -10]
+[phases.sand]
+kind = "grains"
+density = 2650
+[phases.floor]
+kind = "wall"
+[phases.lid]
+kind = "wall"
+[phases.air]
+kind = "fluid"
+density = 1
+[interactions]
+air-air = {}
+air-sand = {}
+air-lid = {}
+air-floor = {}
+sand-sand = {}
+sand-floor = {}
+sand-lid = {}
+[[fill]]
+phase = "floor"
+shape = { box = { min = [0, 0], max = [1, 0.1] } }
+[[fill]]
+phase = "lid"
+shape = { sides = ["top"] }
+[[fill]]
+phase = "sand"
+shape = { bed = 0.5, from = 0.1 }
+[[fill]]
+phase = "air"
+shape = "the-rest"
+[time]
+end = 1
+)";
+  const auto plan = [&](const std::string& without) {
+    const Scene scene = parse_scene(without.empty() ? sand : with(sand, without + " = {}\n", ""), "sand.toml");
+    return make_plan(scene, generate(scene));
+  };
+  EXPECT_TRUE(plan("").warnings.empty()) << plan("").warnings.front();
+  EXPECT_TRUE(warns(plan("sand-lid"), "no entry sand-lid"));
+  EXPECT_TRUE(warns(plan("sand-floor"), "no entry sand-floor"));
+  EXPECT_TRUE(warns(plan("air-lid"), "no entry air-lid"));
+  EXPECT_EQ(plan("sand-lid").warnings.size(), 1u);
+}
+
+TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {
+  const std::string body =
+      with(with(testing::square_text, "kind = \"fluid\"", "kind = \"elastic\"\nyoung = 1e6"), "air-air = 3.0",
+           "air-dust = 1.1\ndust-dust = 1.1") +
+      "[[fill]]\nphase = \"dust\"\nshape = { points = [[2, 2]] }\n[phases.dust]\nkind = \"grains\"\n"
+      "density = 1\n";
+  const Scene scene = parse_scene(with(with(body, "size = [1, 1]", "size = [3, 3]"), "shape = \"the-rest\"",
+                                       "shape = { box = { min = [0, 0], max = [1, 1] } }"),
+                                  "body.toml");
+  EXPECT_TRUE(warns(make_plan(scene, generate(scene)), "nothing holds the body \"air\" together"));
+}
+
+}  // namespace
+}  // namespace barchan
