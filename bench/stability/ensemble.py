@@ -1,0 +1,208 @@
+#!/usr/bin/python3
+"""Is a scene stable, or was it luck? Many runs of it that differ by less than anybody can know.
+
+    /usr/bin/python3 bench/stability/ensemble.py build/barchan dune.toml flat_bed.toml --program build-portable/barchan --write
+
+Between instruction sets bits differ, and a loosened bed is chaos, so one good run says nothing. Each scene runs --runs times (24): the air
+disturbed by 0.01 spacings with another seed in each, u* times 0.98, 1 and 1.02 in turn, mixed and double precision, and the programs
+given (the first, and --program: the same source for other instructions). Asked: every run reaches its end; the density error of the air is
+at most 2 % in every row of history.csv (a thousand rows a run); no grain leaves. With --ustar-factor or --density-factor
+(grains as heavy by that factor) the scene is another one; then every run must end well or be stopped by the watch with its message.
+
+Runs are single-threaded, --jobs at a time (2). --runs-dir keeps them: a run that is there is not done again, so that an ensemble
+can be stopped and gone on with. With --write the figures go to bench/stability/results/ and docs/stability.md is written again from
+all that is there (`ensemble.py none --write` only does the latter). Exits with 1 when something that was asked is missed.
+"""
+
+import argparse
+import concurrent.futures
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+import xml.etree.ElementTree as ElementTree
+
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench/accuracy"))
+import cases_wind  # noqa: E402
+from harness import Frame, table  # noqa: E402
+from page import processor  # noqa: E402
+
+RESULTS = pathlib.Path(__file__).resolve().parent / "results"
+PAGE = ROOT / "docs/stability.md"
+BEGIN, END = "<!-- measured: begin -->\n", "<!-- measured: end -->\n"
+DENSITY_BOUND = .02
+HEAD = ("| run | seed | u* | precision | instructions | status | ended at, ms | steps | largest density error of the air | fastest grain, m/s | "
+        "bulk speed, second half/start | u 1 mm over the bed upstream, end/start | user CPU s | message |\n" + "| --- " * 14 + "|")
+
+
+def members(scene, programs, options):
+    """The runs of a scene: what differs, and the command's overrides."""
+    air = next(k for k, f in enumerate(scene["fill"]) if f["phase"] == "air")
+    friction = scene["fill"][air]["velocity"]["log-profile"]["friction-velocity"]
+    for k in range(options.runs):
+        factor = (.98, 1., 1.02)[k % 3] * options.ustar_factor
+        precision, program = ("mixed", "double")[k // 3 % 2], programs[k // 6 % len(programs)]
+        sets = [f"fill.{air}.perturb=0.01", f"fill.{air}.seed={k + 1}", f"precision={precision}",
+                f"fill.{air}.velocity.log-profile.friction-velocity={friction * factor!r}"]
+        for n, forcing in enumerate(scene.get("forcing", [])):  # a given force is u*^2/H
+            if forcing["phase"] == "air" and all(isinstance(a, int | float) for a in forcing.get("acceleration", ["a formula"])):
+                sets.append(f"forcing.{n}.acceleration={[a * factor**2 for a in forcing['acceleration']]}")
+        if options.density_factor != 1:
+            sets.append(f"phases.sand.density={scene['phases']['sand']['density'] * options.density_factor!r}")
+        sets += [f"output.every={scene['time']['end']!r}", f"output.history-every={scene['time']['end'] / 1000!r}", "output.walls=false"]
+        yield {"run": k + 1, "seed": k + 1, "friction_velocity": friction * factor, "precision": precision}, program, sets + options.set
+
+
+def figures(out, name, scene):
+    """What a finished run shows; figures that it did not come to are None."""
+    report = json.loads((out / "run.json").read_text())
+    history = table(out / "history.csv")
+    t, bulk = history["time [s]"], history["air_mean_vx [m/s]"]
+    late = bulk[t > .5 * t[-1]]
+    finite = lambda x: float(x) if math.isfinite(x) else None
+    entries = [e.get("file") for e in ElementTree.parse(out / f"{name}.pvd").getroot().iter("DataSet")]
+    first, last = (Frame(out / file, 0) for file in (entries[0], entries[-1]))
+    sand = last["phase"] == last.names.index("sand")
+    origin = numpy.array(scene["domain"].get("origin", [0, 0]))
+    low, high = last.x[sand, :2] < origin, last.x[sand, :2] > origin + scene["domain"]["size"]
+    left = int((low | high).any(axis=1).sum()) + int((first["phase"] == last.names.index("sand")).sum() - sand.sum())
+    return {"instructions": report["instruction_set"].split(" (")[0], "ended_at": finite(t[-1]), "steps": report["steps"],
+            "density_error": finite(history["largest_density_error"].max()), "grains_left": left,
+            "fastest_grain": finite(history["sand_largest_speed [m/s]"].max()), "bulk": finite(late.mean() / bulk[0]),
+            "near_bed": near_bed(scene, first, last), "cpu_seconds": round(report["cpu_seconds"], 1)}
+
+
+def near_bed(scene, first, last):
+    """u at 1 mm over the bed of the last frame over that of the first, 3 cm upstream of a dune's toe or over the whole flat bed."""
+    wind = cases_wind.Wind(scene)
+    dune = wind.dune if "height" in wind.dune else None
+    middle, width = (dune["at"] - dune["length"] / 2 - .03, .01) if dune else (0, wind.size[0])
+    then, now = (cases_wind.speed([cases_wind.only(f, "air")], wind, middle, width, wind.bed + 1e-3) for f in (first, last))
+    return float(now / then) if math.isfinite(now / then) else None
+
+
+def carry_out(member, program, sets, path, out):
+    """One run, unless it is there; its figures."""
+    done = out / "member.json"
+    if done.exists():
+        return json.loads(done.read_text())
+    out.mkdir(parents=True, exist_ok=True)
+    command = [str(program), "run", str(path), "--threads", "1", "--quiet", "--out", str(out)]
+    ended = subprocess.run(command + [x for s in sets for x in ("--set", s)], capture_output=True, text=True)
+    result = dict(member, status=ended.returncode, message="" if ended.returncode == 0 else ended.stderr.strip().partition("barchan: ")[2][:300])
+    if ended.returncode in (0, 3):
+        result.update(figures(out, path.stem, tomllib.loads(path.read_text())))
+    elif ended.returncode < 0 or ended.returncode in (130, 143):
+        raise SystemExit(f"run {member['run']} was stopped by a signal; start again to go on")
+    done.write_text(json.dumps(result))
+    return result
+
+
+def row(r):
+    text = lambda key, form: "" if r.get(key) is None else format(r[key], form)
+    ended = "" if r.get("ended_at") is None else f"{1e3 * r['ended_at']:.1f}"
+    return (f"| {r['run']} | {r['seed']} | {r['friction_velocity']:.4g} | {r['precision']} | {r.get('instructions', '')} | {r['status']} | {ended} | "
+            f"{r.get('steps', '')} | {text('density_error', '.4f')} | {text('fastest_grain', '.2f')} | {text('bulk', '.3f')} | {text('near_bed', '.2f')} | "
+            f"{text('cpu_seconds', '.0f')} | {r['message'].replace('|', '/')} |")
+
+
+def verdict(result):
+    """Lines of what was asked and what came out; True if all is well."""
+    runs, plain = result["runs"], result["ustar_factor"] == 1 and result["density_factor"] == 1
+    ended = sum(r["status"] == 0 for r in runs)
+    stopped = sum(r["status"] == 3 and bool(r["message"]) for r in runs)
+    errors = [r["density_error"] for r in runs if r.get("density_error") is not None]
+    left = sum(r.get("grains_left") or 0 for r in runs)
+    worst = max(errors) if errors else math.nan
+    lines = [f"{ended} of {len(runs)} reach the end, {stopped} are stopped with a message, {len(runs) - ended - stopped} end otherwise.",
+             f"Largest density error of the air at any time: {worst:.4f}" + (f" (bound {DENSITY_BOUND})." if plain else "."),
+             f"Grains outside the domain at the end: {left}."]
+    good = ended == len(runs) and worst <= DENSITY_BOUND and left == 0 if plain else ended + stopped == len(runs)
+    return lines + ([] if good else ["**MISSED**"]), good
+
+
+def title(result):
+    other = [f"u* times {result['ustar_factor']:g}"] * (result["ustar_factor"] != 1) + [
+        f"grains {result['density_factor']:g} times as heavy"] * (result["density_factor"] != 1)
+    return ", ".join([result["scene"]] + other)
+
+
+def write_page():
+    """docs/stability.md between its markers, from all results that are there."""
+    parts = []
+    for file in sorted(RESULTS.glob("*.json")):
+        result = json.loads(file.read_text())
+        lines, _ = verdict(result)
+        parts += [f"\n## {title(result)}\n", f"`{result['command']}`\n"] + ["\n".join(f"- {x}" for x in lines) + "\n",
+                  HEAD + "\n" + "\n".join(row(r) for r in result["runs"]) + f"\n\nMeasured on {result['processor']}.\n"]
+    before, begin, rest = PAGE.read_text().partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise RuntimeError(f"{PAGE} has lost its markers {BEGIN.strip()} and {END.strip()}")
+    PAGE.write_text(before + begin + "\n".join(parts or ["\nNothing was measured.\n"]) + "\n" + end + after)
+
+
+def ensemble(path, programs, options, folder):
+    """All runs of one scene."""
+    scene = tomllib.loads(path.read_text())
+    variant = "".join(f"-{name}-{value:g}" for name, value in (("ustar", options.ustar_factor), ("density", options.density_factor)) if value != 1)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        jobs = [pool.submit(carry_out, member, program, sets, path, folder / f"{path.stem}{variant}" / f"{member['run']:02d}")
+                for member, program, sets in members(scene, programs, options)]
+        runs = []
+        for job in jobs:
+            runs.append(job.result())
+            print(row(runs[-1]), flush=True)
+    command = f"ensemble.py build/barchan {path.name} --runs {options.runs}" + " --program build-portable/barchan" * (len(programs) > 1)
+    command += f" --ustar-factor {options.ustar_factor:g}" * (options.ustar_factor != 1)
+    command += f" --density-factor {options.density_factor:g}" * (options.density_factor != 1)
+    command += "".join(f" --set {s}" for s in options.set)
+    result = {"scene": path.name, "ustar_factor": options.ustar_factor, "density_factor": options.density_factor, "command": command,
+              "processor": processor(), "runs": runs}
+    lines, good = verdict(result)
+    print(f"{title(result)}: " + " ".join(lines), flush=True)
+    if options.write:
+        RESULTS.mkdir(exist_ok=True)
+        (RESULTS / f"{path.stem}{variant}.json").write_text(json.dumps(result, indent=1) + "\n")
+    return good
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", metavar="PROGRAM", help="build/barchan, or none")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="a file, or the name of one in scenes/")
+    parser.add_argument("--runs", type=int, default=24)
+    parser.add_argument("--program", help="a second program, the same source for other instructions")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--ustar-factor", type=float, default=1.)
+    parser.add_argument("--density-factor", type=float, default=1.)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--runs-dir", type=pathlib.Path)
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    good = True
+    if options.build != "none":
+        programs = [pathlib.Path(p).resolve() for p in (options.build, options.program) if p]
+        missing = [str(p) for p in programs if not p.exists()]
+        if missing or not options.scenes:
+            parser.error(f"no program {', '.join(missing)}" if missing else "which scene?")
+        print(HEAD)
+        for name in options.scenes:
+            path = next((p for p in (pathlib.Path(name), ROOT / "scenes" / name, ROOT / f"scenes/{name}.toml") if p.is_file()), None)
+            if not path:
+                parser.error(f"no scene {name}")
+            with tempfile.TemporaryDirectory() as scratch:
+                good = ensemble(path.resolve(), programs, options, options.runs_dir or pathlib.Path(scratch)) and good
+    if options.write:
+        write_page()
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
