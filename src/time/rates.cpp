@@ -149,9 +149,12 @@ void Simulation::rate_fluids() {
         else varies = true;
     }
     auto& p = particles_[f.phase];
-    if (!f.eddy_neighbours.empty()) eddy_rates(p, motion_[f.phase], eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
-    else if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
-    else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
+    const auto rate = [&](const auto& own) {
+      if (f.eddy_neighbours.empty()) fluid_rates(p, own, f.neighbours, q, s.scheme);
+      else eddy_rates(p, own, eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
+    };
+    if (compact_[f.phase]) rate(*compact_[f.phase]);
+    else rate(motion_[f.phase]);
     if (s.enclosed) keep_mean_density(p, f.mean);
     if (!varies) continue;
     for (const auto& force : forcings_) {
