@@ -10,22 +10,42 @@ namespace barchan {
 
 void EddyRecords::resize(std::size_t particles, std::size_t images) {
   const std::size_t needed = particles + images + 1;  // and the dummy
-  const auto make_room = [&](auto& values) {
-    if (values.size() < needed) values.resize(needed + images / 4 + 64);
-    values[particles + images] = 0;
-  };
-  make_room(root);
-  make_room(touch);
-  make_room(single_root);
+  for (auto* values : {&root, &touch}) {
+    if (values->size() < needed) values->resize(needed + images / 4 + 64);
+    (*values)[particles + images] = 0.0;
+  }
 }
 
 void EddyRecords::fill_images(std::size_t particles, const CellGrid& grid) {
   const auto& images = grid.image_list();
-  for (std::size_t k = 0; k < images.size(); ++k) {
+  const auto n = static_cast<std::int64_t>(images.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
     root[particles + k] = root[images[k].source];
-    single_root[particles + k] = single_root[images[k].source];
     touch[particles + k] = touch[images[k].source];
   }
+}
+
+namespace {
+
+template <class T, class Records>
+void copy_roots(const AlignedVector<double>& root, Records& records, std::size_t count) {
+  const auto n = static_cast<std::int64_t>(count);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    records[k][MotionRecord<2>::root] = static_cast<T>(root[k]);
+  }
+}
+
+}  // namespace
+
+void EddyRecords::give_roots(RecordArray& records, std::size_t count) const {
+  copy_roots<double>(root, records, count);
+}
+void EddyRecords::give_roots(CompactRecords& records, std::size_t count) const {
+  copy_roots<float>(root, records, count);
 }
 
 double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDistance& ground, const EddyParameters& e) {
@@ -50,7 +70,6 @@ double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDist
     distance[k] = at;
     largest = std::max(largest, nu);
     records.root[k] = std::sqrt(e.density * nu);
-    records.single_root[k] = static_cast<float>(records.root[k]);
     // Grains stand half a spacing behind their surface; the pair's viscosity turns the speed into the law's stress.
     records.touch[k] = e.density * e.viscosity;
     if (e.roughness > 0.0 && at < e.grain_reach)
@@ -153,7 +172,7 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
     const auto& e = neighbours[c];
     const double scale = kernels[c].slope_factor();
     if (e.friction == Friction::fluid) {
-      const RootsOf<T> roots{e.eddies ? e.eddies->template roots<T>() : nullptr, static_cast<T>(e.root)};
+      const Roots roots{e.eddies ? e.eddies->root.data() : nullptr, e.root};
       if (sum_rows<Dim, EddyFluid, T>(at, e.pair, kernels[c], unit, own_of, pairs, roots)) s.take(pairs, scale, weight);
     } else if (sum_rows<Dim, ConsistentFluid, T>(at, e.pair, kernels[c], unit, own_of, raw)) {
       const bool given = e.friction == Friction::rough || e.friction == Friction::driven;
@@ -261,7 +280,7 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
         simd::load_transposed<R::size>(data, R::size / PairList::stride, q, b);
         std::array<Lanes, Dim> r;
         const Lanes f = kernel.slope(separation<Dim>(x, b + R::position, r)) * b[R::volume] *
-                        (gather_of(eddies.touch.data(), q) - Lanes(molecular));
+                        (gather_of<Lanes::width>(eddies.touch.data(), q) - Lanes(molecular));
         for (std::size_t d = 0; d < Dim; ++d) sum[d] = simd::fma(f, v[d] - b[R::velocity + d], sum[d]);
       }
     });

@@ -12,16 +12,13 @@ namespace barchan {
 
 /// What pair loops load of a neighbour beside its motion record; order as there.
 struct EddyRecords {
-  AlignedVector<double> root;        // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]
-  AlignedVector<double> touch;       // Pa s, of pairs with grains next to the particle
-  AlignedVector<float> single_root;  // for mixed precision
-  template <class T>
-  const T* roots() const {
-    if constexpr (std::is_same_v<T, double>) return root.data();
-    else return single_root.data();
-  }
+  AlignedVector<double> root;   // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]
+  AlignedVector<double> touch;  // Pa s, of pairs with grains next to the particle
   void resize(std::size_t particles, std::size_t images);
   void fill_images(std::size_t particles, const CellGrid& grid);
+  /// Gives `count` motion records of two dimensions (particles, images) their roots.
+  void give_roots(RecordArray& records, std::size_t count) const;
+  void give_roots(CompactRecords& records, std::size_t count) const;
 };
 
 /// How the fluid rubs on the other side of an entry.

@@ -16,11 +16,10 @@ concept NeedsRoot = requires {
   Law::needs_root;
 };
 
-/// The square roots of the neighbours' viscosities: of each its own, by record; null: all have the same.
-template <class T>
-struct RootsOf {
-  const T* each = nullptr;
-  T all = T(0);
+/// The square roots of the neighbours' viscosities: of each its own (2D: in its record), or of all the same.
+struct Roots {
+  const double* each = nullptr;  // null: all the same
+  double all = 0.0;
 };
 
 template <int Dim, template <int> class Law, class T>
@@ -41,13 +40,20 @@ const T* records_of(const FluidNeighbour& e) {
   else return e.compact->data();
 }
 
-/// One number of each neighbour from `at` on.
-template <class T>
-BARCHAN_SIMD_INLINE LanesOf<T> gather_of(const T* values, const std::uint32_t* at) {
-  constexpr auto width = static_cast<std::size_t>(LanesOf<T>::width);
-  std::array<std::uint32_t, width> index;
-  for (std::size_t c = 0; c < width; ++c) index[c] = at[c] / PairList::stride;
-  return simd::gather<T, LanesOf<T>::width>(values, index.data());
+/// One number of each of Width neighbours from `at` on. By halves: registers of two are filled without masks.
+template <int Width>
+BARCHAN_SIMD_INLINE simd::Vec<double, Width> gather_of(const double* values, const std::uint32_t* at) {
+  if constexpr (Width == 1) return {values[at[0] / PairList::stride]};
+  else return simd::join(gather_of<Width / 2>(values, at), gather_of<Width / 2>(values, at + Width / 2));
+}
+
+/// The roots of neighbours whose record is b and whose entries in the list begin at `at`.
+template <int Dim, class T>
+BARCHAN_SIMD_INLINE LanesOf<T> roots_of(const Roots& roots, [[maybe_unused]] const LanesOf<T>* b,
+                                        [[maybe_unused]] const std::uint32_t* at) {
+  if (!roots.each) return simd::broadcast<LanesOf<T>>(roots.all);
+  if constexpr (Dim == 2) return b[MotionRecord<2>::root];
+  else return simd::convert<T>(gather_of<LanesOf<T>::width>(roots.each, at));
 }
 
 /// The raw sums of one entry's row: without the kernel's constant factor.
@@ -55,7 +61,7 @@ template <int Dim, template <int> class Law, class T>
 BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernelOf<T>& ready,
                                  const typename Law<Dim>::template Own<LanesOf<T>>& own, LanesOf<T> unit,
                                  typename Law<Dim>::template Sums<LanesOf<T>>& out,
-                                 [[maybe_unused]] RootsOf<T> roots = {}) {
+                                 [[maybe_unused]] const Roots& roots = {}) {
   using R = MotionRecord<Dim>;
   using V = LanesOf<T>;
   ready([&](const auto& kernel) __attribute__((always_inline)) {
@@ -73,7 +79,7 @@ BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, con
           stage[2 * Dim + 1] = b[R::volume];
           stage[2 * Dim + 2] = kernel.slope(r2);
           if constexpr (Law<Dim>::needs_distance) stage[2 * Dim + 3] = r2;
-          if constexpr (NeedsRoot<Law<Dim>>) stage[2 * Dim + 4] = roots.each ? gather_of(roots.each, at) : V(roots.all);
+          if constexpr (NeedsRoot<Law<Dim>>) stage[2 * Dim + 4] = roots_of<Dim, T>(roots, b, at);
         },
         [&](const V* stage) __attribute__((always_inline)) {
           std::array<V, Dim> r;
@@ -102,17 +108,19 @@ struct FourOf {
 template <int Dim, template <int> class Law, class T, class OwnOf>
 BARCHAN_SIMD_INLINE bool sum_rows(const FourOf& at, const FluidNeighbour& e, const ReadyKernelOf<T>& ready,
                                   LanesOf<T> unit, OwnOf&& own_of, typename Law<Dim>::template Sums<Four>& raw,
-                                  RootsOf<T> roots = {}) {
-  std::array<typename Law<Dim>::template Sums<LanesOf<T>>, 4> sums;
+                                  const Roots& roots = {}) {
+  std::array<PairList::Row, 4> rows;
   bool any = false;
   for (std::size_t lane = 0; lane < 4; ++lane) {
-    const std::size_t k = std::min(at.first + lane, at.last);
-    const auto row = e.list->row(k);
-    any = any || row.begin != row.end;
-    sum_row<Dim, Law, T>(row, e, ready, own_of(k), unit, sums[lane], roots);
+    rows[lane] = e.list->row(std::min(at.first + lane, at.last));
+    any = any || rows[lane].begin != rows[lane].end;
   }
-  if (any) raw = reduce<typename Law<Dim>::template Sums<Four>, T>(sums);
-  return any;
+  if (!any) return false;
+  std::array<typename Law<Dim>::template Sums<LanesOf<T>>, 4> sums;
+  for (std::size_t lane = 0; lane < 4; ++lane)
+    sum_row<Dim, Law, T>(rows[lane], e, ready, own_of(std::min(at.first + lane, at.last)), unit, sums[lane], roots);
+  raw = reduce<typename Law<Dim>::template Sums<Four>, T>(sums);
+  return true;
 }
 
 /// At most this many entries a phase.

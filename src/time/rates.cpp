@@ -99,7 +99,11 @@ void Simulation::find_eddies() {
     if (f.eddy_neighbours.empty()) continue;
     auto& p = particles_[f.phase];
     f.largest_viscosity = pack_eddies(p, eddies_[f.phase], *f.ground, f.eddies);
-    eddies_[f.phase].fill_images(p.size(), neighbours_.grid(f.phase));
+    auto& eddies = eddies_[f.phase];
+    eddies.fill_images(p.size(), neighbours_.grid(f.phase));
+    const std::size_t count = p.size() + neighbours_.grid(f.phase).images();
+    if (plan_.dimensions == 2 && compact_[f.phase]) eddies.give_roots(*compact_[f.phase], count);
+    else if (plan_.dimensions == 2) eddies.give_roots(motion_[f.phase], count);
     for (auto& e : f.eddy_neighbours)
       if (e.wall && e.wall->size() > 0)
         for (int d = 0; d < plan_.dimensions; ++d)
