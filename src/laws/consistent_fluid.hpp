@@ -66,6 +66,17 @@ struct ConsistentFluid {
   template <class T>
   static BARCHAN_SIMD_INLINE void add_difference(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b,
                                                  T dp, T volume_b, Sums<T>& s) {
+    add_rubbing(
+        a, r, r2, f, v_b, dp, volume_b,
+        s, [&](std::size_t d, T dv, T wvf, const std::array<T, Dim>&) __attribute__((always_inline)) {
+          s.viscous[d] = fma(wvf, dv, s.viscous[d]);
+        });
+  }
+
+  /// The same with a given friction: `rub(d, component d of v_ab, V F w, V F r)` adds to the viscous sum.
+  template <class T, class Rub>
+  static BARCHAN_SIMD_INLINE void add_rubbing(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b,
+                                              T dp, T volume_b, Sums<T>& s, Rub&& rub) {
     const T vf = volume_b * f;
     T lopsided = simd::broadcast<T>(0.0);  // r.A.r
     std::size_t q = 0;
@@ -89,7 +100,7 @@ struct ConsistentFluid {
     for (std::size_t d = 0; d < Dim; ++d) {
       const T dv = a.v[d] - v_b[d];
       for (std::size_t e = 0; e < Dim; ++e) s.velocity[d * Dim + e] = fma(dv, g[e], s.velocity[d * Dim + e]);
-      s.viscous[d] = fma(wvf, dv, s.viscous[d]);
+      rub(d, dv, wvf, g);
     }
     s.diffusion = fma(vf, dp, s.diffusion);
   }

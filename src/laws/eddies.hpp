@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace barchan {
 
@@ -17,13 +18,20 @@ inline constexpr double karman = 0.4;  // kappa, as in the wind of eq. (18)
 /// the height, mu_ab v_ab is then the constant shear stress times the difference in height, at any distance.
 template <class T>
 inline T pair_viscosity(T s_a, T s_b) {
-  const T sum = s_a + s_b, product = s_a * s_b;
-  return (sum * sum + (product + product)) * T(1.0 / 6.0);
+  using std::fma;
+  const auto number = [](double x) {
+    if constexpr (std::is_floating_point_v<T>) return static_cast<T>(x);
+    else return T(static_cast<typename T::value_type>(x));
+  };
+  const T sixth = number(1.0 / 6.0);  // (s_a^2 + 4 s_a s_b + s_b^2)/6
+  return fma(s_b, fma(sixth, s_b, number(2.0 / 3.0) * s_a), sixth * s_a * s_a);
 }
 
 /// nu_t from the size of the kinematic shear stress, phi = (nu + nu_t) |S|, and the length l of nu_t = l^2 |S|.
-inline double eddy_viscosity(double nu, double length, double phi) {
-  return 0.5 * (std::sqrt(nu * nu + 4.0 * length * length * phi) - nu);
+template <class T>
+inline T eddy_viscosity(T nu, T length, T phi) {
+  using std::sqrt;
+  return T(0.5) * (sqrt(nu * nu + T(4.0) * length * length * phi) - nu);
 }
 
 /// (kappa/ln(d/z0))^2. Nearer than a quarter of a spacing, and nearer than twice z0, the law is not followed.

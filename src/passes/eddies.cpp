@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/kernel.hpp"
-#include "laws/consistent_fluid.hpp"
-#include "passes/fluid_finish.hpp"
+#include "laws/eddy_fluid.hpp"
+#include "passes/fluid_rows.hpp"
 
 namespace barchan {
 
@@ -19,10 +18,34 @@ void EddyRecords::resize(std::size_t particles, std::size_t images) {
 
 void EddyRecords::fill_images(std::size_t particles, const CellGrid& grid) {
   const auto& images = grid.image_list();
-  for (std::size_t k = 0; k < images.size(); ++k) {
+  const auto n = static_cast<std::int64_t>(images.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
     root[particles + k] = root[images[k].source];
     touch[particles + k] = touch[images[k].source];
   }
+}
+
+namespace {
+
+template <class T, class Records>
+void copy_roots(const AlignedVector<double>& root, Records& records, std::size_t count) {
+  const auto n = static_cast<std::int64_t>(count);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    records[k][MotionRecord<2>::root] = static_cast<T>(root[k]);
+  }
+}
+
+}  // namespace
+
+void EddyRecords::give_roots(RecordArray& records, std::size_t count) const {
+  copy_roots<double>(root, records, count);
+}
+void EddyRecords::give_roots(CompactRecords& records, std::size_t count) const {
+  copy_roots<float>(root, records, count);
 }
 
 double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDistance& ground, const EddyParameters& e) {
@@ -58,219 +81,176 @@ double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDist
 
 namespace {
 
-/// One number of each neighbour from `at` on.
-BARCHAN_SIMD_INLINE Lanes gather_of(const double* values, const std::uint32_t* at) {
-  std::array<std::uint32_t, static_cast<std::size_t>(Lanes::width)> index;
-  for (std::size_t c = 0; c < index.size(); ++c) index[c] = at[c] / PairList::stride;
-  return simd::gather<double, Lanes::width>(values, index.data());
-}
-
 template <int Dim>
-struct PairSums {
-  typename ConsistentFluid<Dim>::template Sums<Lanes> fluid;
-  std::array<Lanes, Dim> viscous;
-  std::array<Lanes, Dim * Dim> flux;
+using RawSums = typename ConsistentFluid<Dim>::template Sums<Four>;
+template <int Dim>
+using EddySums = typename EddyFluid<Dim>::template Sums<Four>;
+
+/// What a turbulent fluid's particles have beside the columns of every fluid.
+template <int Dim>
+struct EddyColumns {
+  double* nu_t;
+  const double *distance, *root, *touch;
+  std::array<const double*, Dim> velocity;
+
+  EddyColumns(PhaseParticles& fluid, const EddyRecords& records)
+      : nu_t(fluid.column(Field::eddy_viscosity)),
+        distance(fluid.column(Field::ground_distance)),
+        root(records.root.data()),
+        touch(records.touch.data()) {
+    for (std::size_t d = 0; d < Dim; ++d) velocity[d] = fluid.column(Field::velocity, static_cast<int>(d));
+  }
 };
 
+/// The stress tau that a wall of given friction puts on particles; n: into the fluid.
 template <int Dim>
-using Own = typename ConsistentFluid<Dim>::template Own<Lanes>;
+std::array<Four, Dim> wall_stress(const EddyNeighbour& e, const std::array<Four, Dim>& normal,
+                                  const EddyColumns<Dim>& columns, const FourOf& at, const EddyParameters& p) {
+  std::array<Four, Dim> tau;
+  Four along(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    tau[d] = e.friction == Friction::driven
+                 ? Four(-e.stress[d])
+                 : load_four(columns.velocity[d], at.first, at.count) - Four(e.wall_velocity[d]);
+    along += tau[d] * normal[d];
+  }
+  for (std::size_t d = 0; d < Dim; ++d) tau[d] -= along * normal[d];
+  if (e.friction == Friction::driven) return tau;
+  alignas(32) std::array<double, 4> law{};
+  for (std::size_t lane = 0; lane < at.count; ++lane)
+    law[lane] = p.density * log_law_friction(columns.distance[at.first + lane], e.roughness, p.spacing);
+  const Four size = Four::load(law.data()) * length_of<Dim, Four>(tau);
+  for (auto& t : tau) t *= size;
+  return tau;
+}
 
-/// Sums over one row. `root_b(q)`: sqrt of the viscosities of the neighbours q to a vector on, or nothing: `Alone`.
-template <int Dim, bool Alone, class Root>
-BARCHAN_SIMD_INLINE void walk(PairList::Row row, const FluidNeighbour& e, const ReadyKernel& ready, const Own<Dim>& own,
-                              Lanes root_a, Root&& root_b, PairSums<Dim>& s) {
-  using R = MotionRecord<Dim>;
-  const double* data = e.records->data();
-  ready([&](const auto& kernel) __attribute__((always_inline)) {
-    for (const std::uint32_t* q = row.begin; q != row.end; q += Lanes::width) {
-      Lanes b[R::size];
-      simd::load_transposed<R::size>(data, R::size / PairList::stride, q, b);
-      std::array<Lanes, Dim> r;
-      const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-      const Lanes f = kernel.slope(r2);
-      ConsistentFluid<Dim>::add(own, r, r2, f, b + R::velocity, b[R::pressure], b[R::volume], s.fluid);
-      if constexpr (!Alone) {
-        Lanes lopsided(0.0);
-        std::size_t m = 0;
-        for (std::size_t d = 0; d < Dim; ++d)
-          for (std::size_t c = 0; c <= d; ++c, ++m) lopsided = simd::fma(own.anisotropy[m] * r[d], r[c], lopsided);
-        const Lanes mu = pair_viscosity(root_a, root_b(q)), muf = mu * b[R::volume] * f;
-        const Lanes weighted = simd::fma(muf, lopsided / r2, muf);
-        for (std::size_t d = 0; d < Dim; ++d) {
-          const Lanes dv = own.v[d] - b[R::velocity + d];
-          s.viscous[d] = simd::fma(weighted, dv, s.viscous[d]);
-          for (std::size_t c = 0; c < Dim; ++c) s.flux[d * Dim + c] = simd::fma(muf * dv, r[c], s.flux[d * Dim + c]);
-        }
-      }
+/// The pairs of a wall of given stress: mu_ab v_ab = tau (r.n). The normal is that of the raw sums' own B, which lack
+/// the kernel's constant and its sign: `scale`.
+template <int Dim>
+EddySums<Dim> with_wall_stress(const EddyNeighbour& e, const RawSums<Dim>& raw, double scale,
+                               const EddyColumns<Dim>& columns, const FourOf& at, const EddyParameters& p) {
+  EddySums<Dim> s{raw, {}};
+  const Four size = Four(std::copysign(1.0, scale)) * length_of<Dim, Four>(raw.concentration);
+  std::array<Four, Dim> normal;
+  for (std::size_t d = 0; d < Dim; ++d)
+    normal[d] = simd::select(size != Four(0.0), -raw.concentration[d] / size, Four(0.0));
+  const auto tau = wall_stress<Dim>(e, normal, columns, at, p);
+  Four across(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) across += raw.weighted[d] * normal[d];
+  for (std::size_t f = 0; f < Dim; ++f) {
+    Four moment(0.0);
+    for (std::size_t d = 0; d < Dim; ++d) moment += raw.moment[moment_index(f, d)] * normal[d];
+    for (std::size_t d = 0; d < Dim; ++d) s.flux[d * Dim + f] = tau[d] * moment;
+  }
+  for (std::size_t d = 0; d < Dim; ++d) s.viscous[d] = tau[d] * across;
+  return s;
+}
+
+/// The pairs of a solid that the particle touches with a viscosity of its own.
+template <int Dim>
+EddySums<Dim> with_viscosity(const EddyNeighbour& e, const RawSums<Dim>& raw, const EddyColumns<Dim>& columns,
+                             const FourOf& at, const EddyParameters& p) {
+  const Four root = load_four(columns.root, at.first, at.count);
+  const Four mu = e.friction == Friction::grains   ? load_four(columns.touch, at.first, at.count)
+                  : e.friction == Friction::smooth ? pair_viscosity(root, Four(std::sqrt(p.density * p.viscosity)))
+                                                   : root * root;
+  EddySums<Dim> s{raw, {}};
+  for (auto& v : s.viscous) v *= mu;
+  for (std::size_t m = 0; m < Dim * Dim; ++m) s.flux[m] = mu * raw.velocity[m];
+  return s;
+}
+
+/// Sums over all entries.
+template <int Dim, class T, class OwnOf>
+BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const EddyNeighbour> neighbours,
+                                              const std::vector<ReadyKernelOf<T>>& kernels, LanesOf<T> unit,
+                                              OwnOf&& own_of, const EddyColumns<Dim>& columns, const Vec3& weight,
+                                              const EddyParameters& p) {
+  EddySums<Dim> s{}, pairs;
+  RawSums<Dim> raw;
+  for (std::size_t c = 0; c < neighbours.size(); ++c) {
+    const auto& e = neighbours[c];
+    const double scale = kernels[c].slope_factor();
+    if (e.friction == Friction::fluid) {
+      const Roots roots{e.eddies ? e.eddies->root.data() : nullptr, e.root};
+      if (sum_rows<Dim, EddyFluid, T>(at, e.pair, kernels[c], unit, own_of, pairs, roots)) s.take(pairs, scale, weight);
+    } else if (sum_rows<Dim, ConsistentFluid, T>(at, e.pair, kernels[c], unit, own_of, raw)) {
+      const bool given = e.friction == Friction::rough || e.friction == Friction::driven;
+      s.take(given ? with_wall_stress<Dim>(e, raw, scale, columns, at, p) : with_viscosity<Dim>(e, raw, columns, at, p),
+             scale, weight);
     }
-  });
+  }
+  return s;
 }
 
-/// The stress that a wall with given friction puts on a particle at velocity v: mu dv/dn, n into the fluid.
+/// The friction that the sums make, and the squares of what it is made of: of the kinematic stress and of the strain.
 template <int Dim>
-std::array<double, Dim> wall_flux(const EddyNeighbour& e, const std::array<double, Dim>& normal, const double* v,
-                                  double distance, const EddyParameters& p) {
-  std::array<double, Dim> flux{};
-  double along = 0.0, size2 = 0.0;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    flux[d] = e.friction == Friction::driven ? -e.stress[d] : v[d] - e.wall_velocity[d];
-    along += flux[d] * normal[d];
+struct StressOf {
+  const EddySums<Dim>& s;
+  Four phi2{0.0}, shear2{0.0};  // (|T|/rho)^2 rho^2 and |S|^2
+
+  template <class Matrix, class Gradient>
+  BARCHAN_SIMD_INLINE std::array<Four, Dim> operator()(const Matrix& inverse, const Gradient& grad_v) {
+    std::array<std::array<Four, Dim>, Dim> t;
+    std::array<Four, Dim> friction = s.viscous;
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e) {
+        t[d][e] = s.flux[d * Dim] * inverse[e];
+        for (std::size_t f = 1; f < Dim; ++f) t[d][e] = simd::fma(s.flux[d * Dim + f], inverse[f * Dim + e], t[d][e]);
+        friction[d] -= t[d][e] * s.weighted[e];
+      }
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e) {
+        const Four both = t[d][e] + t[e][d], strain = grad_v[d][e] + grad_v[e][d];
+        phi2 += Four(0.5) * both * both;
+        shear2 += Four(0.5) * strain * strain;
+      }
+    return friction;
   }
-  for (std::size_t d = 0; d < Dim; ++d) {
-    flux[d] -= along * normal[d];
-    size2 += flux[d] * flux[d];
-  }
-  if (e.friction == Friction::rough) {
-    const double scale = p.density * log_law_friction(distance, e.roughness, p.spacing) * std::sqrt(size2);
-    for (auto& f : flux) f *= scale;
-  }
-  return flux;
+};
+
+/// nu_t of the next step; where there is none yet, from the strain alone.
+template <int Dim>
+BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns, const StressOf<Dim>& stress, const FourOf& at,
+                                         const EddyParameters& p) {
+  if (p.model == Turbulence::none) return;
+  const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
+  const Four grown = eddy_viscosity(Four(p.viscosity), length, simd::sqrt(stress.phi2) * Four(1.0 / p.density));
+  const Four begun = length * length * simd::sqrt(stress.shear2);
+  const Four before = load_four(columns.nu_t, at.first, at.count);
+  store_four(simd::select(before > Four(0.0), grown, begun), columns.nu_t, at.first, at.count);
 }
 
-template <int Dim>
-void rates(PhaseParticles& fluid, const RecordArray& own_records, const EddyRecords& eddies,
+template <int Dim, class T>
+void rates(PhaseParticles& fluid, const T* own_records, double length_unit, const EddyRecords& eddies,
            std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& p) {
-  using R = MotionRecord<Dim>;
-  using Fluid = ConsistentFluid<Dim>;
-  using Reduced = typename Fluid::template Sums<double>;
-  using One = simd::Vec<double, 1>;
-  using Sums = typename Fluid::template Sums<One>;
-  const std::array<double, 3> weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
-                                     q.reference_density * q.gravity[2]};
-  constexpr std::size_t moments = Dim * (Dim + 1) / 2;
-  std::array<double*, Dim> a{}, du{};
-  for (int d = 0; d < Dim; ++d) {
-    a[static_cast<std::size_t>(d)] = fluid.column(Field::acceleration, d);
-    if (fluid.has(Field::shift_velocity)) du[static_cast<std::size_t>(d)] = fluid.column(Field::shift_velocity, d);
-  }
-  double *rate = fluid.column(Field::density_rate), *nu_t = fluid.column(Field::eddy_viscosity);
-  const double *rho = fluid.column(Field::density), *distance = fluid.column(Field::ground_distance);
-  std::array<double*, moments> skew{};  // 2D: xx xy, and yy = -xx
-  for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c)
-    skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
-  static thread_local std::vector<ReadyKernel> kernels;
-  kernels.reserve(16);
-  kernels.clear();
-  for (const auto& e : neighbours) kernels.emplace_back(e.pair.kernel, e.pair.radius, Dim);
-  const auto& ready = kernels;
-  const double molecular = std::sqrt(p.density * p.viscosity);
-  const SurfaceColumns<Dim> surface(fluid);
-  const auto n = static_cast<std::int64_t>(fluid.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double* record = own_records[k];
-    std::array<double, moments> anisotropy{};
-    if constexpr (Dim == 2) anisotropy = {skew[0][k], skew[1][k], -skew[0][k]};
-    else
-      for (std::size_t c = 0; c < moments; ++c) anisotropy[c] = skew[c][k];
-    Own<Dim> own;
-    for (std::size_t d = 0; d < Dim; ++d) {
-      own.x[d] = Lanes(record[R::position + d]);
-      own.v[d] = Lanes(record[R::velocity + d]);
-      for (std::size_t e = 0; e <= d; ++e)
-        own.anisotropy[moment_index(d, e)] = Lanes((d == e ? 1.0 : 2.0) * anisotropy[moment_index(d, e)]);
-    }
-    own.p = Lanes(record[R::pressure]);
-    const double root = eddies.root[k];
-    Sums s{};
-    std::array<double, Dim * Dim> flux{};
-    for (std::size_t c = 0; c < neighbours.size(); ++c) {
-      const auto& e = neighbours[c];
-      const auto row = e.pair.list->row(k);
-      if (row.begin == row.end) continue;
-      PairSums<Dim> pairs{};
-      if (e.friction == Friction::fluid) {
-        if (e.eddies)
-          walk<Dim, false>(
-              row, e.pair, ready[c], own, Lanes(root),
-              [&](const std::uint32_t* at)
-                  __attribute__((always_inline)) { return gather_of(e.eddies->root.data(), at); },
-              pairs);
-        else
-          walk<Dim, false>(
-              row, e.pair, ready[c], own, Lanes(root), [&](const std::uint32_t*) { return Lanes(e.root); }, pairs);
-      } else {
-        walk<Dim, true>(
-            row, e.pair, ready[c], own, Lanes(root), [](const std::uint32_t*) { return Lanes(0.0); }, pairs);
-      }
-      ready[c]([&](const auto& kernel) {
-        const double scale = kernel.slope_factor();
-        auto entry = reduce<Reduced>(pairs.fluid);
-        // What the friction across this entry makes of the raw sums.
-        std::array<double, Dim> viscous{};
-        std::array<double, Dim * Dim> stress{};
-        if (e.friction == Friction::fluid) {
-          for (std::size_t d = 0; d < Dim; ++d) viscous[d] = simd::sum(pairs.viscous[d]);
-          for (std::size_t m = 0; m < Dim * Dim; ++m) stress[m] = simd::sum(pairs.flux[m]);
-        } else if (e.friction == Friction::rough || e.friction == Friction::driven) {
-          std::array<double, Dim> normal{}, tau;
-          double size = 0.0;
-          for (std::size_t d = 0; d < Dim; ++d) size += entry.concentration[d] * entry.concentration[d];
-          size = std::copysign(std::sqrt(size), scale);  // the raw sums lack the kernel's constant and its sign
-          if (size != 0.0)
-            for (std::size_t d = 0; d < Dim; ++d) normal[d] = -entry.concentration[d] / size;
-          tau = wall_flux<Dim>(e, normal, record + R::velocity, distance[k], p);
-          double across = 0.0;
-          std::array<double, Dim> moment{};
-          for (std::size_t d = 0; d < Dim; ++d) {
-            across += entry.weighted[d] * normal[d];
-            for (std::size_t f = 0; f < Dim; ++f) moment[d] += entry.moment[moment_index(d, f)] * normal[f];
-          }
-          for (std::size_t d = 0; d < Dim; ++d) {
-            viscous[d] = tau[d] * across;
-            for (std::size_t f = 0; f < Dim; ++f) stress[d * Dim + f] = tau[d] * moment[f];
-          }
-        } else {
-          const double mu = e.friction == Friction::grains   ? eddies.touch[k]
-                            : e.friction == Friction::smooth ? pair_viscosity(root, molecular)
-                                                             : root * root;
-          for (std::size_t d = 0; d < Dim; ++d) viscous[d] = mu * entry.viscous[d];
-          for (std::size_t m = 0; m < Dim * Dim; ++m) stress[m] = mu * entry.velocity[m];
-        }
-        entry.viscous = viscous;
-        for (std::size_t m = 0; m < Dim * Dim; ++m) flux[m] += scale * stress[m];
-        s.take(std::bit_cast<Sums>(entry), scale, 0.0, 0.0, weight);
-      });
-    }
-    One phi2(0.0), shear2(0.0);  // (|T|/rho)^2 and |S|^2
-    auto skewness = std::bit_cast<std::array<One, moments>>(anisotropy);
-    const auto friction_of = [&](const auto& inverse, const auto& grad_v) {
-      std::array<std::array<One, Dim>, Dim> t;
-      std::array<One, Dim> friction = s.viscous;
-      for (std::size_t d = 0; d < Dim; ++d)
-        for (std::size_t e = 0; e < Dim; ++e) {
-          t[d][e] = One(0.0);
-          for (std::size_t f = 0; f < Dim; ++f) t[d][e] += One(flux[d * Dim + f]) * inverse[f * Dim + e];
-          friction[d] -= t[d][e] * s.weighted[e];
-        }
-      for (std::size_t d = 0; d < Dim; ++d)
-        for (std::size_t e = 0; e < Dim; ++e) {
-          const One both = t[d][e] + t[e][d], strain = grad_v[d][e] + grad_v[e][d];
-          phi2 += One(0.5) * both * both;
-          shear2 += One(0.5) * strain * strain;
-        }
-      return friction;
+  using V = LanesOf<T>;
+  constexpr auto record_size = static_cast<std::size_t>(MotionRecord<Dim>::size);
+  const V unit = simd::broadcast<V>(length_unit);
+  const Vec3 weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
+                    q.reference_density * q.gravity[2]};
+  const auto& kernels = ready_kernels<T>(neighbours, Dim, &EddyNeighbour::pair);
+  const RateColumns<Dim, true> columns(fluid);
+  const EddyColumns<Dim> eddy_columns(fluid, eddies);
+  const std::size_t n = fluid.size();
+  const std::int64_t blocks = FourOf::blocks(n);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int64_t block = 0; block < blocks; ++block) {
+    const FourOf at(block, n);
+    const auto own_of = [&](std::size_t k) __attribute__((always_inline)) {
+      auto own = load_own<Dim, EddyFluid>(own_records + k * record_size);
+      columns.weigh(own, k);
+      own.root = simd::broadcast<V>(eddies.root[k]);
+      return own;
     };
-    Place<Dim, One> place{One(record[R::pressure]), {}, {}};
-    for (std::size_t d = 0; d < Dim; ++d) place.normal[d] = One(surface.wholeness ? surface.normal[d][k] : 0.0);
-    const auto r = finish_consistent<Dim, One>(s, 1.0, One(rho[k]), q, skewness, place, friction_of);
-    if (surface.wholeness) {
-      surface.wholeness[k] = place.wholeness.v;
-      for (std::size_t d = 0; d < Dim; ++d) surface.normal[d][k] = s.concentration[d].v;
-    }
-    anisotropy = std::bit_cast<std::array<double, moments>>(skewness);
-    if (p.model != Turbulence::none) {
-      const double length = p.mixing_length(distance[k]);
-      nu_t[k] = nu_t[k] > 0.0 ? eddy_viscosity(p.viscosity, length, std::sqrt(phi2.v) / p.density)
-                              : length * length * std::sqrt(shear2.v);
-    }
-    for (std::size_t c = 0; c < (Dim == 2 ? 2 : moments); ++c) skew[c][k] = anisotropy[c];
-    for (std::size_t d = 0; d < Dim; ++d) {
-      a[d][k] = r.acceleration[d].v;
-      if (du[d]) du[d][k] = r.shift[d].v;
-    }
-    rate[k] = r.density.v;
+    const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p);
+    auto anisotropy = columns.anisotropy(at);
+    auto place = columns.place(at);
+    StressOf<Dim> stress{s};
+    const Four rho = load_four(columns.rho, at.first, at.count);
+    const auto r = finish_consistent<Dim, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    renew_viscosity<Dim>(eddy_columns, stress, at, p);
+    columns.store(at, r, anisotropy, place, s.concentration);
   }
 }
 
@@ -300,7 +280,7 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
         simd::load_transposed<R::size>(data, R::size / PairList::stride, q, b);
         std::array<Lanes, Dim> r;
         const Lanes f = kernel.slope(separation<Dim>(x, b + R::position, r)) * b[R::volume] *
-                        (gather_of(eddies.touch.data(), q) - Lanes(molecular));
+                        (gather_of<Lanes::width>(eddies.touch.data(), q) - Lanes(molecular));
         for (std::size_t d = 0; d < Dim; ++d) sum[d] = simd::fma(f, v[d] - b[R::velocity + d], sum[d]);
       }
     });
@@ -314,8 +294,14 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
 
 void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
                 std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
-  if (fluid.dimensions() == 2) rates<2>(fluid, own, eddies, neighbours, q, e);
-  else rates<3>(fluid, own, eddies, neighbours, q, e);
+  if (fluid.dimensions() == 2) rates<2>(fluid, own.data(), 1.0, eddies, neighbours, q, e);
+  else rates<3>(fluid, own.data(), 1.0, eddies, neighbours, q, e);
+}
+
+void eddy_rates(PhaseParticles& fluid, const CompactRecords& own, const EddyRecords& eddies,
+                std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
+  if (fluid.dimensions() == 2) rates<2>(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
+  else rates<3>(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
 }
 
 void eddy_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid,

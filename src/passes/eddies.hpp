@@ -16,6 +16,9 @@ struct EddyRecords {
   AlignedVector<double> touch;  // Pa s, of pairs with grains next to the particle
   void resize(std::size_t particles, std::size_t images);
   void fill_images(std::size_t particles, const CellGrid& grid);
+  /// Gives `count` motion records of two dimensions (particles, images) their roots.
+  void give_roots(RecordArray& records, std::size_t count) const;
+  void give_roots(CompactRecords& records, std::size_t count) const;
 };
 
 /// How the fluid rubs on the other side of an entry.
@@ -47,8 +50,10 @@ struct EddyParameters {
   double spacing = 0.0;      // m
   double roughness = 0.0;    // m, of grains
   double grain_reach = 0.0;  // m: air farther from the ground meets only grains in flight
-  double mixing_length(double distance) const {
-    return model == Turbulence::mixing_length ? karman * distance : model == Turbulence::smagorinsky ? length : 0.0;
+  template <class V>
+  V mixing_length(V distance) const {
+    return model == Turbulence::mixing_length ? V(karman) * distance
+                                              : V(model == Turbulence::smagorinsky ? length : 0.0);
   }
 };
 
@@ -61,6 +66,10 @@ double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDist
 /// pair's logarithmic mean, a logarithmic profile is an exact solution on any arrangement of particles, up to a wall
 /// that enters by its stress: n the direction to the fluid, mu_ab v_ab = tau (r.n) for its pairs.
 void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
+                std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);
+
+/// The same in mixed precision: differences and a row's sums in single, all else in double.
+void eddy_rates(PhaseParticles& fluid, const CompactRecords& own, const EddyRecords& eddies,
                 std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);
 
 /// Adds to a grain's acceleration what the logarithmic law adds to the friction of fluid_reaction.

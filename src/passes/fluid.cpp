@@ -8,74 +8,11 @@
 #include "laws/consistent_fluid.hpp"
 #include "laws/joined_fluids.hpp"
 #include "laws/plain_fluid.hpp"
-#include "passes/fluid_finish.hpp"
-#include "passes/fours.hpp"
+#include "passes/fluid_rows.hpp"
 
 namespace barchan {
 
 namespace {
-
-template <int Dim, template <int> class Law, class T>
-BARCHAN_SIMD_INLINE typename Law<Dim>::template Own<LanesOf<T>> load_own(const T* record) {
-  using R = MotionRecord<Dim>;
-  typename Law<Dim>::template Own<LanesOf<T>> own;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    own.x[d] = LanesOf<T>(record[R::position + d]);
-    own.v[d] = LanesOf<T>(record[R::velocity + d]);
-  }
-  own.p = LanesOf<T>(record[R::pressure]);
-  return own;
-}
-
-template <class T>
-const T* records_of(const FluidNeighbour& e) {
-  if constexpr (std::is_same_v<T, double>) return e.records->data();
-  else return e.compact->data();
-}
-
-/// The raw sums of one entry's row: without the kernel's constant factor.
-template <int Dim, template <int> class Law, class T>
-BARCHAN_SIMD_INLINE void sum_row(PairList::Row row, const FluidNeighbour& e, const ReadyKernelOf<T>& ready,
-                                 const typename Law<Dim>::template Own<LanesOf<T>>& own, LanesOf<T> unit,
-                                 typename Law<Dim>::template Sums<LanesOf<T>>& out) {
-  using R = MotionRecord<Dim>;
-  ready([&](const auto& kernel) __attribute__((always_inline)) {
-    typename Law<Dim>::template Sums<LanesOf<T>> sums{};
-    for_each_staged<R::size>(
-        row, records_of<T>(e),
-        [&](const LanesOf<T>* b, LanesOf<T>* stage) __attribute__((always_inline)) {
-          std::array<LanesOf<T>, Dim> r;
-          const LanesOf<T> r2 = separation<Dim, T>(own.x, b + R::position, unit, r);
-          for (std::size_t d = 0; d < Dim; ++d) {
-            stage[d] = r[d];
-            stage[Dim + d] = b[R::velocity + d];
-          }
-          stage[2 * Dim] = b[R::pressure];
-          stage[2 * Dim + 1] = b[R::volume];
-          stage[2 * Dim + 2] = kernel.slope(r2);
-          if constexpr (Law<Dim>::needs_distance) stage[2 * Dim + 3] = r2;
-        },
-        [&](const LanesOf<T>* stage) __attribute__((always_inline)) {
-          std::array<LanesOf<T>, Dim> r;
-          for (std::size_t d = 0; d < Dim; ++d) r[d] = stage[d];
-          Law<Dim>::add(own, r, stage[2 * Dim + 3], stage[2 * Dim + 2], stage + Dim, stage[2 * Dim], stage[2 * Dim + 1],
-                        sums);
-        });
-    out = sums;
-  });
-}
-
-/// At most this many entries a phase.
-constexpr std::size_t most_entries = 16;
-
-template <class T>
-std::vector<ReadyKernelOf<T>>& ready_kernels(std::span<const FluidNeighbour> neighbours, int dimensions) {
-  thread_local std::vector<ReadyKernelOf<T>> kernels;
-  kernels.reserve(most_entries);
-  kernels.clear();
-  for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);
-  return kernels;
-}
 
 /// The first particle of pairs across an interface; rho: its density, so that it carries its own weight exactly.
 template <int Dim, class T>
@@ -99,82 +36,43 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
   const V unit = simd::broadcast<V>(length_unit);
   const Vec3 weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
                     q.reference_density * q.gravity[2]};
-  std::array<double*, Dim> a{}, du{};
-  for (int d = 0; d < Dim; ++d) {
-    a[static_cast<std::size_t>(d)] = fluid.column(Field::acceleration, d);
-    if (fluid.has(Field::shift_velocity)) du[static_cast<std::size_t>(d)] = fluid.column(Field::shift_velocity, d);
-  }
-  double* rate = fluid.column(Field::density_rate);
-  const double* rho = fluid.column(Field::density);
   const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
   const auto& kernels = ready_kernels<T>(neighbours, Dim);
-  constexpr std::size_t moments = Dim * (Dim + 1) / 2, kept = Dim == 2 ? 2 : moments;
-  std::array<double*, moments> skew{};  // 2D: xx xy, and yy = -xx
-  if constexpr (L::corrected)
-    for (std::size_t c = 0; c < kept; ++c) skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
-  const double* pressure = fluid.column(Field::pressure);
-  const SurfaceColumns<Dim> surface(fluid);
+  const RateColumns<Dim, L::corrected> columns(fluid);
   const std::size_t n = fluid.size();
-  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
+  const std::int64_t blocks = FourOf::blocks(n);
 #pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t block = 0; block < fours; ++block) {
-    const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
-    typename L::template Sums<Four> s{};
+  for (std::int64_t block = 0; block < blocks; ++block) {
+    const FourOf at(block, n);
+    const auto own_of = [&](std::size_t k) __attribute__((always_inline)) {
+      auto own = load_own<Dim, Law>(own_records + k * record_size);
+      if constexpr (L::corrected) columns.weigh(own, k);
+      return own;
+    };
+    typename L::template Sums<Four> s{}, raw;
     for (std::size_t c = 0; c < neighbours.size(); ++c) {
       const auto& e = neighbours[c];
-      std::array<typename L::template Sums<V>, 4> sums;
-      bool any = false;
-      for (std::size_t lane = 0; lane < 4; ++lane) {
-        const std::size_t k = std::min(first + lane, n - 1);  // the last one again, and again dropped
-        const auto row = e.list->row(k);
-        any = any || row.begin != row.end;
-        auto own = load_own<Dim, Law>(own_records + k * record_size);
-        if constexpr (L::corrected) {
-          for (std::size_t m = 0; m < kept; ++m) own.anisotropy[m] = simd::broadcast<V>(skew[m][k]);
-          if constexpr (Dim == 2) own.anisotropy[2] = -own.anisotropy[0];
-          for (std::size_t d = 0; d < Dim; ++d)
-            for (std::size_t m = 0; m < d; ++m) own.anisotropy[moment_index(d, m)] *= simd::broadcast<V>(2.0);
-        }
-        if constexpr (Joined) {
-          if (e.joined > 0) {
-            const auto across = joined_own<Dim, T>(own, e, q, rho[k]);
-            sum_row<Dim, JoinedFluids, T>(row, e, kernels[c], across, unit, sums[lane]);
-            continue;
+      if constexpr (Joined) {
+        if (e.joined > 0) {
+          const auto across = [&](std::size_t k) __attribute__((always_inline)) {
+            return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k]);
+          };
+          if (!sum_rows<Dim, JoinedFluids, T>(at, e, kernels[c], unit, across, raw)) continue;
+          for (std::size_t d = 0; d < Dim; ++d) {  // the Laplacian's own factor is this phase's viscosity
+            raw.viscous[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
+            raw.weighted[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
           }
+          s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+          continue;
         }
-        sum_row<Dim, Law, T>(row, e, kernels[c], own, unit, sums[lane]);
       }
-      if (any) {
-        auto raw = reduce<typename L::template Sums<Four>, T>(sums);
-        if constexpr (Joined)
-          if (e.joined > 0)
-            for (std::size_t d = 0; d < Dim; ++d) {  // the Laplacian's own factor is this phase's viscosity
-              raw.viscous[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
-              raw.weighted[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
-            }
+      if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw))
         s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
-      }
     }
-    std::array<Four, moments> anisotropy;
-    if constexpr (L::corrected) {
-      for (std::size_t c = 0; c < kept; ++c) anisotropy[c] = load_four(skew[c], first, count);
-      if constexpr (Dim == 2) anisotropy[2] = -anisotropy[0];
-    }
-    Place<Dim, Four> place{load_four(pressure, first, count), {}, {}};
-    for (std::size_t d = 0; d < Dim; ++d)
-      place.normal[d] = surface.wholeness ? load_four(surface.normal[d], first, count) : Four(0.0);
-    const auto r = finish<Dim, Four>(s, mu, load_four(rho, first, count), q, anisotropy, place);
-    if (surface.wholeness) {
-      store_four(place.wholeness, surface.wholeness, first, count);
-      for (std::size_t d = 0; d < Dim; ++d) store_four(s.concentration[d], surface.normal[d], first, count);
-    }
-    if constexpr (L::corrected)
-      for (std::size_t c = 0; c < kept; ++c) store_four(anisotropy[c], skew[c], first, count);
-    for (std::size_t d = 0; d < Dim; ++d) {
-      store_four(r.acceleration[d], a[d], first, count);
-      if (du[d]) store_four(r.shift[d], du[d], first, count);
-    }
-    store_four(r.density, rate, first, count);
+    auto anisotropy = columns.anisotropy(at);
+    auto place = columns.place(at);
+    const auto r = finish<Dim, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);
+    columns.store(at, r, anisotropy, place, s.concentration);
   }
 }
 

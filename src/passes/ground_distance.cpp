@@ -39,7 +39,7 @@ double GroundDistance::squared(const Vec3& x, std::int32_t seed) const {
   for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
     double r = x[d] - s[d];
     const double period = bounds_.high[d] - bounds_.low[d];
-    if (bounds_.periodic[d]) r -= period * std::round(r / period);
+    if (bounds_.periodic[d] && std::abs(r) > 0.5 * period) r -= period * std::round(r / period);
     sum += r * r;
   }
   return sum;
@@ -50,21 +50,23 @@ namespace {
 /// Calls f(cell) for the cells about `at`, periodic images taken back.
 template <class F>
 void around(const std::array<int, 3>& at, const std::array<int, 3>& count, const std::array<bool, 3>& periodic, F&& f) {
-  const int deep = count[2] > 1 ? 1 : 0;
-  for (int z = -deep; z <= deep; ++z)
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x) {
-        std::array<int, 3> b{at[0] + x, at[1] + y, at[2] + z};
-        bool inside = true;
-        for (std::size_t d = 0; d < 3; ++d) {
-          if (periodic[d]) b[d] = (b[d] + count[d]) % count[d];
-          inside = inside && b[d] >= 0 && b[d] < count[d];
-        }
-        if (inside)
-          f((static_cast<std::size_t>(b[2]) * static_cast<std::size_t>(count[1]) + static_cast<std::size_t>(b[1])) *
+  std::array<std::array<int, 3>, 3> places;  // by axis: before, at, after; -1: none
+  for (std::size_t d = 0; d < 3; ++d)
+    for (int k = 0; k < 3; ++k) {
+      int b = at[d] + k - 1;
+      if (b < 0) b = periodic[d] ? count[d] - 1 : -1;
+      else if (b >= count[d]) b = periodic[d] ? 0 : -1;
+      places[d][static_cast<std::size_t>(k)] = b;
+    }
+  const std::size_t first = count[2] > 1 ? 0 : 1, last = count[2] > 1 ? 2 : 1;
+  for (std::size_t k = first; k <= last; ++k)
+    for (const int y : places[1])
+      for (const int x : places[0])
+        if (places[2][k] >= 0 && y >= 0 && x >= 0)
+          f((static_cast<std::size_t>(places[2][k]) * static_cast<std::size_t>(count[1]) +
+             static_cast<std::size_t>(y)) *
                 static_cast<std::size_t>(count[0]) +
-            static_cast<std::size_t>(b[0]));
-      }
+            static_cast<std::size_t>(x));
 }
 
 }  // namespace
@@ -114,31 +116,39 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
 
 /// Sweeps to and fro until nothing changes (a few times; once more for each period crossed).
 void GroundDistance::propagate() {
-  const auto cells = static_cast<std::int64_t>(nearest_.size());
-  const auto visit = [&](std::int64_t c) {
-    const std::array<int, 3> at{static_cast<int>(c % count_[0]), static_cast<int>(c / count_[0] % count_[1]),
-                                static_cast<int>(c / count_[0] / count_[1])};
+  const auto visit = [&](const std::array<int, 3>& at) {
+    const auto c = static_cast<std::size_t>((static_cast<std::int64_t>(at[2]) * count_[1] + at[1]) * count_[0] + at[0]);
     Vec3 centre{};
     for (std::size_t d = 0; d < 3; ++d) centre[d] = bounds_.low[d] + (at[d] + 0.5) * side_[d];
-    std::int32_t& mine = nearest_[static_cast<std::size_t>(c)];
+    std::int32_t mine = nearest_[c], last = mine;
     double least = squared(centre, mine);
-    const std::int32_t before = mine;
     around(at, count_, bounds_.periodic, [&](std::size_t b) {
       const std::int32_t theirs = nearest_[b];
-      if (theirs < 0 || theirs == mine) return;
+      if (theirs < 0 || theirs == mine || theirs == last) return;
+      last = theirs;
       const double s = squared(centre, theirs);
       if (s < least) {
         least = s;
         mine = theirs;
       }
     });
-    return mine != before;
+    const bool changed = mine != nearest_[c];
+    nearest_[c] = mine;
+    return changed;
+  };
+  const auto sweep = [&](bool back) {
+    bool changed = false;
+    for (int k = 0; k < count_[2]; ++k)
+      for (int j = 0; j < count_[1]; ++j)
+        for (int i = 0; i < count_[0]; ++i)
+          changed = visit(back ? std::array<int, 3>{count_[0] - 1 - i, count_[1] - 1 - j, count_[2] - 1 - k}
+                               : std::array<int, 3>{i, j, k}) ||
+                    changed;
+    return changed;
   };
   for (int round = 0; round < 8; ++round) {
-    bool changed = false;
-    for (std::int64_t c = 0; c < cells; ++c) changed = visit(c) || changed;
-    for (std::int64_t c = cells; c-- > 0;) changed = visit(c) || changed;
-    if (!changed) return;
+    const bool there = sweep(false), back = sweep(true);
+    if (!there && !back) return;
   }
 }
 
@@ -184,8 +194,12 @@ double GroundDistance::distance(const Vec3& x) const {
       });
     } else {
       double squared_least = 1e300;
-      around(at, count_, bounds_.periodic,
-             [&](std::size_t b) { squared_least = std::min(squared_least, squared(x, nearest_[b])); });
+      std::int32_t last = -1;
+      around(at, count_, bounds_.periodic, [&](std::size_t b) {
+        if (nearest_[b] == last) return;  // neighbours often have the same
+        last = nearest_[b];
+        squared_least = std::min(squared_least, squared(x, last));
+      });
       least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
     }
   }

@@ -33,7 +33,8 @@ BARCHAN_SIMD_INLINE void for_each_neighbour(PairList::Row row, const RecordArray
   for_each_neighbour<Fields>(row, records.data(), std::forward<F>(f));
 }
 
-/// The same in two stages: `begin` (loads, distance, kernel) for several vectors, then `end` for them. The long chain
+/// The same in two stages: `begin(record, the list's entries, stage)` (loads, distance, kernel) for several vectors,
+/// then `end(stage)` for them. The long chain
 /// of operations from a list's entry to the kernel's value is then off the way of the sums: a processor's window holds
 /// two or three vectors, too few to hide that chain.
 template <int Fields, class T, class Begin, class End>
@@ -46,7 +47,7 @@ BARCHAN_SIMD_INLINE void for_each_staged(PairList::Row row, const T* data, Begin
     for (; n < most && q != row.end; ++n, q += V::width) {
       V record[Fields];
       simd::load_transposed<Fields>(data, Fields / PairList::stride, q, record);
-      begin(record, stage + n * fields);
+      begin(record, q, stage + n * fields);
     }
     for (std::size_t k = 0; k < n; ++k) end(stage + k * fields);
   }

@@ -2,8 +2,9 @@
 // transposed in registers. Particles come first, then periodic images, then one dummy that pads the rows of pair lists.
 //
 // A motion record holds position, velocity and two scalars:
-//   2D  x y u v p V - -      3D  x y z u v w p V
-// p is the pressure [Pa] (its meaning is the pass's own), V the volume [m^dimensions]; V = 0 marks the dummy.
+//   2D  x y u v p V s -      3D  x y z u v w p V
+// p is the pressure [Pa] (its meaning is the pass's own), V the volume [m^dimensions]; V = 0 marks the dummy; s, of a
+// turbulent fluid, is the square root of the dynamic viscosity [sqrt(Pa s)].
 // A stress record holds position, velocity, stress/density^2 and volume:
 //   2D  x y u v sxx syy sxy V     3D  x y z u v w sxx syy szz sxy syz sxz V - - -
 #pragma once
@@ -22,6 +23,7 @@ namespace barchan {
 template <int Dim>
 struct MotionRecord {
   static constexpr int size = 8, position = 0, velocity = Dim, pressure = 2 * Dim, volume = 2 * Dim + 1;
+  static constexpr int root = 2 * Dim + 2;  // 2D only
 };
 
 template <int Dim>
@@ -75,7 +77,7 @@ class RecordArray {
 
 /// Motion records in mixed precision, half a cache line each: positions are 32-bit whole numbers of `unit` (m) about
 /// the middle of the domain, so that differences are exact however large the domain; the other fields are floats.
-///   2D  x y u v p V - -      3D  x y z u v w p V
+///   2D  x y u v p V s -      3D  x y z u v w p V
 class CompactRecords {
  public:
   static constexpr int size = 8;
@@ -149,6 +151,7 @@ class CompactRecords {
   }
 
   const float* data() const { return data_.data(); }
+  float* operator[](std::size_t k) { return data_.data() + k * size; }
   const float* operator[](std::size_t k) const { return data_.data() + k * size; }
   double unit() const { return unit_; }
   std::size_t bytes() const { return data_.capacity() * sizeof(float); }

@@ -118,7 +118,11 @@ void Simulation::find_eddies() {
     if (f.eddy_neighbours.empty()) continue;
     auto& p = particles_[f.phase];
     f.largest_viscosity = pack_eddies(p, eddies_[f.phase], *f.ground, f.eddies);
-    eddies_[f.phase].fill_images(p.size(), neighbours_.grid(f.phase));
+    auto& eddies = eddies_[f.phase];
+    eddies.fill_images(p.size(), neighbours_.grid(f.phase));
+    const std::size_t count = p.size() + neighbours_.grid(f.phase).images();
+    if (plan_.dimensions == 2 && compact_[f.phase]) eddies.give_roots(*compact_[f.phase], count);
+    else if (plan_.dimensions == 2) eddies.give_roots(motion_[f.phase], count);
     for (auto& e : f.eddy_neighbours)
       if (e.wall && e.wall->size() > 0)
         for (int d = 0; d < plan_.dimensions; ++d)
@@ -166,9 +170,12 @@ void Simulation::rate_fluids() {
         if (force.acceleration[d].is_constant()) q.acceleration[d] += force.acceleration[d].constant();
     }
     auto& p = particles_[f.phase];
-    if (!f.eddy_neighbours.empty()) eddy_rates(p, motion_[f.phase], eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
-    else if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
-    else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
+    const auto rate = [&](const auto& own) {
+      if (f.eddy_neighbours.empty()) fluid_rates(p, own, f.neighbours, q, s.scheme);
+      else eddy_rates(p, own, eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
+    };
+    if (compact_[f.phase]) rate(*compact_[f.phase]);
+    else rate(motion_[f.phase]);
     if (plan_.phases[f.phase].enclosed) keep_mean_density(p, f.mean);
     add_forces(p, f.phase, forcings_, time_, false);
   }

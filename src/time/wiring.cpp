@@ -324,17 +324,13 @@ void Simulation::wire() {
   std::vector<bool> read(phases, !mixed);
   for (const auto& e : plan_.entries)
     if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
-  const auto turbulent = [&](std::size_t k) { return particles_[k].has(Field::ground_distance); };
-  for (std::size_t k = 0; k < phases; ++k)
-    if (turbulent(k)) read.assign(phases, true);
   eddies_.reserve(phases);
   motion_.reserve(phases);
   extended_.reserve(phases);
   for (std::size_t k = 0; k < phases; ++k) {
     const bool fluid = particles_[k].kind() == PhaseKind::fluid;
     motion_.emplace_back(read[k] || particles_[k].has(Field::energy) ? motion : 0);
-    compact_.push_back(mixed && ((fluid && !turbulent(k)) || seen[k]) ? std::make_unique<CompactRecords>(plan_.bounds)
-                                                                      : nullptr);
+    compact_.push_back(mixed && (fluid || seen[k]) ? std::make_unique<CompactRecords>(plan_.bounds) : nullptr);
     extended_.emplace_back(seen[k] ? motion : 0);
     stress_.emplace_back(particles_[k].kind() == PhaseKind::elastic ? stress : 0);
     eddies_.emplace_back();
