@@ -72,9 +72,9 @@ end = 1
 )toml";
 
 TEST(Integrator, FreeFallIsExact) {
-  const auto run = small::simulation(two_grains, {"fill.0.shape={ points = [[2.0, 3.0], [3.0, 3.0]] }", fixed(0.01)});
+  const auto run = small::simulation(two_grains, {"fill.0.shape={ points = [[2.0, 3.0], [3.0, 3.0]] }", fixed(0.004)});
   const auto start = by_id(*run, 0);
-  advance(*run, 60);
+  advance(*run, 150);
   const double t = run->time();
   EXPECT_NEAR(t, 0.6, 1e-12);
   for (std::size_t k = 0; k < 2; ++k) {
