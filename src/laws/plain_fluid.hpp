@@ -70,4 +70,31 @@ struct PlainFluid {
   }
 };
 
+/// The same with the trace of the neighbourhood's moment, for a fluid with a free surface: tr M = sum V F r^2.
+template <int Dim>
+struct PlainSurface {
+  static constexpr bool needs_distance = true;
+  static constexpr bool corrected = false;
+
+  template <class T>
+  struct Sums : PlainFluid<Dim>::template Sums<T> {
+    T trace;
+    BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double mu, double diffuse,
+                                  const std::array<double, 3>& weight) {
+      PlainFluid<Dim>::template Sums<T>::take(s, scale, mu, diffuse, weight);
+      trace = fma(simd::broadcast<T>(scale), s.trace, trace);
+    }
+  };
+
+  template <class T>
+  using Own = typename PlainFluid<Dim>::template Own<T>;
+
+  template <class T>
+  static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, T p_b,
+                                      T volume_b, Sums<T>& s) {
+    PlainFluid<Dim>::add(a, r, r2, f, v_b, p_b, volume_b, s);
+    s.trace = fma(volume_b * f, r2, s.trace);
+  }
+};
+
 }  // namespace barchan

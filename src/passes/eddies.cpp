@@ -154,6 +154,7 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, const EddyReco
   for (const auto& e : neighbours) kernels.emplace_back(e.pair.kernel, e.pair.radius, Dim);
   const auto& ready = kernels;
   const double molecular = std::sqrt(p.density * p.viscosity);
+  const SurfaceColumns<Dim> surface(fluid);
   const auto n = static_cast<std::int64_t>(fluid.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::int64_t i = 0; i < n; ++i) {
@@ -251,7 +252,13 @@ void rates(PhaseParticles& fluid, const RecordArray& own_records, const EddyReco
         }
       return friction;
     };
-    const auto r = finish_consistent<Dim, One>(s, 1.0, One(rho[k]), q, skewness, friction_of);
+    Place<Dim, One> place{One(record[R::pressure]), {}, {}};
+    for (std::size_t d = 0; d < Dim; ++d) place.normal[d] = One(surface.wholeness ? surface.normal[d][k] : 0.0);
+    const auto r = finish_consistent<Dim, One>(s, 1.0, One(rho[k]), q, skewness, place, friction_of);
+    if (surface.wholeness) {
+      surface.wholeness[k] = place.wholeness.v;
+      for (std::size_t d = 0; d < Dim; ++d) surface.normal[d][k] = s.concentration[d].v;
+    }
     anisotropy = std::bit_cast<std::array<double, moments>>(skewness);
     if (p.model != Turbulence::none) {
       const double length = p.mixing_length(distance[k]);

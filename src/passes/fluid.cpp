@@ -112,6 +112,8 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
   std::array<double*, moments> skew{};  // 2D: xx xy, and yy = -xx
   if constexpr (L::corrected)
     for (std::size_t c = 0; c < kept; ++c) skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
+  const double* pressure = fluid.column(Field::pressure);
+  const SurfaceColumns<Dim> surface(fluid);
   const std::size_t n = fluid.size();
   const auto fours = static_cast<std::int64_t>((n + 3) / 4);
 #pragma omp parallel for schedule(dynamic, 64)
@@ -158,7 +160,14 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       for (std::size_t c = 0; c < kept; ++c) anisotropy[c] = load_four(skew[c], first, count);
       if constexpr (Dim == 2) anisotropy[2] = -anisotropy[0];
     }
-    const auto r = finish<Dim, Four>(s, mu, load_four(rho, first, count), q, anisotropy);
+    Place<Dim, Four> place{load_four(pressure, first, count), {}, {}};
+    for (std::size_t d = 0; d < Dim; ++d)
+      place.normal[d] = surface.wholeness ? load_four(surface.normal[d], first, count) : Four(0.0);
+    const auto r = finish<Dim, Four>(s, mu, load_four(rho, first, count), q, anisotropy, place);
+    if (surface.wholeness) {
+      store_four(place.wholeness, surface.wholeness, first, count);
+      for (std::size_t d = 0; d < Dim; ++d) store_four(s.concentration[d], surface.normal[d], first, count);
+    }
     if constexpr (L::corrected)
       for (std::size_t c = 0; c < kept; ++c) store_four(anisotropy[c], skew[c], first, count);
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -201,8 +210,10 @@ void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const 
   const bool joined = std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
   if (joined && flat) rates<2, ConsistentFluid, T, true>(fluid, own, unit, neighbours, q);
   else if (joined) rates<3, ConsistentFluid, T, true>(fluid, own, unit, neighbours, q);
+  else if (flat && plain && fluid.has(Field::wholeness)) rates<2, PlainSurface>(fluid, own, unit, neighbours, q);
   else if (flat && plain) rates<2, PlainFluid>(fluid, own, unit, neighbours, q);
   else if (flat) rates<2, ConsistentFluid>(fluid, own, unit, neighbours, q);
+  else if (plain && fluid.has(Field::wholeness)) rates<3, PlainSurface>(fluid, own, unit, neighbours, q);
   else if (plain) rates<3, PlainFluid>(fluid, own, unit, neighbours, q);
   else rates<3, ConsistentFluid>(fluid, own, unit, neighbours, q);
 }

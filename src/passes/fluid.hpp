@@ -32,7 +32,13 @@ struct FluidParameters {
   double smoothing_length;    // m, of the phase with itself
   Vec3 gravity;               // m/s2
   Vec3 acceleration;          // m/s2, further uniform body force
+  double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole
+  double loosening;           // 1/s, at which loose fluid loses its pressure (free surface); 0: none
+  double lattice_moment;      // -tr M/Dim on a lattice at rest, 1
 };
+
+/// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.
+constexpr double surface_wholeness(FluidScheme scheme) { return scheme == FluidScheme::consistent ? 0.33 : 0.55; }
 
 /// Writes acceleration, density_rate and (if the field is there) shift_velocity of `fluid`. `own` are its records.
 void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,

@@ -68,13 +68,32 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
-std::vector<Field> fields_of(const Phase& phase, bool eddies) {
+/// A fluid fills its space when the particles of all phases inside the domain make up its volume; else it has a free
+/// surface. The answer may be wrong at little harm: what is done at a surface is done where a neighbourhood is not
+/// whole.
+bool leaves_space(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
+  double room = 1.0;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+    room *= scene.domain.size[d] / scene.spacing;
+  double filled = 0.0;
+  for (const auto& block : blocks)
+    for (const Vec3& x : block.position) {
+      bool inside = true;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+        inside = inside && x[d] >= scene.domain.origin[d] && x[d] <= scene.domain.origin[d] + scene.domain.size[d];
+      filled += inside ? 1.0 : 0.0;
+    }
+  return filled < 0.95 * room;
+}
+
+std::vector<Field> fields_of(const Phase& phase, bool eddies, bool free_surface) {
   using enum Field;
   switch (phase.kind) {
     case PhaseKind::fluid: {
       std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
       if (phase.shifting > 0) f.push_back(shift_velocity);
       if (phase.scheme == FluidScheme::consistent) f.push_back(anisotropy);
+      if (free_surface) f.insert(f.end(), {wholeness, surface_normal});
       if (eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
       if (phase.energy) f.insert(f.end(), {energy, energy_rate});
       return f;
@@ -138,16 +157,17 @@ void add_entries(const Scene& scene, Plan& plan) {
   }
 }
 
-/// As the scene says, or else as the particles show.
-void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Plan& plan) {
-  PlanPhase& p = plan.phases[fluid];
+/// Enclosed as the scene says, or else as the particles show; returns whether there is free space beside the fluid.
+bool enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, PlanPhase& p,
+             std::vector<std::string>& warnings) {
   const std::optional<bool>& said = scene.phases[fluid].enclosed;
-  const Enclosure seen = find_enclosure(scene, plan, blocks, fluid);
+  const Enclosure seen = find_enclosure(scene, blocks, fluid);
   p.enclosed = said.value_or(seen.shut_in);
   p.enclosure = said ? "as the scene says" : seen.why;
   if (said.value_or(false) && !seen.free_space.empty())
-    plan.warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
-                            ", so that the mean density should be free; leave the key out");
+    warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
+                       ", so that the mean density should be free; leave the key out");
+  return !seen.free_space.empty();
 }
 
 void add_passes(const Scene& scene, Plan& plan) {
@@ -167,6 +187,8 @@ void add_passes(const Scene& scene, Plan& plan) {
   pass("extension into walls", any_law(Law::boundary));
   pass("extension into solids", any_law(Law::coupling));
   pass("fluid rates", any_kind(PhaseKind::fluid));
+  pass("free surface",
+       std::any_of(plan.phases.begin(), plan.phases.end(), [](const PlanPhase& p) { return p.free_surface; }));
   pass("fluid energy", std::any_of(scene.phases.begin(), scene.phases.end(),
                                    [](const Phase& p) { return p.kind == PhaseKind::fluid && p.energy; }));
   pass("wall repulsion", any_law(Law::repulsive));
@@ -174,6 +196,8 @@ void add_passes(const Scene& scene, Plan& plan) {
   pass("contacts", any_law(Law::contact));
   pass("reaction on solids", any_law(Law::coupling));
   pass("drag", std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.drag > 0; }));
+  pass("bulk speed",
+       std::any_of(scene.forcings.begin(), scene.forcings.end(), [](const Forcing& f) { return f.hold_bulk_speed; }));
   pass("kick", true);
 }
 
@@ -190,6 +214,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.bounds.periodic = scene.domain.periodic;
   plan.largest_speed = largest_speed(scene, blocks);
   const double volume = std::pow(scene.spacing, scene.dimensions);
+  const bool space_left = leaves_space(scene, blocks);
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& p = scene.phases[k];
     PlanPhase q;
@@ -198,7 +223,12 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.count = blocks[k].position.size();
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
     q.eddies = has_eddies(scene, p);
-    q.fields = fields_of(p, q.eddies);
+    for (const auto& f : scene.forcings) q.held = q.held || (f.hold_bulk_speed && f.phase == p.name);
+    if (p.kind == PhaseKind::fluid) {
+      const bool beside = enclose(scene, blocks, k, q, plan.warnings);
+      q.free_surface = !q.enclosed && (beside || space_left);
+    }
+    q.fields = fields_of(p, q.eddies, q.free_surface);
     if (p.kind == PhaseKind::fluid) q.sound_speed = p.sound_speed.value_or(10.0 * plan.largest_speed);
     if (p.kind == PhaseKind::elastic) q.sound_speed = compression_speed(p);
     if (p.kind == PhaseKind::grains) {
@@ -222,8 +252,6 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.limits = initial_limits(scene, plan);
   if (plan.limits.empty() && plan.fixed_step == 0)
     throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");
-  for (std::size_t k = 0; k < plan.phases.size(); ++k)
-    if (plan.phases[k].kind == PhaseKind::fluid) enclose(scene, blocks, k, plan);
   add_warnings(scene, plan);
   return plan;
 }

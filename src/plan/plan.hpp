@@ -53,6 +53,8 @@ struct PlanPhase {
   double mass = 0;              // kg a particle (per metre of depth in 2D)
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
   double smoothing_length = 0;  // m
+  bool held = false;            // a fluid whose bulk speed is held
+  bool free_surface = false;    // a fluid that does not fill its space
   bool eddies = false;          // a fluid whose viscosity varies, or with a wall whose stress is given
   bool enclosed = false;        // a fluid whose mean density is kept
   std::string enclosure = "";   // why it is enclosed or not, of a fluid

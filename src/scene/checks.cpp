@@ -171,8 +171,28 @@ void check_domain(const Scene& scene, const Report& report) {
   }
 }
 
+/// A hold needs a fluid and a periodic axis; a forcing says one thing.
+void check_hold(const Scene& scene, const Report& report, std::size_t number) {
+  const std::string dotted = "forcing." + std::to_string(number);
+  const Forcing& forcing = scene.forcings[number];
+  if (report.has(dotted + ".hold") == report.has(dotted + ".acceleration"))
+    report(dotted, "expected either acceleration or hold");
+  if (!forcing.hold_bulk_speed || report.touched(dotted + ".hold")) return;
+  const Phase* phase = find_phase(scene, forcing.phase);
+  if (phase && phase->kind != PhaseKind::fluid)
+    report(dotted + ".hold", "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
+  const auto& periodic = scene.domain.periodic;
+  if (!report.touched("domain.periodic") && !periodic[0] && !periodic[1] && !periodic[2])
+    report(dotted + ".hold", "no axis is periodic; expected domain.periodic = [\"x\"], along which the fluid flows on");
+  for (std::size_t other = 0; other < number; ++other)
+    if (scene.forcings[other].hold_bulk_speed && scene.forcings[other].phase == forcing.phase)
+      report(dotted + ".hold",
+             "the mean velocity of \"" + forcing.phase + "\" is held twice; expected one such forcing");
+}
+
 void check_forcings(const Scene& scene, const Report& report) {
   for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
+    check_hold(scene, report, k);
     const std::string dotted = "forcing." + std::to_string(k) + ".phase";
     if (report.touched(dotted) || !report.has(dotted)) continue;
     const Phase* phase = find_phase(scene, scene.forcings[k].phase);

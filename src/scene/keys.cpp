@@ -151,7 +151,10 @@ constexpr Key table[] = {
      "Count the height from the ground (bed and dune) rather than from the bottom of the domain."},
 
     {"forcing", "phase", as_text, "", "required", "Phase that feels the force."},
-    {"forcing", "acceleration", as_formulas, "m/s2", "required", "Acceleration.", {}, "", "x y z t"},
+    {"forcing", "acceleration", as_formulas, "m/s2", "none", "Acceleration; this or hold.", {}, "", "x y z t"},
+    {"forcing", "hold", as_word, "", "none",
+     "bulk-speed: the uniform acceleration that keeps the fluid's initial mean velocity along the periodic axes, as in a channel of "
+     "constant mass flux. history.csv has it.", {}, "bulk-speed"},
 
     {"probe", "name", as_text, "", "required", "Letters, digits and underscores: it is written to probe_NAME.csv."},
     {"probe", "phase", as_text, "", "required", "Fluid that is followed."},

@@ -127,7 +127,8 @@ std::vector<Interaction> take_interactions(const toml::table& table, const std::
 }
 
 Forcing take_forcing(const toml::table& table) {
-  return {table["phase"].value_or(std::string()), take_vector_expression(table, "acceleration")};
+  return {table["phase"].value_or(std::string()), take_vector_expression(table, "acceleration"),
+          table["hold"].value_or(std::string_view()) == "bulk-speed"};
 }
 
 TimeControl take_time(const toml::table& table) {

@@ -174,6 +174,7 @@ struct Domain {
 struct Forcing {
   std::string phase;              // body force on this phase
   VectorExpression acceleration;  // m/s2, formulas in x, y, z, t
+  bool hold_bulk_speed = false;   // instead: what keeps the initial mean velocity along periodic axes
 };
 
 // ---- what is measured

@@ -133,6 +133,7 @@ std::vector<std::string> Simulation::history_columns(const Plan& plan) {
     if (p.kind == PhaseKind::fluid) {
       c.push_back(p.name + "_mean_pressure [Pa]");
       c.push_back(p.name + "_density_error_rms");
+      if (p.held) c.push_back(p.name + "_held_acceleration_x [m/s2]");
     }
   }
   return c;
@@ -179,6 +180,9 @@ std::vector<double> Simulation::history_row() const {
       row[7] = std::max(row[7], worst);
       row.push_back(n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / static_cast<double>(n) : 0.0);
       row.push_back(n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0.0);
+      if (plan_.phases[k].held)
+        for (const auto& f : fluids_)
+          if (f.phase == k) row.push_back(f.hold.acceleration[0]);
     }
   }
   return row;

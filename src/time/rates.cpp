@@ -61,28 +61,6 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
   records.fill_images<Dim>(grid, x);
 }
 
-/// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of
-/// the divergence must not pump it up. Sums in blocks, in an order that the number of particles decides.
-void keep_mean_density(PhaseParticles& p) {
-  constexpr std::int64_t block = 4096;
-  static std::vector<double> parts;
-  double* rate = p.column(Field::density_rate);
-  const auto n = static_cast<std::int64_t>(p.size());
-  const std::int64_t blocks = (n + block - 1) / block;
-  if (static_cast<std::int64_t>(parts.size()) < blocks) parts.resize(static_cast<std::size_t>(blocks));
-#pragma omp parallel for schedule(static)
-  for (std::int64_t b = 0; b < blocks; ++b) {
-    double sum = 0.0;
-    for (std::int64_t k = b * block; k < std::min((b + 1) * block, n); ++k) sum += rate[k];
-    parts[static_cast<std::size_t>(b)] = sum;
-  }
-  double mean = 0.0;
-  for (std::int64_t b = 0; b < blocks; ++b) mean += parts[static_cast<std::size_t>(b)];
-  mean /= static_cast<double>(n);
-#pragma omp parallel for simd schedule(static)
-  for (std::int64_t k = 0; k < n; ++k) rate[k] -= mean;
-}
-
 /// Adds the forces of [[forcing]] on a phase to its accelerations; `numbers`: those without a formula too, which the
 /// law of fluids has already.
 template <class Forces>
@@ -191,9 +169,16 @@ void Simulation::rate_fluids() {
     if (!f.eddy_neighbours.empty()) eddy_rates(p, motion_[f.phase], eddies_[f.phase], f.eddy_neighbours, q, f.eddies);
     else if (compact_[f.phase]) fluid_rates(p, *compact_[f.phase], f.neighbours, q, s.scheme);
     else fluid_rates(p, motion_[f.phase], f.neighbours, q, s.scheme);
-    if (plan_.phases[f.phase].enclosed) keep_mean_density(p);
+    if (plan_.phases[f.phase].enclosed) keep_mean_density(p, f.mean);
     add_forces(p, f.phase, forcings_, time_, false);
   }
+}
+
+void Simulation::find_free_surfaces() {
+  for (auto& f : fluids_)
+    if (f.surface)
+      f.surface->find(particles_[f.phase], neighbours_.grid(f.phase), *f.neighbours.front().list,
+                      f.neighbours.front().radius, surface_wholeness(scene_.phases[f.phase].scheme));
 }
 
 void Simulation::rate_energies() {
@@ -239,6 +224,11 @@ void Simulation::react() {
       if (plan_.phases[x.felt_fluids[c]].eddies && scene_.phases[x.phase].kind == PhaseKind::grains)
         eddy_reaction(particles_[x.phase], extended_[x.phase], x.felt[c], eddies_[x.felt_fluids[c]],
                       x.felt[c].viscosity);
+}
+
+void Simulation::hold_bulk_speeds() {
+  for (auto& f : fluids_)
+    if (f.hold.any()) hold_bulk_velocity(particles_[f.phase], f.hold, dt_, f.mean);
 }
 
 }  // namespace barchan

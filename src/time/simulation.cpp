@@ -22,12 +22,14 @@ enum Pass : std::size_t {
   pass_extend_walls,
   pass_extend_solids,
   pass_fluid,
+  pass_surface,
   pass_energy,
   pass_repel,
   pass_elastic,
   pass_contacts,
   pass_reaction,
   pass_drag,
+  pass_hold,
   pass_kick,
   pass_count
 };
@@ -40,12 +42,14 @@ constexpr std::array<const char*, pass_count> pass_names{"kick and drift",
                                                          "extension into walls",
                                                          "extension into solids",
                                                          "fluid rates",
+                                                         "free surface",
                                                          "fluid energy",
                                                          "wall repulsion",
                                                          "elastic forces",
                                                          "contacts",
                                                          "reaction on solids",
                                                          "drag",
+                                                         "bulk speed",
                                                          "kick"};
 
 double thread_seconds() {
@@ -105,12 +109,14 @@ void Simulation::rates(bool first) {
   timed(pass_extend_walls, [&] { extend_into_walls(); });
   timed(pass_extend_solids, [&] { extend_into_grains(); });
   timed(pass_fluid, [&] { rate_fluids(); });
+  timed(pass_surface, [&] { find_free_surfaces(); });
   timed(pass_energy, [&] { rate_energies(); });
   timed(pass_repel, [&] { repel_from_walls(); });
   timed(pass_elastic, [&] { stress_bodies(); });
   timed(pass_contacts, [&] { touch(); });
   timed(pass_reaction, [&] { react(); });
   timed(pass_drag, [&] { drag_grains(); });
+  timed(pass_hold, [&] { hold_bulk_speeds(); });
 }
 
 void Simulation::choose_step(double largest) {
@@ -170,13 +176,14 @@ void Simulation::kick_and_drift() {
     if (p.kind() == PhaseKind::fluid) {
       const PressureLaw law = pressure_law(k);
       barchan::kick_and_drift(p, 0.5 * dt_, dt_, &law);
+      if (p.has(Field::wholeness)) release_surface(p, surface_wholeness(scene_.phases[k].scheme), law);
     } else {
       // Bodies stop half-way: their strain is taken there (see strain_bodies).
       barchan::kick_and_drift(p, 0.5 * dt_, p.kind() == PhaseKind::elastic ? 0.5 * dt_ : dt_, nullptr);
     }
   }
   for (const auto& f : fluids_)
-    if (scene_.phases[f.phase].scheme == FluidScheme::consistent && f.held.any())
+    if ((scene_.phases[f.phase].scheme == FluidScheme::consistent || f.surface) && f.held.any())
       hold_inside(particles_[f.phase], f.held);
   for (const auto& f : fluids_)
     if (f.relief.exists()) hold_above(particles_[f.phase], f.relief, f.held.margin);

@@ -81,12 +81,14 @@ class Simulation {
   void extend_into_walls();
   void extend_into_grains();
   void rate_fluids();
+  void find_free_surfaces();
   void rate_energies();
   void repel_from_walls();
   void stress_bodies();
   void touch();
   void react();
   void drag_grains();
+  void hold_bulk_speeds();
   void kick();
 
   void rates(bool first);

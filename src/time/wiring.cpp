@@ -214,6 +214,30 @@ Friction friction_with(const Phase& other) {
   return other.roughness ? Friction::rough : Friction::smooth;
 }
 
+/// From now on the fluid keeps the mean velocity along periodic axes that it has.
+void hold_as_it_is(BulkHold& hold, BlockMean& mean, const PhaseParticles& fluid, const Bounds& bounds) {
+  for (int d = 0; d < fluid.dimensions() && fluid.size() > 0; ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    hold.axes[c] = bounds.periodic[c];
+    if (hold.axes[c]) hold.velocity[c] = mean(fluid.column(Field::velocity, d), fluid.size());
+  }
+}
+
+/// -tr M/Dim of a fluid's own entry on a lattice.
+double lattice_moment(const Plan& plan, std::size_t fluid) {
+  for (const auto& e : plan.entries)
+    if (e.a == fluid && e.b == fluid) return e.consistency.gradient_sum;
+  return 1.0;
+}
+
+/// Whether the grains of the other phase resist the fluid by a form drag: that is then the whole of their friction. The
+/// logarithmic law of rough ground beside it would take the same momentum twice.
+bool has_form_drag(const Plan& plan, std::size_t fluid, std::size_t other) {
+  return std::any_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) {
+    return e.drag > 0 && ((e.a == fluid && e.b == other) || (e.a == other && e.b == fluid));
+  });
+}
+
 }  // namespace
 
 /// The ground of fitted rows, if the fluid feels the wall that it is of.
@@ -258,7 +282,8 @@ void Simulation::wire_eddies(Fluid& f) {
       e.stress = o.shear_stress.value_or(Vec3{});
       if (o.kind == PhaseKind::wall) e.wall = &particles_[other];
       if (e.friction == Friction::grains) {
-        e.roughness = f.eddies.roughness = o.roughness.value_or(plan_.spacing / 30.0);
+        const bool drag = has_form_drag(plan_, f.phase, other);
+        e.roughness = f.eddies.roughness = drag ? 0.0 : o.roughness.value_or(plan_.spacing / 30.0);
         f.eddies.grain_reach = std::max(f.eddies.grain_reach, n.radius);
       } else {
         e.roughness = o.roughness.value_or(0.0);
@@ -314,7 +339,7 @@ void Simulation::wire() {
     wall_velocity_.push_back(compile(scene_.phases[k].wall_velocity));
   }
   for (const auto& f : scene_.forcings)
-    for (std::size_t k = 0; k < phases; ++k)
+    for (std::size_t k = 0; k < phases && !f.hold_bulk_speed; ++k)
       if (particles_[k].name() == f.phase) forcings_.push_back({k, compile(f.acceleration)});
 
   const auto viscosity = [&](std::size_t a, std::size_t b) {
@@ -346,6 +371,14 @@ void Simulation::wire() {
       f.parameters.shift_speed = (s.scheme == FluidScheme::consistent ? 2.0 : 4.0) * s.shifting * pace;
       f.parameters.shift_limit = 0.2 * pace;
       f.parameters.gravity = scene_.domain.gravity;
+      f.parameters.lattice_moment = lattice_moment(plan_, k);
+      if (q.free_surface) {
+        f.surface = std::make_unique<SurfaceFinder>();
+        f.parameters.loosening = 4.0 * q.sound_speed / q.smoothing_length;
+        f.parameters.void_pressure = pressure_law(k)(s.density);
+      } else {
+        f.parameters.void_pressure = -0.2 * s.density * speed * speed;
+      }
       for (const auto& e : plan_.entries) {
         if ((e.a != k && e.b != k) || e.law == Law::repulsive) continue;
         const std::size_t other = e.a == k ? e.b : e.a;
@@ -370,6 +403,8 @@ void Simulation::wire() {
       f.held.margin = 0.02 * plan_.spacing;
       if (s.scheme == FluidScheme::consistent) f.relief = relief_under(k);
       if (q.eddies) wire_eddies(f);
+      for (const auto& force : scene_.forcings)
+        if (force.hold_bulk_speed && force.phase == s.name) hold_as_it_is(f.hold, f.mean, p, plan_.bounds);
       fluids_.push_back(std::move(f));
     } else if (seen[k]) {
       Extension x;

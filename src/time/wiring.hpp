@@ -1,6 +1,8 @@
 // How a Simulation's phases are joined: what each verb walks over, made once from the plan.
 #pragma once
 
+#include "passes/means.hpp"
+#include "passes/surface.hpp"
 #include "time/simulation.hpp"
 
 namespace barchan {
@@ -10,8 +12,12 @@ struct Simulation::Fluid {
   std::size_t phase = 0;
   std::vector<FluidNeighbour> neighbours;
   FluidParameters parameters{};
-  Sides held;     // the domain's sides that a wall closes
-  Relief relief;  // curved ground
+  Sides held;                              // the domain's sides that a wall closes
+  Relief relief;                           // curved ground
+  std::unique_ptr<SurfaceFinder> surface;  // null: no free surface
+
+  BlockMean mean;  // of an enclosed fluid's density rates, of a held fluid's velocity
+  BulkHold hold;
 
   // a fluid with eddies
   std::vector<EddyNeighbour> eddy_neighbours;  // empty: none
