@@ -92,12 +92,12 @@ std::string place_text(const Vec3& x, int dimensions) {
 
 /// The place of a cell without a particle about it that is next to the fluid; empty when there is none. Space behind a
 /// row of solids, as in a hill of fitted rows, is three cells from the fluid.
-std::string find_free_space(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks,
-                            std::size_t fluid) {
-  double room = 1.0;
+std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid) {
+  double room = 1.0, particles = 0.0;
+  for (const ParticleBlock& block : blocks) particles += static_cast<double>(block.position.size());
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
     room *= scene.domain.size[axis] / scene.spacing;
-  if (room > 27.0 * plan.particles()) return "most of the domain";  // more cells than the particles are neighbours of
+  if (room > 27.0 * particles) return "most of the domain";  // more cells than the particles are neighbours of
   Cells all(scene), own(scene);
   for (const ParticleBlock& block : blocks)
     for (const Vec3& x : block.position) all.take(all.cell_of(x));
@@ -113,11 +113,10 @@ std::string find_free_space(const Scene& scene, const Plan& plan, const std::vec
 
 }  // namespace
 
-Enclosure find_enclosure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks,
-                         std::size_t fluid) {
+Enclosure find_enclosure(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid) {
   const Phase& phase = scene.phases[fluid];
   Enclosure result;
-  result.free_space = find_free_space(scene, plan, blocks, fluid);
+  result.free_space = find_free_space(scene, blocks, fluid);
   result.open = !result.free_space.empty();
   for (const Phase& other : scene.phases)
     if (other.kind == PhaseKind::fluid && other.name != phase.name && entry_between(scene, phase, other))

@@ -68,13 +68,14 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
-std::vector<Field> fields_of(const Phase& phase, bool eddies) {
+std::vector<Field> fields_of(const Phase& phase, bool eddies, bool free_surface) {
   using enum Field;
   switch (phase.kind) {
     case PhaseKind::fluid: {
       std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
       if (phase.shifting > 0) f.push_back(shift_velocity);
       if (phase.scheme == FluidScheme::consistent) f.push_back(anisotropy);
+      if (free_surface) f.insert(f.end(), {wholeness, surface_normal});
       if (eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
       if (phase.energy) f.insert(f.end(), {energy, energy_rate});
       return f;
@@ -138,18 +139,18 @@ void add_entries(const Scene& scene, Plan& plan) {
   }
 }
 
-/// As the scene says, or else as the particles show.
-void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Plan& plan) {
-  PlanPhase& p = plan.phases[fluid];
+/// Enclosed as the scene says, or else as the particles show; a fluid that is neither and ends somewhere has a free
+/// surface.
+void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, PlanPhase& p,
+             std::vector<std::string>& warnings) {
   const std::optional<bool>& said = scene.phases[fluid].enclosed;
-  const Enclosure seen = find_enclosure(scene, plan, blocks, fluid);
+  const Enclosure seen = find_enclosure(scene, blocks, fluid);
   p.enclosed = said.value_or(seen.shut_in);
   p.enclosure = said ? "as the scene says" : seen.why;
   p.free_surface = !p.enclosed && seen.open;
-  if (p.free_surface) p.fields.insert(p.fields.end(), {Field::wholeness, Field::surface_normal});
   if (said.value_or(false) && !seen.free_space.empty())
-    plan.warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
-                            ", so that the mean density should be free; leave the key out");
+    warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
+                       ", so that the mean density should be free; leave the key out");
 }
 
 void add_passes(const Scene& scene, Plan& plan) {
@@ -206,7 +207,8 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
     q.eddies = has_eddies(scene, p);
     for (const auto& f : scene.forcings) q.held = q.held || (f.hold_bulk_speed && f.phase == p.name);
-    q.fields = fields_of(p, q.eddies);
+    if (p.kind == PhaseKind::fluid) enclose(scene, blocks, k, q, plan.warnings);
+    q.fields = fields_of(p, q.eddies, q.free_surface);
     if (p.kind == PhaseKind::fluid) q.sound_speed = p.sound_speed.value_or(10.0 * plan.largest_speed);
     if (p.kind == PhaseKind::elastic) q.sound_speed = compression_speed(p);
     if (p.kind == PhaseKind::grains) {
@@ -230,8 +232,6 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.limits = initial_limits(scene, plan);
   if (plan.limits.empty() && plan.fixed_step == 0)
     throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");
-  for (std::size_t k = 0; k < plan.phases.size(); ++k)
-    if (plan.phases[k].kind == PhaseKind::fluid) enclose(scene, blocks, k, plan);
   add_warnings(scene, plan);
   return plan;
 }

@@ -108,10 +108,9 @@ class PhysicsChecker {
            "a turbulent fluid cannot touch one of another density yet; expected turbulence = \"none\", or no such "
            "entry");
     for (const Phase* fluid : {&a, &b})
-      if (a.name != b.name && fluid->scheme == FluidScheme::plain && (consistent || a.density != b.density))
+      if (consistent && fluid->scheme == FluidScheme::plain)
         tell(place(*fluid) + ".scheme",
-             "two fluids are joined by the consistent scheme only; expected \"consistent\", or no entry " + pair.a +
-                 "-" + pair.b);
+             "two fluids that meet need one scheme; expected \"consistent\", or no entry " + pair.a + "-" + pair.b);
   }
 
   bool has_ground(const Phase& fluid) const {

@@ -162,8 +162,7 @@ phase = "air"
 box = { min = [0, 0], max = [0.7, 0.48] }
 count = 2
 every = 1e-9
-[time]
-largest-speed = 1)");
+[time])");
 
 const FrameField& field(const Table& table, const std::string& name) {
   for (const auto& f : table.fields)
@@ -319,7 +318,7 @@ TEST(Measurements, ThePlanSaysWhatIsMeasuredAndWhatIsNot) {
   const std::string text = to_text(plan, scene);
   EXPECT_NE(text.find("measured profile p (air, 2 slices, every 1e-09 s from 0 s)\n"), std::string::npos) << text;
   EXPECT_NE(text.find("not measured probe, grid, wall-shear\n"), std::string::npos) << text;
-  const Scene plain = parse_scene(square_text, "s.toml", {"time.largest-speed=1"});
+  const Scene plain = parse_scene(square_text, "s.toml");
   EXPECT_TRUE(make_plan(plain, generate(plain)).instruments.empty());
 }
 
