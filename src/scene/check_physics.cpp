@@ -54,11 +54,13 @@ class PhysicsChecker {
   void grains(const Phase& grains) {
     const std::string dotted = place(grains);
     const bool read = std::any_of(scene_.phases.begin(), scene_.phases.end(), [&](const Phase& fluid) {
-      return has_eddies(scene_, fluid) && entry_between(scene_, grains, fluid);
+      const Interaction* pair = entry_between(scene_, grains, fluid);
+      return pair && !(pair->drag > 0.0) && has_eddies(scene_, fluid);
     });
     if (pairs_known_ && report_.has(dotted + ".roughness") && !read)
       tell(dotted + ".roughness",
-           "only a turbulent fluid feels how rough grains are; expected turbulence in a fluid that has an entry with "
+           "only a turbulent fluid whose entry has no drag feels how rough grains are; expected turbulence in a fluid "
+           "that has an entry with "
            "\"" +
                grains.name + "\"");
   }
