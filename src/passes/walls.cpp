@@ -1,5 +1,7 @@
 #include "passes/walls.hpp"
 
+#include <algorithm>
+
 #include "kernels/kernel.hpp"
 
 namespace barchan {
@@ -18,6 +20,12 @@ template <std::size_t Dim>
 double turn(const double* bend, const std::array<double, Dim>& u) {
   if constexpr (Dim == 2) return bend[0] * u[0] * u[0];
   else return bend[0] * u[0] * u[0] + 2.0 * bend[1] * u[0] * u[2] + bend[2] * u[2] * u[2];
+}
+
+/// 3 x^2 - 2 x^3 of x held in [0, 1].
+double smooth_share(double x) {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
 }
 
 template <int Dim, bool Curved>
@@ -86,11 +94,14 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
     }
     record[R::pressure] = simd::sum(s.pressure) / weight;
     const double depth2 = simd::sum(s.depth2);
+    double alone = 0.0;
+    for (const auto& fluid : fluids) alone += fluid.alone;
+    const double open = alone > 0.0 ? smooth_share((weight / alone - solid_share) / (open_share - solid_share)) : 0.0;
     std::array<double, Dim> mean, stuck;
     double mean_normal = 0.0, stuck_normal = 0.0, wall_normal = 0.0;
     for (std::size_t d = 0; d < Dim; ++d) {
       mean[d] = simd::sum(s.velocity[d]) / weight;
-      stuck[d] = is_grain                      ? v_wall[d]
+      stuck[d] = is_grain                      ? v_wall[d] + open * (mean[d] - v_wall[d])
                  : phi_w > 0.0 && depth2 > 0.0 ? v_wall[d] - phi_w * simd::sum(s.sloped[d]) / depth2
                                                : 2.0 * v_wall[d] - mean[d];
       mean_normal += mean[d] * normal[d];

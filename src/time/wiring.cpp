@@ -232,6 +232,14 @@ double lattice_moment(const Plan& plan, std::size_t fluid) {
   return 1.0;
 }
 
+/// sum V W of a full neighbourhood less the particle itself.
+double weight_about_a_lone_particle(const Plan& plan, const PlanEntry& e) {
+  double own = 0.0;
+  with_kernel<double>(e.kernel, e.radius, plan.dimensions,
+                      [&](const auto& kernel) { own = kernel.value(0.0) * std::pow(plan.spacing, plan.dimensions); });
+  return e.consistency.volume_sum - own;
+}
+
 /// Whether the grains of the other phase resist the fluid by a form drag: that is then the whole of their friction. The
 /// logarithmic law of rough ground beside it would take the same momentum twice.
 bool has_form_drag(const Plan& plan, std::size_t fluid, std::size_t other) {
@@ -411,7 +419,8 @@ void Simulation::wire() {
         if ((e.a != k && e.b != k) || (e.law != Law::boundary && e.law != Law::coupling)) continue;
         const std::size_t fluid = e.a == k ? e.b : e.a;
         const PairList* list = &neighbours_.list(static_cast<std::size_t>(e.a == k ? e.forward : e.backward));
-        x.sources.push_back({list, &motion_[fluid], e.kernel, e.radius, scene_.phases[fluid].density});
+        x.sources.push_back({list, &motion_[fluid], e.kernel, e.radius, scene_.phases[fluid].density,
+                             e.drag > 0 ? weight_about_a_lone_particle(plan_, e) : 0.0});
         if (e.law == Law::coupling) x.felt_fluids.push_back(fluid);
         if (e.law == Law::coupling)
           x.felt.push_back({list, &motion_[fluid], e.kernel, e.radius, viscosity(k, fluid), false});
