@@ -183,11 +183,11 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
   return s;
 }
 
-/// The friction that the sums make, and the squares of what it is made of: of the kinematic stress and of the strain.
+/// The friction that the sums make; on the way, the squares of the stress mu |S| and of the strain |S|.
 template <int Dim>
 struct StressOf {
   const EddySums<Dim>& s;
-  Four phi2{0.0}, shear2{0.0};  // (|T|/rho)^2 rho^2 and |S|^2
+  Four phi2{0.0}, shear2{0.0};  // |T|^2 and |S|^2
 
   template <class Matrix, class Gradient>
   BARCHAN_SIMD_INLINE std::array<Four, Dim> operator()(const Matrix& inverse, const Gradient& grad_v) {

@@ -65,6 +65,7 @@ double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDist
 /// T is the flux mu grad v as the pairs have it, and |T|/rho = (nu + nu_t)|S| gives the next step's nu_t. With the
 /// pair's logarithmic mean, a logarithmic profile is an exact solution on any arrangement of particles, up to a wall
 /// that enters by its stress: n the direction to the fluid, mu_ab v_ab = tau (r.n) for its pairs.
+/// In two dimensions the motion records of fluids with eddies hold their roots (give_roots); in three, `eddies` does.
 void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
                 std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);
 

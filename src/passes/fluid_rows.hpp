@@ -109,16 +109,15 @@ template <int Dim, template <int> class Law, class T, class OwnOf>
 BARCHAN_SIMD_INLINE bool sum_rows(const FourOf& at, const FluidNeighbour& e, const ReadyKernelOf<T>& ready,
                                   LanesOf<T> unit, OwnOf&& own_of, typename Law<Dim>::template Sums<Four>& raw,
                                   const Roots& roots = {}) {
-  std::array<PairList::Row, 4> rows;
+  const auto row_of = [&](std::size_t lane) __attribute__((always_inline)) {
+    return e.list->row(std::min(at.first + lane, at.last));
+  };
   bool any = false;
-  for (std::size_t lane = 0; lane < 4; ++lane) {
-    rows[lane] = e.list->row(std::min(at.first + lane, at.last));
-    any = any || rows[lane].begin != rows[lane].end;
-  }
+  for (std::size_t lane = 0; lane < 4 && !any; ++lane) any = row_of(lane).begin != row_of(lane).end;
   if (!any) return false;
   std::array<typename Law<Dim>::template Sums<LanesOf<T>>, 4> sums;
   for (std::size_t lane = 0; lane < 4; ++lane)
-    sum_row<Dim, Law, T>(rows[lane], e, ready, own_of(std::min(at.first + lane, at.last)), unit, sums[lane], roots);
+    sum_row<Dim, Law, T>(row_of(lane), e, ready, own_of(std::min(at.first + lane, at.last)), unit, sums[lane], roots);
   raw = reduce<typename Law<Dim>::template Sums<Four>, T>(sums);
   return true;
 }

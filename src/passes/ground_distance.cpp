@@ -47,7 +47,8 @@ double GroundDistance::squared(const Vec3& x, std::int32_t seed) const {
 
 namespace {
 
-/// Calls f(cell) for the cells about `at`, periodic images taken back.
+/// Calls f(cell) for the cells about `at`, periodic images taken back; those above each other one after another, as
+/// they mostly have the same ground.
 template <class F>
 void around(const std::array<int, 3>& at, const std::array<int, 3>& count, const std::array<bool, 3>& periodic, F&& f) {
   std::array<std::array<int, 3>, 3> places;  // by axis: before, at, after; -1: none
@@ -59,13 +60,12 @@ void around(const std::array<int, 3>& at, const std::array<int, 3>& count, const
       places[d][static_cast<std::size_t>(k)] = b;
     }
   const std::size_t first = count[2] > 1 ? 0 : 1, last = count[2] > 1 ? 2 : 1;
-  for (std::size_t k = first; k <= last; ++k)
+  const auto row = static_cast<std::size_t>(count[0]), layer = row * static_cast<std::size_t>(count[1]);
+  for (const int x : places[0])
     for (const int y : places[1])
-      for (const int x : places[0])
-        if (places[2][k] >= 0 && y >= 0 && x >= 0)
-          f((static_cast<std::size_t>(places[2][k]) * static_cast<std::size_t>(count[1]) +
-             static_cast<std::size_t>(y)) *
-                static_cast<std::size_t>(count[0]) +
+      for (std::size_t k = first; k <= last; ++k)
+        if (x >= 0 && y >= 0 && places[2][k] >= 0)
+          f(static_cast<std::size_t>(places[2][k]) * layer + static_cast<std::size_t>(y) * row +
             static_cast<std::size_t>(x));
 }
 
