@@ -380,6 +380,9 @@ void Simulation::wire() {
       f.parameters.lattice_moment = lattice_moment(plan_, k);
       if (q.free_surface) {
         f.surface = std::make_unique<SurfaceFinder>();
+        if (!q.eddies)
+          f.parameters.least_viscosity =
+              s.density * q.smoothing_length * q.sound_speed / (2.0 * (plan_.dimensions + 2));
         f.parameters.loosening = 4.0 * q.sound_speed / q.smoothing_length;
         f.parameters.void_pressure = pressure_law(k)(s.density);
       } else {
