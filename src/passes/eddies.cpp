@@ -160,12 +160,12 @@ EddySums<Dim> with_viscosity(const EddyNeighbour& e, const RawSums<Dim>& raw, co
   return s;
 }
 
-/// Sums over all entries.
+/// Sums over all entries; `company`: share of the neighbourhood that the fluid itself fills, the first entry.
 template <int Dim, class T, class OwnOf>
 BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const EddyNeighbour> neighbours,
                                               const std::vector<ReadyKernelOf<T>>& kernels, LanesOf<T> unit,
                                               OwnOf&& own_of, const EddyColumns<Dim>& columns, const Vec3& weight,
-                                              const EddyParameters& p) {
+                                              const EddyParameters& p, Four& company) {
   EddySums<Dim> s{}, pairs;
   RawSums<Dim> raw;
   for (std::size_t c = 0; c < neighbours.size(); ++c) {
@@ -179,6 +179,7 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
       s.take(given ? with_wall_stress<Dim>(e, raw, scale, columns, at, p) : with_viscosity<Dim>(e, raw, columns, at, p),
              scale, weight);
     }
+    if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);
   }
   return s;
 }
@@ -243,9 +244,10 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
       own.root = simd::broadcast<V>(eddies.root[k]);
       return own;
     };
-    const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p);
+    Four company(0.0);
+    const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p, company);
     auto anisotropy = columns.anisotropy(at);
-    auto place = columns.place(at);
+    auto place = columns.place(at, company);
     StressOf<Dim> stress{s};
     const Four rho = load_four(columns.rho, at.first, at.count);
     const auto r = finish_consistent<Dim, Four>(s, 1.0, rho, q, anisotropy, place, stress);

@@ -50,6 +50,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       return own;
     };
     typename L::template Sums<Four> s{}, raw;
+    Four company(0.0);
     for (std::size_t c = 0; c < neighbours.size(); ++c) {
       const auto& e = neighbours[c];
       if constexpr (Joined) {
@@ -68,9 +69,11 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       }
       if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw))
         s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+      if constexpr (L::corrected)
+        if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);  // the fluid's own entry is the first
     }
     auto anisotropy = columns.anisotropy(at);
-    auto place = columns.place(at);
+    auto place = columns.place(at, company);
     const auto r = finish<Dim, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);
     columns.store(at, r, anisotropy, place, s.concentration);
   }

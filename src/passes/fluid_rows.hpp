@@ -179,8 +179,8 @@ struct RateColumns {
     return a;
   }
 
-  BARCHAN_SIMD_INLINE Place<Dim, Four> place(const FourOf& at) const {
-    Place<Dim, Four> place{load_four(pressure, at.first, at.count), {}, {}};
+  BARCHAN_SIMD_INLINE Place<Dim, Four> place(const FourOf& at, Four company) const {
+    Place<Dim, Four> place{company, load_four(pressure, at.first, at.count), {}, {}};
     for (std::size_t d = 0; d < Dim; ++d)
       place.normal[d] = surface.wholeness ? load_four(surface.normal[d], at.first, at.count) : Four(0.0);
     return place;

@@ -377,6 +377,9 @@ void Simulation::wire() {
       f.parameters.shift_speed = (s.scheme == FluidScheme::consistent ? 2.0 : 4.0) * s.shifting * pace;
       f.parameters.shift_limit = 0.2 * pace;
       f.parameters.gravity = scene_.domain.gravity;
+      for (const auto& e : plan_.entries)
+        if (e.law == Law::coupling && (e.a == k || e.b == k))
+          f.parameters.pores = 0.5 * q.sound_speed / q.smoothing_length;
       f.parameters.lattice_moment = lattice_moment(plan_, k);
       if (q.free_surface) {
         f.surface = std::make_unique<SurfaceFinder>();
