@@ -41,13 +41,13 @@ struct Rates {
   V density;
 };
 
-/// Where a particle stands in its fluid. Read: its company, its pressure, and the direction inwards at and near the
-/// free surface, of the step before (zero elsewhere). Written: its wholeness (chi below).
+/// Where a particle stands in its fluid. Read: its company, pressure, velocity, and the direction inwards at and near
+/// the free surface, of the step before (zero elsewhere). Written: its wholeness (chi below).
 template <int Dim, class V>
 struct Place {
   V company;  // share of the neighbourhood that its own fluid fills, -tr M/Dim of the fluid's entry with itself
   V pressure;
-  std::array<V, Dim> normal;
+  std::array<V, Dim> velocity, normal;
   V wholeness;
 };
 
@@ -167,9 +167,9 @@ constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
 }
 
 /// A fluid particle alone in the pores of a bed is no fluid: the grains about it answer with its own pressure, and what
-/// compresses it meets nothing. Below this share of its own fluid it feels no pressure, and its density returns to
-/// rest.
-constexpr double lonely = 0.1, in_company = 0.3;
+/// compresses it meets nothing. Below this share of its own fluid it feels neither pressure nor weight, stays in its
+/// pore (its velocity decays at the rate 0.4 `pores`), and its density returns to rest at the rate `pores`.
+constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
 
 /// Where a neighbourhood is not whole, corrected operators feed energy in. chi = det(-M) - h|B|/2 tells: of particles
 /// disturbed by a fifth of a spacing, 99 % of a straight surface lie below 0.31 and 99.9 % of an interior above 0.39.
@@ -247,7 +247,6 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
         grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
     }
   }
-  const V counts = q.pores > 0.0 ? smooth_step(place.company, lonely, in_company) : V(1.0);
   const std::array<V, Dim> rubbed = friction(inverse, grad_v);
   V divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
@@ -259,14 +258,18 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       transported += r.shift[e] * grad_v[d][e];
       squared += grad_v[d][e] * grad_v[e][d];
     }
-    r.acceleration[d] =
-        laplace_v * rubbed[d] - counts * force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
+    r.acceleration[d] = laplace_v * rubbed[d] - force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
   }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
   const V laplacian = inner * (laplace_p * dynamic) + outer * (V(2.0) * s.diffusion);
   r.density = -rho * divergence + V(q.diffusivity / c2) * laplacian +
               V(q.source_diffusivity / c2 * q.reference_density) * squared + inner * (along_p * V(1.0 / c2));
-  if (q.pores > 0.0) r.density = counts * r.density - (V(1.0) - counts) * V(q.pores) * (rho - V(q.reference_density));
+  if (q.pores > 0.0) {
+    const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
+    r.density = counts * r.density - rate * (rho - V(q.reference_density));
+    for (std::size_t d = 0; d < Dim; ++d)
+      r.acceleration[d] = counts * r.acceleration[d] - V(pore_friction) * rate * place.velocity[d];
+  }
   if (q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_found, lopsided, q);
   // The next step's weights; they stay positive: no entry of A beyond a half.
   const V scale = V(-0.5 * (Dim + 2) * Dim) * per_trace;

@@ -145,6 +145,7 @@ struct RateColumns {
   std::array<double*, moments> skew{};  // 2D: xx xy, and yy = -xx
   double* rate;
   const double *rho, *pressure;
+  std::array<const double*, Dim> velocity{};
   SurfaceColumns<Dim> surface;
 
   explicit RateColumns(PhaseParticles& fluid)
@@ -154,6 +155,7 @@ struct RateColumns {
         surface(fluid) {
     for (std::size_t d = 0; d < Dim; ++d) {
       acceleration[d] = fluid.column(Field::acceleration, static_cast<int>(d));
+      velocity[d] = fluid.column(Field::velocity, static_cast<int>(d));
       if (fluid.has(Field::shift_velocity)) shift[d] = fluid.column(Field::shift_velocity, static_cast<int>(d));
     }
     if constexpr (Corrected)
@@ -180,7 +182,8 @@ struct RateColumns {
   }
 
   BARCHAN_SIMD_INLINE Place<Dim, Four> place(const FourOf& at, Four company) const {
-    Place<Dim, Four> place{company, load_four(pressure, at.first, at.count), {}, {}};
+    Place<Dim, Four> place{company, load_four(pressure, at.first, at.count), {}, {}, {}};
+    for (std::size_t d = 0; d < Dim; ++d) place.velocity[d] = load_four(velocity[d], at.first, at.count);
     for (std::size_t d = 0; d < Dim; ++d)
       place.normal[d] = surface.wholeness ? load_four(surface.normal[d], at.first, at.count) : Four(0.0);
     return place;
