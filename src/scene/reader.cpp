@@ -29,6 +29,7 @@ std::vector<std::string> written_order(const toml::table& table) {
     return a.first.second < b.first.second;
   });
   std::vector<std::string> order;
+  order.reserve(names.size());
   for (auto& name : names) order.push_back(std::move(name.second));
   return order;
 }
