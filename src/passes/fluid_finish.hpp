@@ -167,8 +167,9 @@ constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
 }
 
 /// A fluid particle alone in the pores of a bed is no fluid: the grains about it answer with its own pressure, and what
-/// compresses it meets nothing. Below this share of its own fluid it feels neither pressure nor weight, stays in its
-/// pore (its velocity decays at the rate 0.4 `pores`), and its density returns to rest at the rate `pores`.
+/// compresses it meets nothing. Below this share of its own fluid it feels neither pressure nor weight, is not shifted,
+/// stays in its pore (its velocity decays at the rate 0.4 `pores`), and its density returns to rest at the rate
+/// `pores`.
 constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
 
 /// Where a neighbourhood is not whole, corrected operators feed energy in. chi = det(-M) - h|B|/2 tells: of particles
@@ -267,8 +268,10 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   if (q.pores > 0.0) {
     const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
     r.density = counts * r.density - rate * (rho - V(q.reference_density));
-    for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t d = 0; d < Dim; ++d) {
       r.acceleration[d] = counts * r.acceleration[d] - V(pore_friction) * rate * place.velocity[d];
+      r.shift[d] *= counts;
+    }
   }
   if (q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_found, lopsided, q);
   // The next step's weights; they stay positive: no entry of A beyond a half.
