@@ -1,5 +1,6 @@
-// The fluid pass written the slow way, from the formulas in the heads of src/laws/plain_fluid.hpp and
-// src/laws/consistent_fluid.hpp: every pair and every image, one number at a time.
+// The fluid pass written the slow way, from the formulas in the heads of src/laws/plain_fluid.hpp,
+// src/laws/consistent_fluid.hpp and the comments of src/passes/fluid_finish.hpp: every pair and every image, one number
+// at a time.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +24,13 @@ struct Rates {
   std::array<std::vector<double>, 3> acceleration, shift;
   std::array<std::vector<double>, 6> anisotropy;
   std::vector<double> density;
-  int limited = 0;      // particles whose shift met its limit
-  int uncorrected = 0;  // particles with too few neighbours
+  std::vector<double> wholeness;               // chi
+  std::array<std::vector<double>, 3> inwards;  // B
+  int limited = 0;                             // particles whose shift met its limit
+  int uncorrected = 0;                         // particles with too few neighbours
+  int blended = 0;                             // particles with a part of both kinds of operators
+  int turned = 0;                              // particles whose shift would have led out of the fluid
+  int loosened = 0;                            // particles whose density decays
 };
 
 using Matrix = std::array<Vec3, 3>;
@@ -50,13 +56,37 @@ void for_neighbours(const sets::Cast& cast, std::size_t a, std::size_t k, const 
                         });
 }
 
-inline void keep_shift(Rates& out, Vec3 concentration, const FluidParameters& q) {
+/// du = -U h B, at most the limit. At a free surface, whose inward direction n the phase holds, the part of du against
+/// n is taken away.
+inline void keep_shift(Rates& out, const PhaseParticles& p, std::size_t k, Vec3 concentration,
+                       const FluidParameters& q) {
   Vec3 du = -q.shift_speed * q.smoothing_length * concentration;
   if (norm(du) > q.shift_limit) {
     du = q.shift_limit / norm(du) * du;
     ++out.limited;
   }
-  for (std::size_t d = 0; d < 3; ++d) out.shift[d].push_back(du[d]);
+  if (p.has(Field::surface_normal)) {
+    const Vec3 n = sets::vector(p, Field::surface_normal, k);
+    const double length = norm(n);
+    if (length > 0.0 && dot(du, n) < 0.0) {
+      du = du - dot(du, n) / (length * length) * n;
+      ++out.turned;
+    }
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    out.shift[d].push_back(du[d]);
+    out.inwards[d].push_back(concentration[d]);
+  }
+}
+
+/// drho/dt of loose fluid: the density above that at rest decays at the rate `loosening` times what the fullness
+/// (0.67 h|B| - tr M/Dim), 1 on a lattice, misses beyond 4 %, at most a half.
+inline double loosen(Rates& out, double rho, double trace, double h_b, int dimensions, const FluidParameters& q) {
+  const double fullness = (0.67 * h_b - trace / dimensions) / q.lattice_moment;
+  const double missing = std::clamp(0.96 - fullness, 0.0, 0.5);
+  const double above = std::max(rho - q.reference_density, 0.0);
+  if (missing * above > 0.0) ++out.loosened;
+  return -q.loosening * missing * above;
 }
 
 inline Rates plain_rates(const sets::Cast& cast, std::size_t a, const std::vector<Entry>& entries,
@@ -67,7 +97,7 @@ inline Rates plain_rates(const sets::Cast& cast, std::size_t a, const std::vecto
     const double rho_a = p.column(Field::density)[k], p_a = p.column(Field::pressure)[k];
     const Vec3 v_a = sets::vector(p, Field::velocity, k);
     Vec3 dv = q.gravity + q.acceleration, concentration{};
-    double drho = 0.0;
+    double drho = 0.0, trace = 0.0;
     for_neighbours(cast, a, k, entries,
                    [&](const Entry& e, const PhaseParticles& b, std::size_t j, const Vec3& r, double f) {
                      const double v_j = volume(b, j), p_b = b.column(Field::pressure)[j];
@@ -78,10 +108,17 @@ inline Rates plain_rates(const sets::Cast& cast, std::size_t a, const std::vecto
                        drho += q.diffusivity / (q.sound_speed * q.sound_speed) * 2.0 * v_j * f *
                                (p_a - p_b - q.reference_density * dot(q.gravity, r));
                      concentration = concentration + v_j * grad_w;
+                     trace += v_j * dot(r, grad_w);
                    });
+    const double h_b = q.smoothing_length * norm(concentration);
+    out.wholeness.push_back(-trace / cast.bounds.dimensions - 0.5 * h_b);
+    if (p.has(Field::wholeness)) {  // of volumes m/rho0, as if nothing were compressed
+      const double compressed = rho_a / q.reference_density;
+      drho += loosen(out, rho_a, compressed * trace, compressed * h_b, cast.bounds.dimensions, q);
+    }
     for (std::size_t d = 0; d < 3; ++d) out.acceleration[d].push_back(dv[d]);
     out.density.push_back(drho);
-    keep_shift(out, concentration, q);
+    keep_shift(out, p, k, concentration, q);
   }
   return out;
 }
@@ -153,14 +190,26 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
                      P = P + vf * p_ab * r;
                      C = C + friction * vf * w * r;
                      L_v = L_v + friction * vf * w * v_ab;
-                     L_p += vf * (p_ab - q.reference_density * dot(q.gravity, r));
+                     L_p += vf * p_ab;
                    });
-    keep_shift(out, B, q);
+    keep_shift(out, p, k, B, q);
     // Few neighbours, det(-M) below 0.6: uncorrected, M = -1 and A = 0.
     Matrix minus_m{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (std::size_t d = 0; d < dim; ++d)
       for (std::size_t e = 0; e < dim; ++e) minus_m[d][e] = -M[d][e];
-    const bool whole = determinant(minus_m) > 0.6;
+    const double content = determinant(minus_m), h_b = q.smoothing_length * norm(B);
+    const bool whole = content > 0.6;
+    // chi = det(-M) - h|B|/2; the corrected operators count with w(chi), which rises from 0 at 0.3 to 1 at 0.6.
+    const double chi = content - 0.5 * h_b, rise = std::clamp((chi - 0.3) / 0.3, 0.0, 1.0);
+    const double inner = 3 * rise * rise - 2 * rise * rise * rise, outer = 1 - inner;
+    out.wholeness.push_back(chi);
+    out.blended += inner > 0.0 && outer > 0.0;
+    double drho = 0.0;
+    if (q.loosening > 0.0) {
+      double trace = 0.0;
+      for (std::size_t d = 0; d < dim; ++d) trace += M[d][d];
+      drho = loosen(out, rho, trace, h_b, cast.bounds.dimensions, q);
+    }
     if (!whole) {
       M = {{{-1, 0, 0}, {0, -1, 0}, {0, 0, dim == 3 ? -1.0 : 0.0}}};
       A = {};
@@ -177,16 +226,17 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
       divergence += grad_v[d][d];
     }
     weighted = std::min(weighted, 0.5 * trace);  // both are negative
-    Vec3 dv = q.gravity + q.acceleration - 1.0 / rho * grad_p;
+    const Vec3 pushed = 2.0 * (p_a - q.void_pressure) * B - P;
+    Vec3 dv = q.gravity + q.acceleration - 1.0 / rho * (inner * grad_p + outer * pushed);
     for (std::size_t d = 0; d < dim; ++d) {
       const double laplacian = -2.0 * n * (L_v[d] - dot(grad_v[d], C)) / weighted;
       dv[d] += entries.front().viscosity / rho * laplacian + dot(grad_v[d], du);
       for (std::size_t e = 0; e < dim; ++e) squared += grad_v[d][e] * grad_v[e][d];
     }
-    const Vec3 dynamic = grad_p - q.reference_density * q.gravity;
-    const double laplacian_p = -2.0 * n * (L_p - dot(dynamic, B)) / trace;
-    out.density.push_back(-rho * divergence + q.diffusivity / c2 * laplacian_p +
-                          q.source_diffusivity / c2 * q.reference_density * squared + dot(du, grad_p) / c2);
+    const double laplacian_p = inner * (-2.0 * n / trace) * (L_p - dot(grad_p, B)) +
+                               outer * 2.0 * (L_p - q.reference_density * dot(q.gravity, B));
+    out.density.push_back(drho - rho * divergence + q.diffusivity / c2 * laplacian_p +
+                          q.source_diffusivity / c2 * q.reference_density * squared + inner * dot(du, grad_p) / c2);
     for (std::size_t d = 0; d < 3; ++d) out.acceleration[d].push_back(dv[d]);
     const auto next = [&](std::size_t d, std::size_t e) {
       const double weight = -0.5 * (n + 2.0) * (n * M[d][e] / trace - (d == e ? 1.0 : 0.0));
