@@ -28,7 +28,7 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
       v[d] = Lanes(record[R::velocity + d]);
       force[d] = Lanes(0.0);
     }
-    const Lanes own_volume(record[R::volume]), strength(e.strength);
+    const Lanes own_volume(record[R::volume]), strength(e.strength), density(e.density);
     ready([&](const auto& kernel) __attribute__((always_inline)) {
       for_each_neighbour<R::size>(
           row, others, [&](const Lanes* b) __attribute__((always_inline)) {
@@ -37,7 +37,9 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
             for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
             Lanes w, f;
             kernel.value_and_gradient(r2, w, f);
-            GrainDrag::add(dv, strength * w * (a_is_fluid ? own_volume : b[R::volume]), force);
+            const Lanes volume = a_is_fluid ? own_volume : b[R::volume];
+            GrainDrag::add(dv, strength * w * volume, force);
+            e.barrier.add(r, r2, dv, density * volume, force);
           });
     });
     for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
