@@ -461,7 +461,8 @@ void Simulation::wire() {
     const std::size_t fluid = a_fluid ? e.a : e.b;
     const double density = scene_.phases[fluid].density, reach = GrainBarrier::reach * d;
     // What flows at a tenth of the sound speed is turned back before it reaches a grain's centre.
-    const GrainBarrier barrier{reach, 0.1 * plan_.phases[fluid].sound_speed / reach};
+    const double speed = 0.1 * plan_.phases[fluid].sound_speed;
+    const GrainBarrier barrier{reach, speed / reach, 4.0 / (speed * speed)};
     const DragEntry entry{e.kernel, e.radius, 0.5 * e.drag * density * section, density, barrier};
     drags_.push_back({e.a, e.b, &neighbours_.list(static_cast<std::size_t>(e.forward)), entry, a_fluid});
     drags_.push_back({e.b, e.a, &neighbours_.list(static_cast<std::size_t>(e.backward)), entry, !a_fluid});
