@@ -75,8 +75,10 @@ TEST_P(Steps, AllocateNothing) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Steps,
     testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},
-                    small::Named{"TwoFluids", &small::two_fluids}, small::Named{"Channel", &small::channel},
-                    small::Named{"Squares", &small::squares}, small::Named{"Grains", &small::grains}),
+                    small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
+                    small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
+                    small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
+                    small::Named{"Grains", &small::grains}),
     [](const auto& s) { return std::string(s.param.name); });
 
 }  // namespace

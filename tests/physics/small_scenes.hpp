@@ -101,6 +101,54 @@ inline const std::string turbulent_dune = [] {
   return text.insert(text.find(scheme), "turbulence = \"mixing-length\"\n");
 }();
 
+/// The same dune under air whose bulk speed is held, with a form drag on the grains.
+inline const std::string held_dune = [] {
+  std::string text = dune;
+  const std::string coupling = "air-sand = 2.5\n";
+  text.replace(text.find(coupling), coupling.size(), "air-sand = { radius = 2.5, drag = 0.44 }\n");
+  return text + "[[forcing]]\nphase = \"air\"\nhold = \"bulk-speed\"\n";
+}();
+
+/// A column of water that breaks into a tank: a free surface, and spray.
+inline const std::string dam = R"toml(
+spacing = 0.01
+[domain]
+size = [0.4, 0.4]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-6
+sound-speed = 40
+scheme = "consistent"
+artificial-viscosity = 0.02
+[phases.tank]
+kind = "wall"
+slip = "free-slip"
+[interactions]
+kernel = "wendland-c2"
+water-water = 3.0
+water-tank = 3.0
+[[fill]]
+phase = "tank"
+shape = { sides = ["left", "right", "bottom"], layers = 3 }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [0.15, 0.3] } }
+perturb = 0.1
+velocity = ["4*x", "-4*y"]
+pressure = "hydrostatic"
+[time]
+end = 10
+largest-speed = 3
+)toml";
+
+inline const std::string plain_dam = [] {
+  std::string text = dam;
+  const std::string scheme = "scheme = \"consistent\"";
+  return text.replace(text.find(scheme), scheme.size(), "scheme = \"plain\"");
+}();
+
 /// Air that blows over water in a channel.
 inline const std::string two_fluids = R"toml(
 spacing = 0.01

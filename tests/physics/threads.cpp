@@ -79,9 +79,11 @@ const std::string mixed_channel = "precision = \"mixed\"\n" + small::channel;
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Threads,
     testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},
-                    small::Named{"TwoFluids", &small::two_fluids}, small::Named{"Channel", &small::channel},
-                    small::Named{"Squares", &small::squares}, small::Named{"Grains", &small::grains},
-                    small::Named{"MixedDune", &mixed_dune}, small::Named{"MixedChannel", &mixed_channel}),
+                    small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
+                    small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
+                    small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
+                    small::Named{"Grains", &small::grains}, small::Named{"MixedDune", &mixed_dune},
+                    small::Named{"MixedChannel", &mixed_channel}),
     [](const auto& s) { return std::string(s.param.name); });
 
 }  // namespace

@@ -44,11 +44,12 @@ struct Solid {
   int dimensions;
   Slip slip;
   PhaseKind kind;
+  bool drag = false;  // grains: a form drag acts, so that those alone in the fluid let it pass
   std::string name() const {
     return std::string(kind == PhaseKind::wall      ? "Wall"
                        : kind == PhaseKind::elastic ? "Elastic"
                                                     : "Grains") +
-           std::to_string(dimensions) + "D" + (slip == Slip::no_slip ? "NoSlip" : "FreeSlip");
+           std::to_string(dimensions) + "D" + (slip == Slip::no_slip ? "NoSlip" : "FreeSlip") + (drag ? "Drag" : "");
   }
 };
 void PrintTo(const Solid& solid, std::ostream* out) { *out << solid.name(); }
@@ -59,6 +60,7 @@ std::vector<Solid> every_solid() {
     for (const Slip slip : {Slip::no_slip, Slip::free_slip})
       for (const PhaseKind kind : {PhaseKind::wall, PhaseKind::elastic, PhaseKind::grains})
         solids.push_back({dimensions, slip, kind});
+  for (const int dimensions : {2, 3}) solids.push_back({dimensions, Slip::no_slip, PhaseKind::grains, true});
   return solids;
 }
 
@@ -67,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Walls, Extension, testing::ValuesIn(every_solid()),
                          [](const auto& solid) { return solid.param.name(); });
 
 TEST_P(Extension, EqualsTheNaiveSums) {
-  const auto [dimensions, slip, kind] = GetParam();
+  const auto [dimensions, slip, kind, drag] = GetParam();
   const bool accelerates = kind == PhaseKind::elastic;  // the blows of grains are no motion of a boundary
   Uniform random(31);
   Cast cast = solid_under_fluids(kind, dimensions, random);
@@ -78,9 +80,12 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   }
   const Vec3 gravity{0.5, -9.81, dimensions == 3 ? 1.5 : 0.0};
   const std::vector<double> rest{1.2, 900.0};
+  // sum V W about a lone grain: of both fluids together what the upper layers of this solid have, so that some of its
+  // particles count as alone, some as part of a bed, some as between.
+  const std::array<double, 2> about{drag ? 0.15 : 0.0, drag ? 0.05 : 0.0};
   std::array<std::vector<double>, 3> velocity;
   std::vector<double> pressure;
-  int alone = 0, linear = 0;
+  int alone = 0, linear = 0, passing = 0, between = 0, bedded = 0;
   for (std::size_t k = 0; k < wall.size(); ++k) {
     const Vec3 v_w = vector(wall, Field::velocity, k), n = vector(wall, Field::wall_normal, k);
     const double phi_w = wall.column(Field::wall_depth)[k];
@@ -105,7 +110,11 @@ TEST_P(Extension, EqualsTheNaiveSums) {
     Vec3 v = v_w;
     if (sum > 0.0) {
       const Vec3 mean = 1.0 / sum * sum_v;
-      const Vec3 stuck = kind == PhaseKind::grains ? v_w
+      // 0 up to 0.65 of the fluid about a lone grain, 1 from 0.9 on
+      const double rise = drag ? std::clamp((sum / (about[0] + about[1]) - 0.65) / 0.25, 0.0, 1.0) : 0.0;
+      const double open = 3 * rise * rise - 2 * rise * rise * rise;
+      ++(open == 0.0 ? bedded : open == 1.0 ? passing : between);
+      const Vec3 stuck = kind == PhaseKind::grains ? v_w + open * (mean - v_w)
                          : phi_w > 0.0             ? v_w - phi_w / sum_phi2 * sloped
                                                    : 2.0 * v_w - mean;
       v = slip == Slip::no_slip ? stuck : mean + dot(stuck - mean, n) * n;
@@ -118,8 +127,14 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   }
   EXPECT_GT(alone, 0) << "the lowest layers see no fluid";
   EXPECT_GT(linear, 0);
-  const std::vector<ExtensionSource> fluids{{&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, rest[0]},
-                                            {&cast.list(1), &cast.motion[2], KernelKind::cubic_spline, 2.2, rest[1]}};
+  if (drag) {
+    EXPECT_GT(passing, 0);
+    EXPECT_GT(between, 0);
+    EXPECT_GT(bedded, 0);
+  }
+  const std::vector<ExtensionSource> fluids{
+      {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, rest[0], about[0]},
+      {&cast.list(1), &cast.motion[2], KernelKind::cubic_spline, 2.2, rest[1], about[1]}};
   extend_into_solid(wall, cast.motion[0], fluids, gravity, slip);
   const auto n = static_cast<std::size_t>(dimensions);
   std::vector<double> got(wall.size());
@@ -214,6 +229,49 @@ TEST(FlatWall, ARestingColumnGivesTheWallItsPressure) {
     EXPECT_NEAR(p, weight(x), 1e-11);
     EXPECT_EQ(v[0], 0.0);
   });
+}
+
+/// Velocity that the air (2, 1 m/s) sees in grains (-1 m/s) on a lattice of the air: one alone in its site, and one in
+/// the top row of a bed four rows deep. `drag`: whether a form drag acts.
+std::array<Vec3, 2> seen_in_grains(bool drag) {
+  Uniform random(33);
+  const Bounds b = box(2, {14, 14, 0}, {true, false, false});
+  std::vector<Vec3> air, grains{{6.5, 9.5, 0}, {6.5, 3.5, 0}};
+  for (const Vec3& x : lattice(b, 1.0, 0.0, random)) {
+    if (x[1] > 4.0 && norm(x - grains[0]) > 0.5) air.push_back(x);
+    if (x[1] < 4.0 && norm(x - grains[1]) > 0.5) grains.push_back(x);
+  }
+  std::vector<PhaseParticles> p;
+  p.push_back(phase(PhaseKind::grains, 2, grains, 1.0, {Field::velocity}));
+  p.push_back(phase(PhaseKind::fluid, 2, air, 1.2, {Field::velocity, Field::density, Field::pressure}, 1000));
+  std::fill_n(p[0].column(Field::velocity), grains.size(), -1.0);
+  std::fill_n(p[1].column(Field::velocity), air.size(), 2.0);
+  std::fill_n(p[1].column(Field::velocity, 1), air.size(), 1.0);
+  std::fill_n(p[1].column(Field::density), air.size(), 1.2);
+  Cast cast(b, std::move(p), {{0, 1, 2.5}});
+  double about = 0.0;  // the lattice without its middle
+  for (int i = -2; i <= 2; ++i)
+    for (int j = -2; j <= 2; ++j)
+      if (i != 0 || j != 0) about += naive::weight(KernelKind::wendland_c2, 2.5, 2, std::hypot(i, j));
+  const std::vector<ExtensionSource> fluid{
+      {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 2.5, 1.2, drag ? about : 0.0}};
+  extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, Slip::no_slip);
+  std::array<Vec3, 2> seen{};
+  for (std::size_t k = 0; k < cast.phases[0].size(); ++k)
+    if (const auto id = cast.phases[0].id()[k]; id < 2)
+      seen[static_cast<std::size_t>(id)] = {cast.motion[0][k][2], cast.motion[0][k][3], 0};
+  return seen;
+}
+
+TEST(GrainsWithDrag, AloneLetTheFluidPassInABedDoNot) {
+  const auto seen = seen_in_grains(true);
+  EXPECT_NEAR(seen[0][0], 2.0, 1e-12);
+  EXPECT_NEAR(seen[0][1], 1.0, 1e-12);
+  EXPECT_EQ(seen[1], (Vec3{-1, 0, 0}));
+}
+
+TEST(GrainsWithoutDrag, AreAlwaysWalls) {
+  for (const Vec3& v : seen_in_grains(false)) EXPECT_EQ(v, (Vec3{-1, 0, 0}));
 }
 
 }  // namespace

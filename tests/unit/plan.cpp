@@ -230,6 +230,37 @@ TEST(Plan, EddiesAreThereOnlyIfAsked) {
   EXPECT_TRUE(eddies(plan_of(scene(air + floor + "shear-stress = [1, 0]\n", entries, {"air"}, below))));
 }
 
+// Only a fluid that ends somewhere has a free surface: its fields and its pass. Walls below, periodic above.
+TEST(Plan, FreeSurfacesAreOfFluidsThatEnd) {
+  const auto surface = [](const std::string& lower, const std::string& key, const std::string& box) {
+    const Scene s = parse_scene("spacing = 0.1\n[domain]\nsize = [2, 2]\nperiodic = [\"x\"" + lower + "]\n" + air +
+                                    key + "[interactions]\nair-air = 2.6\n[[fill]]\nphase = \"air\"\nshape = " + box +
+                                    "\n[time]\nend = 1\nlargest-speed = 1\n",
+                                "test.toml");
+    const Plan plan = plan_of(s);
+    const auto& fields = plan.phases[0].fields;
+    const auto owned = [&](Field f) { return std::find(fields.begin(), fields.end(), f) != fields.end(); };
+    EXPECT_EQ(owned(Field::wholeness), plan.phases[0].free_surface);
+    EXPECT_EQ(owned(Field::surface_normal), plan.phases[0].free_surface);
+    EXPECT_EQ(has(plan.passes, "free surface"), plan.phases[0].free_surface);
+    EXPECT_NE(has(plan.skipped, "free surface"), plan.phases[0].free_surface);
+    const Simulation run(s, plan, generate(s));
+    EXPECT_EQ(run.phases()[0].has(Field::wholeness), plan.phases[0].free_surface);
+    for (std::size_t k = 0; k < run.seconds().size(); ++k)
+      if (run.seconds()[k].first == "free surface") { EXPECT_EQ(run.executed()[k] > 0, plan.phases[0].free_surface); }
+    return plan.phases[0].free_surface;
+  };
+  const std::string half = "{ box = { min = [0, 0], max = [2, 1] } }";
+  EXPECT_FALSE(surface(", \"y\"", "", "\"the-rest\""));
+  EXPECT_TRUE(surface(", \"y\"", "", half));
+  EXPECT_TRUE(surface("", "", half));
+  EXPECT_FALSE(surface("", "enclosed = true\n", half)) << "a void in it closes";
+  for (const std::string scheme : {"scheme = \"plain\"\n", "scheme = \"consistent\"\n"}) {
+    EXPECT_TRUE(surface("", scheme, half));
+    EXPECT_FALSE(surface(", \"y\"", scheme, "\"the-rest\""));
+  }
+}
+
 TEST(Plan, RefusesWhatNoLawCanDo) {
   const std::string wall = "[phases.floor]\nkind = \"wall\"\ndensity = 1\n";
   EXPECT_THROW(plan_of(scene(air + sand, "air-sand = 2.5\nsand-sand = 1.1\n", {"air", "sand"})), SceneError);
