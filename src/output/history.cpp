@@ -39,7 +39,7 @@ std::string rows_until(std::string_view text, const std::string& expected_header
 
 }  // namespace
 
-History::History(const std::filesystem::path& file, std::vector<std::string> columns, bool append, double until)
+History::History(const std::filesystem::path& file, const std::vector<std::string>& columns, bool append, double until)
     : file_(file), columns_(columns.size()) {
   std::string begin = header(columns);
   if (append && std::filesystem::exists(file)) {

@@ -13,7 +13,8 @@ class History {
  public:
   /// Throws OutputError when the file cannot be opened. With `append` an existing file is continued: rows later than
   /// `until` (s) are dropped first, which is what a restart needs.
-  History(const std::filesystem::path& file, std::vector<std::string> columns, bool append = false, double until = 0.0);
+  History(const std::filesystem::path& file, const std::vector<std::string>& columns, bool append = false,
+          double until = 0.0);
   void row(const std::vector<double>& values);  ///< as many as there are columns; 17 significant digits
 
  private:

@@ -83,7 +83,7 @@ void SeriesWriter::Work::prepare() {
   if (failed) throw OutputError("cannot create the directory '" + directory.string() + "': " + failed.message());
   if (!std::filesystem::is_directory(directory, failed))
     throw OutputError("cannot write into '" + directory.string() + "': it is not a directory");
-  WholeFile{pvd()};  // says now, not at the first frame, that nothing can be written here
+  { const WholeFile trial(pvd()); }  // says now, not at the first frame, that nothing can be written here
 
   // First the list, then the files that it no longer names: at no moment does it name one that is gone.
   if (entries.empty()) std::filesystem::remove(pvd(), failed);
