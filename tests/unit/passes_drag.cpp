@@ -28,6 +28,9 @@ TEST_P(DragPass, EqualsTheNaiveSumsAndActsBack) {
     randomise(p, Field::density, 0.9, 1.1, random);
   }
   Cast cast(b, std::move(two), {{0, 1, radius}, {1, 0, radius}});
+  constexpr double density = 1.2;
+  const GrainBarrier barrier{0.6, 4.0, 0.04};
+  int pushed = 0;
   Vec3 sum{}, size{};
   for (std::size_t a = 0; a < 2; ++a) {
     auto& p = cast.phases[a];
@@ -40,11 +43,18 @@ TEST_P(DragPass, EqualsTheNaiveSumsAndActsBack) {
         const Vec3 v = vector(p, Field::velocity, k) - vector(other, Field::velocity, j);
         force = force - strength * fluid_volume * naive::weight(KernelKind::wendland_c2, radius, dimensions, norm(r)) *
                             norm(v) * v;
+        // The barrier: a spring below r0 and a dashpot on approach, for slow air alone.
+        const double gap = barrier.distance - norm(r), slow = 1.0 - barrier.fast * dot(v, v);
+        if (gap <= 0.0 || slow <= 0.0) return;
+        ++pushed;
+        const double approach = std::min(dot(v, r) / norm(r), 0.0);
+        force = force + slow * density * fluid_volume * (barrier.rate * barrier.rate * gap - barrier.rate * approach) /
+                            norm(r) * r;
       });
       for (std::size_t d = 0; d < 3; ++d) expected[d].push_back(force[d] / p.mass());
     }
-    drag_forces(p, cast.motion[a], cast.list(a), cast.motion[1 - a], {KernelKind::wendland_c2, radius, strength},
-                a == 0);
+    drag_forces(p, cast.motion[a], cast.list(a), cast.motion[1 - a],
+                {KernelKind::wendland_c2, radius, strength, density, barrier}, a == 0);
     for (int d = 0; d < dimensions; ++d)
       EXPECT_LT(difference(p.column(Field::acceleration, d), expected[static_cast<std::size_t>(d)]), 1e-12);
     for (std::size_t k = 0; k < p.size(); ++k)
@@ -54,6 +64,7 @@ TEST_P(DragPass, EqualsTheNaiveSumsAndActsBack) {
       }
   }
   for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d) EXPECT_NEAR(sum[d] / size[d], 0.0, 1e-13);
+  EXPECT_GT(pushed, 4);
 }
 
 }  // namespace
