@@ -34,9 +34,9 @@ struct FluidParameters {
   Vec3 acceleration;          // m/s2, further uniform body force
   double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole
   double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
-  double least_viscosity;     // Pa s, of Monaghan's alpha = 1, laminar with a free surface (fluid_finish.hpp); else 0
-  double loosening;           // 1/s, at which loose fluid loses its pressure (free surface); 0: none
-  double lattice_moment;      // -tr M/Dim on a lattice at rest, 1
+  double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
+  double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
+  double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.

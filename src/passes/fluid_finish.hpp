@@ -182,20 +182,19 @@ constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
 /// hole behind a grain closes.
 constexpr double surface_begins = 0.3, surface_ends = 0.6;
 
-/// Without friction, rows next to a free surface rock each other up, where the operators change from corrected to
-/// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. So a fluid
-/// with a free surface has at least the viscosity of these Monaghan alphas, mu = alpha rho0 h c/(2 (Dim + 2)):
-/// everywhere; near the surface where the operators are corrected; and where they are plain. Measured with a tank at
-/// rest (100 crossings: 5e-4 sqrt(gH); without 0.2) and a standing wave, 50 spacings deep (1 % of the amplitude a
-/// period).
-constexpr double bulk_alpha = 0.01, corrected_alpha = 0.2, plain_alpha = 0.1;
+/// Without friction, rows next to a heavy free surface rock each other up, where the operators change from corrected to
+/// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. The rate
+/// is that of gravity over a spacing. So a heavy fluid with a free surface has at least these viscosities, in rho0 h
+/// sqrt(g h): everywhere; more near the surface, where the operators are corrected, and where they are plain. Measured
+/// with a tank at rest (100 crossings) and a standing wave 50 spacings deep; without weight a surface needs none.
+constexpr double bulk_friction = 0.08, corrected_friction = 1.6, plain_friction = 0.8;
 
 template <int Dim, class V>
 BARCHAN_SIMD_INLINE V least_viscosity(V mu, V inner, const std::array<V, Dim>& normal, const FluidParameters& q) {
   V square(0.0);
   for (std::size_t d = 0; d < Dim; ++d) square = simd::fma(normal[d], normal[d], square);
-  const V near = simd::mask_zero(square > V(0.0), V(plain_alpha) + inner * V(corrected_alpha - plain_alpha));
-  return simd::max(mu, (V(bulk_alpha) + near) * V(q.least_viscosity));
+  const V near = simd::mask_zero(square > V(0.0), V(plain_friction) + inner * V(corrected_friction - plain_friction));
+  return simd::max(mu, (V(bulk_friction) + near) * V(q.least_viscosity));
 }
 
 /// `friction` gives, from M^-1 and grad v, the viscous sum less what a linear field makes of it: of the term

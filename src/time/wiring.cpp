@@ -385,7 +385,7 @@ void Simulation::wire() {
         f.surface = std::make_unique<SurfaceFinder>();
         if (!q.eddies)
           f.parameters.least_viscosity =
-              s.density * q.smoothing_length * q.sound_speed / (2.0 * (plan_.dimensions + 2));
+              s.density * q.smoothing_length * std::sqrt(norm(scene_.domain.gravity) * q.smoothing_length);
         f.parameters.loosening = 4.0 * q.sound_speed / q.smoothing_length;
         f.parameters.void_pressure = pressure_law(k)(s.density);
       } else {
