@@ -40,7 +40,7 @@ const std::vector<Case>& broken_on_the_way() {
        {"phase \"fluid\"", "is faster", "than sound (10 m/s)", "raise phases.fluid.sound-speed"}},
       {"TooFewNeighbours",
        &vortices,
-       {"interactions.fluid-fluid=1.5"},
+       {"interactions.fluid-fluid=1.2", "phases.fluid.sound-speed=2.5"},  // with 2.6 spacings the same fluid lives
        {"phase \"fluid\"", "density 1.3", "out of bounds (0.7 to 1.3)", "the radius of interactions.fluid-fluid"}},
       {"CubicSplinePairing",
        &vortices,
@@ -56,7 +56,7 @@ const std::vector<Case>& broken_on_the_way() {
        {"particle 0 of phase \"fluid\"", "acceleration is not finite"}},
       {"DensityRatio",
        &two_fluids,
-       {"phases.water.density=1e5"},
+       {"phases.water.density=1e5", "phases.water.scheme='plain'", "phases.air.scheme='plain'"},
        {"phase \"air\"", "is faster", "than sound (20 m/s)"}},
       {"GrainsWithLowContactSpeed",
        &over_a_floor,
