@@ -90,6 +90,13 @@ class Candidates {
   }
 };
 
+/// Each thread has its own, made when it first asks.
+template <int Dim>
+Candidates<Dim>& own_candidates() {
+  thread_local Candidates<Dim> candidates;
+  return candidates;
+}
+
 template <int Dim>
 void PairList::build_chunks(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same,
                             double radius, std::uint32_t dummy) {
@@ -101,10 +108,12 @@ void PairList::build_chunks(const CellGrid& grid_a, std::size_t size_a, const Ce
     for (std::size_t d = 0; d < Dim; ++d) x[d] = grid_a.search_position(static_cast<int>(d))[k];
     return x;
   };
+  // All threads make theirs at the first list: on a busy machine one may get its first chunk many steps later.
+#pragma omp parallel
+  own_candidates<Dim>();
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::int64_t number = 0; number < count; ++number) {
-    thread_local Candidates<Dim> own_candidates;
-    Candidates<Dim>& candidates = own_candidates;
+    Candidates<Dim>& candidates = own_candidates<Dim>();
     Chunk& c = chunks_[static_cast<std::size_t>(number)];
     const std::size_t first = static_cast<std::size_t>(number) * chunk, last = std::min(first + chunk, size_a);
     if (c.begin.size() != last - first + 1) c.begin.resize(last - first + 1);

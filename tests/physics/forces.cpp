@@ -60,7 +60,7 @@ TEST(Forces, BedComesToRestWithTheDefaults) {
   text.erase(text.find("restitution = 0.6\n"), std::string("restitution = 0.6\n").size());
   const auto speed_after = [&](double end, const std::vector<std::string>& overrides) {
     auto all = overrides;
-    all.insert(all.end(), {"domain.gravity=[0, -9.81]", "phases.sand.contact-speed=5"});
+    all.insert(all.end(), {"domain.gravity=[0, -9.81]", "domain.size=[0.04, 0.3]", "phases.sand.contact-speed=5"});
     const auto run = small::simulation(text, all);
     while (run->time() < end) run->step(end - run->time() + 1e-6);
     const auto& p = run->phases()[0];
