@@ -67,7 +67,9 @@ INSTANTIATE_TEST_SUITE_P(Walls, Extension, testing::ValuesIn(every_solid()),
                          [](const auto& solid) { return solid.param.name(); });
 
 TEST_P(Extension, EqualsTheNaiveSums) {
-  const auto [dimensions, slip, kind] = GetParam();
+  const int dimensions = GetParam().dimensions;
+  const Slip slip = GetParam().slip;
+  const PhaseKind kind = GetParam().kind;
   const bool accelerates = kind == PhaseKind::elastic;  // the blows of grains are no motion of a boundary
   Uniform random(31);
   Cast cast = solid_under_fluids(kind, dimensions, random);
