@@ -169,7 +169,7 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
   auto& remarks = result.remarks;
   if (distance(a.time, b.time) > tolerance * std::max(std::abs(a.time), std::abs(b.time)))
     remarks.push_back("the times differ: " + exact(a.time) + " s against " + exact(b.time) + " s");
-  if (a.phase_names != b.phase_names) remarks.push_back("the phases have different names or another order");
+  if (a.phase_names != b.phase_names) remarks.emplace_back("the phases have different names or another order");
 
   const Matching found = match(a, b);
   remark_ids(remarks, found.only_a, "only in A");

@@ -180,7 +180,7 @@ void fill(vtkPointSet* data, const Frame& frame, FrameFormat format) {
 vtkSmartPointer<vtkCellArray> vertices(std::size_t n) {
   vtkNew<vtkTypeInt32Array> offsets, points;
   if (n >= static_cast<std::size_t>(VTK_INT_MAX)) throw std::logic_error("a frame holds at most 2^31 - 2 particles");
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(n + 1));
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(n) + 1);
   points->SetNumberOfValues(static_cast<vtkIdType>(n));
   std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + n + 1, 0);
   std::iota(points->GetPointer(0), points->GetPointer(0) + n, 0);

@@ -47,6 +47,7 @@ void find_wall_normals(std::span<PhaseParticles* const> walls, const Bounds& bou
       const Vec3 x = place(*p, k);
       const Cell centre = cell_of(x);
       std::vector<Cell> about;
+      about.reserve(27);
       for (int c = 0; c < (dimensions == 3 ? 27 : 9); ++c)
         about.push_back(
             wrap({centre[0] + c % 3 - 1, centre[1] + c / 3 % 3 - 1, centre[2] + (dimensions == 3 ? c / 9 - 1 : 0)}));

@@ -52,10 +52,10 @@ Frame Simulation::frame(int index) const {
   std::vector<std::size_t> written;
   for (std::size_t k = 0; k < particles_.size(); ++k) {
     f.phase_names.push_back(particles_[k].name());
-    f.phase_kinds.push_back(particles_[k].kind() == PhaseKind::fluid     ? "fluid"
-                            : particles_[k].kind() == PhaseKind::elastic ? "elastic"
-                            : particles_[k].kind() == PhaseKind::grains  ? "grains"
-                                                                         : "wall");
+    f.phase_kinds.emplace_back(particles_[k].kind() == PhaseKind::fluid     ? "fluid"
+                               : particles_[k].kind() == PhaseKind::elastic ? "elastic"
+                               : particles_[k].kind() == PhaseKind::grains  ? "grains"
+                                                                            : "wall");
     if (particles_[k].kind() == PhaseKind::wall && !scene_.output.walls) continue;
     written.push_back(k);
     n += particles_[k].size();

@@ -9,8 +9,10 @@
 
 // VTK 9.2 forgets its compression tables (32 bytes an array) when a write fails half way. Read by the leak sanitizer
 // alone.
+// NOLINTBEGIN(bugprone-reserved-identifier): its name is the sanitizer's
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:vtkXMLWriter::CreateCompressionHeader\n"; }
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace barchan {
 namespace {

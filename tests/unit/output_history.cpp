@@ -20,7 +20,7 @@ std::string text_of(const std::filesystem::path& file) {
 
 /// Rows at 0, 0.1, ..., 0.4 s.
 std::filesystem::path example_history(const TemporaryDirectory& directory) {
-  const auto file = directory / "history.csv";
+  auto file = directory / "history.csv";
   History history(file, columns);
   for (int k = 0; k < 5; ++k) history.row({0.1 * k, 1e-5, 1.0 / 3});
   return file;
