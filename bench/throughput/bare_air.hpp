@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "neighbours/neighbours.hpp"
-#include "passes/fluid.hpp"
-#include "passes/integrate.hpp"
-#include "time/simulation.hpp"
+#include "engine/neighbours.hpp"
+#include "models/air/fluid.hpp"
+#include "engine/integrate.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 

@@ -18,7 +18,7 @@
 #include "base/denormals.hpp"
 #include "scene/reader.hpp"
 #include "throughput/bare_air.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "output/series.hpp"
 #include "plan/estimate.hpp"
 #include "scene/reader.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 

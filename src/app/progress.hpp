@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 

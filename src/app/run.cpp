@@ -19,7 +19,7 @@
 #include "output/run_report.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 

@@ -11,7 +11,7 @@ struct SceneError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The run broke down (exit status 3): a particle is wrong (time/watch.hpp), or the time step collapsed.
+/// The run broke down (exit status 3): a particle is wrong (simulation/watch.hpp), or the time step collapsed.
 struct BreakdownError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

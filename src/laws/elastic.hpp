@@ -4,7 +4,7 @@
 //   drho_a/dt = sum m_b v_ab . grad W,   grad v_a = -sum V_b v_ab (x) grad W
 //   Pi_ab     = (-alpha c mu + beta mu^2) / rho,  mu = h v.r/(r^2 + 0.01 h^2) on approach, else 0   (Monaghan 1992)
 // The stress rate is Hooke's law with Jaumann's rotation, s_dot = 2 G dev(D) + s.W^T + W.s (eq. 11 prints G for 2G and
-// no rotation), in passes/elastic.cpp. No kernel corrections: momentum and angular momentum of a pair are exact.
+// no rotation), in models/bodies/elastic.cpp. No kernel corrections: momentum and angular momentum of a pair are exact.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "neighbours/cell_grid.hpp"
+#include "engine/cell_grid.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "neighbours/cell_grid.hpp"
-#include "particles/particles.hpp"
+#include "engine/cell_grid.hpp"
+#include "state/particles.hpp"
 
 namespace barchan {
 

@@ -9,7 +9,7 @@
 #include "measure/instrument.hpp"
 #include "measure/table.hpp"
 #include "output/history.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 

@@ -5,9 +5,9 @@
 
 #include "base/errors.hpp"
 #include "plan/enclosed.hpp"
+#include "plan/limits.hpp"
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
-#include "time/limits.hpp"
 
 namespace barchan {
 

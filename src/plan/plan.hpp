@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/fields.hpp"
+#include "engine/neighbours.hpp"
 #include "measure/instrument.hpp"
-#include "neighbours/neighbours.hpp"
-#include "particles/fields.hpp"
 #include "scene/generate.hpp"
 #include "scene/scene.hpp"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plan/estimate.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "particles/fields.hpp"
+#include "base/fields.hpp"
 #include "scene/nearest.hpp"
 
 namespace barchan {

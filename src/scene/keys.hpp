@@ -45,7 +45,7 @@ struct Key {
   std::string_view otherwise = "";  // the default in words; "required" when there is none
   std::string_view meaning = "";
   NumberBounds bounds{};
-  std::string_view words = "";      // choices, '|' between them; "@fields": the names of particles/fields.hpp
+  std::string_view words = "";      // choices, '|' between them; "@fields": the names of base/fields.hpp
   std::string_view variables = "";  // of a formula
   std::string_view kinds = "";      // phases only: the kinds that have this key; "" for all
   std::string_view spared = "";     // phases only: kinds that may leave out what the others must give

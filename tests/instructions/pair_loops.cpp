@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "passes/elastic.hpp"
-#include "passes/fluid.hpp"
+#include "models/air/fluid.hpp"
+#include "models/bodies/elastic.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "plan/plan.hpp"
 #include "scene/generate.hpp"
 #include "scene/reader.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan::testing {
 

@@ -3,10 +3,10 @@
 // elastic forces against the work of stress; and action and reaction between a fluid and grains.
 #include <gtest/gtest.h>
 
-#include "passes/elastic.hpp"
-#include "passes/energy.hpp"
-#include "passes/fluid.hpp"
-#include "passes/grains.hpp"
+#include "models/air/energy.hpp"
+#include "models/air/fluid.hpp"
+#include "models/bodies/elastic.hpp"
+#include "models/grains/grains.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {

@@ -7,7 +7,7 @@
 
 #include "scene/generate.hpp"
 #include "scene/reader.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan::small {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan::stress {
 

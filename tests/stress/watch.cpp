@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "plan/limits.hpp"
 #include "scene/reader.hpp"
+#include "simulation/simulation.hpp"
 #include "stress/scenes.hpp"
-#include "time/limits.hpp"
-#include "time/simulation.hpp"
 
 namespace barchan {
 namespace {

@@ -1,13 +1,13 @@
 // The fluid pass written the slow way, from the formulas in the heads of src/laws/plain_fluid.hpp,
-// src/laws/consistent_fluid.hpp and the comments of src/passes/fluid_finish.hpp: every pair and every image, one number
-// at a time.
+// src/laws/consistent_fluid.hpp and the comments of src/models/air/fluid_finish.hpp: every pair and every image, one
+// number at a time.
 #pragma once
 
 #include <algorithm>
 #include <utility>
 
 #include "kernels/kernel.hpp"
-#include "passes/fluid.hpp"
+#include "models/air/fluid.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace barchan::naive {

@@ -1,7 +1,7 @@
 // The search against its naive twin, all pairs and all images: on lattices, perturbed lattices and random sets, in two
 // and three dimensions, with every choice of periodic sides, in boxes so small that a particle sees several images of
 // another, between two phases, on the bounds and outside them. Then the skin: lists stay complete while particles move.
-#include "neighbours/neighbours.hpp"
+#include "engine/neighbours.hpp"
 
 #include <gtest/gtest.h>
 

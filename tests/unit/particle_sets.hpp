@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "neighbours/neighbours.hpp"
-#include "particles/particles.hpp"
-#include "passes/records.hpp"
+#include "engine/neighbours.hpp"
+#include "engine/records.hpp"
+#include "state/particles.hpp"
 
 namespace barchan::sets {
 

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "passes/ground_distance.hpp"
-#include "passes/relief.hpp"
-#include "passes/wall_normals.hpp"
-#include "passes/walls.hpp"
+#include "models/air/ground_distance.hpp"
+#include "models/air/relief.hpp"
+#include "models/walls/wall_normals.hpp"
+#include "models/walls/walls.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace barchan {

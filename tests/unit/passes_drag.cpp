@@ -1,5 +1,5 @@
 // The drag of grains in a fluid against its naive twin, from both sides, and action and reaction.
-#include "passes/drag.hpp"
+#include "models/coupling/drag.hpp"
 
 #include <gtest/gtest.h>
 

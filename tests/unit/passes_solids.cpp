@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "kernels/kernel.hpp"
-#include "passes/elastic.hpp"
-#include "passes/grains.hpp"
-#include "passes/walls.hpp"
+#include "models/bodies/elastic.hpp"
+#include "models/grains/grains.hpp"
+#include "models/walls/walls.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {

@@ -1,6 +1,6 @@
 // Fluids that end somewhere: the blended operators against their naive twins, the free surface against a search through
 // all pairs, and what is done to particles of it (shift, tension, loose fluid).
-#include "passes/surface.hpp"
+#include "models/air/surface.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "passes/fluid_finish.hpp"
-#include "passes/fours.hpp"
+#include "engine/fours.hpp"
+#include "models/air/fluid_finish.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {

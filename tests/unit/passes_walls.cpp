@@ -1,6 +1,6 @@
-// The fluid continued into solids against a naive twin of the formulas in src/passes/walls.hpp, and what these formulas
-// promise: a linear velocity continues exactly, a column at rest gives the wall its pressure.
-#include "passes/walls.hpp"
+// The fluid continued into solids against a naive twin of the formulas in src/models/walls/walls.hpp, and what these
+// formulas promise: a linear velocity continues exactly, a column at rest gives the wall its pressure.
+#include "models/walls/walls.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 #include "scene/reader.hpp"
-#include "time/simulation.hpp"
+#include "simulation/simulation.hpp"
 #include "unit/scene_texts.hpp"
 
 namespace barchan {

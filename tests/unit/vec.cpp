@@ -134,7 +134,7 @@ TYPED_TEST(Vectors, InverseRootsAreGoodToTwoUnits) {
   }
 }
 
-// The least squared distance that pair loops make (least_square in passes/pair_loop.hpp) is in the range, on estimates
+// The least squared distance that pair loops make (least_square in engine/pair_loop.hpp) is in the range, on estimates
 // and on the divider.
 TYPED_TEST(Vectors, InverseRootsReachTheEndsOfTheirRange) {
   IN_TYPED_TEST;

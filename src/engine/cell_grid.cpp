@@ -1,0 +1,172 @@
+#include "engine/cell_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace barchan {
+
+CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks)
+    : dimensions_(static_cast<std::size_t>(bounds.dimensions)), bounds_(bounds) {
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    const double size = bounds.high[d] - bounds.low[d];
+    period_[d] = bounds.periodic[d] ? size : 0.0;
+    const double n = static_cast<double>(blocks.count[d]) * std::max(std::floor(blocks.side[d] / cell), 1.0);
+    const double side = size / n;
+    inverse_cell_[d] = static_cast<float>(1.0 / side);
+    side_[d] = static_cast<float>(side);
+    halo_[d] = bounds.periodic[d] ? static_cast<int>(std::ceil(reach / side)) + 1 : 1;
+    count_[d] = static_cast<std::size_t>(n) + 2 * static_cast<std::size_t>(halo_[d]);
+  }
+  const std::size_t cells = count_[0] * count_[1] * count_[2];
+  begin_.assign(cells, 0);
+  end_.assign(cells, 0);
+  order_interior(blocks);
+}
+
+void CellGrid::order_interior(const Blocks& blocks) {
+  // Non-periodic sides: the padding cells are real cells (they catch what lies outside), so they are walked as well.
+  std::array<std::size_t, 3> low{0, 0, 0}, high = count_;
+  for (std::size_t d = 0; d < dimensions_; ++d)
+    if (bounds_.periodic[d]) {
+      low[d] = static_cast<std::size_t>(halo_[d]);
+      high[d] = count_[d] - static_cast<std::size_t>(halo_[d]);
+    }
+  walk_.clear();
+  const std::size_t wide = strip, across = dimensions_ == 3 ? strip : count_[1];
+  for (std::size_t y0 = low[1]; y0 < high[1]; y0 += across)
+    for (std::size_t x0 = low[0]; x0 < high[0]; x0 += wide)
+      for (std::size_t z = low[2]; z < high[2]; ++z)
+        for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y)
+          for (std::size_t x = x0; x < std::min(x0 + wide, high[0]); ++x)
+            walk_.push_back(static_cast<std::uint32_t>((z * count_[1] + y) * count_[0] + x));
+  // Strips as walked; the halo of a periodic side is made row by row, so it is contiguous on either side of them.
+  strip_last_.resize(count_[0]);
+  for (std::size_t c = 0; c < count_[0]; ++c) {
+    const std::size_t end = c < low[0]     ? low[0]
+                            : c >= high[0] ? count_[0]
+                                           : std::min(low[0] + ((c - low[0]) / wide + 1) * wide, high[0]);
+    strip_last_[c] = static_cast<int>(end) - 1;
+  }
+  walk_block_.reserve(walk_.size());
+  for (const std::uint32_t cell : walk_) {
+    const std::array<std::size_t, 3> at{cell % count_[0], cell / count_[0] % count_[1], cell / (count_[0] * count_[1])};
+    std::size_t block = 0;
+    for (std::size_t d = 3; d-- > 0;) {
+      std::size_t b = 0;
+      if (d < dimensions_) {
+        const double centre = (static_cast<double>(at[d]) - halo_[d] + 0.5) / static_cast<double>(inverse_cell_[d]);
+        b = static_cast<std::size_t>(
+            std::clamp(centre / blocks.side[d], 0.0, static_cast<double>(blocks.count[d] - 1)));
+      }
+      block = block * blocks.count[d] + b;
+    }
+    walk_block_.push_back(static_cast<std::uint32_t>(block));
+  }
+}
+
+void CellGrid::make_runs() {
+  runs_.clear();
+  for (std::size_t w = 0; w < walk_.size(); ++w) {
+    const std::uint32_t begin = begin_[walk_[w]], end = end_[walk_[w]];
+    if (begin == end) continue;
+    if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin) runs_.back().end = end;
+    else runs_.push_back({begin, end, walk_block_[w]});
+  }
+}
+
+void CellGrid::sort(PhaseParticles& particles) {
+  const std::size_t n = particles.size();
+  if (cell_of_.size() < n) {
+    cell_of_.resize(n);
+    order_.resize(n);
+  }
+  // Wrap, then find cells. Rounding may put a wrapped position onto the upper bound: cell_coordinate clamps nothing
+  // there, so the interior range is enforced for periodic sides below.
+  std::fill(end_.begin(), end_.end(), 0u);
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    if (!bounds_.periodic[d]) continue;
+    double* x = particles.column(Field::position, static_cast<int>(d));
+    const double low = bounds_.low[d], high = bounds_.high[d], period = period_[d];
+    for (std::size_t k = 0; k < n; ++k) {
+      if (x[k] >= low && x[k] < high) continue;
+      x[k] -= period * std::floor((x[k] - low) / period);
+      if (x[k] < low || x[k] >= high) x[k] = low;  // rounding at a side
+    }
+  }
+  std::array<const double*, 3> x{};
+  for (std::size_t d = 0; d < dimensions_; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t cell = 0;
+    for (std::size_t d = dimensions_; d-- > 0;) {
+      int c = cell_coordinate(static_cast<float>(x[d][k] - bounds_.low[d]), d);
+      if (bounds_.periodic[d]) c = std::clamp(c, halo_[d], static_cast<int>(count_[d]) - halo_[d] - 1);
+      cell = cell * count_[d] + static_cast<std::size_t>(c);
+    }
+    cell_of_[k] = static_cast<std::uint32_t>(cell);
+    ++end_[cell];
+  }
+  std::uint32_t sum = 0;
+  for (const std::uint32_t cell : walk_) {
+    begin_[cell] = sum;
+    sum += end_[cell];
+    end_[cell] = begin_[cell];
+  }
+  for (std::size_t k = 0; k < n; ++k) order_[end_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
+  particles.permute(order_.data());
+  make_runs();
+  make_images(particles);
+}
+
+void CellGrid::make_images(const PhaseParticles& particles) {
+  const std::size_t n = particles.size();
+  images_.clear();
+  std::array<std::size_t, 3> interior{1, 1, 1};
+  for (std::size_t d = 0; d < dimensions_; ++d) interior[d] = count_[d] - 2 * static_cast<std::size_t>(halo_[d]);
+  if (bounds_.periodic[0] || bounds_.periodic[1] || bounds_.periodic[2]) {
+    std::size_t cell = 0;
+    for (std::size_t z = 0; z < count_[2]; ++z)
+      for (std::size_t y = 0; y < count_[1]; ++y)
+        for (std::size_t c = 0; c < count_[0]; ++c, ++cell) {
+          const std::array<std::size_t, 3> at{c, y, z};
+          std::array<std::size_t, 3> from = at;
+          Image image{0, {0, 0, 0}};
+          bool outside = false;
+          for (std::size_t d = 0; d < dimensions_; ++d) {
+            if (!bounds_.periodic[d]) continue;
+            const auto inside = static_cast<long>(interior[d]);
+            const long relative = static_cast<long>(at[d]) - halo_[d];
+            const long turns = relative >= 0 ? relative / inside : -((inside - 1 - relative) / inside);
+            if (turns == 0) continue;
+            outside = true;
+            image.shift[d] = static_cast<std::int8_t>(turns);
+            from[d] = static_cast<std::size_t>(relative - turns * inside + halo_[d]);
+          }
+          if (!outside) continue;
+          const std::size_t source = (from[2] * count_[1] + from[1]) * count_[0] + from[0];
+          begin_[cell] = static_cast<std::uint32_t>(n + images_.size());
+          for (std::uint32_t k = begin_[source]; k < end_[source]; ++k) {
+            image.source = k;
+            images_.push_back(image);
+          }
+          end_[cell] = static_cast<std::uint32_t>(n + images_.size());
+        }
+  }
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    auto& s = search_[d];
+    const std::size_t needed = n + images_.size() + 16;  // the search reads whole vectors
+    if (s.size() < needed) s.resize(needed + needed / 8);
+    const double* x = particles.column(Field::position, static_cast<int>(d));
+    for (std::size_t k = 0; k < n; ++k) s[k] = static_cast<float>(x[k] - bounds_.low[d]);
+    for (std::size_t k = 0; k < images_.size(); ++k)
+      s[n + k] = static_cast<float>(x[images_[k].source] - bounds_.low[d] + images_[k].shift[d] * period_[d]);
+  }
+}
+
+std::size_t CellGrid::bytes() const {
+  std::size_t total = (begin_.size() + end_.size() + walk_.size() + cell_of_.size() + order_.size()) * 4;
+  for (const auto& s : search_) total += s.size() * sizeof(float);
+  return total + images_.capacity() * sizeof(Image);
+}
+
+}  // namespace barchan

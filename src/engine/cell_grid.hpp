@@ -1,0 +1,155 @@
+// Cells of one phase: particles sorted by cell, periodic images as particles of their own.
+//
+// A padded grid of cells covers the domain and `halo` cells beyond it on every side. Cells divide a periodic side
+// exactly, so a halo cell there holds the shifted images of one interior cell, in the same order. Interior cells are
+// walked in strips `strip` cells wide, which keeps the neighbours of a particle near in memory in large scenes.
+// After sort() the particles of a cell are contiguous; images follow behind the last particle.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+/// Where particles may be, and which sides are periodic.
+struct Bounds {
+  int dimensions = 2;
+  Vec3 low{}, high{};  // m; periodic sides: the period
+  std::array<bool, 3> periodic{false, false, false};
+};
+
+/// One periodic image: particle `source` of the phase, moved by `shift` periods.
+struct Image {
+  std::uint32_t source;
+  std::array<std::int8_t, 3> shift;
+};
+
+/// Blocks of the domain, each wider than any search: particles within reach stand in the same or adjacent blocks. The
+/// cells of every grid divide them.
+struct Blocks {
+  std::array<std::size_t, 3> count{1, 1, 1};
+  std::array<double, 3> side{1, 1, 1};  // m
+  std::size_t size() const { return count[0] * count[1] * count[2]; }
+};
+
+/// Particles begin .. end-1 stand in (cells centred in) one block.
+struct BlockRun {
+  std::uint32_t begin, end, block;
+};
+
+class CellGrid {
+ public:
+  static constexpr int strip = 16;  // cells
+
+  /// `reach` (m): the largest search radius over this phase's particles, skin included. `cell` (m): the least cell
+  /// size, unless a block is smaller.
+  CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks);
+
+  /// Wraps positions into the periodic domain, sorts the phase by cell and makes the images. Positions outside the
+  /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm.
+  void sort(PhaseParticles& particles);
+
+  /// The phase's particles by block, as sorted last.
+  const std::vector<BlockRun>& runs() const { return runs_; }
+
+  std::size_t images() const { return images_.size(); }
+  const std::vector<Image>& image_list() const { return images_; }
+  const std::array<double, 3>& period() const { return period_; }
+
+  /// Single-precision positions less low(), particles then images, as the search reads them.
+  const float* search_position(int axis) const { return search_[static_cast<std::size_t>(axis)].data(); }
+
+  /// Number of the padded cell of a search position.
+  std::size_t cell_of(const std::array<float, 3>& x) const {
+    std::size_t cell = 0;
+    for (std::size_t d = dimensions_; d-- > 0;)
+      cell = cell * count_[d] + static_cast<std::size_t>(cell_coordinate(x[d], d));
+    return cell;
+  }
+
+  /// Calls f(begin, end) for runs of candidates (particles, then images) that cover all balls of radius `radius` about
+  /// points of the box from `low` to `high`.
+  template <class F>
+  void candidates(const std::array<float, 3>& low, const std::array<float, 3>& high, float radius, F&& f) const {
+    std::array<int, 3> first{0, 0, 0}, last{0, 0, 0};
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      first[d] = cell_coordinate(low[d] - radius, d);
+      last[d] = cell_coordinate(high[d] + radius, d);
+    }
+    std::uint32_t begin = 0, end = 0;
+    for (int z = first[2]; z <= last[2]; ++z) {
+      const float dz = dimensions_ == 3 ? gap(z, 2, low[2], high[2]) : 0.0f;
+      for (int y = first[1]; y <= last[1]; ++y) {
+        // The ball's breadth in this row of cells (in two dimensions no gain).
+        if (dimensions_ == 3) {
+          const float dy = gap(y, 1, low[1], high[1]), left = radius * radius - dy * dy - dz * dz;
+          if (left <= 0.0f) continue;
+          const float breadth = std::sqrt(left);
+          first[0] = cell_coordinate(low[0] - breadth, 0);
+          last[0] = cell_coordinate(high[0] + breadth, 0);
+        }
+        const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
+        // Cells of a row are contiguous up to the end of their strip.
+        for (int c = first[0]; c <= last[0];) {
+          const int stop = std::min(last[0], strip_last_[static_cast<std::size_t>(c)]);
+          const std::uint32_t b = begin_[row + static_cast<std::size_t>(c)],
+                              e = end_[row + static_cast<std::size_t>(stop)];
+          c = stop + 1;
+          if (b == e) continue;
+          if (b == end) {
+            end = e;
+          } else {
+            if (begin != end) f(begin, end);
+            begin = b;
+            end = e;
+          }
+        }
+      }
+    }
+    if (begin != end) f(begin, end);
+  }
+
+  std::size_t bytes() const;
+
+ private:
+  /// Cell of a position relative to low() in the padded grid, clamped to it.
+  int cell_coordinate(float x, std::size_t axis) const {
+    const float c = x * inverse_cell_[axis] + static_cast<float>(halo_[axis]);
+    const auto last = static_cast<float>(count_[axis] - 1);
+    const float inside = c > 0.0f ? c : 0.0f;  // NaN too
+    return static_cast<int>(inside < last ? inside : last);
+  }
+  /// Distance along an axis from a cell to the interval low .. high, a little less for rounding. The outermost cells
+  /// hold all that lies beyond them.
+  float gap(int cell, std::size_t axis, float low, float high) const {
+    if (cell == 0 || cell == static_cast<int>(count_[axis]) - 1) return 0.0f;
+    const float side = side_[axis], begin = static_cast<float>(cell - halo_[axis]) * side;
+    return std::max(std::max(begin - high, low - (begin + side)) - 1.0e-3f * side, 0.0f);
+  }
+  void order_interior(const Blocks& blocks);
+  void make_runs();
+  void make_images(const PhaseParticles& particles);
+
+  std::size_t dimensions_;
+  Bounds bounds_;
+  std::array<double, 3> period_{};
+  std::array<int, 3> halo_{0, 0, 0};
+  std::array<std::size_t, 3> count_{1, 1, 1};  // cells of the padded grid
+  std::array<float, 3> inverse_cell_{}, side_{};
+  std::vector<std::uint32_t> begin_, end_;  // by padded cell
+  std::vector<int> strip_last_;             // by x of a padded cell: the last one of its strip
+  std::vector<std::uint32_t> walk_;         // interior cells in the order of the sort
+  std::vector<std::uint32_t> walk_block_;   // block of each walked cell
+  std::vector<BlockRun> runs_;
+  std::vector<std::uint32_t> cell_of_, order_;
+  std::vector<Image> images_;
+  std::array<AlignedVector<float>, 3> search_;
+};
+
+}  // namespace barchan

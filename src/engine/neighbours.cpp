@@ -1,0 +1,228 @@
+#include "engine/neighbours.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simd/vec.hpp"
+
+namespace barchan {
+
+Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin,
+                       double spacing, std::size_t padding)
+    : bounds_(bounds),
+      directions_(std::move(directions)),
+      grids_(phases),
+      lists_(directions_.size()),
+      ranges_(phases),
+      padding_(padding),
+      skin_(skin),
+      widest_skin_(skin) {
+  for (const auto& d : directions_) widest_ = std::max(widest_, d.radius * (1.0 + skin_));
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions) && widest_ > 0.0; ++d) {
+    const double size = bounds_.high[d] - bounds_.low[d];
+    blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / (block_width * widest_)), 1.0, 4096.0));
+    blocks_.side[d] = size / static_cast<double>(blocks_.count[d]);
+  }
+  for (std::size_t p = 0; p < phases; ++p) {
+    double longest = 0.0;
+    for (const auto& d : directions_)
+      if (d.a == p || d.b == p) longest = std::max(longest, d.radius);
+    if (longest == 0.0) continue;
+    // Half a search a cell: a ball's cells then cover little more than the ball. Cells emptier than that are no gain.
+    const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacing);
+    grids_[p] = std::make_unique<CellGrid>(bounds_, cell, longest * (1.0 + skin_) * 1.001, blocks_);
+    ranges_[p].resize(blocks_.size());
+  }
+}
+
+void Neighbours::Range::clear() {
+  low.fill(std::numeric_limits<float>::max());
+  high.fill(-std::numeric_limits<float>::max());
+}
+
+void Neighbours::Range::widen(const Range& other) {
+  for (std::size_t d = 0; d < 3; ++d) {
+    low[d] = std::min(low[d], other.low[d]);
+    high[d] = std::max(high[d], other.high[d]);
+  }
+}
+
+/// Square of the largest relative displacement of two particles, one from each box of displacements.
+double Neighbours::apart(const Range& a, const Range& b) {
+  double squared = 0.0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double most = std::max(static_cast<double>(a.high[d]) - static_cast<double>(b.low[d]),
+                                 static_cast<double>(b.high[d]) - static_cast<double>(a.low[d]));
+    squared += most * most;
+  }
+  return squared;
+}
+
+namespace {
+
+/// Least and largest of x - low - old over the places from begin to end.
+BARCHAN_SIMD_INLINE void displacements(const double* x, const float* old, std::uint32_t begin, std::uint32_t end,
+                                       double low, float& least, float& most) {
+  constexpr std::uint32_t width = 4;
+  using Wide = simd::Vec<double, width>;
+  using Short = simd::Vec<float, width>;
+  least = std::numeric_limits<float>::max();
+  most = -least;
+  if (end - begin < width) {
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const float moved = static_cast<float>(x[k] - low) - old[k];
+      least = moved < least ? moved : least;
+      most = moved > most ? moved : most;
+    }
+    return;
+  }
+  Short lower(least), upper(most);
+  for (std::uint32_t k = begin; k < end; k += width) {
+    const std::uint32_t at = std::min(k, end - width);  // the last vector overlaps the one before
+    const Short moved = simd::convert<float>(Wide::load(x + at) - Wide(low)) - Short::load(old + at);
+    lower = simd::min(moved, lower);
+    upper = simd::max(moved, upper);
+  }
+  for (int lane = 0; lane < static_cast<int>(width); ++lane) {
+    least = std::min(least, lower[lane]);
+    most = std::max(most, upper[lane]);
+  }
+}
+
+/// What sorting and searching cost, in evaluations of all pairs of one step; measured.
+double rebuild_cost(int dimensions) { return dimensions == 2 ? 1.5 : 1.0; }
+
+}  // namespace
+
+void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
+  const CellGrid& grid = *grids_[phase];
+  const auto& runs = grid.runs();
+  if (run_ranges_.size() < runs.size()) run_ranges_.resize(runs.size() + runs.size() / 2);
+  std::array<const double*, 3> x{};
+  std::array<const float*, 3> old{};
+  const auto dimensions = static_cast<std::size_t>(bounds_.dimensions);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    x[d] = particles.column(Field::position, static_cast<int>(d));
+    old[d] = grid.search_position(static_cast<int>(d));
+  }
+  const auto n = static_cast<std::int64_t>(runs.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t q = 0; q < n; ++q) {
+    const BlockRun& run = runs[static_cast<std::size_t>(q)];
+    Range range;
+    range.low.fill(0.0f);
+    range.high.fill(0.0f);
+    for (std::size_t d = 0; d < dimensions; ++d)
+      displacements(x[d], old[d], run.begin, run.end, bounds_.low[d], range.low[d], range.high[d]);
+    run_ranges_[static_cast<std::size_t>(q)] = range;
+  }
+  for (auto& range : ranges_[phase]) range.clear();
+  for (std::size_t q = 0; q < runs.size(); ++q) ranges_[phase][runs[q].block].widen(run_ranges_[q]);
+}
+
+bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (grids_[p]) measure(particles[p], p);
+  // A pair that no list holds stood more than radius + skin apart. In the same or adjacent blocks it comes within the
+  // radius only by a relative displacement of a skin; elsewhere it stood a whole block apart.
+  Range all;
+  all.clear();
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (grids_[p])
+      for (const auto& range : ranges_[p]) all.widen(range);
+  double least_gap = std::numeric_limits<double>::max();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d)
+    least_gap = std::min(least_gap, blocks_.side[d] - widest_);
+  if (!(apart(all, all) < least_gap * least_gap)) return false;
+  const auto steps = [&](std::size_t axis, long at, std::array<long, 3>& out) {
+    const auto count = static_cast<long>(blocks_.count[axis]);
+    int n = 0;
+    for (long s = -1; s <= 1; ++s) {
+      long b = at + s;
+      if (bounds_.periodic[axis]) b += b < 0 ? count : b >= count ? -count : 0;
+      if (b >= 0 && b < count) out[static_cast<std::size_t>(n++)] = b;
+    }
+    return n;
+  };
+  bool valid = true;
+  const auto blocks = static_cast<std::int64_t>(blocks_.size());
+#pragma omp parallel for schedule(static) reduction(&& : valid)
+  for (std::int64_t q = 0; q < blocks; ++q) {
+    const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]);
+    std::array<long, 3> xs{}, ys{}, zs{};
+    const int mx = steps(0, q % nx, xs), my = steps(1, q / nx % ny, ys), mz = steps(2, q / (nx * ny), zs);
+    for (const auto& direction : directions_) {
+      const Range& own = ranges_[direction.a][static_cast<std::size_t>(q)];
+      if (own.low[0] > own.high[0]) continue;
+      // A tenth of the skin is kept for the rounding of the search. NaN positions fail and are found by the check.
+      const double most = 0.9 * skin_ * direction.radius;
+      for (int z = 0; z < mz; ++z)
+        for (int y = 0; y < my; ++y)
+          for (int x = 0; x < mx; ++x) {
+            const long near = (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
+                              xs[static_cast<std::size_t>(x)];
+            if (direction.a == direction.b && near < q) continue;  // seen from there
+            const Range& other = ranges_[direction.b][static_cast<std::size_t>(near)];
+            if (other.low[0] > other.high[0]) continue;
+            valid = valid && apart(own, other) < most * most;
+          }
+    }
+  }
+  return valid;
+}
+
+/// A step costs (1 + s)^D pairs of the skin s and a rebuild every k s steps: least where D (1 + s)^(D-1) = cost/(k
+/// s^2).
+void Neighbours::choose_skin() {
+  const double per_skin = static_cast<double>(kept_ + 1) / skin_;
+  const double best = std::sqrt(rebuild_cost(bounds_.dimensions) / (bounds_.dimensions * std::max(per_skin, 1.0)));
+  // The search rounds to single precision: nine tenths of the skin count (see still_valid), the rest must cover that.
+  double extent = 0.0, shortest = widest_;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d)
+    extent = std::max(extent, bounds_.high[d] - bounds_.low[d]);
+  for (const auto& d : directions_) shortest = std::min(shortest, d.radius);
+  const double least = std::max(0.02, 5.0e-6 * extent / shortest);
+  skin_ = std::min(std::clamp(best, least, std::max(least, 1.5 * skin_)), widest_skin_);
+}
+
+bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
+  constexpr long patience = 64;  // steps after which lists that are still good are made anew with a thinner skin
+  const bool first = rebuilds_ == 0 || force;
+  if (!first && still_valid(particles)) {
+    ++kept_;
+    if (!adapts_ || kept_ < patience) return false;
+    const double wide = skin_;
+    choose_skin();
+    if (skin_ > 0.8 * wide) {
+      skin_ = wide;
+      return false;
+    }
+  } else if (!first && adapts_) {
+    choose_skin();
+  }
+  kept_ = 0;
+  for (std::size_t p = 0; p < grids_.size(); ++p) {
+    if (!grids_[p]) continue;
+    PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
+    grids_[p]->sort(particles[p]);
+  }
+  for (std::size_t q = 0; q < directions_.size(); ++q) {
+    const auto& d = directions_[q];
+    const std::uint32_t dummy = PairList::dummy_index(particles[d.b].size(), grids_[d.b]->images());
+    lists_[q].build(*grids_[d.a], particles[d.a].size(), *grids_[d.b], d.a == d.b, d.radius * (1.0 + skin_), dummy,
+                    padding_, bounds_.dimensions);
+  }
+  ++rebuilds_;
+  return true;
+}
+
+std::size_t Neighbours::bytes() const {
+  std::size_t total = 0;
+  for (const auto& g : grids_)
+    if (g) total += g->bytes();
+  for (const auto& l : lists_) total += l.bytes();
+  return total;
+}
+
+}  // namespace barchan

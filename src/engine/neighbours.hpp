@@ -1,0 +1,70 @@
+// Who is whose neighbour: the grids of all phases and the lists of all entries, rebuilt exactly when they must be.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "engine/cell_grid.hpp"
+#include "engine/pair_list.hpp"
+
+namespace barchan {
+
+/// One direction of an entry of the matrix: the particles of `a` look for those of `b`.
+struct Direction {
+  std::size_t a = 0, b = 0;  // phase numbers
+  double radius = 0.0;       // m
+};
+
+class Neighbours {
+ public:
+  /// `spacing` (m): of the particles. `padding`: of the rows of all lists. `skin`: lists reach this fraction beyond an
+  /// entry's radius, so that they stay valid while particles move.
+  Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin, double spacing,
+             std::size_t padding = simd::native_width<double>);
+
+  /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most
+  /// as wide as given. It depends on positions alone, like everything here.
+  void adapt_skin() { adapts_ = true; }
+  double skin() const { return skin_; }
+
+  /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it
+  /// did; then particles have new places. The decision depends on positions alone.
+  bool update(std::vector<PhaseParticles>& particles, bool force);
+
+  const PairList& list(std::size_t direction) const { return lists_[direction]; }
+  const CellGrid& grid(std::size_t phase) const { return *grids_[phase]; }
+  bool has_grid(std::size_t phase) const { return grids_[phase] != nullptr; }
+  long rebuilds() const { return rebuilds_; }
+  std::size_t bytes() const;
+
+ private:
+  /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
+  /// in wide ones particles may go further before blocks that are not adjacent matter.
+  static constexpr double block_width = 1.5;
+
+  /// Displacements since the last sort: bounds of their components.
+  struct Range {
+    std::array<float, 3> low, high;
+    void clear();
+    void widen(const Range& other);
+  };
+  void choose_skin();
+  static double apart(const Range& a, const Range& b);
+  bool still_valid(const std::vector<PhaseParticles>& particles);
+  void measure(const PhaseParticles& particles, std::size_t phase);
+
+  Bounds bounds_;
+  std::vector<Direction> directions_;
+  std::vector<std::unique_ptr<CellGrid>> grids_;  // null for a phase without entries
+  std::vector<PairList> lists_;
+  Blocks blocks_;
+  std::vector<std::vector<Range>> ranges_;  // by phase, block
+  std::vector<Range> run_ranges_;
+  std::size_t padding_;
+  double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
+  bool adapts_ = false;
+  long rebuilds_ = 0, kept_ = 0;  // kept: steps that the lists have lived
+};
+
+}  // namespace barchan

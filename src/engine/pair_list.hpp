@@ -1,0 +1,62 @@
+// The neighbours of one phase's particles among another's, for one entry of the matrix.
+//
+// A full list: a pair of two particles of one phase stands in both their rows. Rows are padded to whole SIMD vectors
+// with the index of a dummy record that contributes nothing, so pair loops have no tails and no masks. Rows are kept
+// in chunks of `chunk` particles, each in its own buffer: threads build chunks independently and the result does not
+// depend on how many there are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned.hpp"
+#include "engine/cell_grid.hpp"
+#include "simd/vec.hpp"
+
+namespace barchan {
+
+class PairList {
+ public:
+  static constexpr std::size_t chunk = 1024;  // particles
+  /// A neighbour is listed as `stride` times its index: where its record begins in an array of records of that size.
+  static constexpr std::uint32_t stride = 8;
+  /// The largest index that can be listed in 32 bits: 2^29 - 1.
+  static constexpr std::size_t last_index = 0xffffffffu / stride;
+
+  /// The index of the dummy record behind `particles` and `images`. Throws SceneError when a list cannot hold it.
+  static std::uint32_t dummy_index(std::size_t particles, std::size_t images);
+
+  struct Row {
+    const std::uint32_t* begin;
+    const std::uint32_t* end;
+  };
+
+  /// Lists, for each particle of `a`, the particles and images of `grid_b` within `radius` (m), itself left out when
+  /// `same` says that both are one phase. `dummy` is the index that pads rows to multiples of
+  /// `padding`, a power of two.
+  void build(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
+             std::uint32_t dummy, std::size_t padding, int dimensions);
+
+  Row row(std::size_t k) const {
+    const auto& c = chunks_[k / chunk];
+    const std::size_t r = k % chunk;
+    return {c.index.data() + c.begin[r], c.index.data() + c.begin[r + 1]};
+  }
+  std::size_t padding() const { return padding_; }
+  std::uint64_t entries() const;  ///< listed neighbours (those in the skin too, padding not)
+  std::size_t bytes() const;
+
+ private:
+  struct Chunk {
+    AlignedVector<std::uint32_t> index;
+    std::vector<std::uint32_t> begin;
+    std::uint64_t entries = 0;
+  };
+  template <int Dim>
+  void build_chunks(const CellGrid&, std::size_t, const CellGrid&, bool, double, std::uint32_t);
+
+  std::vector<Chunk> chunks_;
+  std::size_t padding_ = simd::native_width<double>;
+};
+
+}  // namespace barchan

@@ -1,0 +1,58 @@
+// Rates of a fluid phase: one loop over all its neighbours, then the laws' sums become accelerations.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/pair_loop.hpp"
+#include "scene/scene.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+/// One entry of the matrix as the fluid sees it.
+struct FluidNeighbour {
+  const PairList* list;
+  const RecordArray* records;  // motion records of the other phase (a solid's: pressure and velocity extended into it)
+  KernelKind kernel;
+  double radius;                            // m
+  double viscosity;                         // Pa s, of the pair
+  bool diffuse;                             // density diffusion acts across this entry
+  const CompactRecords* compact = nullptr;  // the same records for mixed precision, null in double
+  double joined = 0;                        // kg/m3: density at rest of another fluid, consistent scheme; 0: no fluid
+};
+
+struct FluidParameters {
+  double reference_density;   // kg/m3
+  double sound_speed;         // m/s
+  double diffusivity;         // m2/s, of the density: theta c^2 dt + delta h c
+  double source_diffusivity;  // m2/s, consistent scheme: of the part of lap p that the flow itself makes
+  double shift_speed;         // m/s: du = -shift_speed * h * B, at most `shift_limit`
+  double shift_limit;         // m/s
+  double smoothing_length;    // m, of the phase with itself
+  Vec3 gravity;               // m/s2
+  Vec3 acceleration;          // m/s2, further uniform body force
+  double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole
+  double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
+  double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
+  double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
+  double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
+};
+
+/// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.
+constexpr double surface_wholeness(FluidScheme scheme) { return scheme == FluidScheme::consistent ? 0.33 : 0.55; }
+
+/// Writes acceleration, density_rate and (if the field is there) shift_velocity of `fluid`. `own` are its records.
+void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& parameters, FluidScheme scheme);
+/// The same in mixed precision: differences and a row's sums in single, all else in double.
+void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& parameters, FluidScheme scheme);
+
+/// Adds to the acceleration of a solid's particles what the fluid does to them, the reaction to fluid_rates of the
+/// plain scheme: m_b dv_b = -m_a dv_a for every pair. With `pores`, the pressure is closed behind a particle that has
+/// fluid on one side only by its own extended pressure (air in the pores of a bed), so that a uniform pressure lifts
+/// nothing.
+void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores);
+
+}  // namespace barchan

@@ -1,0 +1,311 @@
+// From the sums over a fluid particle's neighbours to its rates: the corrections of docs/method.md, shared by the
+// passes over laminar and turbulent fluids. V: numbers of several particles side by side (Four), or of one.
+#pragma once
+
+#include <array>
+#include <bit>
+
+#include "laws/consistent_fluid.hpp"
+#include "laws/plain_fluid.hpp"
+#include "models/air/fluid.hpp"
+
+namespace barchan {
+
+template <class V>
+BARCHAN_SIMD_INLINE V determinant(const std::array<V, 3>& m) {
+  return m[0] * m[2] - m[1] * m[1];
+}
+template <class V>
+BARCHAN_SIMD_INLINE V determinant(const std::array<V, 6>& m) {
+  return m[0] * (m[2] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[3]) + m[3] * (m[1] * m[4] - m[2] * m[3]);
+}
+
+/// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
+template <class V>
+BARCHAN_SIMD_INLINE std::array<V, 4> inverse_symmetric(const std::array<V, 3>& m) {
+  const V s = V(1.0) / determinant(m), xy = -m[1] * s;
+  return {m[2] * s, xy, xy, m[0] * s};
+}
+template <class V>
+BARCHAN_SIMD_INLINE std::array<V, 9> inverse_symmetric(const std::array<V, 6>& m) {
+  const V xx = m[0], xy = m[1], yy = m[2], xz = m[3], yz = m[4], zz = m[5];
+  const V a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
+  const V s = V(1.0) / (xx * a + xy * b + xz * c);
+  const V d = (xx * zz - xz * xz) * s, e = (xy * xz - xx * yz) * s, f = (xx * yy - xy * xy) * s;
+  return {a * s, b * s, c * s, b * s, d, e, c * s, e, f};
+}
+
+template <int Dim, class V>
+struct Rates {
+  std::array<V, Dim> acceleration, shift;
+  V density;
+};
+
+/// Where a particle stands in its fluid. Read: its company, pressure, velocity, and the direction inwards at and near
+/// the free surface, of the step before (zero elsewhere). Written: its wholeness (chi below).
+template <int Dim, class V>
+struct Place {
+  V company;  // share of the neighbourhood that its own fluid fills, -tr M/Dim of the fluid's entry with itself
+  V pressure;
+  std::array<V, Dim> velocity, normal;
+  V wholeness;
+};
+
+/// The columns behind it; null without a free surface. What is left in `normal` is B = sum V F r, see SurfaceFinder.
+template <int Dim>
+struct SurfaceColumns {
+  double* wholeness = nullptr;
+  std::array<double*, Dim> normal{};
+  explicit SurfaceColumns(PhaseParticles& fluid) {
+    if (!fluid.has(Field::wholeness)) return;
+    wholeness = fluid.column(Field::wholeness);
+    for (std::size_t d = 0; d < Dim; ++d) normal[d] = fluid.column(Field::surface_normal, static_cast<int>(d));
+  }
+};
+
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V trace_of(const std::array<V, Dim*(Dim + 1) / 2>& m) {
+  if constexpr (Dim == 2) return m[0] + m[2];
+  else return m[0] + m[2] + m[5];
+}
+
+/// 0 below a, 1 above b, smooth between (3 x^2 - 2 x^3).
+template <class V>
+BARCHAN_SIMD_INLINE V smooth_step(V x, double a, double b) {
+  const V t = simd::min(simd::max((x - V(a)) * V(1.0 / (b - a)), V(0.0)), V(1.0));
+  return t * t * (V(3.0) - V(2.0) * t);
+}
+
+/// Length of a vector.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V length_of(const std::array<V, Dim>& x) {
+  V square = x[0] * x[0];
+  for (std::size_t d = 1; d < Dim; ++d) square = simd::fma(x[d], x[d], square);
+  return simd::sqrt(square);
+}
+
+/// Takes the part of the shift that leads out of the fluid away; what leads inwards or along the surface stays.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE void keep_inside(std::array<V, Dim>& shift, const std::array<V, Dim>& normal) {
+  V along = shift[0] * normal[0], square = normal[0] * normal[0];
+  for (std::size_t d = 1; d < Dim; ++d) {
+    along = simd::fma(shift[d], normal[d], along);
+    square = simd::fma(normal[d], normal[d], square);
+  }
+  const V out = simd::select(along < V(0.0), along / square, V(0.0));  // a normal of zero has nothing along it
+  for (std::size_t d = 0; d < Dim; ++d) shift[d] = simd::fnma(out, normal[d], shift[d]);
+}
+
+/// How full a neighbourhood is, 1 in a whole fluid and at its straight surface alike: what tr M misses beyond a
+/// surface, |B| tells. Measured: 0.98 to 1.04 in the rows at the surface of a lattice, within 0.05 of that on disturbed
+/// particles; 0.4 in spray. Half of a Wendland kernel has tr M = -Dim/2 and h|B| = 7/(3 pi) in 2D.
+constexpr double surface_share = 0.67;
+/// A loose neighbourhood (spray that landed, a pool that swelled) bears no pressure: what of its density is above that
+/// at rest decays at the rate `loosening` times what the neighbourhood misses beyond this share (at most a half, so
+/// that a step of 0.4 h/c takes no more than there is). Energy of compression is lost, none is won; weight then draws
+/// the fluid together.
+constexpr double tolerated_swelling = 0.04;
+
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V loosen(V rho, V trace, V lopsided, const FluidParameters& q) {
+  const V fullness = (V(surface_share) * lopsided - trace * V(1.0 / Dim)) * V(1.0 / q.lattice_moment);
+  return V(q.loosening) * simd::min(simd::max(fullness - V(1.0 - tolerated_swelling), V(-0.5)), V(0.0)) *
+         simd::max(rho - V(q.reference_density), V(0.0));
+}
+
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE std::array<V, Dim> shift_of(const std::array<V, Dim>& concentration, const FluidParameters& q) {
+  std::array<V, Dim> du;
+  V speed2(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    du[d] = V(-q.shift_speed * q.smoothing_length) * concentration[d];
+    speed2 += du[d] * du[d];
+  }
+  const V limit(q.shift_limit);
+  const V s = simd::select(speed2 > limit * limit, limit / simd::sqrt(speed2), V(1.0));
+  for (auto& u : du) u *= s;
+  return du;
+}
+
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::template Sums<V>& s, double, V rho,
+                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>&,
+                                         Place<Dim, V>& place) {
+  Rates<Dim, V> r;
+  r.shift = shift_of<Dim, V>(s.concentration, q);
+  keep_inside<Dim, V>(r.shift, place.normal);
+  const V specific = V(1.0) / rho;
+  for (std::size_t d = 0; d < Dim; ++d)
+    r.acceleration[d] = (V(2.0) * s.viscous[d] - s.pressure[d]) * specific + V(q.gravity[d] + q.acceleration[d]);
+  r.density = rho * s.divergence + V(2.0 * q.diffusivity / (q.sound_speed * q.sound_speed)) * s.diffusion;
+  return r;
+}
+
+/// A plain fluid with a free surface: chi = -tr M/Dim - h|B|/2 is 1 inside and about a half on a straight surface.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainSurface<Dim>::template Sums<V>& s, double mu, V rho,
+                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
+                                         Place<Dim, V>& place) {
+  const typename PlainFluid<Dim>::template Sums<V>& plain = s;
+  Rates<Dim, V> r = finish<Dim, V>(plain, mu, rho, q, anisotropy, place);
+  // Records hold the volume m/rho: the density takes out what compression does to it.
+  const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration),
+          compressed = rho * V(1.0 / q.reference_density);
+  place.wholeness = V(-1.0 / Dim) * s.trace - V(0.5) * lopsided;
+  r.density += loosen<Dim, V>(rho, s.trace * compressed, lopsided * compressed, q);
+  return r;
+}
+
+/// det(-M) of a full neighbourhood is 1, perturbed by a fifth of a spacing 0.8 to 1.2. Below this there is a void
+/// (behind a grain that has left, say): corrections would raise the local speed of sound, and with it break the step's
+/// limit.
+constexpr double least_determinant = 0.6;
+
+/// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
+constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
+  return d >= e ? d * (d + 1) / 2 + e : e * (e + 1) / 2 + d;
+}
+
+/// A fluid particle alone in the pores of a bed is no fluid: the grains about it answer with its own pressure, and what
+/// compresses it meets nothing. Below this share of its own fluid it feels neither pressure nor weight, is not shifted,
+/// stays in its pore (its velocity decays at the rate 0.4 `pores`), and its density returns to rest at the rate
+/// `pores`.
+constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
+
+/// Where a neighbourhood is not whole, corrected operators feed energy in. chi = det(-M) - h|B|/2 tells: of particles
+/// disturbed by a fifth of a spacing, 99 % of a straight surface lie below 0.31 and 99.9 % of an interior above 0.39.
+/// The corrected operators count with the weight w(chi), the plain ones, in which neighbours push and nothing beyond
+/// them does, with 1 - w:
+///   grad p    = w M^-1 P + (1-w) [2 (p_a - p_v) B - P]
+///   lap p     = w (-2 Dim/tr M) [L_p - (M^-1 P).B] + (1-w) 2 [L_p - rho0 g.B]
+/// p_v is the pressure of the void: zero beyond a free surface; below zero in a fluid that fills its space, so that a
+/// hole behind a grain closes.
+constexpr double surface_begins = 0.3, surface_ends = 0.6;
+
+/// Without friction, rows next to a heavy free surface rock each other up, where the operators change from corrected to
+/// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. The rate
+/// is that of gravity over a spacing. So a heavy fluid with a free surface has at least these viscosities, in rho0 h
+/// sqrt(g h): everywhere; more near the surface, where the operators are corrected, and where they are plain. Measured
+/// with a tank at rest (100 crossings) and a standing wave 50 spacings deep; without weight a surface needs none.
+constexpr double bulk_friction = 0.08, corrected_friction = 1.6, plain_friction = 0.8;
+
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V least_viscosity(V mu, V inner, const std::array<V, Dim>& normal, const FluidParameters& q) {
+  V square(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) square = simd::fma(normal[d], normal[d], square);
+  const V near = simd::mask_zero(square > V(0.0), V(plain_friction) + inner * V(corrected_friction - plain_friction));
+  return simd::max(mu, (V(bulk_friction) + near) * V(q.least_viscosity));
+}
+
+/// `friction` gives, from M^-1 and grad v, the viscous sum less what a linear field makes of it: of the term
+/// laplace_v mu friction.
+template <int Dim, class V, class Friction>
+BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu,
+                                                    V rho, const FluidParameters& q,
+                                                    std::array<V, Dim*(Dim + 1) / 2>& anisotropy, Place<Dim, V>& place,
+                                                    Friction&& friction) {
+  Rates<Dim, V> r;
+  r.shift = shift_of<Dim, V>(s.concentration, q);
+  keep_inside<Dim, V>(r.shift, place.normal);
+  // A particle among grains in flight may have too few neighbours to invert anything: it goes uncorrected, M = -1.
+  auto moment = s.moment;
+  const V sign(Dim == 2 ? 1.0 : -1.0);
+  const V content = sign * determinant(moment);
+  const auto whole = content > V(least_determinant);
+  const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration);
+  place.wholeness = content - V(0.5) * lopsided;
+  const V trace_found = trace_of<Dim, V>(s.moment);
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e) {
+      const std::size_t m = moment_index(d, e);
+      moment[m] = simd::select(whole, moment[m], V(d == e ? -1.0 : 0.0));
+      anisotropy[m] = simd::mask_zero(whole, anisotropy[m]);
+    }
+  const auto inverse = inverse_symmetric(moment);
+  V trace(0.0), weighted_trace(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    trace += moment[moment_index(d, d)];
+    for (std::size_t e = 0; e < Dim; ++e) weighted_trace += anisotropy[moment_index(d, e)] * moment[moment_index(d, e)];
+  }
+  weighted_trace = simd::min(weighted_trace + trace, V(0.5) * trace);  // both negative
+  const V per_trace = V(1.0) / trace;
+  const V inner = smooth_step(place.wholeness, surface_begins, surface_ends), outer = V(1.0) - inner;
+  const V viscosity = q.least_viscosity > 0.0 ? least_viscosity<Dim, V>(V(mu), inner, place.normal, q) : V(mu);
+  const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
+  const V specific = V(1.0) / rho;
+  const double c2 = q.sound_speed * q.sound_speed;
+  const V push = V(2.0) * (place.pressure - V(q.void_pressure));
+  std::array<V, Dim> grad_p, force;
+  std::array<std::array<V, Dim>, Dim> grad_v;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    grad_p[d] = inverse[d * Dim] * s.pressure[0];
+    for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
+    force[d] = inner * grad_p[d] + outer * (push * s.concentration[d] - s.pressure[d]);
+    for (std::size_t e = 0; e < Dim; ++e) {
+      grad_v[d][e] = s.velocity[d * Dim] * inverse[e];
+      for (std::size_t f = 1; f < Dim; ++f)
+        grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
+    }
+  }
+  const std::array<V, Dim> rubbed = friction(inverse, grad_v);
+  V divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    divergence += grad_v[d][d];
+    along_p += r.shift[d] * grad_p[d];
+    dynamic -= (grad_p[d] - V(q.reference_density * q.gravity[d])) * s.concentration[d];
+    V transported(0.0);
+    for (std::size_t e = 0; e < Dim; ++e) {
+      transported += r.shift[e] * grad_v[d][e];
+      squared += grad_v[d][e] * grad_v[e][d];
+    }
+    r.acceleration[d] = laplace_v * rubbed[d] - force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
+  }
+  // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
+  const V laplacian = inner * (laplace_p * dynamic) + outer * (V(2.0) * s.diffusion);
+  r.density = -rho * divergence + V(q.diffusivity / c2) * laplacian +
+              V(q.source_diffusivity / c2 * q.reference_density) * squared + inner * (along_p * V(1.0 / c2));
+  if (q.pores > 0.0) {
+    const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
+    r.density = counts * r.density - rate * (rho - V(q.reference_density));
+    for (std::size_t d = 0; d < Dim; ++d) {
+      r.acceleration[d] = counts * r.acceleration[d] - V(pore_friction) * rate * place.velocity[d];
+      r.shift[d] *= counts;
+    }
+  }
+  if (q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_found, lopsided, q);
+  // The next step's weights; they stay positive: no entry of A beyond a half.
+  const V scale = V(-0.5 * (Dim + 2) * Dim) * per_trace;
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e) {
+      const std::size_t m = moment_index(d, e);
+      const V a = scale * moment[m] + V(d == e ? 0.5 * (Dim + 2) : 0.0);
+      anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a, V(0.5)), V(-0.5)));
+    }
+  return r;
+}
+
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu, V rho,
+                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
+                                         Place<Dim, V>& place) {
+  return finish_consistent<Dim, V>(
+      s, mu, rho, q, anisotropy, place, [&](const auto&, const auto& grad_v) __attribute__((always_inline)) {
+        std::array<V, Dim> friction = s.viscous;
+        for (std::size_t d = 0; d < Dim; ++d)
+          for (std::size_t e = 0; e < Dim; ++e) friction[d] -= grad_v[d][e] * s.weighted[e];
+        return friction;
+      });
+}
+
+/// The sums over the lanes of every member of one particle's sums.
+template <class Reduced, class Sums>
+BARCHAN_SIMD_INLINE Reduced reduce(const Sums& from) {
+  constexpr std::size_t count = sizeof(Sums) / sizeof(Lanes);
+  static_assert(count == sizeof(Reduced) / sizeof(double));
+  const auto v = std::bit_cast<std::array<Lanes, count>>(from);
+  std::array<double, count> x;
+  for (std::size_t k = 0; k < count; ++k) x[k] = simd::sum(v[k]);
+  return std::bit_cast<Reduced>(x);
+}
+
+}  // namespace barchan

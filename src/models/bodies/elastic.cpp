@@ -1,0 +1,228 @@
+#include "models/bodies/elastic.hpp"
+
+#include "engine/fours.hpp"
+#include "kernels/kernel.hpp"
+#include "laws/elastic.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// The field's order: xx yy zz xy yz xz.
+constexpr std::size_t column_of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+template <int Dim>
+void pack(const PhaseParticles& body, RecordArray& records) {
+  using R = StressRecord<Dim>;
+  const double mass = body.mass();
+  const double *rho = body.column(Field::density), *p = body.column(Field::pressure);
+  const auto n = static_cast<std::int64_t>(body.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    double* r = records[k];
+    for (int d = 0; d < Dim; ++d) {
+      r[R::position + d] = body.column(Field::position, d)[k];
+      r[R::velocity + d] = body.column(Field::velocity, d)[k];
+    }
+    const double inverse = 1.0 / (rho[k] * rho[k]);
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e <= d; ++e) {
+        const double s = body.column(Field::stress, static_cast<int>(column_of[d][e]))[k] - (d == e ? p[k] : 0.0);
+        r[static_cast<std::size_t>(R::stress) + stress_index<Dim>(d, e)] = s * inverse;
+      }
+    r[R::volume] = mass / rho[k];
+  }
+}
+
+/// A symmetric stress of four particles: the components that the dimensions have, and zz in two (plane strain).
+template <int Dim>
+struct Stress {
+  std::array<std::array<Four, Dim>, Dim> in;
+  Four zz;  // two dimensions only
+};
+template <int Dim>
+using Gradient = std::array<std::array<Four, Dim>, Dim>;  // row: component of v
+
+/// 2 G dev(D) + s.W^T + W.s at stress s.
+template <int Dim>
+BARCHAN_SIMD_INLINE Stress<Dim> stress_rate(const Stress<Dim>& s, const Gradient<Dim>& l, Four shear_modulus) {
+  Stress<Dim> rate;
+  Four third(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) third += l[d][d];
+  third *= Four(2.0 / 3.0) * shear_modulus;
+  const auto spin = [&](std::size_t d, std::size_t e) { return Four(0.5) * (l[d][e] - l[e][d]); };
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e) {
+      Four sum = shear_modulus * (l[d][e] + l[e][d]);
+      if (d == e) sum -= third;
+      for (std::size_t f = 0; f < Dim; ++f) {
+        if (f != e) sum = simd::fma(s.in[d][f], spin(e, f), sum);
+        if (f != d) sum = simd::fma(spin(d, f), s.in[f][e], sum);
+      }
+      rate.in[d][e] = rate.in[e][d] = sum;
+    }
+  rate.zz = -third;
+  return rate;
+}
+
+template <int Dim>
+BARCHAN_SIMD_INLINE Stress<Dim> advance(const Stress<Dim>& s, Four time, const Stress<Dim>& rate) {
+  Stress<Dim> r;
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e < Dim; ++e) r.in[d][e] = simd::fma(time, rate.in[d][e], s.in[d][e]);
+  r.zz = simd::fma(time, rate.zz, s.zz);
+  return r;
+}
+
+std::vector<ReadyKernel>& ready_kernels(std::span<const ElasticNeighbour> neighbours, int dimensions) {
+  thread_local std::vector<ReadyKernel> kernels;
+  kernels.reserve(16);
+  kernels.clear();
+  for (const auto& e : neighbours) kernels.emplace_back(e.kernel, e.radius, dimensions);
+  return kernels;
+}
+
+template <int Dim>
+void strain(PhaseParticles& body, const RecordArray& own_records, std::span<const ElasticNeighbour> neighbours,
+            const ElasticParameters& q, double dt) {
+  using R = StressRecord<Dim>;
+  using Law = ElasticStrain<Dim>;
+  double *rho = body.column(Field::density), *p = body.column(Field::pressure);
+  double* energy = body.has(Field::energy) ? body.column(Field::energy) : nullptr;
+  std::array<double*, 6> stress{};
+  for (int c = 0; c < 6; ++c) stress[static_cast<std::size_t>(c)] = body.column(Field::stress, c);
+  const auto& kernels = ready_kernels(neighbours, Dim);
+  const Four time(dt), half(0.5 * dt), shear(q.shear_modulus), stiffness(q.bulk_modulus / q.reference_density);
+  const std::size_t n = body.size();
+  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int64_t block = 0; block < fours; ++block) {
+    const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
+    std::array<typename Law::template Sums<Lanes>, 4> sums;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t k = std::min(first + lane, n - 1);
+      const double* record = own_records[k];
+      std::array<Lanes, Dim> x, v;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        x[d] = Lanes(record[R::position + d]);
+        v[d] = Lanes(record[R::velocity + d]);
+      }
+      typename Law::template Sums<Lanes> s{};
+      for (std::size_t c = 0; c < neighbours.size(); ++c) {
+        const auto& e = neighbours[c];
+        const auto row = e.list->row(k);
+        const Lanes mass(e.mass);
+        kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
+          for_each_neighbour<R::size>(
+              row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+                std::array<Lanes, Dim> r;
+                const Lanes r2 = separation<Dim>(x, b + R::position, r);
+                Law::add(v, mass, r, kernel.gradient(r2), b + R::velocity, b[R::volume], s);
+              });
+        });
+      }
+      sums[lane] = s;
+    }
+    const auto s = reduce<typename Law::template Sums<Four>, double>(sums);
+    Gradient<Dim> l;
+    Stress<Dim> old;
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e) {
+        l[d][e] = -s.gradient[d * Dim + e];
+        old.in[d][e] = load_four(stress[column_of[d][e]], first, count);
+      }
+    old.zz = load_four(stress[2], first, count);
+    const Stress<Dim> mid = advance(old, half, stress_rate<Dim>(old, l, shear));
+    const Stress<Dim> next = advance(old, time, stress_rate<Dim>(mid, l, shear));
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e <= d; ++e) store_four(next.in[d][e], stress[column_of[d][e]], first, count);
+    if (Dim == 2) store_four(next.zz, stress[2], first, count);
+    Four density = load_four(rho, first, count);
+    if (energy) {  // de/dt = s:L/rho, eq. (13b) with the whole stress; the power at the middle of the step
+      Four power(0.0), trace(0.0);
+      for (std::size_t d = 0; d < Dim; ++d) {
+        trace += l[d][d];
+        for (std::size_t e = 0; e < Dim; ++e) power = simd::fma(mid.in[d][e], l[d][e], power);
+      }
+      power -= load_four(p, first, count) * trace;
+      store_four(load_four(energy, first, count) + time * power / density, energy, first, count);
+    }
+    density = simd::fma(time, s.density, density);
+    store_four(density, rho, first, count);
+    store_four(stiffness * (density - Four(q.reference_density)), p, first, count);
+  }
+}
+
+template <int Dim, bool Viscous>
+void forces(PhaseParticles& body, const RecordArray& own_records, std::span<const ElasticNeighbour> neighbours,
+            const ElasticParameters& q) {
+  using R = StressRecord<Dim>;
+  using Law = ElasticForce<Dim>;
+  using Sums = std::array<Lanes, Dim>;
+  const double alpha = -q.alpha * q.sound_speed / q.reference_density, beta = q.beta / q.reference_density;
+  std::array<double*, Dim> a{};
+  for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = body.column(Field::acceleration, d);
+  const auto& kernels = ready_kernels(neighbours, Dim);
+  const std::size_t n = body.size();
+  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int64_t block = 0; block < fours; ++block) {
+    const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
+    std::array<Sums, 4> sums;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t k = std::min(first + lane, n - 1);
+      const double* record = own_records[k];
+      typename Law::template Own<Lanes> own;
+      Sums sum;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        own.x[d] = Lanes(record[R::position + d]);
+        own.v[d] = Lanes(record[R::velocity + d]);
+        sum[d] = Lanes(0.0);
+      }
+      for (std::size_t c = 0; c < Law::stresses; ++c) own.s[c] = Lanes(record[R::stress + c]);
+      for (std::size_t c = 0; c < neighbours.size(); ++c) {
+        const auto& e = neighbours[c];
+        const auto row = e.list->row(k);
+        const double h = 0.5 * e.radius;
+        own.mass_b = Lanes(e.mass);
+        own.alpha = Lanes(alpha * h);
+        own.beta = Lanes(beta * h * h);
+        own.soft = Lanes(0.01 * h * h);
+        kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
+          for_each_neighbour<R::size>(
+              row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
+                std::array<Lanes, Dim> r;
+                const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+                Law::template add<Viscous>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress,
+                                           b[R::volume], sum);
+              });
+        });
+      }
+      sums[lane] = sum;
+    }
+    const auto s = reduce<std::array<Four, Dim>, double>(sums);
+    for (std::size_t d = 0; d < Dim; ++d) store_four(s[d] + Four(q.gravity[d]), a[d], first, count);
+  }
+}
+
+}  // namespace
+
+void pack_stress(const PhaseParticles& body, RecordArray& records) {
+  body.dimensions() == 2 ? pack<2>(body, records) : pack<3>(body, records);
+}
+
+void elastic_strain(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
+                    const ElasticParameters& q, double dt) {
+  body.dimensions() == 2 ? strain<2>(body, own, neighbours, q, dt) : strain<3>(body, own, neighbours, q, dt);
+}
+
+void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
+                    const ElasticParameters& q) {
+  const bool viscous = q.alpha != 0.0 || q.beta != 0.0;
+  if (body.dimensions() == 2)
+    viscous ? forces<2, true>(body, own, neighbours, q) : forces<2, false>(body, own, neighbours, q);
+  else viscous ? forces<3, true>(body, own, neighbours, q) : forces<3, false>(body, own, neighbours, q);
+}
+
+}  // namespace barchan

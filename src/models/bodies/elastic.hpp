@@ -1,0 +1,42 @@
+// Elastic bodies: strain pass (velocities -> density and stress) and force pass (stress -> acceleration).
+#pragma once
+
+#include <span>
+
+#include "engine/pair_loop.hpp"
+#include "scene/scene.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+/// One entry between elastic phases.
+struct ElasticNeighbour {
+  const PairList* list;
+  const RecordArray* records;  // stress records of the other phase
+  KernelKind kernel;
+  double radius;  // m
+  double mass;    // kg, of a particle of the other phase
+};
+
+struct ElasticParameters {
+  double reference_density;  // kg/m3
+  double shear_modulus;      // Pa, G
+  double bulk_modulus;       // Pa, K; p = (K/rho0)(rho - rho0)
+  double alpha, beta;        // Monaghan's viscosity
+  double sound_speed;        // m/s, of the viscosity: sqrt(K/rho0)
+  Vec3 gravity;              // m/s2
+};
+
+/// Packs stress records: position, velocity, (s - p I)/rho^2, m/rho.
+void pack_stress(const PhaseParticles& body, RecordArray& records);
+
+/// Advances density, pressure and deviatoric stress by dt with the velocity gradient at the records' positions and
+/// velocities (the middle of the step).
+void elastic_strain(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
+                    const ElasticParameters& parameters, double dt);
+
+/// Writes the acceleration.
+void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
+                    const ElasticParameters& parameters);
+
+}  // namespace barchan

@@ -1,0 +1,48 @@
+#include "simulation/kept_state.hpp"
+
+#include <algorithm>
+
+namespace barchan {
+
+KeptState::KeptState(const std::vector<PhaseParticles>& particles, std::vector<Field> fields)
+    : fields_(std::move(fields)), ids_(particles.size()) {
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const PhaseParticles& p = particles[k];
+    if (p.kind() == PhaseKind::wall) continue;
+    ids_[k] = p.id();
+    for (const Field field : fields_)
+      for (int c = 0; p.has(field) && c < p.components(field); ++c)
+        columns_.push_back({k, field, c, AlignedVector<double>(p.size())});
+  }
+}
+
+void KeptState::keep(const std::vector<PhaseParticles>& particles, double time, long step) {
+  for (auto& column : columns_) {
+    const double* from = particles[column.phase].column(column.field, column.component);
+    double* to = column.values.data();
+    const auto n = static_cast<std::int64_t>(column.values.size());
+#pragma omp parallel for simd schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) to[i] = from[i];
+  }
+  for (std::size_t k = 0; k < ids_.size(); ++k)
+    if (!ids_[k].empty()) std::copy(particles[k].id().begin(), particles[k].id().end(), ids_[k].begin());
+  time_ = time;
+  step_ = step;
+}
+
+void KeptState::exchange(std::vector<PhaseParticles>& particles) {
+  for (auto& column : columns_)
+    std::swap_ranges(column.values.begin(), column.values.end(),
+                     particles[column.phase].column(column.field, column.component));
+  for (std::size_t k = 0; k < ids_.size(); ++k)
+    if (!ids_[k].empty()) ids_[k].swap(particles[k].id());
+}
+
+std::size_t KeptState::bytes() const {
+  std::size_t total = 0;
+  for (const auto& c : columns_) total += c.values.size() * sizeof(double);
+  for (const auto& i : ids_) total += i.size() * sizeof(std::int64_t);
+  return total;
+}
+
+}  // namespace barchan

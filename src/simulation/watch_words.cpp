@@ -1,0 +1,281 @@
+// The slow part of the watch: which particle is wrong, in which words, and what to change.
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "output/numbers.hpp"
+#include "simulation/watch.hpp"
+
+namespace barchan {
+
+namespace {
+
+Vec3 place_of(const PhaseParticles& p, std::size_t k) {
+  Vec3 x{};
+  for (int d = 0; d < p.dimensions(); ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
+  return x;
+}
+
+std::string text_of(const Vec3& x, int dimensions) {
+  std::string text = "(" + brief(x[0]);
+  for (std::size_t d = 1; d < static_cast<std::size_t>(dimensions); ++d) text += ", " + brief(x[d]);
+  return text + ") m";
+}
+
+double size_of(const PhaseParticles& p, std::size_t k, Field vector) {
+  double squares = 0.0;
+  for (int d = 0; d < p.dimensions(); ++d) squares += p.column(vector, d)[k] * p.column(vector, d)[k];
+  return std::sqrt(squares);
+}
+
+const char* one_of(PhaseKind kind) {
+  return kind == PhaseKind::grains ? "grain" : kind == PhaseKind::elastic ? "particle of a body" : "particle";
+}
+
+}  // namespace
+
+std::string Watch::who(std::size_t phase, std::size_t k, const Moment& now) const {
+  const PhaseParticles& p = see_.particles[phase];
+  return "particle " + std::to_string(p.id()[k]) + " of phase \"" + p.name() + "\" at " +
+         text_of(place_of(p, k), p.dimensions()) + ", t = " + brief(now.time) + " s, step " + std::to_string(now.step);
+}
+
+/// The key that makes the step shorter.
+std::string Watch::step_key() const { return see_.plan.fixed_step > 0 ? "time.step" : "time.safety"; }
+
+std::string Watch::most_accelerated(const Moment& now) const {
+  double most = -1.0;
+  std::size_t phase = 0, particle = 0;
+  for (const Guard& g : guards_) {
+    const PhaseParticles& p = see_.particles[g.phase];
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      double size = 0.0;  // the largest component, as the limit of the step sees it
+      for (int d = 0; d < p.dimensions(); ++d) size = std::max(size, std::abs(p.column(Field::acceleration, d)[k]));
+      if (size < most || (size == most && p.id()[k] > see_.particles[phase].id()[particle])) continue;
+      most = size;
+      phase = g.phase;
+      particle = k;
+    }
+  }
+  if (most < 0.0) return "no particle";
+  return who(phase, particle, now) + ", with an acceleration of " + brief(most) + " m/s2";
+}
+
+/// What is wrong with a particle, and what to do; nothing if it is within its bounds.
+std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, double dt) const {
+  const PhaseParticles& p = see_.particles[g.phase];
+  const Plan& plan = see_.plan;
+  const std::string key = "phases." + p.name() + ".";
+  const bool fluid = p.kind() == PhaseKind::fluid, grains = p.kind() == PhaseKind::grains;
+  for (const Field f : {Field::acceleration, Field::velocity, Field::position})
+    for (int d = 0; d < p.dimensions(); ++d)
+      if (!std::isfinite(p.column(f, d)[k]))
+        return ": " + std::string(info(f).name) + " is not finite; the step was too long or particles overlap: lower " +
+               step_key() + ", raise " +
+               (fluid    ? key + "sound-speed or " + key + "density-diffusion"
+                : grains ? key + "contact-speed"
+                         : key + "artificial-viscosity") +
+               ", or look for particles in one place in the fills";
+  for (int d = 0; d < p.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    const double x = p.column(Field::position, d)[k];
+    if (x >= g.low[c] && x <= g.high[c]) continue;
+    const bool low = x < g.low[c];
+    const std::string side = std::string(low ? "lower" : "upper") + " side of " + "xyz"[d];
+    const int wall = g.closed[c][low ? 0 : 1];
+    const std::string stiffer = fluid || p.kind() == PhaseKind::elastic
+                                    ? "lower " + step_key() + (fluid ? " or raise " + key + "sound-speed" : "")
+                                    : "raise " + key + "contact-speed";
+    if (wall >= 0)
+      return " passed the wall \"" + plan.phases[static_cast<std::size_t>(wall)].name + "\" at the " + side +
+             " (a bound at " + brief(low ? g.low[c] : g.high[c]) +
+             " m); the wall could not stop it, it was too fast or pressed too hard: " + stiffer;
+    return " escaped through the " + side +
+           "; no wall with which it interacts holds it there: add a wall on that side and an entry of \"" + p.name() +
+           "\" with it in [interactions], or enlarge domain.size";
+  }
+  const double speed = size_of(p, k, Field::velocity);
+  if (!(speed <= g.signal_speed)) {
+    const std::string found = " is faster (" + brief(speed) + " m/s, with an acceleration of " +
+                              brief(size_of(p, k, Field::acceleration)) + " m/s2) than ";
+    if (fluid)
+      return found + "sound (" + brief(g.signal_speed) +
+             " m/s); the flow ran away, or the scene has too slow a sound: " + "raise " + key +
+             "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
+             "artificial-viscosity, or lower " + step_key();
+    if (grains)
+      return found + "its contacts can stop (" + brief(g.signal_speed) + " m/s): raise " + key + "contact-speed (" +
+             brief(plan.phases[g.phase].sound_speed) + " m/s) to " + brief(2.0 * speed) + " or more";
+    return found + "compression waves of its body (" + brief(g.signal_speed) +
+           " m/s), so that no contact can stop it: raise " + key + "young, or lower its speed";
+  }
+  if (!(speed * dt <= g.way))
+    return " moves " + brief(speed * dt / plan.spacing) + " spacings in one step (" + brief(speed) + " m/s in " +
+           brief(dt) + " s; the bound is " + brief(g.way / plan.spacing) + " spacings) and would pass what it meets: " +
+           (grains && plan.fixed_step <= 0
+                ? "raise " + key + "contact-speed (" + brief(plan.phases[g.phase].sound_speed) + " m/s) to " +
+                      brief(speed) + " or more"
+                : "lower " + step_key());
+  if (!g.dense) return std::nullopt;
+  const double rho = p.column(Field::density)[k];
+  if (rho >= g.least_density && rho <= g.most_density) return std::nullopt;
+  if (!fluid)
+    return ": density " + brief(rho) + " kg/m3 is impossible; the body was torn or pressed into nothing: lower " +
+           step_key() + ", or raise " + key + "artificial-viscosity";
+  return ": density " + brief(rho) + " kg/m3 is out of bounds (" + brief(g.least_density) + " to " +
+         brief(g.most_density) + "); the pressure ran away, or neighbours are too few: raise " + key +
+         "sound-speed or the radius of interactions." + p.name() + "-" + p.name() + ", or lower " + step_key();
+}
+
+void Watch::tell_worst(const Moment& now) const {
+  std::int64_t lowest = -1;
+  long wrong = 0;
+  std::string what, whom;
+  for (const Guard& g : guards_) {
+    const PhaseParticles& p = see_.particles[g.phase];
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const auto found = wrong_with(g, k, now.dt);
+      if (!found) continue;
+      ++wrong;
+      if (lowest >= 0 && p.id()[k] > lowest) continue;
+      lowest = p.id()[k];
+      what = *found;
+      whom = who(g.phase, k, now);
+    }
+  }
+  if (wrong == 0) throw BreakdownError("a sum of accelerations is not finite; " + most_accelerated(now));
+  throw BreakdownError(whom + what + (wrong > 1 ? " (" + std::to_string(wrong) + " particles are wrong)" : ""));
+}
+
+void Watch::tell_pair(const Apart& pair, const Moment& now) const {
+  const PhaseParticles &a = see_.particles[pair.a], &b = see_.particles[pair.b];
+  const PairList& list = see_.neighbours.list(static_cast<std::size_t>(pair.list));
+  const auto& records = pair.stress ? see_.stress : see_.motion;
+  const CellGrid& grid = see_.neighbours.grid(pair.b);
+  std::size_t first = 0, with = 0;
+  double distance = 0.0;
+  bool any = false;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (any && a.id()[k] > a.id()[first]) continue;
+    const auto row = list.row(k);
+    double least = pair.distance;
+    for (const std::uint32_t* q = row.begin; q != row.end; ++q) {
+      const std::size_t at = *q / PairList::stride, image = at - b.size();
+      if (at >= b.size() && image >= grid.images()) continue;  // the dummy
+      double r2 = 0.0;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(a.dimensions()); ++d)
+        r2 += std::pow(records[pair.a][k][d] - records[pair.b][at][d], 2);
+      if (!(std::sqrt(r2) < least)) continue;
+      least = distance = std::sqrt(r2);
+      first = k;
+      with = at < b.size() ? at : grid.image_list()[image].source;
+      any = true;
+    }
+  }
+  const std::string near =
+      brief(distance / see_.plan.spacing) + " spacings (bound " + brief(pair.distance / see_.plan.spacing) + ")";
+  const std::string stiffer =
+      a.kind() == PhaseKind::grains ? "phases." + a.name() + ".contact-speed" : "phases." + a.name() + ".young";
+  if (b.kind() == PhaseKind::wall)
+    throw BreakdownError(who(pair.a, first, now) + " is deep in the wall \"" + b.name() + "\", " + near +
+                         " from a particle of it; it was too fast or pressed too hard for the contact, or the fills "
+                         "overlap: raise " +
+                         stiffer + ", or move the fills apart");
+  throw BreakdownError(who(pair.a, first, now) + " is in the same place as " + one_of(b.kind()) + " " +
+                       std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
+                       " apart; the contact could not keep them apart, or the fills overlap: raise " + stiffer +
+                       ", or move the fills apart");
+}
+
+/// Particles in pairs feel each other no longer: more than a share of the phase is nearer than pair_distance to
+/// somebody. A sample decides whether all are counted.
+void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const {
+  const PhaseParticles& p = see_.particles[g.phase];
+  const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.spacing, 2);
+  const auto n = static_cast<std::int64_t>(p.size());
+  const auto share = [&](std::int64_t first, std::int64_t stride) {
+    std::int64_t near = 0, seen = 0;
+#pragma omp parallel for schedule(static) reduction(+ : near, seen)
+    for (std::int64_t k = first; k < n; k += stride) {
+      near += nearest(g, static_cast<std::size_t>(k)) < near2 ? 1 : 0;
+      ++seen;
+    }
+    return seen > 0 ? static_cast<double>(near) / static_cast<double>(seen) : 0.0;
+  };
+  constexpr std::int64_t least_sample = 128, thinning = 64;
+  const std::int64_t stride = all ? 1 : std::max<std::int64_t>(1, std::min(thinning, n / least_sample));
+  if (stride > 1 && share(looks_ / 2 % stride, stride) < 0.3 * WatchBounds::paired) return;
+  const double paired = share(0, 1);
+  if (paired <= WatchBounds::paired) return;
+  std::size_t first = 0;
+  std::int64_t lowest = -1;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    if (!(nearest(g, k) < near2) || (lowest >= 0 && p.id()[k] > lowest)) continue;
+    lowest = p.id()[k];
+    first = k;
+  }
+  throw BreakdownError(who(g.phase, first, now) + " and " + brief(100.0 * paired) +
+                       " % of its phase stand in pairs, nearer than " + brief(WatchBounds::pair_distance) +
+                       " spacings to another (bound " + brief(100.0 * WatchBounds::paired) +
+                       " %); the kernel does not keep particles apart: choose kernel = \"wendland-c2\" for "
+                       "interactions." +
+                       p.name() + "-" + p.name() + ", or raise phases." + p.name() + ".shifting");
+}
+
+/// The largest kinetic energy that laws can have fed: with forces f per mass, sqrt(2 E/M) grows by no more than the
+/// integral of |f| (Cauchy and Schwarz); a fall through the domain gives sqrt(2 g L) at most; moving walls give their
+/// speed; the pressure of the beginning, and disorder, what start_energy_ holds.
+void Watch::look_at_energy(const Moment& now) {
+  forced_ += strongest_force(now) * std::max(now.time - last_time_, 0.0);
+  last_time_ = now.time;
+  double speed = start_speed_ + forced_;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(see_.plan.dimensions); ++d) {
+    const double g = std::abs(see_.scene.domain.gravity[d]);
+    speed += see_.plan.bounds.periodic[d] ? g * now.time
+                                          : std::min(g * now.time, std::sqrt(2.0 * g * see_.scene.domain.size[d]));
+  }
+  double walls = 0.0;
+  for (const auto& p : see_.particles)
+    if (p.kind() == PhaseKind::wall && p.size() > 0) walls = std::max(walls, size_of(p, 0, Field::velocity));
+  wall_speed_ = std::max(wall_speed_, walls);
+  speed += wall_speed_;
+  const double bound = WatchBounds::energy * 0.5 * mass_ * speed * speed;
+  if (energy_ <= bound) return;
+  throw BreakdownError("the kinetic energy of all particles, " + brief(energy_) + " J, is more than " +
+                       brief(WatchBounds::energy) +
+                       " times what gravity, forcings, walls and the start can have fed (" +
+                       brief(bound / WatchBounds::energy) + " J) at t = " + brief(now.time) + " s, step " +
+                       std::to_string(now.step) + "; the scheme feeds energy in: lower " + step_key() +
+                       ", raise the sound speed, the viscosity or the artificial-viscosity; " + most_accelerated(now));
+}
+
+void Watch::note_density(const Guard& g, double error, const Moment& now) {
+  if (error < WatchBounds::remarkable_density || error < 1.01 * extreme_.error) return;
+  const PhaseParticles& p = see_.particles[g.phase];
+  const double* rho = p.column(Field::density);
+  Extreme found{-1.0, 0.0, now.time, g.phase, 0, {}, now.step};
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double e = std::abs(rho[k] / g.reference_density - 1.0);
+    if (!(e > found.error) && !(e == found.error && p.id()[k] < found.id)) continue;
+    found.error = e;
+    found.density = rho[k];
+    found.id = p.id()[k];
+    found.place = place_of(p, k);
+  }
+  extreme_ = found;
+}
+
+void Watch::report(Warnings& warnings) const {
+  if (extreme_.error < WatchBounds::remarkable_density) return;
+  const PhaseParticles& p = see_.particles[extreme_.phase];
+  warnings.add("density", "the density of \"" + p.name() + "\" was off by " + brief(100.0 * extreme_.error) +
+                              " % (particle " + std::to_string(extreme_.id) + " at " +
+                              text_of(extreme_.place, p.dimensions()) + ", t = " + brief(extreme_.time) + " s, step " +
+                              std::to_string(extreme_.step) +
+                              "); a weakly compressible fluid should stay within 1 %: raise phases." + p.name() +
+                              ".sound-speed or the radius of interactions." + p.name() + "-" + p.name());
+}
+
+std::size_t Watch::bytes() const { return good_.bytes() + parts_.size() * sizeof(Part); }
+
+}  // namespace barchan

@@ -1,0 +1,48 @@
+#include "state/particles.hpp"
+
+#include <numeric>
+
+namespace barchan {
+
+PhaseParticles::PhaseParticles(std::string name, PhaseKind kind, int dimensions, std::size_t size, double mass,
+                               std::int64_t first_id)
+    : name_(std::move(name)),
+      kind_(kind),
+      dimensions_(dimensions),
+      size_(size),
+      mass_(mass),
+      id_(size),
+      id_scratch_(size),
+      scratch_(size) {
+  std::iota(id_.begin(), id_.end(), first_id);
+}
+
+void PhaseParticles::add(Field field) {
+  auto& columns = columns_[index(field)];
+  if (!columns.empty()) return;
+  columns.resize(static_cast<std::size_t>(components(field)));
+  for (auto& column : columns) column.assign(size_, 0.0);
+}
+
+void PhaseParticles::permute(const std::uint32_t* order) {
+  const auto n = static_cast<std::int64_t>(size_);
+  for (auto& columns : columns_)
+    for (auto& column : columns) {
+      const double* from = column.data();
+      double* to = scratch_.data();
+#pragma omp parallel for schedule(static)
+      for (std::int64_t k = 0; k < n; ++k) to[k] = from[order[k]];
+      column.swap(scratch_);
+    }
+  for (std::size_t k = 0; k < size_; ++k) id_scratch_[k] = id_[order[k]];
+  id_.swap(id_scratch_);
+}
+
+std::size_t PhaseParticles::bytes() const {
+  std::size_t total = (id_.size() + id_scratch_.size()) * sizeof(std::int64_t) + scratch_.size() * sizeof(double);
+  for (const auto& columns : columns_)
+    for (const auto& column : columns) total += column.size() * sizeof(double);
+  return total;
+}
+
+}  // namespace barchan
