@@ -78,7 +78,8 @@ TEST(SceneReader, DefaultsAreTheBestWeKnow) {
                   {"interactions.air-air={}", "interactions.sand-sand={}", "interactions.air-sand={ drag = 1 }"});
   EXPECT_EQ(scene.phases[0].scheme, FluidScheme::consistent);
   EXPECT_FALSE(scene.phases[0].enclosed.has_value()) << "the plan decides";
-  EXPECT_EQ(Phase{}.restitution, 0.7) << "a bed comes to rest";
+  EXPECT_EQ(parse_scene(with(dune_text, "restitution = 0.7", ""), "s.toml").phases[1].restitution, 0.7)
+      << "a bed comes to rest";
   for (const Interaction& pair : scene.interactions) {
     const bool contact = pair.a == "sand" && pair.b == "sand";
     EXPECT_EQ(pair.kernel, contact ? KernelKind::cubic_spline : KernelKind::wendland_c2) << pair.a << "-" << pair.b;
