@@ -120,6 +120,7 @@ TEST(KeyConsumers, EveryKeyHasACase) {
       for (const std::string& kind : choices(*find_key("phases", "kind")))
         if (belongs_to_kind(key, kind)) names.push_back(path_of(key) + " of " + kind);
     }
+    std::set<std::string> all_given;
     for (const std::string& name : names) {
       const auto found = known.find(name);
       ASSERT_NE(found, known.end()) << name << ": no case tells what it changes; add one to key_consumers_cases.inc";
