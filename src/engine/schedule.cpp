@@ -13,10 +13,10 @@ double thread_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-void execute(const Task& task) {
+void execute(const Task& task, [[maybe_unused]] const std::string& stage) {
 #ifndef NDEBUG
   const FieldSet allowed = task.reads | task.writes;
-  const AccessGuard guard(task.owner.c_str(), allowed);
+  const AccessGuard guard(stage.c_str(), task.owner.c_str(), allowed);
 #endif
   task.call();
 }
@@ -35,7 +35,7 @@ void Schedule::run(std::size_t first, std::size_t last) {
     if (tasks_[stage].empty()) continue;
     const auto start = std::chrono::steady_clock::now();
     const double processor = thread_seconds();
-    for (const Task& task : tasks_[stage]) execute(task);
+    for (const Task& task : tasks_[stage]) execute(task, seconds_[stage].first);
     ++executed_[stage];
     processor_seconds_[stage] += thread_seconds() - processor;
     seconds_[stage].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -25,7 +25,10 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
     if (const StepLimit* l = model->moving_limit()) state_.limit_counts[l->name] = 0;
   watch_ = std::make_unique<Watch>(
       Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, work_->motion, work_->stress});
-  schedule_.add({stage::watch, "all", {}, {}, [this] { watch_->look(moment()); }});
+  FieldSet all;
+  for (const auto& p : plan_.phases)
+    for (const Field f : p.fields) all = all | FieldSet{f};
+  schedule_.add({stage::watch, "all", all, {}, [this] { watch_->look(moment()); }});
   schedule_.run(stage::kick, stage::kick);  // moves nothing; finds the largest acceleration, which limits the first step
 }
 

@@ -30,9 +30,10 @@ class FieldSet {
 /// message names the task. One at a time; the threads of the task's loops are bound by it too.
 class AccessGuard {
  public:
-  AccessGuard(const char* task, const FieldSet& allowed) {
+  AccessGuard(const char* stage, const char* owner, const FieldSet& allowed) {
     allowed_ = &allowed;
-    task_ = task;
+    stage_ = stage;
+    owner_ = owner;
   }
   ~AccessGuard() { allowed_ = nullptr; }
   AccessGuard(const AccessGuard&) = delete;
@@ -46,7 +47,7 @@ class AccessGuard {
  private:
   [[noreturn]] static void refuse(Field field);
   inline static const FieldSet* allowed_ = nullptr;
-  inline static const char* task_ = "";
+  inline static const char *stage_ = "", *owner_ = "";
 };
 
 }  // namespace barchan
