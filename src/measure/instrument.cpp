@@ -24,7 +24,7 @@ class Maker {
     i.every = measured.every > 0 ? measured.every : history;
     i.start = measured.start;
     i.dimensions = scene_.dimensions;
-    i.has_pressure = scene_.phases[i.phase].kind == PhaseKind::fluid;
+    i.has_pressure = scene_.phases[i.phase].kind() == PhaseKind::fluid;
     for (const Interaction& pair : scene_.interactions)
       if (pair.a == measured.phase && pair.b == measured.phase) {
         i.kernel = pair.kernel;
@@ -91,8 +91,8 @@ class Maker {
     i.density = fluid.density;
     // Monaghan's viscosity as a kinematic one, as the fluid's passes have it.
     const double artificial =
-        fluid.artificial_viscosity * 0.5 * i.radius * sound_speeds_[i.phase] / (2.0 * (scene_.dimensions + 2));
-    i.viscosity = fluid.density * (fluid.viscosity + artificial);
+        fluid.fluid().artificial_viscosity * 0.5 * i.radius * sound_speeds_[i.phase] / (2.0 * (scene_.dimensions + 2));
+    i.viscosity = fluid.density * (fluid.fluid().viscosity + artificial);
     i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
     const Vec3 size = bounds_.high - bounds_.low;
     const std::size_t columns = whole(w.count, size[0]);

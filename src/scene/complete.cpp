@@ -8,11 +8,11 @@ namespace {
 void complete_wall_densities(Scene& scene) {
   const auto density_of = [&](const std::string& name) {
     for (const Phase& phase : scene.phases)
-      if (phase.name == name && phase.kind != PhaseKind::wall) return phase.density;
+      if (phase.name == name && phase.kind() != PhaseKind::wall) return phase.density;
     return 0.0;
   };
   for (Phase& phase : scene.phases) {
-    if (phase.kind != PhaseKind::wall) continue;
+    if (phase.kind() != PhaseKind::wall) continue;
     for (const Interaction& pair : scene.interactions) {
       if (phase.density > 0.0) break;
       if (pair.a == phase.name) phase.density = density_of(pair.b);
@@ -38,9 +38,9 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
   bool fluid = false, repulsive = false, bodies = true;
   for (const Phase& phase : phases) {
     if (phase.name != a && phase.name != b) continue;
-    fluid = fluid || phase.kind == PhaseKind::fluid;
-    repulsive = repulsive || (phase.kind == PhaseKind::wall && phase.wall_law == WallLaw::repulsive);
-    bodies = bodies && phase.kind == PhaseKind::elastic;
+    fluid = fluid || phase.kind() == PhaseKind::fluid;
+    repulsive = repulsive || (phase.kind() == PhaseKind::wall && phase.wall().law == WallLaw::repulsive);
+    bodies = bodies && phase.kind() == PhaseKind::elastic;
   }
   pair.kernel = fluid ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
   if (fluid) pair.radius = repulsive ? 0.0 : 2.1;

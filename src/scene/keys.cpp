@@ -1,5 +1,6 @@
 #include "scene/keys.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "base/fields.hpp"
@@ -7,16 +8,6 @@
 
 namespace barchan {
 namespace {
-
-bool listed(std::string_view list, std::string_view word) {
-  while (!list.empty()) {
-    const std::size_t bar = list.find('|');
-    if (list.substr(0, bar) == word) return true;
-    if (bar == std::string_view::npos) break;
-    list.remove_prefix(bar + 1);
-  }
-  return false;
-}
 
 std::string number_text(double value) {
   char text[32];
@@ -78,7 +69,22 @@ std::string default_text(const Key& key) {
   return whole ? std::to_string(*whole) : "";
 }
 
-bool belongs_to_kind(const Key& key, std::string_view kind) { return key.kinds.empty() || listed(key.kinds, kind); }
+std::string kind_word(PhaseKind kind) {
+  for (const Word& word : find_key("phases", "kind")->slot.words)
+    if (word.meaning == static_cast<int>(kind)) return std::string(word.word);
+  return "";
+}
+
+bool belongs_to_kind(const Key& key, std::string_view kind) {
+  const std::span<const PhaseKind> kinds = key.slot.kinds;
+  return kinds.empty() || std::any_of(kinds.begin(), kinds.end(), [&](PhaseKind k) { return kind_word(k) == kind; });
+}
+
+std::string kinds_text(const Key& key, std::string_view between) {
+  std::string text;
+  for (const PhaseKind kind : key.slot.kinds) text += (text.empty() ? "" : std::string(between)) + kind_word(kind);
+  return text;
+}
 
 std::string expected(const Key& key, int dimensions) {
   const std::string bounds = bounds_text(key.bounds);

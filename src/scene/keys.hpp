@@ -72,6 +72,7 @@ struct Slot {
   void* (*open)(void* object) = nullptr;  // of sections: the object of the inner section; null: there is none
   bool always = false;                    // the inner section is there without the document: its defaults count
   bool fields = false;                    // its words are the names of base/fields.hpp
+  std::span<const PhaseKind> kinds{};     // of phases: the kinds whose type has the member; empty: all
 };
 
 struct Key {
@@ -82,7 +83,6 @@ struct Key {
   std::string_view meaning = "";
   NumberBounds bounds{};
   std::string_view variables = "";  // of a formula
-  std::string_view kinds = "";      // phases only: the kinds that have this key; "" for all
   std::string_view spared = "";     // phases only: kinds that may leave out what the others must give
   bool required() const { return slot.otherwise.required; }
 };
@@ -97,7 +97,9 @@ const Key* find_key(std::string_view section, std::string_view name);  ///< null
 std::vector<const Key*> keys_of(std::string_view section);             ///< in the order of the table
 std::string path_of(const Key& key);                                   ///< SECTION.NAME: the section of its inner keys
 std::vector<std::string> choices(const Key& key);
+std::string kind_word(PhaseKind kind);  ///< `fluid`
 bool belongs_to_kind(const Key& key, std::string_view kind);
+std::string kinds_text(const Key& key, std::string_view between);  ///< `fluid, elastic`; "" for all
 
 /// The default for the documentation: `0.05`, `linear`, `10 times the largest speed`, `required`; "" when there is
 /// none.

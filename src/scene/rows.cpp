@@ -1,4 +1,8 @@
 // The rows of the table of keys: one a key, in the order of docs/scenes.md.
+//
+// To add a key: its member in scene.hpp, without a default; its row here; the model that consumes it; and a case in
+// tests/cli/key_consumers_cases.inc, in which it changes the results. BARCHAN_WRITE_DOCS=1 test_unit brings
+// docs/scenes.md up to date.
 #include "scene/slots.hpp"
 
 namespace barchan {
@@ -41,6 +45,20 @@ template <>
 constexpr std::array words_of<FrameFormat>{word("vtp", FrameFormat::vtp), word("vtu", FrameFormat::vtu)};
 template <>
 constexpr std::array words_of<Precision>{word("double", Precision::double_precision), word("mixed", Precision::mixed)};
+
+/// Chooses the type of the phase: it comes first in its section, before the keys that only this type has.
+constexpr Slot kind_of_phase() {
+  return {
+      .accepts = as_word, .otherwise = required, .words = words_of<PhaseKind>, .choose = [](void* object, int kind) {
+        auto& own = static_cast<Phase*>(object)->own;
+        switch (static_cast<PhaseKind>(kind)) {
+          case PhaseKind::fluid: own.emplace<FluidKeys>(); break;
+          case PhaseKind::elastic: own.emplace<ElasticKeys>(); break;
+          case PhaseKind::grains: own.emplace<GrainsKeys>(); break;
+          case PhaseKind::wall: own.emplace<WallKeys>(); break;
+        }
+      }};
+}
 
 constexpr std::array axes{Word{"x", 0}, Word{"y", 1}, Word{"z", 2}};
 constexpr std::array sides_of_domain{Word{"bottom", 0}, Word{"top", 1},   Word{"left", 2},
@@ -141,7 +159,8 @@ constexpr NumberBounds positive{.above = 0.0};
 constexpr NumberBounds not_negative{.at_least = 0.0};
 
 // Columns: section, name, the member that it is read into with its default, unit, meaning; then bounds, variables of a
-// formula, kinds of phases that have it, and the kind that may leave it out, where they apply.
+// formula and the kind of phase that may leave it out, where they apply. A key of phases is a member of one kind or of
+// several.
 // clang-format off
 constexpr Key table[] = {
     {"", "title", at<&Scene::title>("the file's name"), "", "What the scene shows, in a few words."},
@@ -169,46 +188,46 @@ constexpr Key table[] = {
     {"domain", "periodic", periodic("none"), "", "Axes along which the domain repeats itself."},
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
-    {"phases", "kind", at<&Phase::kind>(required), "", "What the phase is made of."},
+    {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
-     "Density at rest. Of grains: that of the grain's material.", positive, "", "", "wall"},
-    {"phases", "viscosity", at<&Phase::viscosity>(0.0), "m2/s", "Kinematic viscosity.", not_negative, "", "fluid"},
-    {"phases", "sound-speed", at<&Phase::sound_speed>("10 times the largest speed"), "m/s",
-     "Numerical speed of sound; ten times the largest speed keeps the density within a percent.", positive, "", "fluid"},
-    {"phases", "equation-of-state", at<&Phase::equation_of_state>(EquationOfState::linear), "",
-     "Pressure as a function of density.", {}, "", "fluid"},
-    {"phases", "tait-exponent", at<&Phase::tait_exponent>(7.0), "",
-     "Exponent of Tait's equation of state, only with equation-of-state = \"tait\".", positive, "", "fluid"},
-    {"phases", "artificial-viscosity", at<&Phase::artificial_viscosity>(0.0), "", "Monaghan's alpha.", not_negative, "", "fluid|elastic"},
-    {"phases", "artificial-viscosity-beta", at<&Phase::artificial_viscosity_beta>(0.0), "", "Monaghan's beta.", not_negative, "", "elastic"},
-    {"phases", "density-diffusion", at<&Phase::density_diffusion>(0.05), "", "Delta of delta-SPH; 0 switches it off.", not_negative, "", "fluid"},
-    {"phases", "enclosed", at<&Phase::enclosed>("true of a fluid that is shut in"), "",
-     "The fluid fills a closed space: its mean density is kept. barchan plan says what it is and why.", {}, "", "fluid"},
-    {"phases", "shifting", at<&Phase::shifting>(1.0), "", "Strength of particle shifting; 0 switches it off.", not_negative, "", "fluid"},
-    {"phases", "background-pressure", at<&Phase::background_pressure>(0.0), "rho c2",
-     "Pressure at rest, in units of density times sound speed squared.", not_negative, "", "fluid"},
-    {"phases", "scheme", at<&Phase::scheme>(FluidScheme::consistent), "",
-     "Gradient operators: as they are, or corrected to first order (docs/method.md).", {}, "", "fluid"},
-    {"phases", "turbulence", at<&Phase::turbulence>(Turbulence::none), "",
-     "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|.", {}, "", "fluid"},
-    {"phases", "smagorinsky", at<&Phase::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", positive, "", "fluid"},
-    {"phases", "young", at<&Phase::young>(required), "Pa", "Young's modulus.", positive, "", "elastic"},
-    {"phases", "poisson", at<&Phase::poisson>(0.0), "", "Poisson's ratio.", {.above = -1.0, .below = 0.5}, "", "elastic"},
-    {"phases", "energy", at<&Phase::energy>(false), "",
-     "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\".", {}, "", "fluid|elastic"},
-    {"phases", "restitution", at<&Phase::restitution>(0.7), "",
-     "Speed after over speed before a head-on collision of two grains. Quartz: 0.7 to 0.8; with 1 a bed never comes to rest.", {.at_most = 1.0, .above = 0.0}, "", "grains"},
-    {"phases", "contact-speed", at<&Phase::contact_speed>("chosen by the plan"), "m/s",
-     "Square root of a contact's stiffness over density.", positive, "", "grains"},
-    {"phases", "law", at<&Phase::wall_law>(WallLaw::adami), "",
-     "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015).", {}, "", "wall"},
-    {"phases", "slip", at<&Phase::slip>(Slip::no_slip), "", "Whether the fluid sticks to the wall; only with law = \"adami\".", {}, "", "wall"},
-    {"phases", "velocity", at<&Phase::wall_velocity>("zero"), "m/s",
-     "Velocity at which the surface of a no-slip wall slides along itself, a function of time. Only fluids feel it; the wall stays where it is.", {}, "t", "wall"},
-    {"phases", "roughness", at<&Phase::roughness>("smooth; of grains in turbulent air: a thirtieth of the spacing"), "m",
-     "Roughness length z0: the wall's shear stress is that of the logarithmic law at the particles next to it.", positive, "", "wall|grains"},
-    {"phases", "shear-stress", at<&Phase::shear_stress>("none"), "Pa",
-     "Force by area of the wall on the fluid, instead of no slip; its part along the wall counts.", {}, "", "wall"},
+     "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
+    {"phases", "viscosity", of<&FluidKeys::viscosity>(0.0), "m2/s", "Kinematic viscosity.", not_negative},
+    {"phases", "sound-speed", of<&FluidKeys::sound_speed>("10 times the largest speed"), "m/s",
+     "Numerical speed of sound; ten times the largest speed keeps the density within a percent.", positive},
+    {"phases", "equation-of-state", of<&FluidKeys::equation_of_state>(EquationOfState::linear), "",
+     "Pressure as a function of density."},
+    {"phases", "tait-exponent", of<&FluidKeys::tait_exponent>(7.0), "",
+     "Exponent of Tait's equation of state, only with equation-of-state = \"tait\".", positive},
+    {"phases", "artificial-viscosity", of<&FluidKeys::artificial_viscosity, &ElasticKeys::artificial_viscosity>(0.0), "", "Monaghan's alpha.", not_negative},
+    {"phases", "artificial-viscosity-beta", of<&ElasticKeys::artificial_viscosity_beta>(0.0), "", "Monaghan's beta.", not_negative},
+    {"phases", "density-diffusion", of<&FluidKeys::density_diffusion>(0.05), "", "Delta of delta-SPH; 0 switches it off.", not_negative},
+    {"phases", "enclosed", of<&FluidKeys::enclosed>("true of a fluid that is shut in"), "",
+     "The fluid fills a closed space: its mean density is kept. barchan plan says what it is and why."},
+    {"phases", "shifting", of<&FluidKeys::shifting>(1.0), "", "Strength of particle shifting; 0 switches it off.", not_negative},
+    {"phases", "background-pressure", of<&FluidKeys::background_pressure>(0.0), "rho c2",
+     "Pressure at rest, in units of density times sound speed squared.", not_negative},
+    {"phases", "scheme", of<&FluidKeys::scheme>(FluidScheme::consistent), "",
+     "Gradient operators: as they are, or corrected to first order (docs/method.md)."},
+    {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",
+     "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|."},
+    {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", positive},
+    {"phases", "young", of<&ElasticKeys::young>(required), "Pa", "Young's modulus.", positive},
+    {"phases", "poisson", of<&ElasticKeys::poisson>(0.0), "", "Poisson's ratio.", {.above = -1.0, .below = 0.5}},
+    {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
+     "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
+    {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",
+     "Speed after over speed before a head-on collision of two grains. Quartz: 0.7 to 0.8; with 1 a bed never comes to rest.", {.at_most = 1.0, .above = 0.0}},
+    {"phases", "contact-speed", of<&GrainsKeys::contact_speed>("chosen by the plan"), "m/s",
+     "Square root of a contact's stiffness over density.", positive},
+    {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
+     "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
+    {"phases", "slip", of<&WallKeys::slip>(Slip::no_slip), "", "Whether the fluid sticks to the wall; only with law = \"adami\"."},
+    {"phases", "velocity", of<&WallKeys::velocity>("zero"), "m/s",
+     "Velocity at which the surface of a no-slip wall slides along itself, a function of time. Only fluids feel it; the wall stays where it is.", {}, "t"},
+    {"phases", "roughness", of<&WallKeys::roughness, &GrainsKeys::roughness>("smooth; of grains in turbulent air: a thirtieth of the spacing"), "m",
+     "Roughness length z0: the wall's shear stress is that of the logarithmic law at the particles next to it.", positive},
+    {"phases", "shear-stress", of<&WallKeys::shear_stress>("none"), "Pa",
+     "Force by area of the wall on the fluid, instead of no slip; its part along the wall counts."},
 
     {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},

@@ -33,44 +33,62 @@ enum class Slip { no_slip, free_slip };
 enum class FluidScheme { plain, consistent };  // docs/method.md
 enum class Turbulence { none, mixing_length, smagorinsky };
 
-/// Per-phase parameters. Those of another kind keep their defaults and are not read.
-struct Phase {
-  std::string name;
-  PhaseKind kind = PhaseKind::fluid;
-  double density{};  // kg/m3, at rest
+// The keys of each kind of phase: a key that a kind does not have does not exist in its type.
 
-  // fluid
+struct FluidKeys {
+  static constexpr PhaseKind kind = PhaseKind::fluid;
   double viscosity{};                 // m2/s, kinematic
   std::optional<double> sound_speed;  // m/s; empty: 10 times the largest speed that the scene promises
   EquationOfState equation_of_state{};
   double tait_exponent{};
-  double artificial_viscosity{};       // Monaghan's alpha
-  double artificial_viscosity_beta{};  // Monaghan's beta, elastic only
-  double density_diffusion{};          // delta of delta-SPH, 0 switches it off
-  double shifting{};                   // strength of particle shifting, 0 switches it off
-  double background_pressure{};        // in rho0 c^2
+  double artificial_viscosity{};  // Monaghan's alpha
+  double density_diffusion{};     // delta of delta-SPH, 0 switches it off
+  double shifting{};              // strength of particle shifting, 0 switches it off
+  double background_pressure{};   // in rho0 c^2
   FluidScheme scheme{};
   std::optional<bool> enclosed;  // its mean density is kept; empty: the plan sees whether it is shut in
   Turbulence turbulence{};
   double smagorinsky{};  // C_s of nu_t = (C_s dx)^2 |S|
+  bool energy{};         // integrate the internal energy (eq. 13)
+};
 
-  // elastic
+struct ElasticKeys {
+  static constexpr PhaseKind kind = PhaseKind::elastic;
   double young{};  // Pa
   double poisson{};
-  bool energy{};  // fluid and elastic: integrate the internal energy (eq. 13)
+  double artificial_viscosity{};       // Monaghan's alpha
+  double artificial_viscosity_beta{};  // Monaghan's beta
+  bool energy{};                       // integrate the internal energy (eq. 13)
+};
 
-  // grains
+struct GrainsKeys {
+  static constexpr PhaseKind kind = PhaseKind::grains;
   double restitution{};                 // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
   std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
+  std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of the spacing
+};
 
-  // wall
-  WallLaw wall_law{};
+struct WallKeys {
+  static constexpr PhaseKind kind = PhaseKind::wall;
+  WallLaw law{};
   Slip slip{};
-  VectorExpression wall_velocity;    // m/s, a function of time: the surface slides, the particles stay in place
+  VectorExpression velocity;         // m/s, a function of time: the surface slides, the particles stay in place
+  std::optional<double> roughness;   // m, z0 of the logarithmic law; empty: a smooth wall
   std::optional<Vec3> shear_stress;  // Pa, on the fluid, instead of no slip
+};
 
-  // wall and grains
-  std::optional<double> roughness;  // m, z0 of the logarithmic law; empty: smooth wall, a thirtieth of a grain
+struct Phase {
+  std::string name;
+  double density{};                                                // kg/m3, at rest
+  std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys> own;  // in the order of PhaseKind
+
+  PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }
+  // The keys of its kind; std::bad_variant_access when it is of another kind.
+  const FluidKeys& fluid() const { return std::get<FluidKeys>(own); }
+  const ElasticKeys& elastic() const { return std::get<ElasticKeys>(own); }
+  const GrainsKeys& grains() const { return std::get<GrainsKeys>(own); }
+  const WallKeys& wall() const { return std::get<WallKeys>(own); }
+  const WallKeys* if_wall() const { return std::get_if<WallKeys>(&own); }  ///< null of another kind
 };
 
 // ---- the interaction matrix

@@ -65,11 +65,7 @@ std::string description(const Key& key) {
   std::string text(key.meaning);
   if (!key.unit.empty()) text += " Unit: " + std::string(key.unit) + ".";
   if (!key.variables.empty()) text += " Formulas in " + std::string(key.variables) + ".";
-  if (!key.kinds.empty()) {
-    std::string kinds;
-    for (const char c : key.kinds) kinds += c == '|' ? std::string(", ") : std::string(1, c);
-    text += " Phases of kind " + kinds + ".";
-  }
+  if (!key.slot.kinds.empty()) text += " Phases of kind " + kinds_text(key, ", ") + ".";
   const std::string otherwise = default_text(key);
   if (!otherwise.empty() && !key.required()) text += " Default: " + otherwise + ".";
   return text;
@@ -88,7 +84,7 @@ Json section_schema(const std::string& section) {
   Json required = Json::array();
   for (const Key* key : keys_of(section)) {
     schema["properties"][std::string(key->name)] = key_schema(*key);
-    if (key->required() && key->kinds.empty() && key->spared.empty()) required.push_back(key->name);
+    if (key->required() && key->slot.kinds.empty() && key->spared.empty()) required.push_back(key->name);
   }
   if (!required.empty()) schema["required"] = required;
   if (section == "interactions") {
@@ -108,11 +104,7 @@ std::string table_row(const Key& key) {
   for (std::size_t at; (at = value.find("of 2 ")) != std::string::npos;) value.erase(at, 5).insert(at, "of ");
   for (std::size_t at; (at = value.find('|')) != std::string::npos;) value[at] = '/';
   std::string meaning(key.meaning);
-  if (!key.kinds.empty()) {
-    std::string kinds;
-    for (const char c : key.kinds) kinds += c == '|' ? std::string(", ") : std::string(1, c);
-    meaning += " (" + kinds + ")";
-  }
+  if (!key.slot.kinds.empty()) meaning += " (" + kinds_text(key, ", ") + ")";
   return "| `" + std::string(key.name) + "` | " + value + " | " + default_text(key) + " | " + meaning + " |\n";
 }
 

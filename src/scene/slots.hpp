@@ -122,6 +122,28 @@ constexpr Slot at(Otherwise... text) {
   return slot_of<Member, find>(otherwise(text...));
 }
 
+/// A member of a kind of phase, or of several kinds that have the key in common.
+template <class Member, class Kind>
+Member* member_of(Phase& phase, Member Kind::*member) {
+  Kind* kind = std::get_if<Kind>(&phase.own);
+  return kind ? &(kind->*member) : nullptr;
+}
+template <PhaseKind... kind>
+constexpr std::array kinds_with{kind...};
+template <auto first, auto... others, class... Otherwise>
+constexpr Slot of(Otherwise... text) {
+  using Member = decltype(type_of(first));
+  constexpr auto find = [](void* object) -> Member* {
+    Phase& phase = *static_cast<Phase*>(object);
+    Member* found = member_of(phase, first);
+    ((found = found ? found : member_of(phase, others)), ...);
+    return found;
+  };
+  Slot slot = slot_of<Member, find>(otherwise(text...));
+  slot.kinds = kinds_with<decltype(owner_of(first))::kind, decltype(owner_of(others))::kind...>;
+  return slot;
+}
+
 /// A member of the shape that the fill has: `names` if the key itself names the shape, and then the first one counts.
 enum Companion { names, belongs };
 template <class Kind>

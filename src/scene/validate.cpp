@@ -44,7 +44,7 @@ class Validator {
     }
     for (const Key* key : keys_of(section)) {
       if (!key->required() || table.contains(key->name)) continue;
-      const bool of_this_kind = key->kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
+      const bool of_this_kind = key->slot.kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
       const bool spared = !kind.empty() && key->spared == kind;
       const bool meant = std::find(misspelt.begin(), misspelt.end(), key->name) != misspelt.end();
       if (of_this_kind && !spared && !meant)

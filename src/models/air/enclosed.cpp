@@ -119,13 +119,13 @@ Enclosure find_enclosure(const Scene& scene, const std::vector<ParticleBlock>& b
   result.free_space = find_free_space(scene, blocks, fluid);
   result.open = !result.free_space.empty();
   for (const Phase& other : scene.phases)
-    if (other.kind == PhaseKind::fluid && other.name != phase.name && entry_between(scene, phase, other))
+    if (other.kind() == PhaseKind::fluid && other.name != phase.name && entry_between(scene, phase, other))
       return result.why = other.name + " can give way", result;
   if (!result.free_space.empty()) return result.why = "free space at " + result.free_space, result;
 
   Cells walls(scene);
   for (std::size_t k = 0; k < blocks.size(); ++k)
-    if (scene.phases[k].kind == PhaseKind::wall && entry_between(scene, phase, scene.phases[k]))
+    if (scene.phases[k].kind() == PhaseKind::wall && entry_between(scene, phase, scene.phases[k]))
       for (const Vec3& x : blocks[k].position) walls.take(walls.cell_of(x));
   for (const Vec3& x : blocks[fluid].position) {
     const Cells::Cell cell = walls.cell_of(x);
