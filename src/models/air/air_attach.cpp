@@ -16,10 +16,11 @@ namespace {
 
 /// Enclosed as the scene says, or else as the particles show; a fluid that is neither and ends somewhere has a free
 /// surface.
-void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, PlanPhase& p,
+void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Layout& layout,
              std::vector<std::string>& warnings) {
+  PlanPhase& p = layout.phases[fluid];
   const std::optional<bool>& said = scene.phases[fluid].enclosed;
-  const Enclosure seen = find_enclosure(scene, blocks, fluid);
+  const Enclosure seen = find_enclosure(scene, layout, blocks, fluid);
   p.enclosed = said.value_or(seen.shut_in);
   p.enclosure = said ? "as the scene says" : seen.why;
   p.free_surface = !p.enclosed && seen.open;
@@ -50,8 +51,8 @@ PhaseRules rules_of(const PlanPhase& p, const std::string& step_key) {
   r.pressure_stores_energy = r.pairs_up = true;
   r.if_not_finite = key + "sound-speed or " + key + "density-diffusion";
   r.if_passed = "lower " + step_key + " or raise " + key + "sound-speed";
-  r.if_dense = "the pressure ran away, or neighbours are too few: raise " + key + "sound-speed or the radius of interactions." +
-               p.name + "-" + p.name + ", or lower " + step_key;
+  r.if_dense = "the pressure ran away, or neighbours are too few: raise " + key +
+               "sound-speed or the radius of interactions." + p.name + "-" + p.name + ", or lower " + step_key;
   r.if_fast = [key, step_key, c](double, double) {
     return "sound (" + brief(c) + " m/s); the flow ran away, or the scene has too slow a sound: raise " + key +
            "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
@@ -67,12 +68,10 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
                   std::vector<std::string>& warnings) {
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.kind = "fluid";
-  p.flows = true;
   p.friction = Friction::fluid;
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
-  enclose(scene, blocks, number, p, warnings);
+  enclose(scene, blocks, number, layout, warnings);
   p.fields = fields_of(phase, p);
   p.sound_speed = phase.sound_speed.value_or(10.0 * layout.largest_speed);
   if (p.sound_speed <= 0)
@@ -201,16 +200,15 @@ void Air::bind_entries() {
     if (!e.has(number_) || e.law == Law::repulsive) continue;
     const std::size_t other = e.partner(number_);
     const bool solid = !layout_.phases[other].flows;
-    FluidNeighbour n{&w_->list(e.direction(number_)),
-                     solid ? &w_->extended[other] : &w_->motion[other],
-                     e.kernel,
-                     e.radius,
-                     pair_viscosity(scene_, layout_, number_, other),
-                     solid || other == number_,
-                     w_->compact[other].get(),
-                     !solid && other != number_ && phase_.scheme == FluidScheme::consistent
-                         ? scene_.phases[other].density
-                         : 0};
+    FluidNeighbour n{
+        &w_->list(e.direction(number_)),
+        solid ? &w_->extended[other] : &w_->motion[other],
+        e.kernel,
+        e.radius,
+        pair_viscosity(scene_, layout_, number_, other),
+        solid || other == number_,
+        w_->compact[other].get(),
+        !solid && other != number_ && phase_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);

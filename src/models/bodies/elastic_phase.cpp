@@ -45,7 +45,6 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   using enum Field;
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.kind = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration, stress};
   if (phase.energy) p.fields.push_back(energy);
   p.sound_speed = compression_speed(phase);
@@ -80,15 +79,16 @@ void ElasticPhase::attach(Workspace& w) {
   for (const auto& e : layout_.entries) {
     if (!e.has(number_) || e.law != Law::elastic) continue;
     const std::size_t other = e.partner(number_);
-    neighbours_.push_back({&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius,
-                           layout_.phases[other].mass});
+    neighbours_.push_back(
+        {&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius, layout_.phases[other].mass});
   }
 }
 
 void ElasticPhase::schedule(Schedule& s) {
   using enum Field;
   const FieldSet all{position, velocity, density, pressure, acceleration, Field::stress, energy};
-  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity, energy}, [this] { kick_and_drift(); }});
+  s.add(
+      {stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity, energy}, [this] { kick_and_drift(); }});
   s.add({stage::strain_records, plan_.name, {position, velocity, density, pressure, Field::stress}, {}, [this] {
            pack_middle();
          }});
@@ -101,7 +101,8 @@ void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
   double smallest = plan_.smoothing_length;
   for (const auto& e : layout_.entries)
     if (e.law == Law::elastic && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
-  limits.push_back({"elastic " + plan_.name, scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
+  limits.push_back({"elastic " + plan_.name,
+                    scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
                     "0.25 h/c_P: compression waves"});
 }
 

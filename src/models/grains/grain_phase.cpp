@@ -21,10 +21,12 @@ PhaseRules rules_of(const PlanPhase& p, double spacing, bool fixed_step) {
   r.if_not_finite = r.stiffness_key = key;
   r.if_passed = "raise " + key;
   r.if_fast = [key, c](double speed, double bound) {
-    return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + " (" + brief(c) + " m/s) to " + brief(2.0 * speed) + " or more";
+    return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + " (" + brief(c) + " m/s) to " +
+           brief(2.0 * speed) + " or more";
   };
   r.if_far = [key, c, fixed_step, step_key](double speed) {
-    return fixed_step ? "lower " + step_key : "raise " + key + " (" + brief(c) + " m/s) to " + brief(speed) + " or more";
+    return fixed_step ? "lower " + step_key
+                      : "raise " + key + " (" + brief(c) + " m/s) to " + brief(speed) + " or more";
   };
   return r;
 }
@@ -35,7 +37,6 @@ void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std:
                      std::vector<std::string>&) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
-  p.kind = "grains";
   p.friction = Friction::grains;
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
@@ -55,11 +56,7 @@ GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t num
 
 void GrainPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::kick_and_drift,
-         plan_.name,
-         {acceleration},
-         {position, velocity},
-         [this] { kick_and_drift(); }});
+  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
   s.add({stage::weight, plan_.name, {position}, {acceleration}, [this] { weigh(); }});
 }
 

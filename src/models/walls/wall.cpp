@@ -13,8 +13,6 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
   using enum Field;
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.kind = "wall";
-  p.moves = false;
   p.friction = phase.shear_stress              ? Friction::driven
                : phase.slip == Slip::free_slip ? Friction::slip
                : phase.roughness               ? Friction::rough
@@ -79,11 +77,7 @@ void Wall::schedule(Schedule& s) {
   using enum Field;
   s.add({stage::walls, plan_.name, {}, {velocity}, [this] { slide(); }});
   if (extended_)
-    s.add({stage::extend_walls,
-           plan_.name,
-           {position, velocity, wall_depth, wall_normal},
-           {},
-           [this] { extend(); }});
+    s.add({stage::extend_walls, plan_.name, {position, velocity, wall_depth, wall_normal}, {}, [this] { extend(); }});
 }
 
 void Wall::slide() {
