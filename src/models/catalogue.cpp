@@ -16,6 +16,8 @@ namespace {
 
 /// How a kind of phase enters the program.
 struct Kind {
+  const char* name;
+  bool moves, flows;
   void (*describe)(const Scene&, const std::vector<ParticleBlock>&, std::size_t, Layout&, std::vector<std::string>&);
   std::unique_ptr<Model> (*make)(const Scene&, const Layout&, std::size_t);
 };
@@ -27,10 +29,10 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
-    case PhaseKind::fluid: return {describe_air, make<Air>};
-    case PhaseKind::elastic: return {describe_elastic, make<ElasticPhase>};
-    case PhaseKind::grains: return {describe_grains, make<GrainPhase>};
-    case PhaseKind::wall: return {describe_wall, make<Wall>};
+    case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
+    case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, make<ElasticPhase>};
+    case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
+    case PhaseKind::wall: return {"wall", false, false, describe_wall, make<Wall>};
   }
   return {};
 }
@@ -49,9 +51,16 @@ Law law_of(const Phase& a, const Phase& b) {
 
 }  // namespace
 
-void describe_phase(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
-                    std::vector<std::string>& warnings) {
-  kind_of(scene.phases[number]).describe(scene, blocks, number, layout, warnings);
+void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& blocks, Layout& layout,
+                     std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < layout.phases.size(); ++k) {
+    const Kind kind = kind_of(scene.phases[k]);
+    layout.phases[k].kind = kind.name;
+    layout.phases[k].moves = kind.moves;
+    layout.phases[k].flows = kind.flows;
+  }
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
 }
 
 void classify(const Scene& scene, PlanEntry& e) {

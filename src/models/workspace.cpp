@@ -95,9 +95,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     : scene(scene_),
       layout(layout_),
       state(state_),
-      neighbours(
-          layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
-          scene_.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>),
+      neighbours(layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
+                 scene_.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>),
       packing(layout_.phases.size()) {
   neighbours.adapt_skin();
   const std::size_t phases = layout.phases.size();

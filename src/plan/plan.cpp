@@ -120,14 +120,12 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.count = blocks[k].position.size();
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
     plan.phases.push_back(q);
-    describe_phase(scene, blocks, k, plan, plan.warnings);
   }
+  describe_phases(scene, blocks, plan, plan.warnings);
   add_entries(scene, plan);
   const Models models = make_models(scene, plan);
   add_passes(plan, models);
-  std::vector<double> sound_speeds;
-  for (const auto& p : plan.phases) sound_speeds.push_back(p.sound_speed);
-  plan.instruments = make_instruments(scene, plan.bounds, sound_speeds);
+  plan.instruments = make_instruments(scene, plan);
   for (const auto& model : models) model->limits(plan.limits);
   if (plan.limits.empty() && plan.fixed_step == 0)
     throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");

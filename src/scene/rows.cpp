@@ -339,6 +339,8 @@ constexpr Key table[] = {
     {"output", "every", at<&OutputControl::every>("first and last only"), "s", "Time between frames.", not_negative},
     {"output", "history-every", at<&OutputControl::history_every>("a hundredth of the end time"), "s",
      "Time between rows of history.csv.", not_negative},
+    {"output", "checkpoint-every", at<&OutputControl::checkpoint_every>(600.0), "s",
+     "Wall time between checkpoints; 0: at the end and at signals only.", not_negative},
     {"output", "fields", fields("none"), "", "Fields beside id, phase, velocity, smoothing_length, density and pressure."},
     {"output", "format", at<&OutputControl::format>(FrameFormat::vtp), "", "File format of the frames."},
     {"output", "compress", at<&OutputControl::compress>(true), "", "Compress the frames."},

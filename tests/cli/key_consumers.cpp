@@ -3,7 +3,8 @@
 // or mentions it: it must change what the user gets.
 //
 // What counts as a result: the files of a run, byte by byte (particles, history, what is measured), and of run.json the
-// title and the state, which are for people and for scripts/run.
+// title and the state, which are for people and for scripts/run. Checkpoints do not count, because they hold the text
+// of the scene; of a run that is killed it counts whether there is one.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -27,6 +28,7 @@ struct Case {
   std::string key;                // SECTION.NAME; of a key of phases also " of KIND"
   std::string base;               // of scene_texts
   std::vector<std::string> runs;  // overrides of each run, '|' between them; "" for none
+  bool killed = false;            // after a second of the wall's time
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.key; }
 
@@ -41,7 +43,7 @@ const std::map<std::string, std::string>& scene_texts() {
 /// One run a value of the key at `dotted`; "" for a run that does not give it.
 Case values(const std::string& key, const std::string& base, const std::string& dotted,
             const std::vector<std::string>& of) {
-  Case result{key, base, {}};
+  Case result{key, base, {}, false};
   for (const std::string& value : of) result.runs.push_back(value.empty() ? "" : dotted + "=" + value);
   return result;
 }
@@ -62,23 +64,30 @@ std::string contents(const fs::path& file) {
 /// All that a run gives to its user.
 using Results = std::map<std::string, std::string>;
 
-Results results_of(const std::string& base, const std::string& overrides) {
+Results results_of(const std::string& base, const std::string& overrides, bool killed) {
   const fs::path place = fs::path(::testing::TempDir()) / ("barchan_keys_" + std::to_string(getpid()));
   fs::remove_all(place);
   fs::create_directories(place);
   const fs::path scene = place / "scene.toml", out = place / "out", said = place / "said";
   std::ofstream(scene) << scene_texts().at(base);
-  std::string command =
-      "'" BARCHAN_PROGRAM "' run '" + scene.string() + "' --quiet --threads 1 --out '" + out.string() + "'";
+  std::string command = std::string(killed ? "timeout -s KILL 1 " : "") + "'" BARCHAN_PROGRAM "' run '" +
+                        scene.string() + "' --quiet --threads 1 --out '" + out.string() + "'";
   std::istringstream list(overrides);
   for (std::string assignment; std::getline(list, assignment, '|');) command += " --set '" + assignment + "'";
   command += " > '" + said.string() + "' 2>&1";
   const int status = std::system(command.c_str());
+  if (killed) {
+    EXPECT_TRUE(fs::exists(out)) << base << ": " << overrides << ": did not begin in a second";
+    const Results results{{"checkpoint", fs::exists(out / "scene.checkpoint") ? "is there" : "is not there"}};
+    fs::remove_all(place);
+    return results;
+  }
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << base << ": " << overrides << "\n" << contents(said);
   Results results;
   if (fs::exists(out))
     for (const auto& entry : fs::directory_iterator(out))
-      if (entry.path().filename() != "run.json") results[entry.path().filename().string()] = contents(entry.path());
+      if (entry.path().filename() != "run.json" && entry.path().extension() != ".checkpoint")
+        results[entry.path().filename().string()] = contents(entry.path());
   if (fs::exists(out / "run.json")) {
     const auto about = nlohmann::json::parse(contents(out / "run.json"))["scene"];
     results["title"] = about["title"];
@@ -143,7 +152,7 @@ TEST_P(KeyConsumer, ChangesTheResults) {
   const Case& c = GetParam();
   std::vector<Results> results;
   for (const std::string& run : c.runs) {
-    results.push_back(results_of(c.base, run));
+    results.push_back(results_of(c.base, run, c.killed));
     for (std::size_t other = 0; other + 1 < results.size(); ++other)
       EXPECT_NE(results[other], results.back())
           << c.key << ": the same results with \"" << c.runs[other] << "\" and \"" << run << "\"";

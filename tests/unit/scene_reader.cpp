@@ -250,6 +250,7 @@ largest-speed = 3
 [output]
 every = 0.25
 history-every = 0.125
+checkpoint-every = 60
 fields = ["density_rate"]
 format = "vtu"
 compress = false
@@ -340,6 +341,7 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.time.safety, 0.5);
   EXPECT_EQ(scene.time.largest_speed, 3);
   EXPECT_EQ(scene.output.history_every, 0.125);
+  EXPECT_EQ(scene.output.checkpoint_every, 60);
   EXPECT_EQ(scene.output.format, FrameFormat::vtu);
   EXPECT_FALSE(scene.output.compress);
   EXPECT_FALSE(scene.output.walls);

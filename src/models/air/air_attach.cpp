@@ -16,10 +16,11 @@ namespace {
 
 /// Enclosed as the scene says, or else as the particles show; a fluid that is neither and ends somewhere has a free
 /// surface.
-void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, PlanPhase& p,
+void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Layout& layout,
              std::vector<std::string>& warnings) {
+  PlanPhase& p = layout.phases[fluid];
   const std::optional<bool>& said = scene.phases[fluid].fluid().enclosed;
-  const Enclosure seen = find_enclosure(scene, blocks, fluid);
+  const Enclosure seen = find_enclosure(scene, layout, blocks, fluid);
   p.enclosed = said.value_or(seen.shut_in);
   p.enclosure = said ? "as the scene says" : seen.why;
   p.free_surface = !p.enclosed && seen.open;
@@ -67,12 +68,10 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
                   std::vector<std::string>& warnings) {
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.kind = "fluid";
-  p.flows = true;
   p.friction = Friction::fluid;
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
-  enclose(scene, blocks, number, p, warnings);
+  enclose(scene, blocks, number, layout, warnings);
   p.fields = fields_of(phase.fluid(), p);
   p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
   if (p.sound_speed <= 0)

@@ -37,7 +37,6 @@ void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std:
                      std::vector<std::string>&) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
-  p.kind = "grains";
   p.friction = Friction::grains;
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The

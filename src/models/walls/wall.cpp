@@ -13,8 +13,6 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
   using enum Field;
   const WallKeys& keys = scene.phases[number].wall();
   PlanPhase& p = layout.phases[number];
-  p.kind = "wall";
-  p.moves = false;
   p.friction = keys.shear_stress              ? Friction::driven
                : keys.slip == Slip::free_slip ? Friction::slip
                : keys.roughness               ? Friction::rough
