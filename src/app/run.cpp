@@ -12,6 +12,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "base/errors.hpp"
+#include "base/instructions.hpp"
 #include "base/version.hpp"
 #include "measure/measurements.hpp"
 #include "output/history.hpp"
@@ -239,6 +240,7 @@ void check_restart(const std::string& restart, const fs::path& series) {
 }  // namespace
 
 int run(const RunOptions& options) {
+  if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);

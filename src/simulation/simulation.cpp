@@ -77,7 +77,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
     : scene_(scene),
       plan_(plan),
       neighbours_(plan.bounds, plan.directions, plan.phases.size(), plan.skin, plan.spacing,
-                  scene.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>) {
+                  scene.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>()) {
   for (const char* name : pass_names) seconds_.emplace_back(name, 0.0);
   processor_seconds_.assign(pass_count, 0.0);
   executed_.assign(pass_count, 0);

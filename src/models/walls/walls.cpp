@@ -4,7 +4,7 @@
 
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -129,4 +129,4 @@ void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<
   extended(solid, own, fluids, gravity, slip, bend);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET
