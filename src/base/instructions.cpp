@@ -67,9 +67,10 @@ std::string choose(std::string_view name) {
   return "";
 }
 
-[[noreturn]] void refuse(const std::string& message) {
-  const std::string line = "barchan: " + message + '\n';
-  [[maybe_unused]] const auto written = write(STDERR_FILENO, line.data(), line.size());
+/// Uses no C++ library: the linker may have taken its inline functions from files that are compiled for AVX2.
+[[noreturn]] void refuse(const char* what, const char* which, const char* rest) {
+  for (const char* text : {"barchan: ", what, which, rest, "\n"})
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
   _exit(2);
 }
 
@@ -80,12 +81,12 @@ std::string choose(std::string_view name) {
 #endif
   if (const char* missing = missing_of_avx2())
     refuse(
-        std::string("this machine does not have ") + missing +
+        "this machine does not have ", missing,
         ", which this program needs (x86-64-v3: processors since about 2013); expected another machine, or a program "
         "built on this one: cmake --preset native && ninja -C build-native");
   if (!missing_of_avx512()) detail::chosen_instructions = Instructions::avx512;
   if (const char* asked = std::getenv("BARCHAN_INSTRUCTIONS"))
-    if (const std::string wrong = choose(asked); !wrong.empty()) refuse("BARCHAN_INSTRUCTIONS=" + wrong);
+    if (const std::string wrong = choose(asked); !wrong.empty()) refuse("BARCHAN_INSTRUCTIONS=", wrong.c_str(), "");
 }
 
 }  // namespace
