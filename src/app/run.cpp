@@ -42,6 +42,13 @@ fs::path bad_file(const fs::path& directory, const Scene& scene) {
   return directory / (scene.name + (scene.output.format == FrameFormat::vtp ? "_bad.vtp" : "_bad.vtu"));
 }
 
+/// Of all phases at rest, kg/m3.
+std::vector<double> densities(const Scene& scene) {
+  std::vector<double> all;
+  for (const auto& p : scene.phases) all.push_back(p.density);
+  return all;
+}
+
 /// All that a run writes, and where it stands.
 class Run {
  public:
@@ -50,10 +57,10 @@ class Run {
         simulation_(simulation),
         directory_(directory),
         series_(directory, scene.name, scene.output.format, scene.output.compress),
-        history_(directory / "history.csv", Simulation::history_columns(plan)),
+        history_(directory / "history.csv", simulation_.history_columns()),
         progress_(scene.time.end, plan.particles(), quiet) {
     if (plan.instruments.empty()) return;
-    measurements_.emplace(simulation);
+    measurements_.emplace(plan.instruments, plan.bounds, densities(scene));
     measurements_->open(directory);
   }
 
@@ -87,7 +94,7 @@ class Run {
     const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
     const double row_every = scene_.output.history_every > 0 ? scene_.output.history_every : end / 100.0;
     long frames_due = 1, rows_due = 1;
-    if (measurements_) measurements_->sample(simulation_);
+    if (measurements_) measurements_->sample(simulation_.state());
     write_frame();
     write_row();
     const auto due = [&](double next) { return simulation_.time() * (1.0 + 1e-12) >= next; };
@@ -96,7 +103,7 @@ class Run {
       const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
       simulation_.step(std::min(next_frame, next_row) - simulation_.time());
       if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
-      if (measurements_) measurements_->sample(simulation_);
+      if (measurements_) measurements_->sample(simulation_.state());
       if (due(next_row)) {
         write_row();
         ++rows_due;
@@ -199,7 +206,7 @@ class Run {
     r.pair_interactions_per_second = pairs * steps / std::max(stepping, 1e-9);
     for (const auto& [limit, count] : simulation_.limit_counts())
       if (count > 0) r.time_step_limits[limit] = count;
-    const auto columns = Simulation::history_columns(plan);
+    const auto columns = simulation_.history_columns();
     const auto row = simulation_.history_row();
     for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
     r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.neighbours().rebuilds());

@@ -20,16 +20,6 @@ std::string line(const char* format, A... a) {
   return text;
 }
 
-const char* kind_name(PhaseKind k) {
-  switch (k) {
-    case PhaseKind::fluid: return "fluid";
-    case PhaseKind::elastic: return "elastic";
-    case PhaseKind::grains: return "grains";
-    case PhaseKind::wall: return "wall";
-  }
-  return "";
-}
-
 const char* kernel_name(KernelKind k) { return k == KernelKind::wendland_c2 ? "wendland-c2" : "cubic-spline"; }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -64,7 +54,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   for (const auto& p : plan.phases) {
     std::vector<std::string> names;
     for (const Field f : p.fields) names.emplace_back(info(f).name);
-    t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), kind_name(p.kind), p.count, p.mass, p.sound_speed);
+    t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.mass, p.sound_speed);
     t += joined(names) + "\n";
   }
   t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
@@ -75,7 +65,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
               e.consistency.gradient_sum, meaning(e).c_str());
   t += "\n";
   for (const auto& p : plan.phases)
-    if (p.kind == PhaseKind::fluid)
+    if (p.flows)
       t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
   t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
   for (const auto& i : plan.instruments)
@@ -144,12 +134,12 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   j["end"] = scene.time.end;
   for (const auto& p : plan.phases) {
     nlohmann::ordered_json q;
-    q["kind"] = kind_name(p.kind);
+    q["kind"] = p.kind;
     q["particles"] = p.count;
     q["mass"] = p.mass;
     q["sound_speed"] = p.sound_speed;
     q["smoothing_length"] = p.smoothing_length;
-    if (p.kind == PhaseKind::fluid) {
+    if (p.flows) {
       q["enclosed"] = p.enclosed;
       q["enclosure"] = p.enclosure;
     }

@@ -1,4 +1,4 @@
-// Whether a fluid is shut in, seen from the particles. Internal to src/plan.
+// Whether a fluid is shut in, seen from the particles. Internal to models/air.
 #pragma once
 
 #include <string>

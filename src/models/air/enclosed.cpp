@@ -1,4 +1,4 @@
-#include "plan/enclosed.hpp"
+#include "models/air/enclosed.hpp"
 
 #include <algorithm>
 #include <cmath>
