@@ -51,7 +51,8 @@ void choose_instructions(std::string_view name);
 /// Those that this program and this machine have, by name.
 std::vector<std::string> available_instructions();
 
-/// Declares a function of a hot file: `declarations` are all its overloads. A call goes to the copy that was chosen.
+/// Declares a function of a hot file, with all its overloads. A call goes to the copy that was chosen. An argument in
+/// braces needs its type before them.
 #define BARCHAN_PER_INSTRUCTION_SET(name, ...)                                                  \
   namespace avx2 {                                                                              \
   __VA_ARGS__                                                                                   \
