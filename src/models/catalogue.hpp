@@ -5,10 +5,10 @@
 
 namespace barchan {
 
-/// What the plan has to know of a phase before entries are made. Throws SceneError where only the particles show a
-/// mistake.
-void describe_phase(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
-                    std::vector<std::string>& warnings);
+/// What the plan has to know of the phases before entries are made; names, counts and masses are there. Throws
+/// SceneError where only the particles show a mistake.
+void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& blocks, Layout& layout,
+                     std::vector<std::string>& warnings);
 
 /// The law of an entry, and which of its phases is a fluid.
 void classify(const Scene& scene, PlanEntry& entry);

@@ -35,8 +35,10 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   if (speed > 0) return speed;
   for (const auto& b : blocks)
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
-  for (const auto& p : scene.phases) {  // of walls
-    const Formula u(p.wall_velocity[0]), v(p.wall_velocity[1]), w(p.wall_velocity[2]);
+  for (const auto& p : scene.phases) {
+    const WallKeys* wall = p.if_wall();
+    if (!wall) continue;
+    const Formula u(wall->velocity[0]), v(wall->velocity[1]), w(wall->velocity[2]);
     for (int k = 0; k <= 16; ++k) {
       const double t = scene.time.end * k / 16.0;
       speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
@@ -118,14 +120,12 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.count = blocks[k].position.size();
     q.mass = (p.density > 0 ? p.density : 1.0) * volume;
     plan.phases.push_back(q);
-    describe_phase(scene, blocks, k, plan, plan.warnings);
   }
+  describe_phases(scene, blocks, plan, plan.warnings);
   add_entries(scene, plan);
   const Models models = make_models(scene, plan);
   add_passes(plan, models);
-  std::vector<double> sound_speeds;
-  for (const auto& p : plan.phases) sound_speeds.push_back(p.sound_speed);
-  plan.instruments = make_instruments(scene, plan.bounds, sound_speeds);
+  plan.instruments = make_instruments(scene, plan);
   for (const auto& model : models) model->limits(plan.limits);
   if (plan.limits.empty() && plan.fixed_step == 0)
     throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");

@@ -29,7 +29,8 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   for (const auto& p : plan_.phases)
     for (const Field f : p.fields) all = all | FieldSet{f};
   schedule_.add({stage::watch, "all", all, {}, [this] { watch_->look(moment()); }});
-  schedule_.run(stage::kick, stage::kick);  // moves nothing; finds the largest acceleration, which limits the first step
+  schedule_.run(stage::kick,
+                stage::kick);  // moves nothing; finds the largest acceleration, which limits the first step
 }
 
 Simulation::~Simulation() = default;
@@ -124,6 +125,13 @@ void Simulation::check_start() {
 }
 
 void Simulation::archive(Archive& a) {
+  for (const auto& p : plan_.phases) {
+    double speed = p.sound_speed;
+    a.number("sound speed of " + p.name, speed);
+    if (speed != p.sound_speed)
+      throw SceneError("the checkpoint does not fit this scene: the sound speed of " + p.name + " was " + brief(speed) +
+                       " m/s and is now " + brief(p.sound_speed) + " m/s");
+  }
   state_.archive(a);
   work_->archive(a);
   for (const auto& model : models_) model->archive(a);

@@ -4,8 +4,6 @@ namespace barchan {
 
 void OutputClock::archive(Archive& a) {
   a.number("frames", frames);
-  a.number("frames due", frames_due);
-  a.number("rows due", rows_due);
   a.number("last frame step", last_frame_step);
   a.number("last frame time", last_frame_time);
 }

@@ -15,8 +15,6 @@ namespace barchan {
 /// What has been written so far; a run that is continued goes on from here.
 struct OutputClock {
   long frames = 0;            // written
-  long frames_due = 1;        // number of the next one, times the scene's output.every
-  long rows_due = 1;          // of history.csv
   long last_frame_step = -1;  // the step of the last frame
   double last_frame_time = 0.0;
   void archive(Archive& a);
@@ -24,11 +22,11 @@ struct OutputClock {
 
 struct State {
   std::vector<PhaseParticles> phases;
-  double time = 0.0, dt = 0.0;                // s
+  double time = 0.0, dt = 0.0;  // s
   long steps = 0;
-  double largest_acceleration = 0.0;          // m/s2, of the last kick
-  std::string ruling_limit;                   // of the last step
-  std::map<std::string, long> limit_counts;   // steps by the limit that ruled
+  double largest_acceleration = 0.0;         // m/s2, of the last kick
+  std::string ruling_limit;                  // of the last step
+  std::map<std::string, long> limit_counts;  // steps by the limit that ruled
   OutputClock outputs;
 
   /// Particles of the same phases and counts must be there: loading overwrites their values.

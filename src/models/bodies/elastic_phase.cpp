@@ -10,10 +10,10 @@ namespace barchan {
 
 namespace {
 
-double compression_speed(const Phase& p) {
+double compression_speed(const ElasticKeys& p, double density) {
   const double lame = p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson));
   const double shear = p.young / (2 * (1 + p.poisson));
-  return std::sqrt((lame + 2 * shear) / p.density);
+  return std::sqrt((lame + 2 * shear) / density);
 }
 
 PhaseRules rules_of(const PlanPhase& p, double spacing, const std::string& step_key) {
@@ -45,10 +45,9 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   using enum Field;
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.kind = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration, stress};
-  if (phase.energy) p.fields.push_back(energy);
-  p.sound_speed = compression_speed(phase);
+  if (phase.elastic().energy) p.fields.push_back(energy);
+  p.sound_speed = compression_speed(phase.elastic(), phase.density);
   p.rules = rules_of(p, layout.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
@@ -67,28 +66,30 @@ void ElasticPhase::begin(State& state, const std::vector<ParticleBlock>&) {
 
 void ElasticPhase::attach(Workspace& w) {
   w_ = &w;
-  const double shear = phase_.young / (2.0 * (1.0 + phase_.poisson));
-  const double bulk = phase_.young / (3.0 * (1.0 - 2.0 * phase_.poisson));
+  const ElasticKeys& keys = phase_.elastic();
+  const double shear = keys.young / (2.0 * (1.0 + keys.poisson));
+  const double bulk = keys.young / (3.0 * (1.0 - 2.0 * keys.poisson));
   parameters_ = {phase_.density,
                  shear,
                  bulk,
-                 phase_.artificial_viscosity,
-                 phase_.artificial_viscosity_beta,
+                 keys.artificial_viscosity,
+                 keys.artificial_viscosity_beta,
                  std::sqrt(bulk / phase_.density),
                  scene_.domain.gravity};
   w.stress[number_] = RecordArray(layout_.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size);
   for (const auto& e : layout_.entries) {
     if (!e.has(number_) || e.law != Law::elastic) continue;
     const std::size_t other = e.partner(number_);
-    neighbours_.push_back({&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius,
-                           layout_.phases[other].mass});
+    neighbours_.push_back(
+        {&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius, layout_.phases[other].mass});
   }
 }
 
 void ElasticPhase::schedule(Schedule& s) {
   using enum Field;
   const FieldSet all{position, velocity, density, pressure, acceleration, Field::stress, energy};
-  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity, energy}, [this] { kick_and_drift(); }});
+  s.add(
+      {stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity, energy}, [this] { kick_and_drift(); }});
   s.add({stage::strain_records, plan_.name, {position, velocity, density, pressure, Field::stress}, {}, [this] {
            pack_middle();
          }});
@@ -101,7 +102,8 @@ void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
   double smallest = plan_.smoothing_length;
   for (const auto& e : layout_.entries)
     if (e.law == Law::elastic && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
-  limits.push_back({"elastic " + plan_.name, scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
+  limits.push_back({"elastic " + plan_.name,
+                    scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
                     "0.25 h/c_P: compression waves"});
 }
 

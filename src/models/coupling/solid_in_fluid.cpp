@@ -5,10 +5,7 @@
 namespace barchan {
 
 SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
-    : scene_(scene),
-      layout_(layout),
-      solid_(solid),
-      grains_(layout.phases[solid].friction == Friction::grains) {}
+    : scene_(scene), layout_(layout), solid_(solid), grains_(layout.phases[solid].friction == Friction::grains) {}
 
 void SolidInFluid::attach(Workspace& w) {
   w_ = &w;

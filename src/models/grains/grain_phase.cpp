@@ -21,10 +21,12 @@ PhaseRules rules_of(const PlanPhase& p, double spacing, bool fixed_step) {
   r.if_not_finite = r.stiffness_key = key;
   r.if_passed = "raise " + key;
   r.if_fast = [key, c](double speed, double bound) {
-    return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + " (" + brief(c) + " m/s) to " + brief(2.0 * speed) + " or more";
+    return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + " (" + brief(c) + " m/s) to " +
+           brief(2.0 * speed) + " or more";
   };
   r.if_far = [key, c, fixed_step, step_key](double speed) {
-    return fixed_step ? "lower " + step_key : "raise " + key + " (" + brief(c) + " m/s) to " + brief(speed) + " or more";
+    return fixed_step ? "lower " + step_key
+                      : "raise " + key + " (" + brief(c) + " m/s) to " + brief(speed) + " or more";
   };
   return r;
 }
@@ -35,14 +37,13 @@ void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std:
                      std::vector<std::string>&) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
-  p.kind = "grains";
   p.friction = Friction::grains;
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
   // speed of the grains is not looked at: `contact-speed` is there for fast ones.
   double weight = 0;
   for (std::size_t d = 0; d < 3; ++d) weight += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
-  p.sound_speed = scene.phases[number].contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
+  p.sound_speed = scene.phases[number].grains().contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
   p.rules = rules_of(p, layout.spacing, scene.time.fixed_step.has_value());
 }
 
@@ -55,11 +56,7 @@ GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t num
 
 void GrainPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::kick_and_drift,
-         plan_.name,
-         {acceleration},
-         {position, velocity},
-         [this] { kick_and_drift(); }});
+  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
   s.add({stage::weight, plan_.name, {position}, {acceleration}, [this] { weigh(); }});
 }
 
