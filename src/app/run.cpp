@@ -12,6 +12,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "base/errors.hpp"
+#include "base/instructions.hpp"
 #include "base/version.hpp"
 #include "measure/measurements.hpp"
 #include "output/checkpoint.hpp"
@@ -313,6 +314,7 @@ std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::
 }  // namespace
 
 int run(const RunOptions& options) {
+  if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
