@@ -163,6 +163,14 @@ void CellGrid::make_images(const PhaseParticles& particles) {
   }
 }
 
+void CellGrid::archive(Archive& a) {
+  a.array("cell begins", begin_);
+  a.array("cell ends", end_);
+  a.array("images", images_);
+  for (std::size_t d = 0; d < dimensions_; ++d) a.array("search positions", search_[d]);
+  if (a.loads()) make_runs();
+}
+
 std::size_t CellGrid::bytes() const {
   std::size_t total = (begin_.size() + end_.size() + walk_.size() + cell_of_.size() + order_.size()) * 4;
   for (const auto& s : search_) total += s.size() * sizeof(float);

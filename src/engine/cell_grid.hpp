@@ -117,6 +117,9 @@ class CellGrid {
 
   std::size_t bytes() const;
 
+  /// Where the particles stood when they were sorted last, so that lists can be made anew as they were.
+  void archive(Archive& a);
+
  private:
   /// Cell of a position relative to low() in the padded grid, clamped to it.
   int cell_coordinate(float x, std::size_t axis) const {

@@ -207,14 +207,27 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
     PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
     grids_[p]->sort(particles[p]);
   }
+  search(particles);
+  ++rebuilds_;
+  return true;
+}
+
+void Neighbours::search(const std::vector<PhaseParticles>& particles) {
   for (std::size_t q = 0; q < directions_.size(); ++q) {
     const auto& d = directions_[q];
     const std::uint32_t dummy = PairList::dummy_index(particles[d.b].size(), grids_[d.b]->images());
     lists_[q].build(*grids_[d.a], particles[d.a].size(), *grids_[d.b], d.a == d.b, d.radius * (1.0 + skin_), dummy,
                     padding_, bounds_.dimensions);
   }
-  ++rebuilds_;
-  return true;
+}
+
+void Neighbours::archive(Archive& a, const std::vector<PhaseParticles>& particles) {
+  a.number("skin", skin_);
+  a.number("rebuilds", rebuilds_);
+  a.number("steps of the lists", kept_);
+  for (auto& grid : grids_)
+    if (grid) grid->archive(a);
+  if (a.loads()) search(particles);
 }
 
 std::size_t Neighbours::bytes() const {

@@ -38,6 +38,9 @@ class Neighbours {
   long rebuilds() const { return rebuilds_; }
   std::size_t bytes() const;
 
+  /// The epoch of the lists. Loading searches again among the places of the last sort: the same lists.
+  void archive(Archive& a, const std::vector<PhaseParticles>& particles);
+
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
   /// in wide ones particles may go further before blocks that are not adjacent matter.
@@ -50,6 +53,7 @@ class Neighbours {
     void widen(const Range& other);
   };
   void choose_skin();
+  void search(const std::vector<PhaseParticles>& particles);
   static double apart(const Range& a, const Range& b);
   bool still_valid(const std::vector<PhaseParticles>& particles);
   void measure(const PhaseParticles& particles, std::size_t phase);

@@ -200,6 +200,7 @@ constexpr Key table[] = {
 
     {"output", "every", as_number, "s", "first and last only", "Time between frames.", not_negative},
     {"output", "history-every", as_number, "s", "a hundredth of the end time", "Time between rows of history.csv.", not_negative},
+    {"output", "checkpoint-every", as_number, "s", "600", "Wall time between checkpoints; 0: at the end and at signals only.", not_negative},
     {"output", "fields", as_words, "", "none",
      "Fields beside id, phase, velocity, smoothing_length, density and pressure.", {}, "@fields"},
     {"output", "format", as_word, "", "vtp", "File format of the frames.", {}, "vtp|vtu"},

@@ -145,6 +145,7 @@ OutputControl take_output(const toml::table& table) {
   OutputControl output;
   take_number(table, "every", output.every);
   take_number(table, "history-every", output.history_every);
+  take_number(table, "checkpoint-every", output.checkpoint_every);
   output.fields = take_words(table, "fields");
   output.format = take_choice(table, "format", output.format, {{"vtp", FrameFormat::vtp}, {"vtu", FrameFormat::vtu}});
   output.compress = table["compress"].value_or(output.compress);
@@ -201,6 +202,16 @@ Scene take_scene(const toml::table& document, const std::string& file) {
   return scene;
 }
 
+/// The document less what a run that goes on may change.
+std::string identity_of(toml::table document) {
+  for (const char* key : {"title", "state"}) document.erase(key);
+  if (toml::table* output = document["output"].as_table()) output->erase("checkpoint-every");
+  if (toml::table* time = document["time"].as_table()) time->erase("end");
+  std::ostringstream text;
+  text << document;
+  return text.str();
+}
+
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
@@ -208,6 +219,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   const toml::table document = parse_document(text, file, overrides, problems);
   validate(document, problems);
   Scene scene = take_scene(document, file);
+  scene.identity = identity_of(document);
   check(document, scene, problems);
   problems.throw_if_any();
   return scene;

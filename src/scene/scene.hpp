@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/vec3.hpp"
+#include "kernels/kernel_kind.hpp"
 
 namespace barchan {
 
@@ -74,8 +75,6 @@ struct Phase {
 
 // ---- the interaction matrix
 // -------------------------------------------------------------------------------------------
-
-enum class KernelKind { cubic_spline, wendland_c2 };
 
 /// One entry of the matrix: an unordered pair of phases. A pair without an entry does not interact.
 struct Interaction {
@@ -227,14 +226,17 @@ struct OutputControl {
   std::vector<std::string> fields;  // beside id, phase, velocity, smoothing_length, density, pressure
   FrameFormat format = FrameFormat::vtp;
   bool compress = true;
-  bool walls = true;  // write wall particles too
+  bool walls = true;                // write wall particles too
+  double checkpoint_every = 600.0;  // s of wall time between checkpoints; 0: at the end and at signals only
 };
 
 enum class Precision { double_precision, mixed };
 
 struct Scene {
-  std::string file;  // as given, for messages
-  std::string name;  // file name without directory and suffix
+  std::string file;      // as given, for messages
+  std::string name;      // file name without directory and suffix
+  std::string identity;  // its document with the overrides, less what a run that goes on may change: title, state,
+                         // time.end and output.checkpoint-every
   std::string title;
   std::string state = "";  // pvstate that scripts/run renders; empty: none
   int dimensions = 2;
