@@ -80,10 +80,10 @@ inline void keep_shift(Rates& out, const PhaseParticles& p, std::size_t k, Vec3 
 }
 
 /// drho/dt of loose fluid: the density above that at rest decays at the rate `loosening` times what the fullness
-/// (0.67 h|B| - tr M/Dim), 1 on a lattice, misses beyond 4 %, at most a half.
+/// (0.67 h|B| - tr M/Dim), 1 on a lattice, misses beyond 1.5 %, at most a half.
 inline double loosen(Rates& out, double rho, double trace, double h_b, int dimensions, const FluidParameters& q) {
   const double fullness = (0.67 * h_b - trace / dimensions) / q.lattice_moment;
-  const double missing = std::clamp(0.96 - fullness, 0.0, 0.5);
+  const double missing = std::clamp(0.985 - fullness, 0.0, 0.5);
   const double above = std::max(rho - q.reference_density, 0.0);
   if (missing * above > 0.0) ++out.loosened;
   return -q.loosening * missing * above;
