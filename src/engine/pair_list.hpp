@@ -26,6 +26,12 @@ class PairList {
   /// The index of the dummy record behind `particles` and `images`. Throws SceneError when a list cannot hold it.
   static std::uint32_t dummy_index(std::size_t particles, std::size_t images);
 
+  /// The rows of `chunk` particles.
+  struct Chunk {
+    AlignedVector<std::uint32_t> index;
+    std::vector<std::uint32_t> begin;
+    std::uint64_t entries = 0;
+  };
   struct Row {
     const std::uint32_t* begin;
     const std::uint32_t* end;
@@ -47,16 +53,14 @@ class PairList {
   std::size_t bytes() const;
 
  private:
-  struct Chunk {
-    AlignedVector<std::uint32_t> index;
-    std::vector<std::uint32_t> begin;
-    std::uint64_t entries = 0;
-  };
-  template <int Dim>
-  void build_chunks(const CellGrid&, std::size_t, const CellGrid&, bool, double, std::uint32_t);
-
   std::vector<Chunk> chunks_;
-  std::size_t padding_ = simd::native_width<double>;
+  std::size_t padding_ = simd::width_in_use<double>();
 };
+
+BARCHAN_PER_INSTRUCTION_SET(search_pairs,
+                            /// The search of PairList::build: fills the chunks.
+                            void search_pairs(std::vector<PairList::Chunk>& chunks, const CellGrid& grid_a,
+                                              std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
+                                              std::uint32_t dummy, std::size_t padding, int dimensions);)
 
 }  // namespace barchan

@@ -2,7 +2,7 @@
 
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -56,4 +56,4 @@ void fluid_energy(PhaseParticles& fluid, const RecordArray& own, std::span<const
   fluid.dimensions() == 2 ? energy<2>(fluid, own, neighbours) : energy<3>(fluid, own, neighbours);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

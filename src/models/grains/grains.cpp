@@ -2,7 +2,7 @@
 
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -51,4 +51,4 @@ void contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& l
   else contacts<3>(a, own, list, others, kernel, radius, law);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -4,7 +4,7 @@
 
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -130,4 +130,4 @@ void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<
   extended(solid, own, fluids, gravity, rule, bend);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET
