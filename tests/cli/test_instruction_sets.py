@@ -93,7 +93,7 @@ def machine_code():
     for line in listing.stdout:
         if found := head.match(line):
             name = found[1]
-            if "look_at_the_machine" in name or "missing_of_" in name or "::refuse(" in name:
+            if re.search(r"^barchan::\(anonymous namespace\)::(look_at_the_machine|missing_of_\w+|refuse)\(", name):
                 first.setdefault(name, 0)
         elif wide.search(line):
             if "avx512" in name:
