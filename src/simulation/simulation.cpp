@@ -260,7 +260,11 @@ void Simulation::move_walls() {
 }
 
 void Simulation::find_neighbours(bool force) {
-  if (!neighbours_.update(particles_, force)) return;
+  const auto find_ground = [this] {
+    for (auto& f : fluids_)
+      if (f.ground) f.ground->refresh(f.ground_phases);
+  };
+  if (!neighbours_.update(particles_, force, find_ground)) return;
   for (std::size_t k = 0; k < particles_.size(); ++k) {
     if (!neighbours_.has_grid(k)) continue;
     const std::size_t images = neighbours_.grid(k).images();
@@ -270,8 +274,6 @@ void Simulation::find_neighbours(bool force) {
     if (stress_[k].stride() > 0) stress_[k].resize(particles_[k].size(), images);
     if (plan_.phases[k].eddies) eddies_[k].resize(particles_[k].size(), images);
   }
-  for (auto& f : fluids_)
-    if (f.ground) f.ground->refresh(f.ground_phases);
 }
 
 void Simulation::kick(double time) {
