@@ -16,7 +16,7 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
   const double inverse_mass = 1.0 / a.mass();
   const auto n = static_cast<std::int64_t>(a.size());
   const ReadyKernel ready(e.kernel, e.radius, Dim);
-#pragma omp parallel for schedule(dynamic, 512)
+#pragma omp parallel for schedule(dynamic, 64)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const auto row = list.row(k);

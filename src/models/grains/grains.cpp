@@ -16,7 +16,7 @@ void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, c
   const KernelContact::Constants<Lanes> constants(law);
   const auto n = static_cast<std::int64_t>(a.size());
   const ReadyKernel ready(kind, radius, Dim);
-#pragma omp parallel for schedule(dynamic, 512)
+#pragma omp parallel for schedule(dynamic, 64)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const auto row = list.row(k);
