@@ -9,8 +9,8 @@
 #include "base/errors.hpp"
 #include "output/compare.hpp"
 #include "output/series.hpp"
-#include "plan/estimate.hpp"
 #include "scene/reader.hpp"
+#include "simulation/estimate.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {

@@ -14,6 +14,7 @@
 #include "base/errors.hpp"
 #include "base/version.hpp"
 #include "measure/measurements.hpp"
+#include "output/checkpoint.hpp"
 #include "output/history.hpp"
 #include "output/numbers.hpp"
 #include "output/run_report.hpp"
@@ -41,29 +42,62 @@ fs::path bad_file(const fs::path& directory, const Scene& scene) {
   return directory / (scene.name + (scene.output.format == FrameFormat::vtp ? "_bad.vtp" : "_bad.vtu"));
 }
 
+/// Of all phases at rest, kg/m3.
+std::vector<double> densities(const Scene& scene) {
+  std::vector<double> all;
+  for (const auto& p : scene.phases) all.push_back(p.density);
+  return all;
+}
+
+fs::path checkpoint_file(const fs::path& directory, const Scene& scene) {
+  return directory / (scene.name + ".checkpoint");
+}
+
+/// The frames of an earlier run that are whole, at most so many.
+std::vector<SeriesWriter::Entry> kept_frames(const fs::path& directory, const Scene& scene, long most) {
+  if (most <= 0) return {};
+  auto frames = read_pvd(directory / (scene.name + ".pvd"));
+  if (frames.size() < static_cast<std::size_t>(most))
+    throw SceneError("--restart: " + (directory / (scene.name + ".pvd")).string() + " lists " +
+                     std::to_string(frames.size()) + " frames; the checkpoint was written after " +
+                     std::to_string(most));
+  frames.resize(static_cast<std::size_t>(most));
+  return frames;
+}
+
 /// All that a run writes, and where it stands.
 class Run {
  public:
-  Run(const Scene& scene, const Plan& plan, Simulation& simulation, const fs::path& directory, bool quiet)
+  /// The simulation stands at its beginning, or `continued`: at a checkpoint of a run in this folder.
+  Run(const Scene& scene, const Plan& plan, Simulation& simulation, const fs::path& directory, bool quiet,
+      bool continued)
       : scene_(scene),
         simulation_(simulation),
         directory_(directory),
-        series_(directory, scene.name, scene.output.format, scene.output.compress),
-        history_(directory / "history.csv", Simulation::history_columns(plan)),
+        continued_(continued),
+        series_(directory, scene.name, scene.output.format, scene.output.compress,
+                kept_frames(directory, scene, clock().frames)),
+        history_(directory / "history.csv", simulation.history_columns(), continued, simulation.time()),
         progress_(scene.time.end, plan.particles(), quiet) {
     if (plan.instruments.empty()) return;
-    measurements_.emplace(simulation);
-    measurements_->open(directory);
+    measurements_.emplace(plan.instruments, plan.bounds, densities(scene));
+    measurements_->open(directory, continued, simulation.time());
+  }
+
+  /// What has been measured before the checkpoint.
+  void load_measurements(Archive& a) {
+    if (measurements_) measurements_->archive(a);
   }
 
   int go() {
     int status = 0;
     try {
       status = loop();
-      if (last_frame_step_ != simulation_.steps()) {
+      if (clock().last_frame_step != simulation_.steps()) {
         simulation_.check();
         write_frame();
       }
+      if (reason_ == "end") write_checkpoint();
     } catch (const BreakdownError& e) {
       const std::string message = e.what() + write_bad_state();
       reason_ = "breakdown: " + message;
@@ -81,21 +115,30 @@ class Run {
   }
 
  private:
+  OutputClock& clock() { return simulation_.outputs(); }
+
   int loop() {
     const double end = scene_.time.end;
     const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
     const double row_every = scene_.output.history_every > 0 ? scene_.output.history_every : end / 100.0;
-    long frames_due = 1, rows_due = 1;
-    if (measurements_) measurements_->sample(simulation_);
-    write_frame();
-    write_row();
     const auto due = [&](double next) { return simulation_.time() * (1.0 + 1e-12) >= next; };
+    const auto next_number = [&](double every) {
+      long k = std::max(1L, static_cast<long>(simulation_.time() / every));
+      while (due(static_cast<double>(k) * every)) ++k;
+      return k;
+    };
+    long frames_due = next_number(frame_every), rows_due = next_number(row_every);
+    if (!continued_) {
+      if (measurements_) measurements_->sample(simulation_.state());
+      write_frame();
+      write_row();
+    }
     while (simulation_.time() < end * (1.0 - 1e-12)) {
       const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
       const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
       simulation_.step(std::min(next_frame, next_row) - simulation_.time());
       if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
-      if (measurements_) measurements_->sample(simulation_);
+      if (measurements_) measurements_->sample(simulation_.state());
       if (due(next_row)) {
         write_row();
         ++rows_due;
@@ -104,6 +147,7 @@ class Run {
         write_frame();
         ++frames_due;
       }
+      if (checkpoint_due()) write_checkpoint();
       progress_.step(simulation_);
       if (simulation_.steps() % 16 == 0 || caught_signal != 0) {
         if (caught_signal != 0) return stop(caught_signal == SIGINT ? "SIGINT" : "SIGTERM", 128 + caught_signal);
@@ -116,34 +160,53 @@ class Run {
 
   int stop(const char* why, int status) {
     reason_ = why;
+    write_checkpoint();
     std::cerr << "barchan: stopped by " << why << " at t = " << simulation_.time() << " s after " << simulation_.steps()
-              << " steps; the last frame is written\n";
+              << " steps; the last frame and a checkpoint are written, --restart latest goes on\n";
     return status;
+  }
+
+  bool checkpoint_due() const {
+    return scene_.output.checkpoint_every > 0 &&
+           progress_.seconds() - last_checkpoint_ >= scene_.output.checkpoint_every;
+  }
+
+  /// The state after this step, in place of the last one. Frames that it counts are on the disk.
+  void write_checkpoint() {
+    simulation_.check();
+    series_.finish();
+    Archive archive;
+    simulation_.archive(archive);
+    if (measurements_) measurements_->archive(archive);
+    barchan::write_checkpoint(checkpoint_file(directory_, scene_),
+                              {version() + " (" + commit() + ")", instruction_set(), scene_.identity,
+                               simulation_.time(), simulation_.steps(), archive.bytes()});
+    last_checkpoint_ = progress_.seconds();
   }
 
   /// A breakdown: the last good state joins the series, the first bad one stands beside it. What to say of them.
   std::string write_bad_state() {
     const long good = simulation_.good_step();
-    if (good > last_frame_step_) {
-      series_.write(simulation_.good_frame(frames_++));
+    if (good > clock().last_frame_step) {
+      series_.write(simulation_.good_frame(static_cast<int>(clock().frames++)));
       if (measurements_) measurements_->write(directory_, simulation_.good_time());
-      last_frame_step_ = good;
-      last_frame_time_ = simulation_.good_time();
+      clock().last_frame_step = good;
+      clock().last_frame_time = simulation_.good_time();
     }
     series_.finish();
-    barchan::write_frame(bad_file(directory_, scene_), simulation_.frame(frames_), scene_.output.format,
-                         scene_.output.compress);
-    return "; last good state: " + series_.last_file() + " (t = " + brief(last_frame_time_) + " s, step " +
-           std::to_string(last_frame_step_) +
+    barchan::write_frame(bad_file(directory_, scene_), simulation_.frame(static_cast<int>(clock().frames)),
+                         scene_.output.format, scene_.output.compress);
+    return "; last good state: " + series_.last_file() + " (t = " + brief(clock().last_frame_time) + " s, step " +
+           std::to_string(clock().last_frame_step) +
            "), first bad state: " + bad_file(directory_, scene_).filename().string() +
            " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";
   }
 
   void write_frame() {
-    series_.write(simulation_.frame(frames_++));
+    series_.write(simulation_.frame(static_cast<int>(clock().frames++)));
     if (measurements_) measurements_->write(directory_, simulation_.time());
-    last_frame_step_ = simulation_.steps();
-    last_frame_time_ = simulation_.time();
+    clock().last_frame_step = simulation_.steps();
+    clock().last_frame_time = simulation_.time();
   }
   void write_row() { history_.row(simulation_.history_row()); }
 
@@ -198,7 +261,7 @@ class Run {
     r.pair_interactions_per_second = pairs * steps / std::max(stepping, 1e-9);
     for (const auto& [limit, count] : simulation_.limit_counts())
       if (count > 0) r.time_step_limits[limit] = count;
-    const auto columns = Simulation::history_columns(plan);
+    const auto columns = simulation_.history_columns();
     const auto row = simulation_.history_row();
     for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
     r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.neighbours().rebuilds());
@@ -212,28 +275,39 @@ class Run {
   const Scene& scene_;
   Simulation& simulation_;
   fs::path directory_;
+  bool continued_;
   SeriesWriter series_;
   History history_;
   Progress progress_;
   std::optional<Measurements> measurements_;  // empty: the scene measures nothing
-  int frames_ = 0;
-  long last_frame_step_ = -1;
-  double last_frame_time_ = 0;
+  double last_checkpoint_ = 0.0;              // s of the run's wall time
   std::string reason_;
 };
 
-/// There are no checkpoints yet. "latest" starts at the beginning where no run was; where frames lie it is refused,
-/// because a new run would remove them.
-void check_restart(const std::string& restart, const fs::path& series) {
-  if (restart != "latest")
-    throw SceneError("--restart " + restart +
-                     ": checkpoints are not there yet; expected \"latest\", "
-                     "which starts at the beginning in a folder without a run");
-  if (fs::exists(series))
-    throw SceneError("--restart latest: " + series.string() +
-                     " is the series of an earlier run and there is no checkpoint to go on from; "
-                     "a new run would remove its frames; expected another --out, or no --restart to start anew");
-  std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
+/// What --restart asks for; nothing: a start at the beginning. "latest" is the checkpoint of this folder, or the
+/// beginning where no run was; frames without a checkpoint are refused, because a new run would remove them.
+std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
+  if (restart.empty()) return std::nullopt;
+  const fs::path latest = checkpoint_file(directory, scene), series = directory / (scene.name + ".pvd");
+  if (restart == "latest" && !fs::exists(latest)) {
+    if (fs::exists(series))
+      throw SceneError("--restart latest: " + series.string() +
+                       " is the series of an earlier run and there is no checkpoint to go on from; "
+                       "a new run would remove its frames; expected another --out, or no --restart to start anew");
+    std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
+    return std::nullopt;
+  }
+  Checkpoint c = read_checkpoint(restart == "latest" ? latest : fs::path(restart));
+  if (const std::string lines = difference(c.scene, scene.identity); !lines.empty())
+    throw SceneError("--restart " + restart + ": the checkpoint is of another scene; only title, state, time.end and " +
+                     "output.checkpoint-every may change; what differs:\n" + lines);
+  if (c.time >= scene.time.end * (1.0 - 1e-12))
+    throw SceneError("--restart " + restart + ": the checkpoint is at t = " + brief(c.time) +
+                     " s, and the scene ends at " + brief(scene.time.end) + " s; expected a larger time.end");
+  if (c.instructions != instruction_set())
+    std::cerr << "barchan: the checkpoint was made with " << c.instructions << "; with " << instruction_set()
+              << " the run goes on with other bits\n";
+  return c;
 }
 
 }  // namespace
@@ -244,10 +318,15 @@ int run(const RunOptions& options) {
   const Plan plan = make_plan(scene, blocks);
   use_threads(options.threads, plan);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
-  if (!options.restart.empty()) check_restart(options.restart, directory / (scene.name + ".pvd"));
+  const std::optional<Checkpoint> from = find_checkpoint(options.restart, directory, scene);
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
   simulation.check_start();
+  std::optional<Archive> archive;
+  if (from) {
+    archive.emplace(from->state);
+    simulation.archive(*archive);
+  }
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
@@ -255,7 +334,15 @@ int run(const RunOptions& options) {
   std::error_code ignored;
   fs::remove(directory / "TERMINATE", ignored);  // what an earlier run left
   for (const char* suffix : {"_bad.vtp", "_bad.vtu"}) fs::remove(directory / (scene.name + suffix), ignored);
-  return Run(scene, plan, simulation, directory, options.quiet).go();
+  if (!from) fs::remove(checkpoint_file(directory, scene), ignored);
+  Run run(scene, plan, simulation, directory, options.quiet, from.has_value());
+  if (archive) {
+    run.load_measurements(*archive);
+    archive->finish();
+    std::cerr << "barchan: going on at t = " << brief(simulation.time()) << " s after " << simulation.steps()
+              << " steps\n";
+  }
+  return run.go();
 }
 
 }  // namespace barchan

@@ -81,6 +81,7 @@ void CellGrid::sort(PhaseParticles& particles) {
     place_cells();
     fill_cells(n);
   }
+  make_runs();
   particles.permute(order_.data());
   make_images(particles);
 }
@@ -113,17 +114,23 @@ void CellGrid::find_cells(PhaseParticles& particles) {
   }
 }
 
-/// From the counts in end_: where each cell begins, in the order of the walk, also in end_; the runs of the blocks.
+/// From the counts in end_: where each cell begins, in the order of the walk, also in end_.
 void CellGrid::place_cells() {
-  runs_.clear();
   std::uint32_t sum = 0;
-  for (std::size_t w = 0; w < walk_.size(); ++w) {
-    const std::uint32_t cell = walk_[w], begin = sum;
+  for (const std::uint32_t cell : walk_) {
+    begin_[cell] = sum;
     sum += end_[cell];
-    begin_[cell] = end_[cell] = begin;
-    if (begin == sum) continue;
-    if (!runs_.empty() && runs_.back().block == walk_block_[w]) runs_.back().end = sum;
-    else runs_.push_back({begin, sum, walk_block_[w]});
+    end_[cell] = begin_[cell];
+  }
+}
+
+void CellGrid::make_runs() {
+  runs_.clear();
+  for (std::size_t w = 0; w < walk_.size(); ++w) {
+    const std::uint32_t begin = begin_[walk_[w]], end = end_[walk_[w]];
+    if (begin == end) continue;
+    if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin) runs_.back().end = end;
+    else runs_.push_back({begin, end, walk_block_[w]});
   }
 }
 
@@ -211,6 +218,14 @@ void CellGrid::make_images(const PhaseParticles& particles) {
       }
     }
   }
+}
+
+void CellGrid::archive(Archive& a) {
+  a.array("cell begins", begin_);
+  a.array("cell ends", end_);
+  a.array("images", images_);
+  for (std::size_t d = 0; d < dimensions_; ++d) a.array("search positions", search_[d]);
+  if (a.loads()) make_runs();
 }
 
 std::size_t CellGrid::bytes() const {

@@ -117,6 +117,9 @@ class CellGrid {
 
   std::size_t bytes() const;
 
+  /// Where the particles stood when they were sorted last, so that lists can be made anew as they were.
+  void archive(Archive& a);
+
  private:
   /// A cell beyond a periodic side.
   struct HaloCell {
@@ -143,6 +146,7 @@ class CellGrid {
   void find_cells(PhaseParticles& particles);
   void place_cells();
   void fill_cells(std::size_t particles);
+  void make_runs();
   void make_images(const PhaseParticles& particles);
 
   std::size_t dimensions_;

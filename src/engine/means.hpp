@@ -1,6 +1,7 @@
 // Means over the particles of a phase, the same on any number of threads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -8,6 +9,19 @@
 #include "state/particles.hpp"
 
 namespace barchan {
+
+/// Sum of f(k) over k < n in blocks, an order that only n decides.
+template <class F>
+double ordered_sum(std::size_t n, F&& f) {
+  constexpr std::size_t block = 1024;
+  double total = 0.0;
+  for (std::size_t first = 0; first < n; first += block) {
+    double part = 0.0;
+    for (std::size_t k = first; k < std::min(first + block, n); ++k) part += f(k);
+    total += part;
+  }
+  return total;
+}
 
 /// Sums in blocks whose order the number of values decides. Keeps its memory from step to step.
 class BlockMean {

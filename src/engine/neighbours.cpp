@@ -248,6 +248,15 @@ void Neighbours::search(const std::vector<PhaseParticles>& particles, const std:
   }
 }
 
+void Neighbours::archive(Archive& a, const std::vector<PhaseParticles>& particles) {
+  a.number("skin", skin_);
+  a.number("rebuilds", rebuilds_);
+  a.number("steps of the lists", kept_);
+  for (auto& grid : grids_)
+    if (grid) grid->archive(a);
+  if (a.loads()) search(particles, {});
+}
+
 std::size_t Neighbours::bytes() const {
   std::size_t total = 0;
   for (const auto& g : grids_)

@@ -40,6 +40,9 @@ class Neighbours {
   long rebuilds() const { return rebuilds_; }
   std::size_t bytes() const;
 
+  /// The epoch of the lists. Loading searches again among the places of the last sort: the same lists.
+  void archive(Archive& a, const std::vector<PhaseParticles>& particles);
+
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
   /// in wide ones particles may go further before blocks that are not adjacent matter.

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "kernels/cubic_spline.hpp"
+#include "kernels/kernel_kind.hpp"
 #include "kernels/wendland_c2.hpp"
-#include "scene/scene.hpp"
 
 namespace barchan {
 

@@ -10,8 +10,7 @@ namespace {
 /// Builds the instruments of one scene.
 class Maker {
  public:
-  Maker(const Scene& scene, const Bounds& bounds, const std::vector<double>& sound_speeds)
-      : scene_(scene), bounds_(bounds), sound_speeds_(sound_speeds) {}
+  Maker(const Scene& scene, const Layout& layout) : scene_(scene), bounds_(layout.bounds), layout_(layout) {}
 
   Instrument common(const Measured& measured, InstrumentKind kind, const std::string& prefix) const {
     Instrument i;
@@ -24,7 +23,7 @@ class Maker {
     i.every = measured.every > 0 ? measured.every : history;
     i.start = measured.start;
     i.dimensions = scene_.dimensions;
-    i.has_pressure = scene_.phases[i.phase].kind == PhaseKind::fluid;
+    i.has_pressure = layout_.phases[i.phase].flows;
     for (const Interaction& pair : scene_.interactions)
       if (pair.a == measured.phase && pair.b == measured.phase) {
         i.kernel = pair.kernel;
@@ -90,9 +89,9 @@ class Maker {
     i.inward = w.top ? -1.0 : 1.0;
     i.density = fluid.density;
     // Monaghan's viscosity as a kinematic one, as the fluid's passes have it.
-    const double artificial =
-        fluid.artificial_viscosity * 0.5 * i.radius * sound_speeds_[i.phase] / (2.0 * (scene_.dimensions + 2));
-    i.viscosity = fluid.density * (fluid.viscosity + artificial);
+    const double artificial = fluid.fluid().artificial_viscosity * 0.5 * i.radius *
+                              layout_.phases[i.phase].sound_speed / (2.0 * (scene_.dimensions + 2));
+    i.viscosity = fluid.density * (fluid.fluid().viscosity + artificial);
     i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
     const Vec3 size = bounds_.high - bounds_.low;
     const std::size_t columns = whole(w.count, size[0]);
@@ -130,7 +129,7 @@ class Maker {
 
   const Scene& scene_;
   const Bounds& bounds_;
-  const std::vector<double>& sound_speeds_;
+  const Layout& layout_;
 };
 
 }  // namespace
@@ -143,9 +142,8 @@ std::vector<std::string> Instrument::files() const {
   }
 }
 
-std::vector<Instrument> make_instruments(const Scene& scene, const Bounds& bounds,
-                                         const std::vector<double>& sound_speeds) {
-  const Maker maker(scene, bounds, sound_speeds);
+std::vector<Instrument> make_instruments(const Scene& scene, const Layout& layout) {
+  const Maker maker(scene, layout);
   std::vector<Instrument> instruments;
   for (const Probe& p : scene.measuring.probes) instruments.push_back(maker.probe(p));
   for (const Profile& p : scene.measuring.profiles) instruments.push_back(maker.profile(p));

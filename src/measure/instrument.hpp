@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/cell_grid.hpp"
+#include "models/layout.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -57,8 +57,7 @@ struct Instrument {
 
 /// Carries a checked scene's requests out: only here is decided where and when is measured. The phases' sound speeds
 /// are what artificial viscosity needs.
-std::vector<Instrument> make_instruments(const Scene& scene, const Bounds& bounds,
-                                         const std::vector<double>& sound_speeds);
+std::vector<Instrument> make_instruments(const Scene& scene, const Layout& layout);
 
 std::string kind_name(InstrumentKind kind);  ///< the scene's word, "wall-shear"
 /// "profile mid (air, 41 rows, every 0.001 s from 0.02 s)".

@@ -66,7 +66,8 @@ double slice_width(const Instrument& i) {
 
 }  // namespace
 
-Measurements::Measurements(const Simulation& simulation) : instruments_(simulation.plan().instruments) {
+Measurements::Measurements(std::vector<Instrument> instruments, const Bounds& bounds, std::vector<double> densities)
+    : instruments_(std::move(instruments)), bounds_(bounds), densities_(std::move(densities)) {
   Place place;
   for (const Instrument& i : instruments_) {
     places_.push_back(place);
@@ -76,7 +77,7 @@ Measurements::Measurements(const Simulation& simulation) : instruments_(simulati
     place.comoment += i.rows.size() * q * (q + 1) / 2;
     const auto same = [&](const Searched& s) { return s.phase == i.phase && s.radius == i.radius; };
     if (i.kind != InstrumentKind::slices && std::none_of(lookups_.begin(), lookups_.end(), same))
-      lookups_.push_back({i.phase, i.radius, Lookup(simulation.plan().bounds, i.radius), -1});
+      lookups_.push_back({i.phase, i.radius, Lookup(bounds, i.radius), -1});
   }
   memory_.due.assign(instruments_.size(), 0);
   memory_.moments.assign(instruments_.size(), 0);
@@ -86,7 +87,7 @@ Measurements::Measurements(const Simulation& simulation) : instruments_(simulati
   memory_.comoment.assign(place.comoment, 0.0);
 }
 
-void Measurements::open(const std::filesystem::path& directory) {
+void Measurements::open(const std::filesystem::path& directory, bool append, double until) {
   for (const Instrument& i : instruments_) {
     if (i.kind != InstrumentKind::probe) continue;
     std::vector<std::string> columns{"time [s]"};
@@ -96,24 +97,33 @@ void Measurements::open(const std::filesystem::path& directory) {
       columns.push_back(std::string("pressure") + suffix + " [Pa]");
     }
     columns.emplace_back("volume_fraction");
-    probes_.emplace_back(directory / i.files().front(), columns);
+    probes_.emplace_back(directory / i.files().front(), columns, append, until);
   }
 }
 
-void Measurements::sample(const Simulation& simulation) {
+void Measurements::archive(Archive& a) {
+  a.array("measured: due", memory_.due);
+  a.array("measured: moments", memory_.moments);
+  a.array("measured: count", memory_.count);
+  a.array("measured: fraction", memory_.fraction);
+  a.array("measured: mean", memory_.mean);
+  a.array("measured: comoment", memory_.comoment);
+}
+
+void Measurements::sample(const State& state) {
   const Stopwatch stopwatch(seconds_);
   for (std::size_t k = 0; k < instruments_.size(); ++k) {
-    if (!due(k, simulation.time())) continue;
+    if (!due(k, state.time)) continue;
     const Instrument& i = instruments_[k];
-    const bool averaged = simulation.time() >= i.start * (1.0 - 1e-12);
+    const bool averaged = state.time >= i.start * (1.0 - 1e-12);
     if (averaged) ++memory_.moments[k];
     if (i.kind == InstrumentKind::slices) {
-      take_slices(k, simulation);
+      take_slices(k, state);
       continue;
     }
-    read_points(k, simulation);
+    read_points(k, state);
     if (averaged) take_points(k);
-    if (i.kind == InstrumentKind::probe && !probes_.empty()) write_probe(k, simulation.time());
+    if (i.kind == InstrumentKind::probe && !probes_.empty()) write_probe(k, state.time);
   }
 }
 
@@ -134,22 +144,22 @@ Average Measurements::average(std::size_t k, std::size_t row) {
   return {memory_, first.row + row, first.mean + row * q, first.comoment + row * q * (q + 1) / 2, q};
 }
 
-Lookup& Measurements::lookup(std::size_t k, const Simulation& simulation) {
+Lookup& Measurements::lookup(std::size_t k, const State& state) {
   const Instrument& i = instruments_[k];
   auto& searched = *std::find_if(lookups_.begin(), lookups_.end(),
                                  [&](const Searched& s) { return s.phase == i.phase && s.radius == i.radius; });
-  if (searched.step != simulation.steps()) searched.lookup.build(simulation.phases()[i.phase]);
-  searched.step = simulation.steps();
+  if (searched.step != state.steps) searched.lookup.build(state.phases[i.phase]);
+  searched.step = state.steps;
   return searched.lookup;
 }
 
-void Measurements::read_points(std::size_t k, const Simulation& simulation) {
+void Measurements::read_points(std::size_t k, const State& state) {
   const Instrument& i = instruments_[k];
-  const Lookup& near = lookup(k, simulation);
-  const FluidView fluid(simulation.phases()[i.phase]);
+  const Lookup& near = lookup(k, state);
+  const FluidView fluid(state.phases[i.phase]);
   const ReadyKernel kernel(i.kernel, i.radius, i.dimensions);
   const bool wall = i.kind == InstrumentKind::wall_shear;
-  const Vec3 velocity = wall ? wall_velocity(simulation.phases()[i.wall]) : Vec3{};
+  const Vec3 velocity = wall ? wall_velocity(state.phases[i.wall]) : Vec3{};
   readings_.resize(i.points.size());
   const auto n = static_cast<std::int64_t>(i.points.size());
 #pragma omp parallel for schedule(dynamic, 64)
@@ -184,13 +194,13 @@ void Measurements::take_points(std::size_t k) {
   }
 }
 
-void Measurements::take_slices(std::size_t k, const Simulation& simulation) {
+void Measurements::take_slices(std::size_t k, const State& state) {
   const Instrument& i = instruments_[k];
-  const PhaseParticles& p = simulation.phases()[i.phase];
-  const double reference = simulation.scene().phases[i.phase].density;
+  const PhaseParticles& p = state.phases[i.phase];
+  const double reference = densities_[i.phase];
   const double* density = p.has(Field::density) ? p.column(Field::density) : nullptr;
   const double* pressure = i.has_pressure ? p.column(Field::pressure) : nullptr;
-  const Bounds& bounds = simulation.plan().bounds;
+  const Bounds& bounds = bounds_;
   const double width = slice_width(i);
   double volume = width;
   const auto dimensions = static_cast<std::size_t>(i.dimensions);

@@ -1,4 +1,4 @@
-// Takes samples of a simulation when they are due and writes what they average to. It only reads the simulation.
+// Takes samples of the state when they are due and writes what they average to. It only reads the state.
 #pragma once
 
 #include <filesystem>
@@ -9,27 +9,31 @@
 #include "measure/instrument.hpp"
 #include "measure/table.hpp"
 #include "output/history.hpp"
-#include "simulation/simulation.hpp"
+#include "state/state.hpp"
 
 namespace barchan {
 
 class Measurements {
  public:
-  /// For the instruments of the simulation's plan.
-  explicit Measurements(const Simulation& simulation);
+  /// `densities`: of all phases at rest, kg/m3.
+  Measurements(std::vector<Instrument> instruments, const Bounds& bounds, std::vector<double> densities);
 
-  /// Makes the probes' files in the folder, which is there. Throws OutputError.
-  void open(const std::filesystem::path& directory);
+  /// Makes the probes' files in the folder, which is there; or continues those that are there, whose rows later than
+  /// `until` (s) are dropped. Throws OutputError.
+  void open(const std::filesystem::path& directory, bool append = false, double until = 0.0);
 
-  /// Takes the samples that are due at the simulation's time: the first step at or after start + k every. Never changes
+  /// Takes the samples that are due at the state's time: the first step at or after start + k every. Never changes
   /// the length of a step. With open() the probes' rows are written. The same bits on any number of threads.
-  void sample(const Simulation& simulation);
+  void sample(const State& state);
 
   /// Replaces the files of averages, each whole or not at all. Throws OutputError.
   void write(const std::filesystem::path& directory, double time);
 
   /// Means and fluctuations of an instrument so far, one row a place; nan where nothing was sampled.
   Table table(std::size_t instrument);
+
+  /// Everything that has been sampled so far.
+  void archive(Archive& a);
 
   const std::vector<Instrument>& instruments() const { return instruments_; }
   const Accumulators& accumulators() const { return memory_; }
@@ -43,13 +47,15 @@ class Measurements {
 
   Average average(std::size_t instrument, std::size_t row);
   bool due(std::size_t instrument, double time);
-  Lookup& lookup(std::size_t instrument, const Simulation& simulation);
-  void read_points(std::size_t instrument, const Simulation& simulation);
+  Lookup& lookup(std::size_t instrument, const State& state);
+  void read_points(std::size_t instrument, const State& state);
   void take_points(std::size_t instrument);
-  void take_slices(std::size_t instrument, const Simulation& simulation);
+  void take_slices(std::size_t instrument, const State& state);
   void write_probe(std::size_t instrument, double time);
 
   std::vector<Instrument> instruments_;
+  Bounds bounds_;
+  std::vector<double> densities_;
   std::vector<Place> places_;
   Accumulators memory_;
 

@@ -1,4 +1,4 @@
-// What a run will take, from a few of its own steps.
+// What a run will take, as simulation/estimate.hpp measures it.
 #pragma once
 
 #include "plan/plan.hpp"
@@ -14,10 +14,6 @@ struct Estimate {
   double bytes = 0;                                          // memory of particles, records and lists
   std::vector<std::pair<std::string, std::uint64_t>> pairs;  // directed pairs by entry
 };
-
-/// Runs batches of steps with one thread (at most about two seconds) on a copy and scales their medians up. Processor
-/// time, so that other programs on the machine do not count. `threads` are those that OpenMP is set to. Writes nothing.
-Estimate measure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks);
 
 std::string to_text(const Estimate& estimate);
 std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estimate);

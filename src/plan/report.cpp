@@ -1,13 +1,8 @@
 // The plan as a person reads it, and as JSON.
-#include <omp.h>
-
-#include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "plan/estimate.hpp"
-#include "simulation/simulation.hpp"
 
 namespace barchan {
 
@@ -18,16 +13,6 @@ std::string line(const char* format, A... a) {
   char text[512];
   std::snprintf(text, sizeof text, format, a...);
   return text;
-}
-
-const char* kind_name(PhaseKind k) {
-  switch (k) {
-    case PhaseKind::fluid: return "fluid";
-    case PhaseKind::elastic: return "elastic";
-    case PhaseKind::grains: return "grains";
-    case PhaseKind::wall: return "wall";
-  }
-  return "";
 }
 
 const char* kernel_name(KernelKind k) { return k == KernelKind::wendland_c2 ? "wendland-c2" : "cubic-spline"; }
@@ -47,13 +32,6 @@ std::string meaning(const PlanEntry& e) {
   return "off by more than 3 %, and nothing corrects it";
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::string to_text(const Plan& plan, const Scene& scene) {
@@ -64,7 +42,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   for (const auto& p : plan.phases) {
     std::vector<std::string> names;
     for (const Field f : p.fields) names.emplace_back(info(f).name);
-    t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), kind_name(p.kind), p.count, p.mass, p.sound_speed);
+    t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.mass, p.sound_speed);
     t += joined(names) + "\n";
   }
   t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
@@ -75,8 +53,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
               e.consistency.gradient_sum, meaning(e).c_str());
   t += "\n";
   for (const auto& p : plan.phases)
-    if (p.kind == PhaseKind::fluid)
-      t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
+    if (p.flows) t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
   t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
   for (const auto& i : plan.instruments)
     t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
@@ -87,41 +64,6 @@ std::string to_text(const Plan& plan, const Scene& scene) {
               l.name.c_str(), l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
   for (const auto& w : plan.warnings) t += "warning: " + w + "\n";
   return t + "\n";
-}
-
-Estimate measure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks) {
-  Estimate e;
-  e.threads = omp_get_max_threads();
-  // One thread does the work: several that wait for each other on a busy machine would count their waiting.
-  omp_set_num_threads(1);
-  Simulation simulation(scene, plan, blocks);
-  constexpr int batch = 10;
-  constexpr long most_steps = 300;
-  constexpr double most_seconds = 2.0;
-  const auto processor = [] {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  };
-  const auto goes_on = [&] { return simulation.time() < scene.time.end * (1 - 1e-12); };
-  std::vector<double> seconds, lengths;  // of each batch: of processor time a step, and of simulated time a step
-  const double start = processor();
-  while (simulation.steps() < most_steps && processor() - start < most_seconds && goes_on()) {
-    const double before = processor(), time = simulation.time();
-    int steps = 0;
-    for (; steps < batch && processor() - start < most_seconds && goes_on(); ++steps)
-      simulation.step(scene.time.end - simulation.time());
-    seconds.push_back((processor() - before) / steps);
-    lengths.push_back((simulation.time() - time) / steps);
-  }
-  omp_set_num_threads(e.threads);
-  e.steps = scene.time.end / median(lengths);
-  e.processor_seconds = e.steps * median(seconds);
-  e.seconds = e.processor_seconds / e.threads;
-  e.particle_steps_per_second = plan.particles() / median(seconds);
-  e.bytes = static_cast<double>(simulation.bytes());
-  for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
-  return e;
 }
 
 std::string to_text(const Estimate& e) {
@@ -144,12 +86,12 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   j["end"] = scene.time.end;
   for (const auto& p : plan.phases) {
     nlohmann::ordered_json q;
-    q["kind"] = kind_name(p.kind);
+    q["kind"] = p.kind;
     q["particles"] = p.count;
     q["mass"] = p.mass;
     q["sound_speed"] = p.sound_speed;
     q["smoothing_length"] = p.smoothing_length;
-    if (p.kind == PhaseKind::fluid) {
+    if (p.flows) {
       q["enclosed"] = p.enclosed;
       q["enclosure"] = p.enclosure;
     }

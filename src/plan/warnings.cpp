@@ -27,15 +27,19 @@ void warn_of_pairing(const Scene& scene, Plan& plan) {
           "interactions." + e.name +
           ": under the cubic spline particles pair with more than 2.4 spacings, and the run may die of "
           "it; take kernel = \"wendland-c2\"" +
-          (scene.phases[e.a].scheme == FluidScheme::plain ? " or a smaller radius" : ""));
+          (scene.phases[e.a].fluid().scheme == FluidScheme::plain ? " or a smaller radius" : ""));
 }
 
 void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
-  for (const Phase& phase : scene.phases) {
-    if (phase.kind == PhaseKind::wall) continue;
-    for (const Phase& wall : scene.phases) {
-      if (wall.kind != PhaseKind::wall || entry_between(scene, phase, wall)) continue;
-      if (phase.kind == PhaseKind::fluid && !stands_behind_sides(scene, wall)) continue;  // it may lie under a bed
+  const auto meet = [&](std::size_t a, std::size_t b) {
+    return entry_between(scene, scene.phases[a], scene.phases[b]);
+  };
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& phase = plan.phases[k];
+    for (std::size_t w = 0; w < plan.phases.size() && phase.moves; ++w) {
+      const PlanPhase& wall = plan.phases[w];
+      if (wall.moves || meet(k, w)) continue;
+      if (phase.flows && !stands_behind_sides(scene, scene.phases[w])) continue;  // it may lie under a bed
       plan.warnings.push_back("interactions: no entry " + phase.name + "-" + wall.name + ": the wall \"" + wall.name +
                               "\" does not hold \"" + phase.name + "\", which passes through it");
     }
@@ -43,11 +47,12 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
 }
 
 void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
-  for (std::size_t k = 0; k < scene.phases.size(); ++k) {
-    const Phase& phase = scene.phases[k];
-    if (phase.kind == PhaseKind::elastic && plan.phases[k].count > 1 && !entry_between(scene, phase, phase))
-      plan.warnings.push_back("interactions: no entry " + phase.name + "-" + phase.name +
-                              ": nothing holds the body \"" + phase.name + "\" together");
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& p = plan.phases[k];
+    const bool body = std::find(p.fields.begin(), p.fields.end(), Field::stress) != p.fields.end();
+    if (body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]))
+      plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
+                              p.name + "\" together");
   }
 }
 

@@ -8,7 +8,7 @@ KeptState::KeptState(const std::vector<PhaseParticles>& particles, std::vector<F
     : fields_(std::move(fields)), ids_(particles.size()) {
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const PhaseParticles& p = particles[k];
-    if (p.kind() == PhaseKind::wall) continue;
+    if (!p.has(Field::acceleration)) continue;  // walls stay where they are
     ids_[k] = p.id();
     for (const Field field : fields_)
       for (int c = 0; p.has(field) && c < p.components(field); ++c)

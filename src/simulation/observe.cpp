@@ -2,63 +2,37 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/wiring.hpp"
+#include "engine/means.hpp"
+#include "simulation/simulation.hpp"
 
 namespace barchan {
 
-namespace {
-
-/// Sum of f(k) in an order that only n decides.
-template <class F>
-double ordered_sum(std::size_t n, F&& f) {
-  constexpr std::size_t block = 1024;
-  double total = 0.0;
-  for (std::size_t first = 0; first < n; first += block) {
-    double part = 0.0;
-    for (std::size_t k = first; k < std::min(first + block, n); ++k) part += f(k);
-    total += part;
-  }
-  return total;
-}
-
-}  // namespace
-
 std::uint64_t Simulation::pairs(const PlanEntry& e) const {
   std::uint64_t n = 0;
-  if (e.forward >= 0) n += neighbours_.list(static_cast<std::size_t>(e.forward)).entries();
-  if (e.backward >= 0) n += neighbours_.list(static_cast<std::size_t>(e.backward)).entries();
+  for (const int direction : {e.forward, e.backward})
+    if (direction >= 0) n += work_->list(direction).entries();
   return n;
 }
 
-std::size_t Simulation::bytes() const {
-  std::size_t total = neighbours_.bytes();
-  for (const auto& p : particles_) total += p.bytes();
-  if (watch_) total += watch_->bytes();
-  for (const auto* set : {&motion_, &extended_, &stress_})
-    for (const auto& r : *set) total += r.bytes();
-  return total;
-}
+std::size_t Simulation::bytes() const { return work_->bytes() + (watch_ ? watch_->bytes() : 0); }
 
 Frame Simulation::frame(int index) const {
   Frame f;
   f.index = index;
-  f.step = steps_;
-  f.time = time_;
+  f.step = state_.steps;
+  f.time = state_.time;
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan_.dimensions); ++d) {
     f.domain[2 * d] = plan_.bounds.low[d];
     f.domain[2 * d + 1] = plan_.bounds.high[d];
   }
   std::size_t n = 0;
   std::vector<std::size_t> written;
-  for (std::size_t k = 0; k < particles_.size(); ++k) {
-    f.phase_names.push_back(particles_[k].name());
-    f.phase_kinds.emplace_back(particles_[k].kind() == PhaseKind::fluid     ? "fluid"
-                               : particles_[k].kind() == PhaseKind::elastic ? "elastic"
-                               : particles_[k].kind() == PhaseKind::grains  ? "grains"
-                                                                            : "wall");
-    if (particles_[k].kind() == PhaseKind::wall && !scene_.output.walls) continue;
+  for (std::size_t k = 0; k < state_.phases.size(); ++k) {
+    f.phase_names.push_back(state_.phases[k].name());
+    f.phase_kinds.push_back(plan_.phases[k].kind);
+    if (!plan_.phases[k].moves && !scene_.output.walls) continue;
     written.push_back(k);
-    n += particles_[k].size();
+    n += state_.phases[k].size();
   }
   f.points.reserve(3 * n);
   f.id.reserve(n);
@@ -72,7 +46,7 @@ Frame Simulation::frame(int index) const {
     return x >= low && x < high ? x : low;
   };
   for (const std::size_t k : written) {
-    const auto& p = particles_[k];
+    const auto& p = state_.phases[k];
     for (std::size_t i = 0; i < p.size(); ++i) {
       for (int d = 0; d < 3; ++d)
         f.points.push_back(d < plan_.dimensions ? inside(p.column(Field::position, d)[i], d) : 0.0);
@@ -93,7 +67,7 @@ Frame Simulation::frame(int index) const {
                                                      : width;
     out.values.reserve(n * static_cast<std::size_t>(out.components));
     for (const std::size_t k : written) {
-      const auto& p = particles_[k];
+      const auto& p = state_.phases[k];
       for (std::size_t i = 0; i < p.size(); ++i)
         for (int c = 0; c < out.components; ++c) {
           double value = 0.0;
@@ -108,7 +82,7 @@ Frame Simulation::frame(int index) const {
   return f;
 }
 
-std::vector<std::string> Simulation::history_columns(const Plan& plan) {
+std::vector<std::string> Simulation::history_columns() const {
   std::vector<std::string> c{"time [s]",
                              "step",
                              "dt [s]",
@@ -117,25 +91,25 @@ std::vector<std::string> Simulation::history_columns(const Plan& plan) {
                              "momentum_z [kg m/s]",
                              "largest_speed [m/s]",
                              "largest_density_error"};
-  for (const auto& p : plan.phases) {
-    if (p.kind == PhaseKind::wall) continue;
+  for (const auto& model : models_) {
+    if (model->phase() < 0) continue;
+    const PlanPhase& p = plan_.phases[static_cast<std::size_t>(model->phase())];
+    if (!p.moves) continue;
     c.push_back(p.name + "_kinetic_energy [J]");
     c.push_back(p.name + "_largest_speed [m/s]");
     c.push_back(p.name + "_mean_vx [m/s]");
-    if (p.kind == PhaseKind::fluid) {
-      c.push_back(p.name + "_mean_pressure [Pa]");
-      c.push_back(p.name + "_density_error_rms");
-      if (p.held) c.push_back(p.name + "_held_acceleration_x [m/s2]");
-    }
+    model->columns(c);
   }
   return c;
 }
 
 std::vector<double> Simulation::history_row() const {
-  std::vector<double> row{time_, static_cast<double>(steps_), dt_, 0, 0, 0, 0, 0};
-  for (std::size_t k = 0; k < particles_.size(); ++k) {
-    const auto& p = particles_[k];
-    if (p.kind() == PhaseKind::wall) continue;
+  std::vector<double> row{state_.time, static_cast<double>(state_.steps), state_.dt, 0, 0, 0, 0, 0};
+  for (const auto& model : models_) {
+    if (model->phase() < 0) continue;
+    const auto k = static_cast<std::size_t>(model->phase());
+    if (!plan_.phases[k].moves) continue;
+    const auto& p = state_.phases[k];
     const std::size_t n = p.size();
     std::array<const double*, 3> v{};
     for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
@@ -159,38 +133,22 @@ std::vector<double> Simulation::history_row() const {
     row.push_back(0.5 * p.mass() * square);
     row.push_back(fastest);
     row.push_back(mean[0]);
-    if (p.kind() == PhaseKind::fluid) {
-      const double* rho = p.column(Field::density);
-      const double* pressure = p.column(Field::pressure);
-      const double rho0 = scene_.phases[k].density;
-      double worst = 0.0;
-      const double squares = ordered_sum(n, [&](std::size_t i) {
-        const double e = std::abs(rho[i] / rho0 - 1.0);
-        worst = std::max(worst, e);
-        return e * e;
-      });
-      row[7] = std::max(row[7], worst);
-      row.push_back(n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / static_cast<double>(n) : 0.0);
-      row.push_back(n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0.0);
-      if (plan_.phases[k].held)
-        for (const auto& f : fluids_)
-          if (f.phase == k) row.push_back(f.hold.acceleration[0]);
-    }
+    model->row(row);
   }
   return row;
 }
 
 Frame Simulation::good_frame(int index) {
   KeptState& good = watch_->good();
-  const double time = time_;
-  const long step = steps_;
-  good.exchange(particles_);
-  time_ = good.time();
-  steps_ = good.step();
+  const double time = state_.time;
+  const long step = state_.steps;
+  good.exchange(state_.phases);
+  state_.time = good.time();
+  state_.steps = good.step();
   Frame f = frame(index);
-  good.exchange(particles_);
-  time_ = time;
-  steps_ = step;
+  good.exchange(state_.phases);
+  state_.time = time;
+  state_.steps = step;
   return f;
 }
 

@@ -6,7 +6,7 @@
 #include "engine/integrate.hpp"
 #include "engine/pair_loop.hpp"
 #include "kernels/kernel.hpp"
-#include "simulation/wiring.hpp"
+#include "models/walls/sides.hpp"
 
 namespace barchan {
 
@@ -108,18 +108,18 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
     shortest = std::min(shortest, see_.scene.domain.size[d]);
   }
   for (const auto& p : see_.scene.phases)
-    if (p.shear_stress) pull += norm(*p.shear_stress) * face / shortest;
+    if (const WallKeys* wall = p.if_wall(); wall && wall->shear_stress)
+      pull += norm(*wall->shear_stress) * face / shortest;
   for (const auto& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const PlanPhase& plan = see_.plan.phases[g.phase];
-    const double idle = plan.kind == PhaseKind::elastic ? WatchBounds::idle_body : WatchBounds::idle_fluid;
     mass_ += p.mass() * static_cast<double>(p.size());
-    start_energy_ += 0.5 * p.mass() * static_cast<double>(p.size()) * std::pow(idle * plan.sound_speed, 2);
+    start_energy_ += 0.5 * p.mass() * static_cast<double>(p.size()) * std::pow(plan.rules.idle * plan.sound_speed, 2);
     for (std::size_t k = 0; k < p.size(); ++k) {
       double v2 = 0.0;
       for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
       start_energy_ += 0.5 * p.mass() * v2;
-      if (plan.kind == PhaseKind::fluid)
+      if (plan.rules.pressure_stores_energy)
         start_energy_ +=
             0.5 * p.mass() *
             std::pow(p.column(Field::pressure)[k] / (see_.scene.phases[g.phase].density * plan.sound_speed), 2);
@@ -134,13 +134,12 @@ void Watch::make_guards() {
   const Plan& plan = see_.plan;
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (p.kind == PhaseKind::wall) continue;
+    if (!p.moves) continue;
+    const PhaseRules& rules = p.rules;
     Guard g;
     g.phase = k;
-    const bool fluid = p.kind == PhaseKind::fluid, grains = p.kind == PhaseKind::grains;
-    g.signal_speed = grains ? 1e300 : p.sound_speed;
-    g.way = (grains ? WatchBounds::grain_way : WatchBounds::body_way) * plan.spacing;
-    if (fluid) g.way = 2.0 * p.smoothing_length;
+    g.signal_speed = rules.signal_speed;
+    g.way = rules.way;
     for (std::size_t d = 0; d < 3; ++d) {
       const double margin = WatchBounds::outside * plan.spacing;
       g.closed[d] = {-1, -1};
@@ -148,37 +147,38 @@ void Watch::make_guards() {
       g.high[d] = plan.bounds.periodic[d] ? 1e300 : plan.bounds.high[d] + margin;
     }
     for (const auto& e : plan.entries) {
-      if (e.a != k && e.b != k) continue;
-      if (fluid && e.a == e.b) g.own_list = e.forward;
-      const std::size_t other = e.a == k ? e.b : e.a;
-      if (grains && e.law == Law::contact) {
+      if (!e.has(k)) continue;
+      if (rules.pairs_up && e.a == e.b) g.own_list = e.forward;
+      const std::size_t other = e.partner(k);
+      if (rules.contacts_limit_speed && e.law == Law::contact) {
         // The largest energy that the contact can store, 1/2 K g(0)^2 with K = m c^2/d^2 (laws/kernel_contact.hpp).
         with_kernel<double>(e.kernel, e.radius, plan.dimensions, [&](const auto& kernel) {
           const double d = plan.spacing, depth = (kernel.value(0.0) - kernel.value(d)) / std::abs(kernel.derivative(d));
           g.signal_speed = std::min(g.signal_speed, p.sound_speed * depth / d);
         });
       }
-      if (plan.phases[other].kind != PhaseKind::wall) continue;
+      if (plan.phases[other].moves) continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.spacing);
       for (std::size_t d = 0; d < 3; ++d) {
         if (sides.low[d] > -Sides::far) g.closed[d][0] = static_cast<int>(other);
         if (sides.high[d] < Sides::far) g.closed[d][1] = static_cast<int>(other);
         // A grain or a body whose centre is beyond the side is half its diameter deep in the wall.
-        if (!fluid && g.closed[d][0] >= 0) g.low[d] = plan.bounds.low[d];
-        if (!fluid && g.closed[d][1] >= 0) g.high[d] = plan.bounds.high[d];
+        if (rules.stops_at_sides && g.closed[d][0] >= 0) g.low[d] = plan.bounds.low[d];
+        if (rules.stops_at_sides && g.closed[d][1] >= 0) g.high[d] = plan.bounds.high[d];
       }
     }
     g.dense = see_.particles[k].has(Field::density);
     g.reference_density = see_.scene.phases[k].density;
-    g.least_density = fluid ? (1.0 - WatchBounds::density) * g.reference_density : 1e-300;
-    g.most_density = fluid ? (1.0 + WatchBounds::density) * g.reference_density : 1e300;
+    const double share = rules.density_share;
+    g.least_density = share > 0.0 ? (1.0 - share) * g.reference_density : 1e-300;
+    g.most_density = share > 0.0 ? (1.0 + share) * g.reference_density : 1e300;
     guards_.push_back(g);
   }
 }
 
 void Watch::make_pairs() {
-  const auto wall = [&](std::size_t k) { return see_.plan.phases[k].kind == PhaseKind::wall; };
+  const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
   for (const auto& e : see_.plan.entries) {
     if (e.law != Law::contact && e.law != Law::elastic) continue;
     const bool turned = wall(e.a);
@@ -250,7 +250,8 @@ double Watch::look_at_phases(const Moment& now) {
     }
     energy += 0.5 * p.mass() * all.squares;
     wrong += all.wrong;
-    if (p.kind() != PhaseKind::fluid) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
+    const PhaseRules& rules = see_.plan.phases[g.phase].rules;
+    if (rules.solid) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
     else if (p.size() > 0)
       note_density(g, std::max(all.densest, 2.0 * g.reference_density - all.lightest) / g.reference_density - 1.0, now);
   }

@@ -21,19 +21,15 @@
 
 namespace barchan {
 
-/// What the watch lets through; docs/output.md gives the reasons.
+/// What the watch lets through in all phases; models give the bounds of their own (PhaseRules). docs/output.md gives the
+/// reasons.
 struct WatchBounds {
-  static constexpr double density = 0.3;              // of a fluid, |rho/rho0 - 1|
   static constexpr double outside = 0.5;              // spacings beyond a side of the domain
-  static constexpr double grain_way = 0.25;           // spacings a step, of grains
-  static constexpr double body_way = 0.5;             // spacings a step, of elastic bodies
   static constexpr double coincidence = 0.2;          // spacings between two grains or two particles of bodies
   static constexpr double wall_depth = 0.6;           // spacings between a grain or a body and a particle of a wall
   static constexpr double pair_distance = 0.3;        // spacings: nearer fluid particles are a pair
   static constexpr double paired = 0.05;              // of a fluid's particles
   static constexpr double energy = 4.0;               // kinetic energy over what laws can have fed
-  static constexpr double idle_fluid = 0.1;           // of the sound speed: motion that disorder alone may cause,
-  static constexpr double idle_body = 0.01;           //  in fluids and grains, and in elastic bodies
   static constexpr double remarkable_density = 0.05;  // a density error that is worth a warning at the end
 };
 
@@ -74,6 +70,9 @@ class Watch {
   /// Adds what was remarkable in the whole run.
   void report(Warnings& warnings) const;
   std::size_t bytes() const;
+
+  /// What it has seen so far; the good state is not among it, so a look_closely() has to follow a load.
+  void archive(Archive& a);
 
  private:
   static constexpr std::size_t block = 4096;  // particles; sums have an order that only their number decides
@@ -132,6 +131,7 @@ class Watch {
 
   // the slow part: who it is, and in which words
   std::optional<std::string> wrong_with(const Guard& g, std::size_t k, double dt) const;
+  std::optional<std::string> wrong_place(const Guard& g, std::size_t k) const;
   std::string who(std::size_t phase, std::size_t k, const Moment& now) const;
   std::string step_key() const;
   [[noreturn]] void tell_worst(const Moment& now) const;

@@ -28,10 +28,6 @@ double size_of(const PhaseParticles& p, std::size_t k, Field vector) {
   return std::sqrt(squares);
 }
 
-const char* one_of(PhaseKind kind) {
-  return kind == PhaseKind::grains ? "grain" : kind == PhaseKind::elastic ? "particle of a body" : "particle";
-}
-
 }  // namespace
 
 std::string Watch::who(std::size_t phase, std::size_t k, const Moment& now) const {
@@ -65,17 +61,32 @@ std::string Watch::most_accelerated(const Moment& now) const {
 std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, double dt) const {
   const PhaseParticles& p = see_.particles[g.phase];
   const Plan& plan = see_.plan;
-  const std::string key = "phases." + p.name() + ".";
-  const bool fluid = p.kind() == PhaseKind::fluid, grains = p.kind() == PhaseKind::grains;
+  const PhaseRules& rules = plan.phases[g.phase].rules;
   for (const Field f : {Field::acceleration, Field::velocity, Field::position})
     for (int d = 0; d < p.dimensions(); ++d)
       if (!std::isfinite(p.column(f, d)[k]))
         return ": " + std::string(info(f).name) + " is not finite; the step was too long or particles overlap: lower " +
-               step_key() + ", raise " +
-               (fluid    ? key + "sound-speed or " + key + "density-diffusion"
-                : grains ? key + "contact-speed"
-                         : key + "artificial-viscosity") +
-               ", or look for particles in one place in the fills";
+               step_key() + ", raise " + rules.if_not_finite + ", or look for particles in one place in the fills";
+  if (auto outside = wrong_place(g, k)) return outside;
+  const double speed = size_of(p, k, Field::velocity);
+  if (!(speed <= g.signal_speed))
+    return " is faster (" + brief(speed) + " m/s, with an acceleration of " + brief(size_of(p, k, Field::acceleration)) +
+           " m/s2) than " + rules.if_fast(speed, g.signal_speed);
+  if (!(speed * dt <= g.way))
+    return " moves " + brief(speed * dt / plan.spacing) + " spacings in one step (" + brief(speed) + " m/s in " +
+           brief(dt) + " s; the bound is " + brief(g.way / plan.spacing) +
+           " spacings) and would pass what it meets: " + rules.if_far(speed);
+  if (!g.dense) return std::nullopt;
+  const double rho = p.column(Field::density)[k];
+  if (rho >= g.least_density && rho <= g.most_density) return std::nullopt;
+  if (!(rules.density_share > 0.0)) return ": density " + brief(rho) + " kg/m3 " + rules.if_dense;
+  return ": density " + brief(rho) + " kg/m3 is out of bounds (" + brief(g.least_density) + " to " +
+         brief(g.most_density) + "); " + rules.if_dense;
+}
+
+/// Beyond which side a particle is, and what to do; nothing if it is within its bounds.
+std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) const {
+  const PhaseParticles& p = see_.particles[g.phase];
   for (int d = 0; d < p.dimensions(); ++d) {
     const auto c = static_cast<std::size_t>(d);
     const double x = p.column(Field::position, d)[k];
@@ -83,48 +94,16 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
     const bool low = x < g.low[c];
     const std::string side = std::string(low ? "lower" : "upper") + " side of " + "xyz"[d];
     const int wall = g.closed[c][low ? 0 : 1];
-    const std::string stiffer = fluid || p.kind() == PhaseKind::elastic
-                                    ? "lower " + step_key() + (fluid ? " or raise " + key + "sound-speed" : "")
-                                    : "raise " + key + "contact-speed";
     if (wall >= 0)
-      return " passed the wall \"" + plan.phases[static_cast<std::size_t>(wall)].name + "\" at the " + side +
+      return " passed the wall \"" + see_.plan.phases[static_cast<std::size_t>(wall)].name + "\" at the " + side +
              " (a bound at " + brief(low ? g.low[c] : g.high[c]) +
-             " m); the wall could not stop it, it was too fast or pressed too hard: " + stiffer;
+             " m); the wall could not stop it, it was too fast or pressed too hard: " +
+             see_.plan.phases[g.phase].rules.if_passed;
     return " escaped through the " + side +
            "; no wall with which it interacts holds it there: add a wall on that side and an entry of \"" + p.name() +
            "\" with it in [interactions], or enlarge domain.size";
   }
-  const double speed = size_of(p, k, Field::velocity);
-  if (!(speed <= g.signal_speed)) {
-    const std::string found = " is faster (" + brief(speed) + " m/s, with an acceleration of " +
-                              brief(size_of(p, k, Field::acceleration)) + " m/s2) than ";
-    if (fluid)
-      return found + "sound (" + brief(g.signal_speed) +
-             " m/s); the flow ran away, or the scene has too slow a sound: " + "raise " + key +
-             "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
-             "artificial-viscosity, or lower " + step_key();
-    if (grains)
-      return found + "its contacts can stop (" + brief(g.signal_speed) + " m/s): raise " + key + "contact-speed (" +
-             brief(plan.phases[g.phase].sound_speed) + " m/s) to " + brief(2.0 * speed) + " or more";
-    return found + "compression waves of its body (" + brief(g.signal_speed) +
-           " m/s), so that no contact can stop it: raise " + key + "young, or lower its speed";
-  }
-  if (!(speed * dt <= g.way))
-    return " moves " + brief(speed * dt / plan.spacing) + " spacings in one step (" + brief(speed) + " m/s in " +
-           brief(dt) + " s; the bound is " + brief(g.way / plan.spacing) + " spacings) and would pass what it meets: " +
-           (grains && plan.fixed_step <= 0
-                ? "raise " + key + "contact-speed (" + brief(plan.phases[g.phase].sound_speed) + " m/s) to " +
-                      brief(speed) + " or more"
-                : "lower " + step_key());
-  if (!g.dense) return std::nullopt;
-  const double rho = p.column(Field::density)[k];
-  if (rho >= g.least_density && rho <= g.most_density) return std::nullopt;
-  if (!fluid)
-    return ": density " + brief(rho) + " kg/m3 is impossible; the body was torn or pressed into nothing: lower " +
-           step_key() + ", or raise " + key + "artificial-viscosity";
-  return ": density " + brief(rho) + " kg/m3 is out of bounds (" + brief(g.least_density) + " to " +
-         brief(g.most_density) + "); the pressure ran away, or neighbours are too few: raise " + key +
-         "sound-speed or the radius of interactions." + p.name() + "-" + p.name() + ", or lower " + step_key();
+  return std::nullopt;
 }
 
 void Watch::tell_worst(const Moment& now) const {
@@ -174,14 +153,13 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
   }
   const std::string near =
       brief(distance / see_.plan.spacing) + " spacings (bound " + brief(pair.distance / see_.plan.spacing) + ")";
-  const std::string stiffer =
-      a.kind() == PhaseKind::grains ? "phases." + a.name() + ".contact-speed" : "phases." + a.name() + ".young";
-  if (b.kind() == PhaseKind::wall)
+  const std::string& stiffer = see_.plan.phases[pair.a].rules.stiffness_key;
+  if (!see_.plan.phases[pair.b].moves)
     throw BreakdownError(who(pair.a, first, now) + " is deep in the wall \"" + b.name() + "\", " + near +
                          " from a particle of it; it was too fast or pressed too hard for the contact, or the fills "
                          "overlap: raise " +
                          stiffer + ", or move the fills apart");
-  throw BreakdownError(who(pair.a, first, now) + " is in the same place as " + one_of(b.kind()) + " " +
+  throw BreakdownError(who(pair.a, first, now) + " is in the same place as " + see_.plan.phases[pair.b].rules.one + " " +
                        std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
                        " apart; the contact could not keep them apart, or the fills overlap: raise " + stiffer +
                        ", or move the fills apart");
@@ -235,8 +213,9 @@ void Watch::look_at_energy(const Moment& now) {
                                           : std::min(g * now.time, std::sqrt(2.0 * g * see_.scene.domain.size[d]));
   }
   double walls = 0.0;
-  for (const auto& p : see_.particles)
-    if (p.kind() == PhaseKind::wall && p.size() > 0) walls = std::max(walls, size_of(p, 0, Field::velocity));
+  for (std::size_t k = 0; k < see_.particles.size(); ++k)
+    if (!see_.plan.phases[k].moves && see_.particles[k].size() > 0)
+      walls = std::max(walls, size_of(see_.particles[k], 0, Field::velocity));
   wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
   const double bound = WatchBounds::energy * 0.5 * mass_ * speed * speed;
@@ -274,6 +253,18 @@ void Watch::report(Warnings& warnings) const {
                               std::to_string(extreme_.step) +
                               "); a weakly compressible fluid should stay within 1 %: raise phases." + p.name() +
                               ".sound-speed or the radius of interactions." + p.name() + "-" + p.name());
+}
+
+void Watch::archive(Archive& a) {
+  a.number("watch: next look", next_);
+  a.number("watch: looks", looks_);
+  a.number("watch: energy of the start", start_energy_);
+  a.number("watch: speed of the start", start_speed_);
+  a.number("watch: speed given by forces", forced_);
+  a.number("watch: time of the last look", last_time_);
+  a.number("watch: fastest", last_fastest_);
+  a.number("watch: fastest wall", wall_speed_);
+  a.number("watch: largest density error", extreme_);
 }
 
 std::size_t Watch::bytes() const { return good_.bytes() + parts_.size() * sizeof(Part); }

@@ -4,10 +4,8 @@
 
 namespace barchan {
 
-PhaseParticles::PhaseParticles(std::string name, PhaseKind kind, int dimensions, std::size_t size, double mass,
-                               std::int64_t first_id)
+PhaseParticles::PhaseParticles(std::string name, int dimensions, std::size_t size, double mass, std::int64_t first_id)
     : name_(std::move(name)),
-      kind_(kind),
       dimensions_(dimensions),
       size_(size),
       mass_(mass),
@@ -43,6 +41,13 @@ void PhaseParticles::permute(const std::uint32_t* order) {
   for (auto& columns : columns_)
     for (auto& column : columns) column.swap(scratch_);
   id_.swap(id_scratch_);
+}
+
+void PhaseParticles::archive(Archive& a) {
+  a.values("id of " + name_, id_.data(), id_.size());
+  for (std::size_t f = 0; f < field_count; ++f)
+    for (auto& column : columns_[f])
+      a.values(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), column.size());
 }
 
 std::size_t PhaseParticles::bytes() const {

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "base/aligned.hpp"
+#include "base/vec3.hpp"
 #include "base/fields.hpp"
-#include "scene/scene.hpp"
+#include "state/access.hpp"
+#include "state/archive.hpp"
 
 namespace barchan {
 
@@ -16,11 +18,9 @@ namespace barchan {
 /// says which particle stands where.
 class PhaseParticles {
  public:
-  PhaseParticles(std::string name, PhaseKind kind, int dimensions, std::size_t size, double mass,
-                 std::int64_t first_id);
+  PhaseParticles(std::string name, int dimensions, std::size_t size, double mass, std::int64_t first_id);
 
   const std::string& name() const { return name_; }
-  PhaseKind kind() const { return kind_; }
   int dimensions() const { return dimensions_; }
   std::size_t size() const { return size_; }
   double mass() const { return mass_; }  ///< kg a particle (kg per metre of depth in 2D)
@@ -29,9 +29,11 @@ class PhaseParticles {
   bool has(Field field) const { return !columns_[index(field)].empty(); }
   int components(Field field) const { return barchan::components(info(field).rank, dimensions_); }
   double* column(Field field, int component = 0) {
+    check(field);
     return columns_[index(field)][static_cast<std::size_t>(component)].data();
   }
   const double* column(Field field, int component = 0) const {
+    check(field);
     return columns_[index(field)][static_cast<std::size_t>(component)].data();
   }
 
@@ -43,11 +45,17 @@ class PhaseParticles {
 
   std::size_t bytes() const;  ///< memory of the arrays
 
+  void archive(Archive& a);  ///< ids and all fields, in the present order
+
  private:
+  static void check([[maybe_unused]] Field field) {
+#ifndef NDEBUG
+    AccessGuard::check(field);
+#endif
+  }
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }
 
   std::string name_;
-  PhaseKind kind_;
   int dimensions_;
   std::size_t size_;
   double mass_;

@@ -16,11 +16,11 @@ using namespace barchan::sets;
 
 constexpr double fluid_radius_2d = 2.9, fluid_radius_3d = 2.8, body_radius = 2.6;
 
-Cast particles(int dimensions, double radius, std::size_t padding, PhaseKind kind, Uniform& random) {
+Cast particles(int dimensions, double radius, std::size_t padding, Uniform& random) {
   const Bounds b =
       dimensions == 2 ? box(2, {48, 48, 0}, {true, true, false}) : box(3, {14, 14, 14}, {true, true, true});
   std::vector<PhaseParticles> one;
-  one.push_back(phase(kind, dimensions, lattice(b, 1.0, 0.2, random), 1.0,
+  one.push_back(phase(dimensions, lattice(b, 1.0, 0.2, random), 1.0,
                       {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                        Field::shift_velocity, Field::anisotropy, Field::stress}));
   randomise(one[0], Field::velocity, -1, 1, random);
@@ -50,7 +50,7 @@ void fluid(int dimensions, FluidScheme scheme, bool mixed) {
   Uniform random(21);
   const double radius = dimensions == 2 ? fluid_radius_2d : fluid_radius_3d;
   Cast cast = particles(dimensions, radius, mixed ? simd::native_width<float> : simd::native_width<double>,
-                        PhaseKind::fluid, random);
+                        random);
   CompactRecords compact(cast.bounds);
   const std::size_t n = cast.phases[0].size(), images = cast.neighbours.grid(0).images();
   compact.resize(n, images);
@@ -71,7 +71,7 @@ void fluid(int dimensions, FluidScheme scheme, bool mixed) {
 
 void body(bool strain) {
   Uniform random(22);
-  Cast cast = particles(2, body_radius, simd::native_width<double>, PhaseKind::elastic, random);
+  Cast cast = particles(2, body_radius, simd::native_width<double>, random);
   RecordArray records(StressRecord<2>::size);
   records.resize(cast.phases[0].size(), cast.neighbours.grid(0).images());
   pack_stress(cast.phases[0], records);
@@ -86,7 +86,7 @@ void body(bool strain) {
 void lists(int dimensions) {
   Uniform random(23);
   const double radius = dimensions == 2 ? fluid_radius_2d : fluid_radius_3d;
-  const Cast cast = particles(dimensions, radius, simd::native_width<double>, PhaseKind::fluid, random);
+  const Cast cast = particles(dimensions, radius, simd::native_width<double>, random);
   print_pairs(cast, radius);
 }
 

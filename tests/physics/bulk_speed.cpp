@@ -21,7 +21,7 @@ double mean_velocity(const PhaseParticles& p, int axis) {
 
 /// The column of history.csv with this name, now.
 double history(const Simulation& run, const std::string& name) {
-  const auto names = Simulation::history_columns(run.plan());
+  const auto names = run.history_columns();
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end()) throw std::runtime_error("no column " + name);
   return run.history_row()[static_cast<std::size_t>(at - names.begin())];
@@ -111,7 +111,7 @@ TEST(BulkSpeed, CostsNothingWhereNothingIsHeld) {
   for (const bool holds : {false, true}) {
     const auto run = small::simulation(holds ? held_channel : small::channel);
     run->step(1.0);
-    const auto names = Simulation::history_columns(run->plan());
+    const auto names = run->history_columns();
     EXPECT_EQ(std::find(names.begin(), names.end(), "water_held_acceleration_x [m/s2]") != names.end(), holds);
     for (std::size_t k = 0; k < run->seconds().size(); ++k)
       if (run->seconds()[k].first == "bulk speed") { EXPECT_EQ(run->executed()[k] > 0, holds); }

@@ -39,12 +39,12 @@ double shear_error(const Table& table) {
 /// a parabola from one side), 0.0022 in the slices (the slip that the scheme leaves), 0.001 in the shear.
 void measure(const std::vector<std::string>& overrides) {
   Drive drive("verification/poiseuille", overrides);
-  Measurements measurements(drive.simulation());
+  Measurements measurements(drive.plan().instruments, drive.plan().bounds, {drive.scene().phases[0].density, 0.0});
   auto& simulation = drive.simulation();
-  measurements.sample(simulation);
+  measurements.sample(simulation.state());
   while (simulation.time() < 1.0 * (1 - 1e-12)) {
     simulation.step(1.0 - simulation.time());
-    measurements.sample(simulation);
+    measurements.sample(simulation.state());
   }
   for (std::size_t k = 0; k < measurements.instruments().size(); ++k) {
     const Instrument& i = measurements.instruments()[k];

@@ -84,7 +84,7 @@ TEST_P(EveryScene, TakesStepsInTheLibrary) {
   ASSERT_NO_THROW(for (int k = 0; k < 40; ++k) simulation.step(1e300));
   ASSERT_NO_THROW(simulation.check());
   EXPECT_TRUE(simulation.warnings().texts().empty());
-  const auto columns = Simulation::history_columns(drive.plan());
+  const auto columns = drive.simulation().history_columns();
   const auto row = simulation.history_row();
   ASSERT_EQ(row.size(), columns.size());
   for (std::size_t c = 0; c < row.size(); ++c) EXPECT_TRUE(std::isfinite(row[c])) << columns[c];

@@ -15,7 +15,7 @@ class Detector {
   /// What is wrong with the present state; "" if nothing is.
   std::string wrong() const {
     for (std::size_t k = 0; k < s_.phases().size(); ++k) {
-      if (s_.phases()[k].kind() == PhaseKind::wall) continue;
+      if (wall(k)) continue;
       for (std::size_t i = 0; i < s_.phases()[k].size(); ++i)
         if (const std::string w = wrong_alone(k, i); !w.empty()) return w;
     }
@@ -28,7 +28,7 @@ class Detector {
   }
 
  private:
-  bool wall(std::size_t phase) const { return s_.phases()[phase].kind() == PhaseKind::wall; }
+  bool wall(std::size_t phase) const { return !s_.plan().phases[phase].moves; }
 
   static double squared_speed(const PhaseParticles& p, std::size_t i) {
     double v2 = 0;
@@ -37,8 +37,9 @@ class Detector {
   }
 
   bool closed(int axis, bool above) const {
-    for (const auto& p : s_.phases()) {
-      if (p.kind() != PhaseKind::wall) continue;
+    for (std::size_t k = 0; k < s_.phases().size(); ++k) {
+      if (!wall(k)) continue;
+      const PhaseParticles& p = s_.phases()[k];
       const auto c = static_cast<std::size_t>(axis);
       for (std::size_t i = 0; i < p.size(); ++i) {
         const double x = p.column(Field::position, axis)[i];
@@ -50,7 +51,7 @@ class Detector {
 
   std::string wrong_alone(std::size_t k, std::size_t i) const {
     const PhaseParticles& p = s_.phases()[k];
-    const bool fluid = p.kind() == PhaseKind::fluid, grains = p.kind() == PhaseKind::grains;
+    const bool fluid = s_.plan().phases[k].kind == "fluid", grains = s_.plan().phases[k].kind == "grains";
     const double dx = s_.plan().spacing, c = s_.plan().phases[k].sound_speed;
     for (int d = 0; d < p.dimensions(); ++d) {
       const double x = p.column(Field::position, d)[i];

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "plan/limits.hpp"
+#include "models/step_limits.hpp"
 #include "scene/reader.hpp"
 #include "simulation/simulation.hpp"
 #include "stress/scenes.hpp"

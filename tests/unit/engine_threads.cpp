@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Numbers, Threads, testing::Values(1, 2, 3, 7));
 TEST_P(Threads, SortKeepsTheOrderWithinACell) {
   sets::Uniform random(5);
   const Bounds bounds = sets::box(2, {20, 12, 0}, {true, false, false});
-  PhaseParticles p("p", PhaseKind::grains, 2, 3000, 1.0, 0);
+  PhaseParticles p("p", 2, 3000, 1.0, 0);
   for (const Field f : {Field::position, Field::velocity}) p.add(f);
   Blocks blocks;
   blocks.count = {4, 3, 1};
@@ -180,7 +180,7 @@ TEST(GroundDistance, HasTheSeedsOfPlainSweeps) {
               if (x < 4 || x > 9)
                 grains.push_back({x + 0.5 + disorder * random(-1, 1), y + 0.5 + disorder * random(-1, 1),
                                   solid ? z + 0.5 + disorder * random(-1, 1) : 0.0});
-        PhaseParticles sand("sand", PhaseKind::grains, dimensions, grains.size(), 1.0, 0);
+        PhaseParticles sand("sand", dimensions, grains.size(), 1.0, 0);
         sand.add(Field::position);
         GroundDistance ground(bounds, Sides{}, 1.0, true);
         const PhaseParticles* phases[] = {&sand};

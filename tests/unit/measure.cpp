@@ -19,9 +19,16 @@ using testing::with;
 
 constexpr double spacing = 0.1, radius = 0.28;
 
+/// The instruments of a run.
+Measurements measurements(const Simulation& run) {
+  std::vector<double> densities;
+  for (const auto& p : run.scene().phases) densities.push_back(p.density);
+  return {run.plan().instruments, run.plan().bounds, densities};
+}
+
 /// Fluid at these places, of volume spacing^d, at rest.
 PhaseParticles fluid_at(const std::vector<Vec3>& x, int dimensions) {
-  PhaseParticles p("air", PhaseKind::fluid, dimensions, x.size(), 2.0 * std::pow(spacing, dimensions), 0);
+  PhaseParticles p("air", dimensions, x.size(), 2.0 * std::pow(spacing, dimensions), 0);
   for (const Field f : {Field::position, Field::velocity, Field::density, Field::pressure}) p.add(f);
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (int d = 0; d < dimensions; ++d) p.column(Field::position, d)[i] = x[i][static_cast<std::size_t>(d)];
@@ -172,7 +179,7 @@ const FrameField& field(const Table& table, const std::string& name) {
 
 TEST(Slices, MeansAndFluctuationsByHand) {
   const auto run = small::simulation(sliced, {"phases.air.sound-speed=100"});  // faster than what is set below
-  Measurements m(*run);
+  Measurements m = measurements(*run);
   auto& p = run->phases()[0];
   // Rows of seven particles at y = 0.05, 0.15 below 0.24, where the slices meet, and three rows above. u is linear in
   // y, with a fluctuation of +-0.5 that alternates along x; v that of the opposite sign, twice as large.
@@ -187,7 +194,7 @@ TEST(Slices, MeansAndFluctuationsByHand) {
       set(p, 1, [&](const Vec3& x) { return -1.0 * time * sign(x); });
       set(p, 2, [&](const Vec3& x) { return 3.0 + 2.0 * time + 100.0 * x[1]; });
     }
-    m.sample(*run);
+    m.sample(run->state());
   }
   const Table t = m.table(0);
   EXPECT_EQ(t.moments, 2);
@@ -250,11 +257,11 @@ Result after(int threads, bool measure) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
   const auto run = small::simulation(measured, {"time.end=0.1"});
-  Measurements m(*run);
-  if (measure) m.sample(*run);
+  Measurements m = measurements(*run);
+  if (measure) m.sample(run->state());
   for (int k = 0; k < 80; ++k) {
     run->step(1.0);
-    if (measure) m.sample(*run);
+    if (measure) m.sample(run->state());
   }
   omp_set_num_threads(before);
   Result r{m.accumulators(), {}, run->time()};
@@ -290,11 +297,11 @@ TEST(Measurements, AreTakenAtTheFirstStepAtOrAfterTheirTime) {
   const auto run = small::simulation(
       with(with(sliced, "every = 1e-9", "every = 0.25\nstart = 0.5"), "end = 1", "end = 2\nstep = 1e-3"),
       {"domain.periodic=['x', 'y']"});  // nothing escapes
-  Measurements m(*run);
+  Measurements m = measurements(*run);
   std::vector<double> times;
   std::int64_t before = 0;
   const auto look = [&] {
-    m.sample(*run);
+    m.sample(run->state());
     if (m.accumulators().moments[0] > before) times.push_back(run->time());
     before = m.accumulators().moments[0];
   };

@@ -103,7 +103,7 @@ TEST_P(Search, OnePhaseFindsEveryPair) {
   for (const double perturb : {0.0, 0.2, 0.49})
     for (const double radius : {1.1, 2.5}) {
       std::vector<PhaseParticles> one;
-      one.push_back(phase(PhaseKind::fluid, dimensions(), lattice(bounds(), 1.0, perturb, random), 1.0));
+      one.push_back(phase(dimensions(), lattice(bounds(), 1.0, perturb, random), 1.0));
       const Cast cast(bounds(), std::move(one), {{0, 0, radius}});
       expect_complete(cast, 0, radius * 1.1, radius * 1.1);
     }
@@ -113,8 +113,8 @@ TEST_P(Search, RandomSetsOfTwoPhasesWithRadiiOfTheirOwn) {
   Uniform random(2);
   const int n = dimensions() == 2 ? 90 : 130;
   std::vector<PhaseParticles> two;
-  two.push_back(phase(PhaseKind::fluid, dimensions(), scattered(bounds(), n, random), 1.0));
-  two.push_back(phase(PhaseKind::grains, dimensions(), scattered(bounds(), n / 3, random), 1.0, {}, n));
+  two.push_back(phase(dimensions(), scattered(bounds(), n, random), 1.0));
+  two.push_back(phase(dimensions(), scattered(bounds(), n / 3, random), 1.0, {}, n));
   const Cast cast(bounds(), std::move(two), {{0, 0, 2.9}, {0, 1, 1.9}, {1, 0, 1.9}, {1, 1, 0.8}}, 0.2);
   for (std::size_t q = 0; q < 4; ++q) {
     const double reach = cast.directions[q].radius * 1.2;
@@ -135,7 +135,7 @@ TEST_P(Search, ParticlesOnTheBounds) {
       if (choice == 2) x[k][d] = std::nextafter(b.low[d], -1e9);  // wraps onto the upper bound to rounding
     }
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, dimensions(), x, 1.0));
+  one.push_back(phase(dimensions(), x, 1.0));
   const Cast cast(b, std::move(one), {{0, 0, 1.7}});
   for (std::size_t k = 0; k < x.size(); ++k)
     for (std::size_t d = 0; d < static_cast<std::size_t>(b.dimensions); ++d)
@@ -155,8 +155,8 @@ TEST_P(Search, ParticlesOutsideTheBounds) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(b.dimensions); ++d)
       if (!b.periodic[d]) x[d] = random(b.low[d] - 4.5, b.high[d] + 4.5);
   std::vector<PhaseParticles> two;
-  two.push_back(phase(PhaseKind::fluid, dimensions(), lattice(b, 1.0, 0.2, random), 1.0));
-  two.push_back(phase(PhaseKind::wall, dimensions(), walls, 1.0, {}, 1000));
+  two.push_back(phase(dimensions(), lattice(b, 1.0, 0.2, random), 1.0));
+  two.push_back(phase(dimensions(), walls, 1.0, {}, 1000));
   const Cast cast(b, std::move(two), {{0, 0, 3.0}, {0, 1, 3.0}, {1, 0, 3.0}, {1, 1, 1.3}});
   for (std::size_t q = 0; q < 4; ++q)
     expect_complete(cast, q, cast.directions[q].radius * 1.1, cast.directions[q].radius * 1.1);
@@ -167,7 +167,7 @@ TEST_P(Search, PermutationKeepsIdsWithTheirFields) {
   const Bounds b = bounds();
   const auto x = scattered(b, 300, random);
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, dimensions(), x, 1.0, {Field::velocity, Field::density}, 70));
+  one.push_back(phase(dimensions(), x, 1.0, {Field::velocity, Field::density}, 70));
   for (std::size_t k = 0; k < x.size(); ++k) {
     one[0].column(Field::density)[k] = static_cast<double>(k);
     for (int d = 0; d < dimensions(); ++d) one[0].column(Field::velocity, d)[k] = -10.0 * static_cast<double>(k) - d;
@@ -204,8 +204,8 @@ TEST_P(Search, ListsStayCompleteWhileParticlesMove) {
   Uniform random(6);
   const Bounds b = bounds();
   std::vector<PhaseParticles> two;
-  two.push_back(phase(PhaseKind::fluid, dimensions(), lattice(b, 1.0, 0.2, random), 1.0));
-  two.push_back(phase(PhaseKind::grains, dimensions(), scattered(b, 30, random), 1.0, {}, 1000));
+  two.push_back(phase(dimensions(), lattice(b, 1.0, 0.2, random), 1.0));
+  two.push_back(phase(dimensions(), scattered(b, 30, random), 1.0, {}, 1000));
   Cast cast(b, std::move(two), {{0, 0, 2.0}, {0, 1, 1.5}, {1, 0, 1.5}}, 0.25);
   int rebuilt = 0;
   for (int step = 0; step < 12; ++step) {
@@ -245,7 +245,7 @@ Cast two_hundred(double skin) {
   Uniform random(7);
   const Bounds b = box(2, {20, 10, 0}, {true, false, false});
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, 2, lattice(b, 1.0, 0.2, random), 1.0));
+  one.push_back(phase(2, lattice(b, 1.0, 0.2, random), 1.0));
   return Cast(b, std::move(one), {{0, 0, 2.0}}, skin);
 }
 
@@ -282,8 +282,8 @@ TEST(Skin, OnlyMotionBetweenNeighboursCounts) {
   Uniform random(8);
   const Bounds b = box(2, {90, 8, 0}, {true, false, false});
   std::vector<PhaseParticles> two;
-  two.push_back(phase(PhaseKind::fluid, 2, lattice(b, 1.0, 0.2, random), 1.0));
-  two.push_back(phase(PhaseKind::grains, 2, scattered(b, 60, random), 1.0, {}, 1000));
+  two.push_back(phase(2, lattice(b, 1.0, 0.2, random), 1.0));
+  two.push_back(phase(2, scattered(b, 60, random), 1.0, {}, 1000));
   Cast cast(b, std::move(two), {{0, 0, 2.0}, {0, 1, 1.5}, {1, 0, 1.5}}, 0.2);
   int quiet = 0;
   for (int step = 1; step <= 16; ++step) {
@@ -318,7 +318,7 @@ TEST(Skin, BodiesThatCrossAGapMeet) {
     all.push_back(x);
   }
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, 2, all, 1.0));
+  one.push_back(phase(2, all, 1.0));
   Cast cast(b, std::move(one), {{0, 0, 2.0}}, 0.1);
   for (int step = 0; step < 50; ++step) {
     auto& p = cast.phases[0];

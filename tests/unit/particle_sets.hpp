@@ -64,9 +64,9 @@ inline std::vector<Vec3> scattered(const Bounds& b, int n, Uniform& random) {
 }
 
 /// A phase with particles at x and these fields besides.
-inline PhaseParticles phase(PhaseKind kind, int dimensions, const std::vector<Vec3>& x, double mass,
+inline PhaseParticles phase(int dimensions, const std::vector<Vec3>& x, double mass,
                             const std::vector<Field>& fields = {}, std::int64_t first_id = 0) {
-  PhaseParticles p("phase", kind, dimensions, x.size(), mass, first_id);
+  PhaseParticles p("phase", dimensions, x.size(), mass, first_id);
   p.add(Field::position);
   for (const Field f : fields) p.add(f);
   for (int d = 0; d < dimensions; ++d)

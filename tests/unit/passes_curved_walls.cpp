@@ -26,7 +26,7 @@ TEST(Relief, HoldsAboveASlopeAndLeavesTheRest) {
     EXPECT_NEAR(ground.at(1.1, 0)[0], 0.55, 1e-14);
     EXPECT_NEAR(ground.at(5.1, 4.0)[0], 0.55, 1e-14) << "periodic";
     const double z = dimensions == 3 ? 1.6 : 0.0, h = 0.5 + 0.25 * z;
-    auto p = phase(PhaseKind::fluid, dimensions, {{1, h - 0.1, z}, {1, h + 0.5, z}}, 1.0, {Field::velocity});
+    auto p = phase(dimensions, {{1, h - 0.1, z}, {1, h + 0.5, z}}, 1.0, {Field::velocity});
     for (std::size_t k : {0u, 1u}) {
       p.column(Field::velocity, 0)[k] = 2.0;
       p.column(Field::velocity, 1)[k] = -1.0;
@@ -54,7 +54,7 @@ TEST(WallNormals, PointOutOfADiscAcrossTheSeam) {
     x[0] = std::fmod(x[0] + 20.0, 40.0);  // the disc stands on the seam
     places.push_back(x);
   }
-  auto wall = phase(PhaseKind::wall, 2, places, 1.0, {Field::wall_normal, Field::wall_depth});
+  auto wall = phase(2, places, 1.0, {Field::wall_normal, Field::wall_depth});
   wall.column(Field::wall_depth)[0] = 1.0;  // known: left alone
   PhaseParticles* const walls[] = {&wall};
   find_wall_normals(walls, b, 1.0);
@@ -79,7 +79,7 @@ TEST(GroundDistance, IsThatToTheSurfaceOfAFittedWall) {
   for (const double r : {19.5, 18.5})
     for (int k = 0; k < 125; ++k)
       rows.push_back({30 + r * std::cos(k * 0.05026548), 30 + r * std::sin(k * 0.05026548), 0});
-  auto wall = phase(PhaseKind::wall, 2, rows, 1.0, {Field::wall_normal, Field::wall_depth});
+  auto wall = phase(2, rows, 1.0, {Field::wall_normal, Field::wall_depth});
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Vec3 out = rows[k] - Vec3{30, 30, 0};
     wall.column(Field::wall_depth)[k] = 20.0 - norm(out);
@@ -107,8 +107,8 @@ TEST(CurvedWall, ContinuesThePressureThatTurnsTheFlow) {
   double errors[2] = {0.0, 0.0};
   for (const bool bent : {false, true}) {
     std::vector<PhaseParticles> p;
-    p.push_back(phase(PhaseKind::wall, 2, solid, 1.0, {Field::velocity, Field::wall_normal, Field::wall_depth}));
-    p.push_back(phase(PhaseKind::fluid, 2, air, 1.2, {Field::velocity, Field::density, Field::pressure}, 10000));
+    p.push_back(phase(2, solid, 1.0, {Field::velocity, Field::wall_normal, Field::wall_depth}));
+    p.push_back(phase(2, air, 1.2, {Field::velocity, Field::density, Field::pressure}, 10000));
     SurfaceBend bend;
     for (std::size_t k = 0; k < solid.size(); ++k) {
       const double r = norm(solid[k]);
@@ -127,7 +127,7 @@ TEST(CurvedWall, ContinuesThePressureThatTurnsTheFlow) {
     }
     Cast cast(b, std::move(p), {{0, 1, 3.0}});
     const std::vector<ExtensionSource> fluid{{&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, 1.2}};
-    extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, Slip::free_slip, bent ? bend : SurfaceBend{});
+    extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, {Slip::free_slip}, bent ? bend : SurfaceBend{});
     for (std::size_t k = 0; k < solid.size(); ++k) {
       const Vec3 x = position(cast.phases[0], k);
       const double r = norm(x);

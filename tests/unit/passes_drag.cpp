@@ -21,8 +21,8 @@ TEST_P(DragPass, EqualsTheNaiveSumsAndActsBack) {
   const Bounds b = dimensions == 2 ? box(2, {8, 7, 0}, {true, false, false}) : box(3, {6, 5, 6}, {true, false, true});
   const std::vector<Field> fields{Field::velocity, Field::density, Field::acceleration};
   std::vector<PhaseParticles> two;
-  two.push_back(phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, 0.2, random), 1.2, fields));
-  two.push_back(phase(PhaseKind::grains, dimensions, scattered(b, 20, random), 2000.0, fields, 1000));
+  two.push_back(phase(dimensions, lattice(b, 1.0, 0.2, random), 1.2, fields));
+  two.push_back(phase(dimensions, scattered(b, 20, random), 2000.0, fields, 1000));
   for (auto& p : two) {
     randomise(p, Field::velocity, -2, 3, random);
     randomise(p, Field::density, 0.9, 1.1, random);

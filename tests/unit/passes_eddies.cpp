@@ -41,7 +41,7 @@ TEST(GroundDistance, IsThatOfASearchThroughEverything) {
   std::vector<Vec3> grains;
   for (int k = 0; k < 20; ++k)
     for (int j = 0; j < 8; ++j) grains.push_back({0.93 + k * dx - (k > 3 ? 1.0 : 0.0), 0.01 + j * dx, 0});
-  PhaseParticles sand("sand", PhaseKind::grains, 2, grains.size() + 1, 1.0, 0);
+  PhaseParticles sand("sand", 2, grains.size() + 1, 1.0, 0);
   for (const Field f : {Field::position, Field::velocity}) sand.add(f);
   for (std::size_t k = 0; k <= grains.size(); ++k)
     for (int d = 0; d < 2; ++d)
@@ -69,10 +69,10 @@ sets::Cast fluid_and_wall(int dimensions, bool mixed) {
   const Bounds b =
       dimensions == 2 ? sets::box(2, {9, 8, 0}, {true, true, false}) : sets::box(3, {6, 5, 7}, {true, true, true});
   std::vector<PhaseParticles> two;
-  two.push_back(sets::phase(PhaseKind::fluid, dimensions, sets::lattice(b, 1.0, 0.2, random), 1.2,
+  two.push_back(sets::phase(dimensions, sets::lattice(b, 1.0, 0.2, random), 1.2,
                             {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                              Field::shift_velocity, Field::anisotropy, Field::eddy_viscosity, Field::ground_distance}));
-  two.push_back(sets::phase(PhaseKind::wall, dimensions, sets::scattered(b, 25, random), 1.0,
+  two.push_back(sets::phase(dimensions, sets::scattered(b, 25, random), 1.0,
                             {Field::velocity, Field::density, Field::pressure}, 1000));
   for (auto& p : two) {
     sets::randomise(p, Field::velocity, -2, 2, random);

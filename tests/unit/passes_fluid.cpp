@@ -29,10 +29,10 @@ class FluidPass : public testing::TestWithParam<Case> {};
 Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd::native_width<double>) {
   const Bounds b = dimensions == 2 ? box(2, {9, 8, 0}, {true, true, false}) : box(3, {6, 5, 7}, {true, true, true});
   std::vector<PhaseParticles> two;
-  two.push_back(phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, 0.25, random), 1.2,
+  two.push_back(phase(dimensions, lattice(b, 1.0, 0.25, random), 1.2,
                       {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                        Field::shift_velocity, Field::anisotropy}));
-  two.push_back(phase(PhaseKind::wall, dimensions, scattered(b, 25, random), 1.0,
+  two.push_back(phase(dimensions, scattered(b, 25, random), 1.0,
                       {Field::velocity, Field::density, Field::pressure}, 1000));
   for (auto& p : two) {
     randomise(p, Field::velocity, -2, 2, random);
@@ -170,7 +170,7 @@ TEST(ConsistentOperators, ParticlesWithTooFewNeighboursGoUncorrected) {
     Uniform random(14);
     const Bounds b = box(dimensions, {9, 9, 9}, {false, false, false});
     std::vector<PhaseParticles> one;
-    one.push_back(phase(PhaseKind::fluid, dimensions, {{1, 1, 1}, {2.2, 1.1, 1}, {1.2, 2.3, 1.4}, {7, 7, 7}}, 1.0,
+    one.push_back(phase(dimensions, {{1, 1, 1}, {2.2, 1.1, 1}, {1.2, 2.3, 1.4}, {7, 7, 7}}, 1.0,
                         {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                          Field::shift_velocity, Field::anisotropy}));
     for (const Field f : {Field::velocity, Field::pressure, Field::anisotropy}) randomise(one[0], f, -0.2, 0.3, random);
@@ -195,7 +195,7 @@ TEST(FluidPassFields, NoShiftFieldNoShift) {
   Uniform random(12);
   const Bounds b = box(2, {6, 6, 0}, {true, true, false});
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, 2, lattice(b, 1.0, 0.2, random), 1.0,
+  one.push_back(phase(2, lattice(b, 1.0, 0.2, random), 1.0,
                       {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate}));
   randomise(one[0], Field::density, 0.9, 1.1, random);
   randomise(one[0], Field::pressure, 0.9, 1.1, random);
@@ -214,7 +214,7 @@ Cast light_over_heavy(int dimensions, double surface, Uniform& random,
   for (const Vec3& x : lattice(b, 1.0, 0.2, random)) places[x[1] > surface ? 0 : 1].push_back(x);
   std::vector<PhaseParticles> two;
   for (const int k : {0, 1}) {
-    two.push_back(phase(PhaseKind::fluid, dimensions, places[static_cast<std::size_t>(k)], k == 0 ? 1.2 : 1200.0,
+    two.push_back(phase(dimensions, places[static_cast<std::size_t>(k)], k == 0 ? 1.2 : 1200.0,
                         {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                          Field::shift_velocity, Field::anisotropy},
                         1000 * k));
@@ -333,7 +333,7 @@ class ConsistentBlock {
     const Bounds b =
         dimensions == 2 ? box(2, {12, 12, 0}, {false, false, false}) : box(3, {10, 10, 10}, {false, false, false});
     std::vector<PhaseParticles> one;
-    one.push_back(phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, perturb, random), 1.0,
+    one.push_back(phase(dimensions, lattice(b, 1.0, perturb, random), 1.0,
                         {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                          Field::shift_velocity, Field::anisotropy}));
     auto& p = one[0];

@@ -20,15 +20,15 @@ constexpr double rounding = 1e-12;
 constexpr int places[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};  // of a stress in the field: xx yy zz xy yz xz
 
 /// Two touching phases on a perturbed periodic lattice, all fields random.
-Cast two_phases(int dimensions, PhaseKind first, PhaseKind second, const std::vector<Field>& fields,
+Cast two_phases(int dimensions, const std::vector<Field>& fields,
                 std::vector<Direction> directions, std::uint64_t seed) {
   Uniform random(seed);
   const Bounds b = dimensions == 2 ? box(2, {9, 7, 0}, {true, true, false}) : box(3, {5, 6, 5}, {true, false, true});
   std::vector<Vec3> left, right;
   for (const Vec3& x : lattice(b, 1.0, 0.2, random)) (x[1] < 3.5 ? left : right).push_back(x);
   std::vector<PhaseParticles> two;
-  two.push_back(phase(first, dimensions, left, 1.3, fields));
-  two.push_back(phase(second, dimensions, right, 0.6, fields, 1000));
+  two.push_back(phase(dimensions, left, 1.3, fields));
+  two.push_back(phase(dimensions, right, 0.6, fields, 1000));
   for (auto& p : two)
     for (const Field f : fields) {
       const bool density = f == Field::density, depth = f == Field::wall_depth;
@@ -74,7 +74,7 @@ struct ElasticStage {
 
   explicit ElasticStage(int dimensions)
       : cast(two_phases(
-            dimensions, PhaseKind::elastic, PhaseKind::elastic,
+            dimensions,
             {Field::velocity, Field::density, Field::pressure, Field::stress, Field::acceleration, Field::energy},
             {{0, 0, own_radius}, {0, 1, other_radius}}, 21)) {
     for (std::size_t k = 0; k < 2; ++k) {
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, SolidPasses, testing::Values(2, 3));
 
 TEST_P(SolidPasses, ContactsEqualTheNaiveSums) {
   const int dimensions = GetParam();
-  Cast cast = two_phases(dimensions, PhaseKind::grains, PhaseKind::wall, {Field::velocity, Field::acceleration},
+  Cast cast = two_phases(dimensions, {Field::velocity, Field::acceleration},
                          {{0, 0, 1.1}, {0, 1, 1.3}}, 22);
   auto& grains = cast.phases[0];
   std::array<std::vector<double>, 3> expected;
@@ -224,8 +224,8 @@ TEST_P(SolidPasses, CoincidentGrainsFeelNothing) {
     const Bounds b = box(dimensions, {9, 8, 7}, {true, false, false});
     const Vec3 place{4.3, 3.7, dimensions == 3 ? 2.9 : 0.0};
     std::vector<PhaseParticles> two;
-    two.push_back(phase(PhaseKind::grains, dimensions, {place, place}, 1.0, {Field::velocity, Field::acceleration}));
-    two.push_back(phase(PhaseKind::wall, dimensions, {place}, 1.0, {Field::velocity}, 10));
+    two.push_back(phase(dimensions, {place, place}, 1.0, {Field::velocity, Field::acceleration}));
+    two.push_back(phase(dimensions, {place}, 1.0, {Field::velocity}, 10));
     two[0].column(Field::velocity, 0)[0] = 3.0;
     Cast cast(b, std::move(two), {{0, 0, 1.1}, {0, 1, 1.1}});
     const auto law = with_kernel<double>(kernel, 1.1, dimensions, [](const auto& w) {
@@ -243,7 +243,7 @@ TEST_P(SolidPasses, CoincidentGrainsFeelNothing) {
 TEST_P(SolidPasses, ReactionEqualsTheNaiveSums) {
   const int dimensions = GetParam();
   for (const bool pores : {false, true}) {
-    Cast cast = two_phases(dimensions, PhaseKind::grains, PhaseKind::fluid,
+    Cast cast = two_phases(dimensions,
                            {Field::velocity, Field::density, Field::pressure, Field::acceleration}, {{0, 1, 2.5}}, 23);
     auto& grains = cast.phases[0];
     const PhaseParticles& fluid = cast.phases[1];

@@ -79,7 +79,7 @@ TEST_P(FluidThatEnds, EqualsTheNaiveSums) {
   for (const Vec3& x : lattice(b, 1.0, 0.25, random))
     if (random(0, 1) < (x[1] > 0.75 * b.high[1] ? 0.3 : 0.93)) places.push_back(x);
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, dimensions, places, 1.2, with_surface()));
+  one.push_back(phase(dimensions, places, 1.2, with_surface()));
   randomise(one[0], Field::density, 1.0, 1.4, random);
   for (const Field f : {Field::velocity, Field::pressure}) randomise(one[0], f, -2, 3, random);
   for (const Field f : {Field::anisotropy, Field::surface_normal}) randomise(one[0], f, -0.2, 0.2, random);
@@ -147,7 +147,7 @@ TEST_P(Finder, EqualsTheSearchThroughAllPairs) {
   const Bounds b = dimensions == 2 ? box(2, {31, 17, 0}, {periodic, periodic, false})
                                    : box(3, {8, 9, 7}, {periodic, periodic, periodic});
   std::vector<PhaseParticles> one;
-  one.push_back(phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, perturb, random), 1.0,
+  one.push_back(phase(dimensions, lattice(b, 1.0, perturb, random), 1.0,
                       {Field::wholeness, Field::surface_normal}));
   randomise(one[0], Field::wholeness, 0, 1, random);
   randomise(one[0], Field::surface_normal, -1, 1, random);
@@ -204,7 +204,7 @@ TEST_P(FluidThatEnds, KnowsItsSurface) {
     const Bounds b =
         dimensions == 2 ? box(2, {200, 16, 0}, {true, false, false}) : box(3, {16, 12, 16}, {true, false, true});
     std::vector<PhaseParticles> one;
-    one.push_back(phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, 0.2, random), 1.0, with_surface()));
+    one.push_back(phase(dimensions, lattice(b, 1.0, 0.2, random), 1.0, with_surface()));
     std::fill_n(one[0].column(Field::density), one[0].size(), 1.0);
     Cast cast(b, std::move(one), {{0, 0, 3.0}});
     rate(cast, bare(), scheme);
@@ -275,7 +275,7 @@ TEST(Tension, IsTakenFromTheSurfaceAlone) {
   const PressureLaw law{1000.0, 20.0, 7.0, 5.0};  // 5 Pa behind all of it
   std::vector<PhaseParticles> one;
   one.push_back(
-      phase(PhaseKind::fluid, 2, std::vector<Vec3>(4), 1.0, {Field::density, Field::pressure, Field::wholeness}));
+      phase(2, std::vector<Vec3>(4), 1.0, {Field::density, Field::pressure, Field::wholeness}));
   PhaseParticles& p = one[0];
   const std::array<double, 4> density{999.0, 1001.0, 999.0, 1001.0}, chi{0.2, 0.2, 0.4, 0.4};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -297,7 +297,7 @@ std::vector<double> loosened(const std::vector<Vec3>& places, const Bounds& b, F
   std::vector<double> change;
   for (const double loosening : {rate_of, 0.0}) {
     std::vector<PhaseParticles> one;
-    one.push_back(phase(PhaseKind::fluid, b.dimensions, places, 1.0, with_surface()));
+    one.push_back(phase(b.dimensions, places, 1.0, with_surface()));
     std::fill_n(one[0].column(Field::density), one[0].size(), 1.01);
     Cast cast(b, std::move(one), {{0, 0, 3.0}});
     if (scheme == FluidScheme::consistent)  // its volumes are those of the spacing
@@ -350,7 +350,7 @@ TEST(PlainSurfaceScheme, EqualsThePlainSchemeInside) {
           dimensions == 2 ? box(2, {12, 14, 0}, {true, false, false}) : box(3, {7, 11, 7}, {true, false, true});
       std::vector<PhaseParticles> one;
       one.push_back(
-          phase(PhaseKind::fluid, dimensions, lattice(b, 1.0, 0.02, random), 1.0, surface ? with_surface() : rated));
+          phase(dimensions, lattice(b, 1.0, 0.02, random), 1.0, surface ? with_surface() : rated));
       for (const Field f : {Field::velocity, Field::pressure}) randomise(one[0], f, -1, 2, random);
       randomise(one[0], Field::density, 0.98, 1.02, random);
       Cast cast(b, std::move(one), {{0, 0, 3.0}});

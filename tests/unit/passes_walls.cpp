@@ -14,7 +14,7 @@ using namespace sets;
 constexpr double rounding = 1e-12;
 
 /// A solid below, a fluid above and a second fluid among it, with random fields. Some of the solid knows its depth.
-Cast solid_under_fluids(PhaseKind kind, int dimensions, Uniform& random) {
+Cast solid_under_fluids(int dimensions, Uniform& random) {
   const Bounds b = dimensions == 2 ? box(2, {8, 6, 0}, {true, false, false}) : box(3, {5, 5, 6}, {true, false, true});
   Bounds below = b;
   below.low[1] = -5.0;
@@ -23,10 +23,10 @@ Cast solid_under_fluids(PhaseKind kind, int dimensions, Uniform& random) {
   for (const Vec3& x : lattice(b, 1.0, 0.2, random)) (random(0, 1) < 0.7 ? one : other).push_back(x);
   std::vector<PhaseParticles> p;
   const std::vector<Field> fluid{Field::velocity, Field::density, Field::pressure};
-  p.push_back(phase(kind, dimensions, lattice(below, 1.0, 0.1, random), 1.0,
+  p.push_back(phase(dimensions, lattice(below, 1.0, 0.1, random), 1.0,
                     {Field::velocity, Field::wall_normal, Field::wall_depth}));
-  p.push_back(phase(PhaseKind::fluid, dimensions, one, 1.2, fluid, 1000));
-  p.push_back(phase(PhaseKind::fluid, dimensions, other, 900.0, fluid, 2000));
+  p.push_back(phase(dimensions, one, 1.2, fluid, 1000));
+  p.push_back(phase(dimensions, other, 900.0, fluid, 2000));
   for (auto& q : p) randomise(q, Field::velocity, -2, 2, random);
   for (std::size_t k : {1u, 2u}) {
     randomise(p[k], Field::density, 0.9 * p[k].mass(), 1.1 * p[k].mass(), random);
@@ -72,7 +72,7 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   const auto [dimensions, slip, kind, drag] = GetParam();
   const bool accelerates = kind == PhaseKind::elastic;  // the blows of grains are no motion of a boundary
   Uniform random(31);
-  Cast cast = solid_under_fluids(kind, dimensions, random);
+  Cast cast = solid_under_fluids(dimensions, random);
   auto& wall = cast.phases[0];
   if (kind != PhaseKind::wall) {
     wall.add(Field::acceleration);
@@ -135,7 +135,7 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   const std::vector<ExtensionSource> fluids{
       {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, rest[0], about[0]},
       {&cast.list(1), &cast.motion[2], KernelKind::cubic_spline, 2.2, rest[1], about[1]}};
-  extend_into_solid(wall, cast.motion[0], fluids, gravity, slip);
+  extend_into_solid(wall, cast.motion[0], fluids, gravity, {slip, accelerates, kind == PhaseKind::grains});
   const auto n = static_cast<std::size_t>(dimensions);
   std::vector<double> got(wall.size());
   for (std::size_t d = 0; d <= n; ++d) {  // the velocity's components, then the pressure
@@ -151,7 +151,7 @@ class Flat {
   Flat(const Vec3& v_wall, const Vec3& gravity, Slip slip, Velocity&& v_of, Pressure&& p_of)
       : cast_(make(v_wall, v_of, p_of)) {
     const std::vector<ExtensionSource> fluid{{&cast_.list(0), &cast_.motion[1], KernelKind::wendland_c2, 3.0, 1.2}};
-    extend_into_solid(cast_.phases[0], cast_.motion[0], fluid, gravity, slip);
+    extend_into_solid(cast_.phases[0], cast_.motion[0], fluid, gravity, {slip});
   }
   template <class F>
   void each(F&& f) const {  // f(x, velocity, pressure) of wall particles near the fluid
@@ -171,9 +171,9 @@ class Flat {
     below.low[1] = -3.0;
     below.high[1] = 0.0;
     std::vector<PhaseParticles> p;
-    p.push_back(phase(PhaseKind::wall, 2, lattice(below, 1.0, 0.0, random), 1.0,
+    p.push_back(phase(2, lattice(below, 1.0, 0.0, random), 1.0,
                       {Field::velocity, Field::wall_normal, Field::wall_depth}));
-    p.push_back(phase(PhaseKind::fluid, 2, lattice(b, 1.0, 0.25, random), 1.2,
+    p.push_back(phase(2, lattice(b, 1.0, 0.25, random), 1.2,
                       {Field::velocity, Field::density, Field::pressure}, 1000));
     for (std::size_t k = 0; k < p[0].size(); ++k) {
       p[0].column(Field::wall_normal, 1)[k] = 1.0;
@@ -242,8 +242,8 @@ std::array<Vec3, 2> seen_in_grains(bool drag) {
     if (x[1] < 4.0 && norm(x - grains[1]) > 0.5) grains.push_back(x);
   }
   std::vector<PhaseParticles> p;
-  p.push_back(phase(PhaseKind::grains, 2, grains, 1.0, {Field::velocity}));
-  p.push_back(phase(PhaseKind::fluid, 2, air, 1.2, {Field::velocity, Field::density, Field::pressure}, 1000));
+  p.push_back(phase(2, grains, 1.0, {Field::velocity}));
+  p.push_back(phase(2, air, 1.2, {Field::velocity, Field::density, Field::pressure}, 1000));
   std::fill_n(p[0].column(Field::velocity), grains.size(), -1.0);
   std::fill_n(p[1].column(Field::velocity), air.size(), 2.0);
   std::fill_n(p[1].column(Field::velocity, 1), air.size(), 1.0);
@@ -255,7 +255,7 @@ std::array<Vec3, 2> seen_in_grains(bool drag) {
       if (i != 0 || j != 0) about += naive::weight(KernelKind::wendland_c2, 2.5, 2, std::hypot(i, j));
   const std::vector<ExtensionSource> fluid{
       {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 2.5, 1.2, drag ? about : 0.0}};
-  extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, Slip::no_slip);
+  extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, {Slip::no_slip, false, true});
   std::array<Vec3, 2> seen{};
   for (std::size_t k = 0; k < cast.phases[0].size(); ++k)
     if (const auto id = cast.phases[0].id()[k]; id < 2)

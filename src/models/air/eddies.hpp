@@ -7,6 +7,7 @@
 #include "laws/eddies.hpp"
 #include "models/air/fluid.hpp"
 #include "models/air/ground_distance.hpp"
+#include "models/layout.hpp"
 
 namespace barchan {
 
@@ -19,16 +20,6 @@ struct EddyRecords {
   /// Gives `count` motion records of two dimensions (particles, images) their roots.
   void give_roots(RecordArray& records, std::size_t count) const;
   void give_roots(CompactRecords& records, std::size_t count) const;
-};
-
-/// How the fluid rubs on the other side of an entry.
-enum class Friction {
-  fluid,   // through the viscosity of both particles
-  smooth,  // no slip: eddies vanish at the surface
-  slip,    // free slip
-  rough,   // the logarithmic law
-  driven,  // a given stress
-  grains,  // the logarithmic law, as a viscosity of the pair, so that the grain feels it too
 };
 
 struct EddyNeighbour {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/walls/sides.hpp"
+
 namespace barchan {
 
 GroundDistance::GroundDistance(const Bounds& bounds, const Sides& sides, double spacing, bool has_particles)
@@ -88,8 +90,9 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
   const auto each = [&](auto&& f) {
     for (const PhaseParticles* p : phases)
       for (std::size_t k = 0; k < p->size(); ++k) {
-        if (p->kind() == PhaseKind::wall && behind_a_side(*p, k, bounds_, spacing_)) continue;
-        const double depth = p->kind() == PhaseKind::wall ? p->column(Field::wall_depth)[k] : 0.0;
+        const bool wall = p->has(Field::wall_depth);
+        if (wall && behind_a_side(*p, k, bounds_, spacing_)) continue;
+        const double depth = wall ? p->column(Field::wall_depth)[k] : 0.0;
         if (depth > 0.8 * spacing_) continue;  // the first row has the surface
         Vec3 x{}, normal{};
         for (int d = 0; d < p->dimensions(); ++d) {
@@ -108,7 +111,7 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
   });
   each([&](const PhaseParticles& p, const Vec3& x, const Vec3& normal) {
     const std::size_t cell = cell_of<Dim>(x, at);
-    if (p.kind() == PhaseKind::grains) {
+    if (!p.has(Field::wall_depth) && !p.has(Field::stress)) {  // grains: neither walls nor bodies
       int crowd = 0;
       for (const std::ptrdiff_t step : around_) crowd += crowd_[cell + static_cast<std::size_t>(step)];
       if (crowd < 4) return;
@@ -182,6 +185,13 @@ void GroundDistance::propagate() {
   }
 }
 
+void GroundDistance::archive(Archive& a) {
+  a.array("ground: nearest seed", nearest_);
+  a.array("ground: seeds", seeds_);
+  a.array("ground: normals", normals_);
+  a.number("ground: surfaces", surfaces_);
+}
+
 /// From a particle: less half a spacing. From a piece of a surface: the height over its plane, half a spacing (and what
 /// a slope stretches it by) to either side.
 double GroundDistance::from_seed(const Vec3& x, std::size_t seed) const {
@@ -195,18 +205,6 @@ double GroundDistance::from_seed(const Vec3& x, std::size_t seed) const {
   if (!(dot(normals_[seed], normals_[seed]) > 0.0)) return norm(r) - 0.5 * spacing_;
   const double beside = std::max(std::sqrt(std::max(dot(r, r) - over * over, 0.0)) - 0.75 * spacing_, 0.0);
   return std::hypot(std::max(over, 0.0), beside);
-}
-
-bool behind_a_side(const PhaseParticles& wall, std::size_t k, const Bounds& bounds, double spacing) {
-  double outside2 = 0.0;
-  for (int d = 0; d < wall.dimensions(); ++d) {
-    const auto c = static_cast<std::size_t>(d);
-    if (bounds.periodic[c]) continue;
-    const double x = wall.column(Field::position, d)[k];
-    const double out = std::max({bounds.low[c] - x, x - bounds.high[c], 0.0});
-    outside2 += out * out;
-  }
-  return outside2 > 0.0 && std::abs(std::sqrt(outside2) - wall.column(Field::wall_depth)[k]) < 1e-6 * spacing;
 }
 
 double GroundDistance::distance(const Vec3& x) const {

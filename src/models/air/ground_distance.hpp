@@ -27,6 +27,9 @@ class GroundDistance {
   /// Distance to the nearest surface, at least 0 and at most the domain's diagonal.
   double distance(const Vec3& x) const;
 
+  /// The ground as it was taken last.
+  void archive(Archive& a);
+
  private:
   using Place = std::array<int, 3>;  // of a cell, by axis
 
@@ -67,8 +70,5 @@ class GroundDistance {
       normals_;            // by seed: of the surface that it lies on; zero: of a particle, whose surface is not known
   bool surfaces_ = false;  // some seed has a normal
 };
-
-/// Whether a wall particle stands behind a side of the domain, so that the side itself is the wall's surface.
-bool behind_a_side(const PhaseParticles& wall, std::size_t k, const Bounds& bounds, double spacing);
 
 }  // namespace barchan

@@ -31,10 +31,11 @@ double smooth_share(double x) {
 
 template <int Dim, bool Curved>
 void extend(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids, const Vec3& gravity,
-            Slip slip, const SurfaceBend& bend) {
+            const ExtensionRule& rule, const SurfaceBend& bend) {
+  const Slip slip = rule.slip;
   using R = MotionRecord<Dim>;
-  const bool has_depth = solid.has(Field::wall_depth), accelerates = solid.kind() == PhaseKind::elastic;
-  const bool is_grain = solid.kind() == PhaseKind::grains;
+  const bool has_depth = solid.has(Field::wall_depth), accelerates = rule.accelerates;
+  const bool is_grain = rule.own_velocity;
   const double* depth = has_depth ? solid.column(Field::wall_depth) : nullptr;
   const auto n = static_cast<std::int64_t>(solid.size());
   Shares shares(n, 64);
@@ -124,11 +125,11 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
 }  // namespace
 
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
-                       const Vec3& gravity, Slip slip, const SurfaceBend& bend) {
-  const bool curved = slip == Slip::free_slip && !bend.values.empty();
+                       const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend) {
+  const bool curved = rule.slip == Slip::free_slip && !bend.values.empty();
   const auto extended = solid.dimensions() == 2 ? (curved ? extend<2, true> : extend<2, false>)
                                                 : (curved ? extend<3, true> : extend<3, false>);
-  extended(solid, own, fluids, gravity, slip, bend);
+  extended(solid, own, fluids, gravity, rule, bend);
 }
 
 }  // namespace barchan

@@ -29,6 +29,13 @@ struct SurfaceBend {
   static constexpr std::size_t components(int dimensions) { return dimensions == 2 ? 1 : 3; }
 };
 
+/// What a solid does to the fluid about it.
+struct ExtensionRule {
+  Slip slip = Slip::no_slip;
+  bool accelerates = false;   // the fluid's pressure follows the acceleration of its particles: an elastic body
+  bool own_velocity = false;  // its particles keep their own velocity: grains
+};
+
 inline constexpr double solid_share = 0.65, open_share = 0.9;
 
 /// Writes velocity and pressure into the solid's motion records `own` (position and volume are there already):
@@ -47,6 +54,6 @@ inline constexpr double solid_share = 0.65, open_share = 0.9;
 ///     falls or rises with what turns the fluid: p_w = ... + rho u.H.u sum W (phi_a + phi_w) / sum W.
 /// Without fluid near, the solid keeps its own velocity and the pressure is zero.
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
-                       const Vec3& gravity, Slip slip, const SurfaceBend& bend = {});
+                       const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend = {});
 
 }  // namespace barchan

@@ -1,4 +1,4 @@
-#include "plan/enclosed.hpp"
+#include "models/air/enclosed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -113,19 +113,23 @@ std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>
 
 }  // namespace
 
-Enclosure find_enclosure(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid) {
+Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::vector<ParticleBlock>& blocks,
+                         std::size_t fluid) {
   const Phase& phase = scene.phases[fluid];
   Enclosure result;
   result.free_space = find_free_space(scene, blocks, fluid);
   result.open = !result.free_space.empty();
-  for (const Phase& other : scene.phases)
-    if (other.kind == PhaseKind::fluid && other.name != phase.name && entry_between(scene, phase, other))
-      return result.why = other.name + " can give way", result;
+  bool walled = false;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    if (!entry_between(scene, phase, scene.phases[k])) continue;
+    walled = walled || !layout.phases[k].moves;
+    if (layout.phases[k].flows && k != fluid) return result.why = layout.phases[k].name + " can give way", result;
+  }
   if (!result.free_space.empty()) return result.why = "free space at " + result.free_space, result;
 
   Cells walls(scene);
   for (std::size_t k = 0; k < blocks.size(); ++k)
-    if (scene.phases[k].kind == PhaseKind::wall && entry_between(scene, phase, scene.phases[k]))
+    if (!layout.phases[k].moves && entry_between(scene, phase, scene.phases[k]))
       for (const Vec3& x : blocks[k].position) walls.take(walls.cell_of(x));
   for (const Vec3& x : blocks[fluid].position) {
     const Cells::Cell cell = walls.cell_of(x);
@@ -141,7 +145,7 @@ Enclosure find_enclosure(const Scene& scene, const std::vector<ParticleBlock>& b
         }
       }
   }
-  result.shut_in = meets(scene, phase, PhaseKind::wall);
+  result.shut_in = walled;
   result.why = result.shut_in ? "shut in by walls, and no free space" : "no wall shuts it in";
   return result;
 }

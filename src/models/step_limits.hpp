@@ -1,9 +1,7 @@
 // Stability limits of the time step.
 #pragma once
 
-#include <vector>
-
-#include "plan/plan.hpp"
+#include <string>
 
 namespace barchan {
 
@@ -17,7 +15,11 @@ struct StepConstants {
   static constexpr double contact = 0.10;   // sqrt(m/K), about a thirtieth of a contact's duration
 };
 
-/// The limits that hold from the beginning to the end: acoustic, viscous, elastic, contact. Times the scene's safety.
-std::vector<StepLimit> initial_limits(const Scene& scene, const Plan& plan);
+/// A bound on the time step. `value` is at the start; limits that follow the motion are renewed every step.
+struct StepLimit {
+  std::string name;  // "acoustic air", "viscous air", "force", "elastic a", "contact sand"
+  double value = 0;  // s
+  std::string reason;
+};
 
 }  // namespace barchan

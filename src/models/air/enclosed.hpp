@@ -1,8 +1,9 @@
-// Whether a fluid is shut in, seen from the particles. Internal to src/plan.
+// Whether a fluid is shut in, seen from the particles. Internal to models/air.
 #pragma once
 
 #include <string>
 
+#include "models/layout.hpp"
 #include "scene/generate.hpp"
 
 namespace barchan {
@@ -17,6 +18,7 @@ struct Enclosure {
 /// A fluid is shut in when it feels a wall, no free space is next to it, it comes to no side of the domain that is
 /// neither periodic nor closed by a wall that it feels, and no other fluid that it feels can give way. Free space: a
 /// cell of a spacing such that neither it nor its neighbours hold a particle; thinner gaps are not seen.
-Enclosure find_enclosure(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid);
+Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::vector<ParticleBlock>& blocks,
+                         std::size_t fluid);
 
 }  // namespace barchan

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "kernels/kernel.hpp"
-#include "plan/plan.hpp"
+#include "models/layout.hpp"
 
 namespace barchan {
 

@@ -1,0 +1,159 @@
+#include "models/air/air.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/errors.hpp"
+#include "kernels/kernel.hpp"
+#include "models/air/energy.hpp"
+#include "models/walls/walls.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+
+Air::Air(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      phase_(scene.phases[number]),
+      plan_(layout.phases[number]),
+      number_(number),
+      pressure_(pressure_law(scene, layout, number)),
+      forces_(scene, phase_.name),
+      viscous_limit_{"viscous " + phase_.name, 0.0, ""} {}
+
+// ---- the schedule
+// ---------------------------------------------------------------------------------------------------
+
+void Air::schedule(Schedule& s) {
+  using enum Field;
+  const bool corrected = phase_.fluid().scheme == FluidScheme::consistent;
+  FieldSet own;
+  for (const Field f : plan_.fields) own = own | FieldSet{f};
+  s.add({stage::kick_and_drift, plan_.name, own, own, [this] { kick_and_drift(); }});
+  if (plan_.eddies)
+    s.add({stage::eddies, plan_.name, {position, velocity, eddy_viscosity}, {ground_distance}, [this] {
+             find_eddies();
+           }});
+  FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
+  if (corrected) writes = writes | FieldSet{anisotropy};
+  if (plan_.eddies) {
+    reads = reads | FieldSet{ground_distance};
+    writes = writes | FieldSet{eddy_viscosity};
+  }
+  if (plan_.free_surface) writes = writes | FieldSet{wholeness, surface_normal};
+  s.add({stage::fluid, plan_.name, reads, writes, [this] { rate(); }});
+  if (plan_.free_surface)
+    s.add({stage::surface, plan_.name, {position, wholeness}, {surface_normal}, [this] { find_surface(); }});
+  if (phase_.fluid().energy)
+    s.add({stage::energy, plan_.name, {position, velocity, density, pressure}, {energy_rate}, [this] {
+             fluid_energy(*particles_, w_->motion[number_], neighbours_);
+           }});
+  if (plan_.held)
+    s.add({stage::hold, plan_.name, {velocity}, {acceleration}, [this] {
+             hold_bulk_velocity(*particles_, hold_, w_->state.dt, mean_);
+           }});
+}
+
+void Air::kick_and_drift() {
+  const double dt = w_->state.dt;
+  barchan::kick_and_drift(*particles_, 0.5 * dt, dt, &pressure_);
+  if (plan_.free_surface) release_surface(*particles_, surface_wholeness(phase_.fluid().scheme), pressure_);
+  if (keeps_inside_) hold_inside(*particles_, held_);
+  if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
+}
+
+void Air::find_eddies() {
+  auto& records = w_->eddies[number_];
+  largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
+  records.fill_images(particles_->size(), w_->neighbours.grid(number_));
+  if (layout_.dimensions == 2) {
+    const std::size_t count = w_->records(number_);
+    if (w_->compact[number_]) records.give_roots(*w_->compact[number_], count);
+    else records.give_roots(w_->motion[number_], count);
+  }
+  for (auto& e : eddy_neighbours_)
+    if (e.wall && e.wall->size() > 0)
+      for (int d = 0; d < layout_.dimensions; ++d)
+        e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
+}
+
+void Air::rate() {
+  auto& q = parameters_;
+  // c^2 dt makes the one-pass step the leapfrog that its velocities, half a step old, would miss; the rest is
+  // delta-SPH's own diffusion.
+  const double centring = q.sound_speed * q.sound_speed * w_->state.dt;
+  const double delta = phase_.fluid().density_diffusion * q.smoothing_length * q.sound_speed;
+  q.diffusivity = StepConstants::theta * centring + delta;
+  q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
+  const auto rates = [&](const auto& own) {
+    if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, phase_.fluid().scheme);
+    else eddy_rates(*particles_, own, w_->eddies[number_], eddy_neighbours_, q, eddies_);
+  };
+  if (w_->compact[number_]) rates(*w_->compact[number_]);
+  else rates(w_->motion[number_]);
+  if (plan_.enclosed) keep_mean_density(*particles_, mean_);
+  forces_.add(*particles_, w_->state.time, false);
+}
+
+void Air::find_surface() {
+  const FluidNeighbour& own = neighbours_.front();
+  surface_->find(*particles_, w_->neighbours.grid(number_), *own.list, own.radius,
+                 surface_wholeness(phase_.fluid().scheme));
+}
+
+// ---- limits, history, state
+// -----------------------------------------------------------------------------------------
+
+void Air::limits(std::vector<StepLimit>& limits) const {
+  if (plan_.count == 0) return;
+  const double h = plan_.smoothing_length;
+  limits.push_back({"acoustic " + plan_.name,
+                    scene_.time.safety * (StepConstants::acoustic * h / (plan_.sound_speed + layout_.largest_speed)),
+                    "0.4 h/(c + u): sound crosses a spacing"});
+  const double nu = phase_.fluid().viscosity +
+                    phase_.fluid().artificial_viscosity * h * plan_.sound_speed / (2.0 * (layout_.dimensions + 2));
+  if (nu > 0)
+    limits.push_back({"viscous " + plan_.name, scene_.time.safety * (StepConstants::viscous * h * h / nu),
+                      "0.125 h2/nu: momentum diffuses"});
+}
+
+const StepLimit* Air::moving_limit() {
+  if (!(largest_viscosity_ > 0)) return nullptr;
+  const double h = parameters_.smoothing_length;
+  viscous_limit_.value = scene_.time.safety * StepConstants::viscous * h * h / largest_viscosity_;
+  return &viscous_limit_;
+}
+
+void Air::columns(std::vector<std::string>& names) const {
+  names.push_back(plan_.name + "_mean_pressure [Pa]");
+  names.push_back(plan_.name + "_density_error_rms");
+  if (plan_.held) names.push_back(plan_.name + "_held_acceleration_x [m/s2]");
+}
+
+/// Raises the largest density error, the eighth value of the row.
+void Air::row(std::vector<double>& values) const {
+  constexpr std::size_t largest_error = 7;
+  const std::size_t n = particles_->size();
+  const auto count = static_cast<double>(n);
+  const double* rho = std::as_const(*particles_).column(Field::density);
+  const double* pressure = std::as_const(*particles_).column(Field::pressure);
+  double worst = 0.0;
+  const double squares = ordered_sum(n, [&](std::size_t i) {
+    const double e = std::abs(rho[i] / phase_.density - 1.0);
+    worst = std::max(worst, e);
+    return e * e;
+  });
+  values[largest_error] = std::max(values[largest_error], worst);
+  values.push_back(n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
+  values.push_back(n > 0 ? std::sqrt(squares / count) : 0.0);
+  if (plan_.held) values.push_back(hold_.acceleration[0]);
+}
+
+void Air::archive(Archive& a) {
+  a.number(plan_.name + ": largest viscosity", largest_viscosity_);
+  a.number(plan_.name + ": bulk hold", hold_);
+  if (ground_) ground_->archive(a);
+}
+
+}  // namespace barchan

@@ -1,0 +1,133 @@
+#include "models/bodies/elastic_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/integrate.hpp"
+#include "output/numbers.hpp"
+
+namespace barchan {
+
+namespace {
+
+double compression_speed(const ElasticKeys& p, double density) {
+  const double lame = p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson));
+  const double shear = p.young / (2 * (1 + p.poisson));
+  return std::sqrt((lame + 2 * shear) / density);
+}
+
+PhaseRules rules_of(const PlanPhase& p, double spacing, const std::string& step_key) {
+  const std::string key = "phases." + p.name + ".";
+  const double c = p.sound_speed;
+  PhaseRules r;
+  r.way = 0.5 * spacing;
+  r.signal_speed = c;
+  r.idle = 0.01;
+  r.stops_at_sides = r.solid = true;
+  r.one = "particle of a body";
+  r.if_not_finite = key + "artificial-viscosity";
+  r.if_passed = r.if_dense = "lower " + step_key;
+  r.if_dense = "is impossible; the body was torn or pressed into nothing: lower " + step_key + ", or raise " + key +
+               "artificial-viscosity";
+  r.if_fast = [key, c](double, double) {
+    return "compression waves of its body (" + brief(c) + " m/s), so that no contact can stop it: raise " + key +
+           "young, or lower its speed";
+  };
+  r.if_far = [step_key](double) { return "lower " + step_key; };
+  r.stiffness_key = key + "young";
+  return r;
+}
+
+}  // namespace
+
+void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
+                      std::vector<std::string>&) {
+  using enum Field;
+  const Phase& phase = scene.phases[number];
+  PlanPhase& p = layout.phases[number];
+  p.fields = {position, velocity, density, pressure, acceleration, stress};
+  if (phase.elastic().energy) p.fields.push_back(energy);
+  p.sound_speed = compression_speed(phase.elastic(), phase.density);
+  p.rules = rules_of(p, layout.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
+}
+
+ElasticPhase::ElasticPhase(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      phase_(scene.phases[number]),
+      plan_(layout.phases[number]),
+      number_(number),
+      forces_(scene, phase_.name) {}
+
+void ElasticPhase::begin(State& state, const std::vector<ParticleBlock>&) {
+  PhaseParticles& p = state.phases[number_];
+  std::fill_n(p.column(Field::density), p.size(), phase_.density);
+}
+
+void ElasticPhase::attach(Workspace& w) {
+  w_ = &w;
+  const ElasticKeys& keys = phase_.elastic();
+  const double shear = keys.young / (2.0 * (1.0 + keys.poisson));
+  const double bulk = keys.young / (3.0 * (1.0 - 2.0 * keys.poisson));
+  parameters_ = {phase_.density,
+                 shear,
+                 bulk,
+                 keys.artificial_viscosity,
+                 keys.artificial_viscosity_beta,
+                 std::sqrt(bulk / phase_.density),
+                 scene_.domain.gravity};
+  w.stress[number_] = RecordArray(layout_.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size);
+  for (const auto& e : layout_.entries) {
+    if (!e.has(number_) || e.law != Law::elastic) continue;
+    const std::size_t other = e.partner(number_);
+    neighbours_.push_back(
+        {&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius, layout_.phases[other].mass});
+  }
+}
+
+void ElasticPhase::schedule(Schedule& s) {
+  using enum Field;
+  const FieldSet all{position, velocity, density, pressure, acceleration, Field::stress, energy};
+  s.add(
+      {stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity, energy}, [this] { kick_and_drift(); }});
+  s.add({stage::strain_records, plan_.name, {position, velocity, density, pressure, Field::stress}, {}, [this] {
+           pack_middle();
+         }});
+  s.add({stage::strain, plan_.name, all, all, [this] { strain(); }});
+  s.add({stage::elastic, plan_.name, all, {acceleration}, [this] { load(); }});
+}
+
+void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
+  if (plan_.count == 0) return;
+  double smallest = plan_.smoothing_length;
+  for (const auto& e : layout_.entries)
+    if (e.law == Law::elastic && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
+  limits.push_back({"elastic " + plan_.name,
+                    scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
+                    "0.25 h/c_P: compression waves"});
+}
+
+/// Bodies stop half-way: their strain is taken there.
+void ElasticPhase::kick_and_drift() {
+  const double half = 0.5 * w_->state.dt;
+  barchan::kick_and_drift(w_->particles(number_), half, half, nullptr);
+}
+
+void ElasticPhase::pack_middle() {
+  pack_stress(w_->particles(number_), w_->stress[number_]);
+  w_->stress[number_].fill_images(w_->neighbours.grid(number_), layout_.dimensions);
+}
+
+void ElasticPhase::strain() {
+  PhaseParticles& p = w_->particles(number_);
+  elastic_strain(p, w_->stress[number_], neighbours_, parameters_, w_->state.dt);
+  drift(p, 0.5 * w_->state.dt);
+}
+
+void ElasticPhase::load() {
+  PhaseParticles& p = w_->particles(number_);
+  elastic_forces(p, w_->stress[number_], neighbours_, parameters_);
+  forces_.add(p, w_->state.time, true);
+}
+
+}  // namespace barchan

@@ -1,0 +1,41 @@
+// An elastic phase: strain in the middle of the step, stress at its end.
+#pragma once
+
+#include <vector>
+
+#include "models/bodies/elastic.hpp"
+#include "models/forces.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                      std::vector<std::string>& warnings);
+
+class ElasticPhase : public Model {
+ public:
+  ElasticPhase(const Scene& scene, const Layout& layout, std::size_t number);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void limits(std::vector<StepLimit>& limits) const override;
+  int phase() const override { return static_cast<int>(number_); }
+
+ private:
+  void kick_and_drift();
+  void pack_middle();
+  void strain();
+  void load();
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const Phase& phase_;
+  const PlanPhase& plan_;
+  std::size_t number_;
+  Forces forces_;
+  Workspace* w_ = nullptr;
+  std::vector<ElasticNeighbour> neighbours_;
+  ElasticParameters parameters_{};
+};
+
+}  // namespace barchan

@@ -1,0 +1,98 @@
+#include "models/catalogue.hpp"
+
+#include <algorithm>
+
+#include "models/air/air.hpp"
+#include "models/bodies/elastic_phase.hpp"
+#include "models/coupling/drag_entry.hpp"
+#include "models/coupling/solid_in_fluid.hpp"
+#include "models/grains/contact_entry.hpp"
+#include "models/grains/grain_phase.hpp"
+#include "models/walls/wall.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// How a kind of phase enters the program.
+struct Kind {
+  const char* name;
+  bool moves, flows;
+  void (*describe)(const Scene&, const std::vector<ParticleBlock>&, std::size_t, Layout&, std::vector<std::string>&);
+  std::unique_ptr<Model> (*make)(const Scene&, const Layout&, std::size_t);
+};
+
+template <class M>
+std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_t number) {
+  return std::make_unique<M>(scene, layout, number);
+}
+
+Kind kind_of(const Phase& phase) {
+  switch (phase.kind()) {
+    case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
+    case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, make<ElasticPhase>};
+    case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
+    case PhaseKind::wall: return {"wall", false, false, describe_wall, make<Wall>};
+  }
+  return {};
+}
+
+Law law_of(const Phase& a, const Phase& b) {
+  const auto is = [&](PhaseKind k, PhaseKind l) {
+    return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
+  };
+  using enum PhaseKind;
+  if (is(fluid, fluid)) return Law::fluid;
+  if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
+  if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
+  if (is(elastic, elastic)) return Law::elastic;
+  return Law::contact;
+}
+
+}  // namespace
+
+void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& blocks, Layout& layout,
+                     std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < layout.phases.size(); ++k) {
+    const Kind kind = kind_of(scene.phases[k]);
+    layout.phases[k].kind = kind.name;
+    layout.phases[k].moves = kind.moves;
+    layout.phases[k].flows = kind.flows;
+  }
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
+}
+
+void classify(const Scene& scene, PlanEntry& e) {
+  const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
+  e.law = law_of(a, b);
+  e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
+  e.other = e.partner(e.fluid);
+  e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
+                scene.phases[e.fluid].fluid().scheme == FluidScheme::consistent;
+}
+
+Models make_models(const Scene& scene, const Layout& layout) {
+  Models models;
+  models.push_back(std::make_unique<CommonWork>(layout));
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (std::any_of(layout.entries.begin(), layout.entries.end(),
+                    [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))
+      models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
+  for (const auto& e : layout.entries) {
+    if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
+    if (e.law == Law::contact || e.law == Law::repulsive)
+      models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
+  }
+  return models;
+}
+
+Schedule make_schedule(const Models& models) {
+  Schedule schedule(stage::names);
+  for (const auto& model : models) model->schedule(schedule);
+  return schedule;
+}
+
+}  // namespace barchan

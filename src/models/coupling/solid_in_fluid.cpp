@@ -1,0 +1,44 @@
+#include "models/coupling/solid_in_fluid.hpp"
+
+#include "models/air/air.hpp"
+
+namespace barchan {
+
+SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
+    : scene_(scene), layout_(layout), solid_(solid), grains_(layout.phases[solid].friction == Friction::grains) {}
+
+void SolidInFluid::attach(Workspace& w) {
+  w_ = &w;
+  sources_ = extension_sources(w, solid_);
+  for (const auto& e : layout_.entries) {
+    if (e.law != Law::coupling || e.other != solid_) continue;
+    fluids_.push_back(e.fluid);
+    felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
+                     pair_viscosity(scene_, layout_, solid_, e.fluid), false});
+  }
+}
+
+void SolidInFluid::schedule(Schedule& s) {
+  using enum Field;
+  const std::string& name = layout_.phases[solid_].name;
+  s.add({stage::extend_solids, name, {position, velocity, acceleration}, {}, [this] { extend(); }});
+  s.add({stage::reaction, name, {position, velocity, density}, {acceleration}, [this] { react(); }});
+}
+
+void SolidInFluid::extend() {
+  // The acceleration is that of the step before: this step's is not known yet.
+  extend_into_solid(w_->particles(solid_), w_->extended[solid_], sources_, scene_.domain.gravity,
+                    {Slip::no_slip, !grains_, grains_});
+  share_extended(*w_, solid_);
+}
+
+void SolidInFluid::react() {
+  PhaseParticles& solid = w_->particles(solid_);
+  for (const auto& fluid : felt_) fluid_reaction(solid, w_->extended[solid_], fluid, grains_);
+  if (!grains_) return;
+  for (std::size_t c = 0; c < felt_.size(); ++c)
+    if (layout_.phases[fluids_[c]].eddies)
+      eddy_reaction(solid, w_->extended[solid_], felt_[c], w_->eddies[fluids_[c]], felt_[c].viscosity);
+}
+
+}  // namespace barchan

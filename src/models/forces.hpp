@@ -1,0 +1,34 @@
+// [[forcing]] of a phase, compiled.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "scene/formula.hpp"
+#include "scene/scene.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+class Forces {
+ public:
+  Forces() = default;
+  /// Those of the scene on this phase; those that hold a bulk speed are not among them.
+  Forces(const Scene& scene, const std::string& phase);
+
+  /// The sum of those components that are numbers (m/s2).
+  Vec3 uniform() const;
+  /// Adds to the accelerations the components that are formulas of place and time; `numbers`: those that are numbers
+  /// too.
+  void add(PhaseParticles& p, double time, bool numbers) const;
+  bool any() const { return !forces_.empty(); }
+  bool varies() const;
+
+ private:
+  std::vector<std::array<Formula, 3>> forces_;  // m/s2
+};
+
+/// A vector of the scene, compiled.
+std::array<Formula, 3> compile(const VectorExpression& e);
+
+}  // namespace barchan

@@ -1,0 +1,69 @@
+#include "models/grains/contact_entry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "kernels/kernel.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// Kernel contact for an entry: stiffness of the softer of the phases that move, damping from the restitution.
+KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
+  const auto stiffness_of = [](const PlanPhase& p) { return p.mass * std::pow(p.sound_speed, 2); };
+  const PlanPhase& soft = !b.moves || (a.moves && stiffness_of(a) <= stiffness_of(b)) ? a : b;
+  const double d = layout.spacing;
+  const double reduced = a.moves && b.moves ? a.mass * b.mass / (a.mass + b.mass) : (a.moves ? a.mass : b.mass);
+  double restitution = 1.0;
+  for (const std::size_t k : {e.a, e.b})
+    if (layout.phases[k].rules.contacts_limit_speed)  // grains
+      restitution = std::min(restitution, scene.phases[k].grains().restitution);
+  KernelContact law{};
+  with_kernel<double>(e.kernel, e.radius, layout.dimensions, [&](const auto& kernel) {
+    law.rest_value = kernel.value(d);
+    const double slope = std::abs(kernel.derivative(d));
+    if (slope <= 0)
+      throw SceneError("interactions." + e.name +
+                       ": a contact needs a radius beyond one spacing (1.1 in eq. 16 of "
+                       "Halik et al. 2015), so that touching grains feel each other");
+    law.inverse_slope = 1.0 / slope;
+  });
+  law.stiffness = 1.0 * soft.mass / (d * d) * soft.sound_speed * soft.sound_speed;
+  const double zeta = KernelContact::damping_ratio(restitution);
+  law.damping = 2.0 * zeta * std::sqrt(law.stiffness * reduced);
+  return law;
+}
+
+}  // namespace
+
+ContactEntry::ContactEntry(const Scene& scene, const Layout& layout, const PlanEntry& entry)
+    : layout_(layout), entry_(entry), law_(contact_law(scene, layout, entry)) {
+  if (entry.law != Law::repulsive) return;
+  // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
+  // automatic.
+  const PlanPhase& p = layout.phases[entry.fluid];
+  law_.stiffness = p.mass / (layout.spacing * layout.spacing) * p.sound_speed * 0.1 * p.sound_speed;
+  law_.damping = 0.0;
+}
+
+void ContactEntry::schedule(Schedule& s) {
+  using enum Field;
+  const auto in = entry_.law == Law::repulsive ? stage::repel : stage::contacts;
+  const auto side = [&](std::size_t phase) {
+    if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves) return;
+    s.add({in, entry_.name, {position, velocity}, {acceleration}, [this, phase] { push(phase); }});
+  };
+  side(entry_.a);
+  if (entry_.a != entry_.b) side(entry_.b);
+}
+
+/// The particles of one phase feel those of the other.
+void ContactEntry::push(std::size_t phase) {
+  contact_forces(w_->particles(phase), w_->motion[phase], w_->list(entry_.direction(phase)),
+                 w_->motion[entry_.partner(phase)], entry_.kernel, entry_.radius, law_);
+}
+
+}  // namespace barchan

@@ -1,0 +1,83 @@
+#include "models/grains/grain_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/integrate.hpp"
+#include "output/numbers.hpp"
+
+namespace barchan {
+
+namespace {
+
+PhaseRules rules_of(const PlanPhase& p, double spacing, bool fixed_step) {
+  const std::string key = "phases." + p.name + ".contact-speed", step_key = fixed_step ? "time.step" : "time.safety";
+  const double c = p.sound_speed;
+  PhaseRules r;
+  r.way = 0.25 * spacing;
+  r.signal_speed = 1e300;
+  r.contacts_limit_speed = r.stops_at_sides = r.solid = true;
+  r.one = "grain";
+  r.if_not_finite = r.stiffness_key = key;
+  r.if_passed = "raise " + key;
+  r.if_fast = [key, c](double speed, double bound) {
+    return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + " (" + brief(c) + " m/s) to " +
+           brief(2.0 * speed) + " or more";
+  };
+  r.if_far = [key, c, fixed_step, step_key](double speed) {
+    return fixed_step ? "lower " + step_key
+                      : "raise " + key + " (" + brief(c) + " m/s) to " + brief(speed) + " or more";
+  };
+  return r;
+}
+
+}  // namespace
+
+void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
+                     std::vector<std::string>&) {
+  using enum Field;
+  PlanPhase& p = layout.phases[number];
+  p.friction = Friction::grains;
+  p.fields = {position, velocity, acceleration};
+  // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
+  // speed of the grains is not looked at: `contact-speed` is there for fast ones.
+  double weight = 0;
+  for (std::size_t d = 0; d < 3; ++d) weight += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
+  p.sound_speed = scene.phases[number].grains().contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
+  p.rules = rules_of(p, layout.spacing, scene.time.fixed_step.has_value());
+}
+
+GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      plan_(layout.phases[number]),
+      number_(number),
+      forces_(scene, scene.phases[number].name) {}
+
+void GrainPhase::schedule(Schedule& s) {
+  using enum Field;
+  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
+  s.add({stage::weight, plan_.name, {position}, {acceleration}, [this] { weigh(); }});
+}
+
+void GrainPhase::limits(std::vector<StepLimit>& limits) const {
+  if (plan_.count == 0) return;
+  limits.push_back({"contact " + plan_.name,
+                    scene_.time.safety * (StepConstants::contact * layout_.spacing / plan_.sound_speed),
+                    "0.1 sqrt(m/K): a contact lasts about thirty steps"});
+}
+
+void GrainPhase::kick_and_drift() {
+  const double dt = w_->state.dt;
+  barchan::kick_and_drift(w_->particles(number_), 0.5 * dt, dt, nullptr);
+}
+
+/// Begins the sum of accelerations.
+void GrainPhase::weigh() {
+  PhaseParticles& p = w_->particles(number_);
+  for (int d = 0; d < layout_.dimensions; ++d)
+    std::fill_n(p.column(Field::acceleration, d), p.size(), scene_.domain.gravity[static_cast<std::size_t>(d)]);
+  forces_.add(p, w_->state.time, true);
+}
+
+}  // namespace barchan

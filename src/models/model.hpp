@@ -1,0 +1,77 @@
+// A model: one kind of physics of a scene. It declares what it needs and adds its tasks to the schedule of a step.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/schedule.hpp"
+#include "models/layout.hpp"
+#include "models/step_limits.hpp"
+#include "scene/generate.hpp"
+#include "state/state.hpp"
+
+namespace barchan {
+
+/// The parts of a step, in order. The step limits and the watch come between steps.
+namespace stage {
+enum Stage : std::size_t {
+  kick_and_drift,
+  strain_records,
+  strain,
+  walls,
+  neighbours,
+  pack,
+  eddies,
+  extend_walls,
+  extend_solids,
+  fluid,
+  surface,
+  energy,
+  repel,
+  elastic,
+  weight,
+  contacts,
+  reaction,
+  drag,
+  hold,
+  kick,
+  watch,
+  count
+};
+extern const std::array<const char*, count> names;
+}  // namespace stage
+
+class Workspace;
+
+class Model {
+ public:
+  Model() = default;
+  virtual ~Model() = default;
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  /// Gives the particles of its phase, whose position and velocity are there, the rest of their initial state.
+  virtual void begin(State&, const std::vector<ParticleBlock>&) {}
+  /// Binds the records and lists that its tasks work on; once, when the state is there. Throws SceneError where only
+  /// the particles show a mistake.
+  virtual void attach(Workspace&) {}
+  /// Adds its tasks. Needs no state: the plan prints what the step will execute.
+  virtual void schedule(Schedule&) = 0;
+  /// What bounds the step from the beginning to the end.
+  virtual void limits(std::vector<StepLimit>&) const {}
+  /// A bound that follows the motion; null: none.
+  virtual const StepLimit* moving_limit() { return nullptr; }
+  /// Its phase; -1: it belongs to an entry.
+  virtual int phase() const { return -1; }
+  /// Columns of history.csv of its own, behind those that every moving phase has, and their values.
+  virtual void columns(std::vector<std::string>&) const {}
+  virtual void row(std::vector<double>&) const {}
+  /// Its numbers that a step starts from.
+  virtual void archive(Archive&) {}
+};
+
+using Models = std::vector<std::unique_ptr<Model>>;
+
+}  // namespace barchan

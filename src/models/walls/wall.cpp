@@ -1,0 +1,137 @@
+#include "models/walls/wall.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/kernel.hpp"
+#include "models/walls/wall_normals.hpp"
+
+namespace barchan {
+
+void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
+                   std::vector<std::string>&) {
+  using enum Field;
+  const WallKeys& keys = scene.phases[number].wall();
+  PlanPhase& p = layout.phases[number];
+  p.friction = keys.shear_stress              ? Friction::driven
+               : keys.slip == Slip::free_slip ? Friction::slip
+               : keys.roughness               ? Friction::rough
+                                              : Friction::smooth;
+  p.fields = {position, velocity, wall_normal, wall_depth};
+}
+
+Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      phase_(scene.phases[number]),
+      plan_(layout.phases[number]),
+      number_(number),
+      velocity_(compile(phase_.wall().velocity)) {
+  extended_ = std::any_of(layout.entries.begin(), layout.entries.end(),
+                          [&](const PlanEntry& e) { return e.sees_solid() && e.other == number; });
+  // A wall whose stress is given leaves the fluid's velocity along it alone.
+  const WallKeys& keys = phase_.wall();
+  rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
+}
+
+/// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
+/// particle outside the domain.
+void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  PhaseParticles& wall = state.phases[number_];
+  const ParticleBlock& block = blocks[number_];
+  const Bounds& bounds = layout_.bounds;
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    if (k < block.depth.size() && block.depth[k] > 0.0) {
+      wall.column(Field::wall_depth)[k] = block.depth[k];
+      for (int d = 0; d < wall.dimensions(); ++d)
+        wall.column(Field::wall_normal, d)[k] = block.normal[k][static_cast<std::size_t>(d)];
+      continue;
+    }
+    double depth2 = 0;
+    std::array<double, 3> out{};
+    for (int d = 0; d < wall.dimensions(); ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      if (bounds.periodic[c]) continue;
+      const double x = wall.column(Field::position, d)[k];
+      out[c] = x < bounds.low[c] ? x - bounds.low[c] : x > bounds.high[c] ? x - bounds.high[c] : 0.0;
+      depth2 += out[c] * out[c];
+    }
+    const double depth = std::sqrt(depth2);
+    wall.column(Field::wall_depth)[k] = depth;
+    if (depth > 0)
+      for (int d = 0; d < wall.dimensions(); ++d)
+        wall.column(Field::wall_normal, d)[k] = -out[static_cast<std::size_t>(d)] / depth;
+  }
+  if (block.bend.empty()) return;
+  bend_.first = wall.id().empty() ? 0 : wall.id()[0];
+  for (const auto& b : block.bend)
+    if (layout_.dimensions == 2) bend_.values.push_back(b[0]);
+    else bend_.values.insert(bend_.values.end(), b.begin(), b.end());
+}
+
+void Wall::attach(Workspace& w) {
+  w_ = &w;
+  if (extended_) sources_ = extension_sources(w, number_);
+}
+
+void Wall::schedule(Schedule& s) {
+  using enum Field;
+  s.add({stage::walls, plan_.name, {}, {velocity}, [this] { slide(); }});
+  if (extended_)
+    s.add({stage::extend_walls, plan_.name, {position, velocity, wall_depth, wall_normal}, {}, [this] { extend(); }});
+}
+
+void Wall::slide() {
+  PhaseParticles& wall = w_->particles(number_);
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    const Formula& u = velocity_[static_cast<std::size_t>(d)];
+    if (u.is_constant() && w_->state.steps > 0) continue;
+    const double value = u({0, 0, 0}, w_->state.time);
+    double* v = wall.column(Field::velocity, d);
+    std::fill(v, v + wall.size(), value);
+  }
+}
+
+void Wall::extend() {
+  extend_into_solid(w_->particles(number_), w_->extended[number_], sources_, scene_.domain.gravity, rule_, bend_);
+  share_extended(*w_, number_);
+}
+
+std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) {
+  /// sum V W of a full neighbourhood less the particle itself.
+  const auto weight_about_a_lone_particle = [&](const PlanEntry& e) {
+    double own = 0.0;
+    with_kernel<double>(e.kernel, e.radius, w.layout.dimensions, [&](const auto& kernel) {
+      own = kernel.value(0.0) * std::pow(w.layout.spacing, w.layout.dimensions);
+    });
+    return e.consistency.volume_sum - own;
+  };
+  std::vector<ExtensionSource> sources;
+  for (const auto& e : w.layout.entries)
+    if (e.sees_solid() && e.other == solid)
+      sources.push_back({&w.list(e.direction(solid)), &w.motion[e.fluid], e.kernel, e.radius,
+                         w.scene.phases[e.fluid].density, e.drag > 0 ? weight_about_a_lone_particle(e) : 0.0});
+  return sources;
+}
+
+void share_extended(Workspace& w, std::size_t solid) {
+  w.extended[solid].fill_images(w.neighbours.grid(solid), w.layout.dimensions);
+  if (!w.compact[solid]) return;
+  const std::size_t count = w.records(solid);
+  w.layout.dimensions == 2 ? w.compact[solid]->copy<2>(w.extended[solid], count)
+                           : w.compact[solid]->copy<3>(w.extended[solid], count);
+}
+
+void face_walls(const Scene& scene, const Layout& layout, State& state) {
+  std::vector<PhaseParticles*> walls;
+  bool slips = false;
+  for (std::size_t k = 0; k < state.phases.size(); ++k) {
+    if (layout.phases[k].moves) continue;
+    walls.push_back(&state.phases[k]);
+    const WallKeys& s = scene.phases[k].wall();
+    slips = slips || s.slip == Slip::free_slip || s.roughness || s.shear_stress;
+  }
+  if (slips) find_wall_normals(walls, layout.bounds, layout.spacing);
+}
+
+}  // namespace barchan

@@ -1,0 +1,51 @@
+// A wall phase: particles that stay in place, a surface that may slide, the fluids continued into it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "models/forces.hpp"
+#include "models/walls/walls.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+void describe_wall(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                   std::vector<std::string>& warnings);
+
+class Wall : public Model {
+ public:
+  Wall(const Scene& scene, const Layout& layout, std::size_t number);
+
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  int phase() const override { return static_cast<int>(number_); }
+
+ private:
+  void slide();
+  void extend();
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const Phase& phase_;
+  const PlanPhase& plan_;
+  std::size_t number_;
+  Workspace* w_ = nullptr;
+  std::array<Formula, 3> velocity_;  // m/s
+  bool extended_ = false;            // some fluid sees it
+  std::vector<ExtensionSource> sources_;
+  SurfaceBend bend_;
+  ExtensionRule rule_;
+};
+
+/// Normals of the walls inside the domain, where some wall's surface must know which way it faces: once all walls have
+/// begun.
+void face_walls(const Scene& scene, const Layout& layout, State& state);
+
+/// What a solid sees of the fluids of its boundary and coupling entries.
+std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid);
+/// The same records for fluids in mixed precision, after extended records were made.
+void share_extended(Workspace& w, std::size_t solid);
+
+}  // namespace barchan

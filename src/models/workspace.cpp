@@ -1,0 +1,196 @@
+#include "models/workspace.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/integrate.hpp"
+#include "models/bodies/elastic.hpp"
+
+namespace barchan {
+
+const std::array<const char*, stage::count> stage::names{"kick and drift",
+                                                         "elastic packing",
+                                                         "elastic strain",
+                                                         "wall motion",
+                                                         "neighbours",
+                                                         "pack",
+                                                         "eddies",
+                                                         "extension into walls",
+                                                         "extension into solids",
+                                                         "fluid rates",
+                                                         "free surface",
+                                                         "fluid energy",
+                                                         "wall repulsion",
+                                                         "elastic forces",
+                                                         "weight of grains",
+                                                         "contacts",
+                                                         "reaction on solids",
+                                                         "drag",
+                                                         "bulk speed",
+                                                         "kick",
+                                                         "watch"};
+
+double Layout::particles() const {
+  double n = 0;
+  for (const auto& p : phases) n += static_cast<double>(p.count);
+  return n;
+}
+
+namespace {
+
+template <int Dim>
+std::array<const double*, Dim> columns(const PhaseParticles& p, Field field) {
+  std::array<const double*, Dim> c{};
+  for (int d = 0; d < Dim; ++d) c[static_cast<std::size_t>(d)] = p.column(field, d);
+  return c;
+}
+
+template <int Dim>
+void pack_motion(const PhaseParticles& p, RecordArray& records, const Workspace::Packing& how, double volume) {
+  using R = MotionRecord<Dim>;
+  const auto n = static_cast<std::int64_t>(p.size());
+  const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
+  const double* pressure = how.pressure ? p.column(Field::pressure) : nullptr;
+  const double* rho = how.pressure && !how.fixed_volume ? p.column(Field::density) : nullptr;
+  const double mass = p.mass();
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    double* r = records[k];
+    for (std::size_t d = 0; d < Dim; ++d) {
+      r[R::position + d] = x[d][k];
+      r[R::velocity + d] = v[d][k];
+    }
+    r[R::pressure] = pressure ? pressure[k] : 0.0;
+    r[R::volume] = rho ? mass / rho[k] : volume;
+  }
+}
+
+/// The same in mixed precision, with the images.
+template <int Dim>
+void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGrid& grid, bool fixed_volume,
+                  double volume) {
+  const auto n = static_cast<std::int64_t>(p.size());
+  const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
+  const double* pressure = p.column(Field::pressure);
+  const double* rho = fixed_volume ? nullptr : p.column(Field::density);
+  const double mass = p.mass();
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    std::array<double, Dim> at, speed;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      at[d] = x[d][k];
+      speed[d] = v[d][k];
+    }
+    records.write<Dim>(k, at, speed, pressure[k], rho ? mass / rho[k] : volume);
+  }
+  records.fill_images<Dim>(grid, x);
+}
+
+}  // namespace
+
+Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
+    : scene(scene_),
+      layout(layout_),
+      state(state_),
+      neighbours(layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
+                 scene_.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>),
+      packing(layout_.phases.size()) {
+  neighbours.adapt_skin();
+  const std::size_t phases = layout.phases.size();
+  const int size = layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
+  const bool mixed = scene.precision == Precision::mixed;
+  // Who reads records in double: every law but the fluid's own in mixed precision, and its energy.
+  std::vector<bool> seen(phases, false), read(phases, !mixed);
+  for (const auto& e : layout.entries) {
+    if (e.sees_solid()) seen[e.other] = true;
+    if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
+  }
+  eddies.resize(phases);
+  for (std::size_t k = 0; k < phases; ++k) {
+    motion.emplace_back(read[k] || (layout.phases[k].flows && state.phases[k].has(Field::energy)) ? size : 0);
+    extended.emplace_back(seen[k] ? size : 0);
+    stress.emplace_back(0);
+    compact.push_back(mixed && (layout.phases[k].flows || seen[k]) ? std::make_unique<CompactRecords>(layout.bounds)
+                                                                   : nullptr);
+  }
+}
+
+void Workspace::fit_records() {
+  for (std::size_t k = 0; k < state.phases.size(); ++k) {
+    if (!neighbours.has_grid(k)) continue;
+    const std::size_t n = state.phases[k].size(), images = neighbours.grid(k).images();
+    for (RecordArray* r : {&motion[k], &extended[k], &stress[k]})
+      if (r->stride() > 0) r->resize(n, images);
+    if (compact[k]) compact[k]->resize(n, images);
+    if (layout.phases[k].eddies) eddies[k].resize(n, images);
+  }
+}
+
+std::size_t Workspace::bytes() const {
+  std::size_t total = neighbours.bytes();
+  for (const auto& p : state.phases) total += p.bytes();
+  for (const auto* set : {&motion, &extended, &stress})
+    for (const auto& r : *set) total += r.bytes();
+  return total;
+}
+
+void Workspace::archive(Archive& a) {
+  neighbours.archive(a, state.phases);
+  if (!a.loads()) return;
+  fit_records();
+  must_search = false;
+}
+
+void CommonWork::schedule(Schedule& s) {
+  using enum Field;
+  FieldSet all;
+  for (const auto& p : layout_.phases)
+    for (const Field f : p.fields) all = all | FieldSet{f};
+  s.add({stage::neighbours, "all", all, all, [this] { find_neighbours(); }});
+  s.add({stage::pack, "all", {position, velocity, density, pressure, stress}, {}, [this] { pack(); }});
+  s.add({stage::kick, "all", {acceleration}, {velocity}, [this] { kick(); }});
+}
+
+void CommonWork::find_neighbours() {
+  const auto beside = [this] {
+    for (const auto& call : w_->when_sorted) call();
+  };
+  const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search, beside);
+  w_->must_search = false;
+  if (sorted) w_->fit_records();
+}
+
+void CommonWork::pack() {
+  const bool flat = layout_.dimensions == 2;
+  const double volume = std::pow(layout_.spacing, layout_.dimensions);
+  for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
+    if (!w_->neighbours.has_grid(k)) continue;
+    const PhaseParticles& p = w_->particles(k);
+    const CellGrid& grid = w_->neighbours.grid(k);
+    const Workspace::Packing& how = w_->packing[k];
+    if (layout_.phases[k].flows && w_->compact[k])
+      flat ? pack_compact<2>(p, *w_->compact[k], grid, how.fixed_volume, volume)
+           : pack_compact<3>(p, *w_->compact[k], grid, how.fixed_volume, volume);
+    for (RecordArray* records : {&w_->motion[k], &w_->extended[k]}) {
+      if (records->stride() == 0) continue;
+      flat ? pack_motion<2>(p, *records, how, volume) : pack_motion<3>(p, *records, how, volume);
+      records->fill_images(grid, layout_.dimensions);
+    }
+    if (w_->stress[k].stride() > 0) {
+      pack_stress(p, w_->stress[k]);
+      w_->stress[k].fill_images(grid, layout_.dimensions);
+    }
+  }
+}
+
+void CommonWork::kick() {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
+    if (layout_.phases[k].moves) largest = std::max(largest, barchan::kick(w_->particles(k), w_->kick_time));
+  w_->state.largest_acceleration = largest;
+}
+
+}  // namespace barchan

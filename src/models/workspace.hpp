@@ -1,0 +1,68 @@
+// What the models of a run work on: the state, the lists, and the records of all phases. Everything here but the state
+// and the epoch of the lists is made anew in every step.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "engine/neighbours.hpp"
+#include "engine/records.hpp"
+#include "models/air/eddies.hpp"
+#include "models/model.hpp"
+
+namespace barchan {
+
+class Workspace {
+ public:
+  /// Makes the records that the entries' laws read, by phase. All three must outlive it.
+  Workspace(const Scene& scene, const Layout& layout, State& state);
+
+  const Scene& scene;
+  const Layout& layout;
+  State& state;
+  Neighbours neighbours;
+
+  std::vector<RecordArray> motion, extended, stress;     // by phase; extended: a solid as the fluid sees it
+  std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/air reads
+  std::vector<EddyRecords> eddies;                       // by phase
+
+  /// How the motion records of a phase are filled.
+  struct Packing {
+    bool pressure = false;      // with its pressure; else 0
+    bool fixed_volume = false;  // the spacing's volume for all; else mass/density
+  };
+  std::vector<Packing> packing;  // by phase
+  std::vector<std::function<void()>>
+      when_sorted;          // called when particles have new places, beside the search: may only read them
+  bool must_search = true;  // sort and search whatever the motion was
+  double kick_time = 0.0;   // s, of the kick that ends a step
+
+  PhaseParticles& particles(std::size_t phase) { return state.phases[phase]; }
+  const PairList& list(int direction) const { return neighbours.list(static_cast<std::size_t>(direction)); }
+  /// Records of particles and images of a phase.
+  std::size_t records(std::size_t phase) const { return state.phases[phase].size() + neighbours.grid(phase).images(); }
+  /// Gives the records the sizes of the present lists.
+  void fit_records();
+  std::size_t bytes() const;
+  /// The epoch of the lists; loading makes the lists and the records' sizes as they were.
+  void archive(Archive& a);
+};
+
+/// What every scene needs: sorting, searching, packing, and the kick that ends a step.
+class CommonWork : public Model {
+ public:
+  explicit CommonWork(const Layout& layout) : layout_(layout) {}
+  void attach(Workspace& w) override { w_ = &w; }
+  void schedule(Schedule& s) override;
+
+ private:
+  void find_neighbours();
+  void pack();
+  void kick();
+
+  const Layout& layout_;
+  Workspace* w_ = nullptr;
+};
+
+}  // namespace barchan

@@ -1,0 +1,53 @@
+// Which fields a task of the schedule may touch. Checked in builds with assertions, free in all others.
+#pragma once
+
+#include <bitset>
+#include <initializer_list>
+
+#include "base/fields.hpp"
+
+namespace barchan {
+
+/// A set of fields.
+class FieldSet {
+ public:
+  FieldSet() = default;
+  FieldSet(std::initializer_list<Field> fields) {
+    for (const Field f : fields) bits_.set(static_cast<std::size_t>(f));
+  }
+  bool has(Field f) const { return bits_.test(static_cast<std::size_t>(f)); }
+  FieldSet operator|(const FieldSet& other) const {
+    FieldSet both;
+    both.bits_ = bits_ | other.bits_;
+    return both;
+  }
+
+ private:
+  std::bitset<field_count> bits_;
+};
+
+/// While one lives, PhaseParticles::column throws std::logic_error for a field that `allowed` does not have; the
+/// message names the task. One at a time; the threads of the task's loops are bound by it too.
+class AccessGuard {
+ public:
+  AccessGuard(const char* stage, const char* owner, const FieldSet& allowed) {
+    allowed_ = &allowed;
+    stage_ = stage;
+    owner_ = owner;
+  }
+  ~AccessGuard() { allowed_ = nullptr; }
+  AccessGuard(const AccessGuard&) = delete;
+  AccessGuard& operator=(const AccessGuard&) = delete;
+
+  /// Throws std::logic_error when a task is running that did not declare the field.
+  static void check(Field field) {
+    if (allowed_ != nullptr && !allowed_->has(field)) refuse(field);
+  }
+
+ private:
+  [[noreturn]] static void refuse(Field field);
+  inline static const FieldSet* allowed_ = nullptr;
+  inline static const char *stage_ = "", *owner_ = "";
+};
+
+}  // namespace barchan

@@ -1,0 +1,22 @@
+#include "state/state.hpp"
+
+namespace barchan {
+
+void OutputClock::archive(Archive& a) {
+  a.number("frames", frames);
+  a.number("last frame step", last_frame_step);
+  a.number("last frame time", last_frame_time);
+}
+
+void State::archive(Archive& a) {
+  a.number("time", time);
+  a.number("dt", dt);
+  a.number("steps", steps);
+  a.number("largest acceleration", largest_acceleration);
+  a.text("ruling limit", ruling_limit);
+  for (auto& [name, count] : limit_counts) a.number("steps by " + name, count);
+  outputs.archive(a);
+  for (auto& p : phases) p.archive(a);
+}
+
+}  // namespace barchan

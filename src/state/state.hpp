@@ -1,0 +1,36 @@
+// What a step starts from: the particles, the clock and the step's own numbers. The epoch of the lists
+// (engine/neighbours.hpp) and the models' few numbers belong to it too and are saved with it
+// (simulation/simulation.hpp, archive).
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "state/archive.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+/// What has been written so far; a run that is continued goes on from here.
+struct OutputClock {
+  long frames = 0;            // written
+  long last_frame_step = -1;  // the step of the last frame
+  double last_frame_time = 0.0;
+  void archive(Archive& a);
+};
+
+struct State {
+  std::vector<PhaseParticles> phases;
+  double time = 0.0, dt = 0.0;  // s
+  long steps = 0;
+  double largest_acceleration = 0.0;         // m/s2, of the last kick
+  std::string ruling_limit;                  // of the last step
+  std::map<std::string, long> limit_counts;  // steps by the limit that ruled
+  OutputClock outputs;
+
+  /// Particles of the same phases and counts must be there: loading overwrites their values.
+  void archive(Archive& a);
+};
+
+}  // namespace barchan

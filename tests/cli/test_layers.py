@@ -1,0 +1,52 @@
+#!/usr/bin/python3
+"""Includes among the folders of src point down one list only: who may know whom (docs/architecture.md).
+
+    test_layers.py PROGRAM SOURCE_DIR
+"""
+
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else ".")
+DOWN = "app simulation plan measure models output engine laws state scene kernels simd base".split()
+
+
+def climbs(src):
+    """Includes that point up, "models/air/air.cpp includes plan/plan.hpp"."""
+    found = []
+    for file in sorted(src.rglob("*.?pp")):
+        own = file.relative_to(src).parts[0]
+        for include in re.findall(r'^\s*#\s*include\s+"([^"]+)"', file.read_text(), re.M):
+            other = include.split("/")[0]
+            if other not in DOWN or own not in DOWN or DOWN.index(other) < DOWN.index(own):
+                found.append(f"{file.relative_to(src)} includes {include}")
+    return found
+
+
+def kinds(src):
+    """Places outside scene/ and the one visit that ask for the kind of a phase."""
+    return [str(f.relative_to(src)) for f in sorted(src.rglob("*.?pp"))
+            if "PhaseKind" in f.read_text() and f.relative_to(src).parts[0] != "scene" and f.name != "catalogue.cpp"]
+
+
+class Layers(unittest.TestCase):
+    def test_includes_point_down(self):
+        self.assertEqual(climbs(ROOT / "src"), [])
+
+    def test_nobody_asks_for_the_kind_of_a_phase(self):
+        self.assertEqual(kinds(ROOT / "src"), [])
+
+    def test_a_planted_include_is_found(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch) / "laws"
+            folder.mkdir()
+            (folder / "x.hpp").write_text('#include "base/vec3.hpp"\n#include "plan/plan.hpp"\nPhaseKind kind;\n')
+            self.assertEqual(climbs(pathlib.Path(scratch)), ["laws/x.hpp includes plan/plan.hpp"])
+            self.assertEqual(kinds(pathlib.Path(scratch)), ["laws/x.hpp"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

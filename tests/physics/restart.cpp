@@ -1,0 +1,95 @@
+// A run that is saved between any two of its steps and loaded elsewhere goes on with the same bits, in every scene.
+#include <omp.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "base/errors.hpp"
+
+#include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
+
+namespace barchan {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> names;
+  const fs::path top = BARCHAN_SOURCE_DIR "/scenes";
+  for (const auto& entry : fs::recursive_directory_iterator(top))
+    if (entry.path().extension() == ".toml")
+      names.push_back(fs::relative(entry.path(), top).replace_extension("").string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The name of the first field that has other bits; "" if none has.
+std::string first_difference(const Simulation& a, const Simulation& b) {
+  if (a.time() != b.time() || a.steps() != b.steps() || a.last_step() != b.last_step()) return "time";
+  if (a.history_row() != b.history_row()) return "history";
+  for (std::size_t k = 0; k < a.phases().size(); ++k) {
+    const auto &p = a.phases()[k], &q = b.phases()[k];
+    if (p.id() != q.id()) return p.name() + ".id";
+    for (const auto& about : field_table)
+      for (int c = 0; p.has(about.id) && c < p.components(about.id); ++c)
+        if (std::memcmp(p.column(about.id, c), q.column(about.id, c), p.size() * sizeof(double)) != 0)
+          return p.name() + "." + std::string(about.name);
+  }
+  return "";
+}
+
+/// Saves `run` after each step up to `steps`; then loads each into `other`, which runs to the end as well.
+void expect_restarts(Simulation& run, Simulation& other, int steps, int stride) {
+  std::vector<std::vector<char>> saved;
+  for (int k = 0; k < steps; ++k) {
+    Archive a;
+    run.archive(a);
+    saved.push_back(a.bytes());
+    run.step(1e300);
+  }
+  for (int k = 0; k < steps; k += stride) {
+    Archive a(saved[static_cast<std::size_t>(k)]);
+    ASSERT_NO_THROW(other.archive(a));
+    ASSERT_NO_THROW(a.finish());
+    for (int rest = k; rest < steps; ++rest) other.step(1e300);
+    ASSERT_EQ(first_difference(run, other), "") << "saved after step " << k;
+  }
+}
+
+class RestartOf : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, RestartOf, ::testing::ValuesIn(all_scenes()), [](const auto& p) {
+  std::string name = p.param;
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+});
+
+TEST_P(RestartOf, HasTheSameBitsOnAnotherNumberOfThreads) {
+  testing::Drive run(GetParam()), other(GetParam());
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  expect_restarts(run.simulation(), other.simulation(), 20, 1);
+  omp_set_num_threads(threads);
+}
+
+TEST(Restart, BetweenAnyTwoOfManySteps) {
+  // Far enough that lists are made anew many times between saving and the end.
+  for (const auto& text : {small::held_dune, small::dam, small::squares}) {
+    const auto run = small::simulation(text), other = small::simulation(text);
+    expect_restarts(*run, *other, 60, 1);
+  }
+}
+
+TEST(Restart, RefusesTheStateOfAnotherScene) {
+  const auto dune = small::simulation(small::dune), dam = small::simulation(small::dam);
+  Archive saved;
+  dune->archive(saved);
+  Archive a(saved.bytes());
+  EXPECT_THROW(dam->archive(a), SceneError);
+  Archive cut(std::vector<char>(saved.bytes().begin(), saved.bytes().begin() + 1000));
+  EXPECT_THROW(dune->archive(cut), SceneError);
+}
+
+}  // namespace
+}  // namespace barchan

@@ -1,0 +1,46 @@
+// The schedule executes what it was given, in the order of its stages; a task that touches what it did not declare is
+// found in builds with assertions.
+#include "engine/schedule.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "state/particles.hpp"
+
+namespace barchan {
+namespace {
+
+constexpr std::array<const char*, 3> stages{"first", "second", "third"};
+
+TEST(Schedule, RunsTasksByStageThenInTheOrderOfAdding) {
+  Schedule s(stages);
+  std::string done;
+  s.add({2, "b", {}, {}, [&] { done += "c"; }});
+  s.add({0, "a", {}, {}, [&] { done += "a"; }});
+  s.add({0, "b", {}, {}, [&] { done += "b"; }});
+  s.run(0, 2);
+  EXPECT_EQ(done, "abc");
+  s.run(0, 0);
+  EXPECT_EQ(done, "abcab");
+  EXPECT_EQ(s.executed(), (std::vector<long>{2, 0, 1})) << "a stage without tasks is never executed";
+}
+
+TEST(Schedule, FindsATaskThatTouchesWhatItDidNotDeclare) {
+#ifdef NDEBUG
+  GTEST_SKIP() << "checked in builds with assertions";
+#endif
+  PhaseParticles p("air", 2, 3, 1.0, 0);
+  p.add(Field::position);
+  p.add(Field::velocity);
+  Schedule s(stages);
+  s.add({0, "air", {Field::position}, {}, [&] { (void)p.column(Field::position); }});
+  s.add({1, "air", {Field::position}, {}, [&] { (void)p.column(Field::velocity); }});
+  EXPECT_NO_THROW(s.run(0, 0));
+  EXPECT_THROW(s.run(1, 1), std::logic_error);
+  EXPECT_NO_THROW((void)p.column(Field::velocity)) << "outside of tasks all is free";
+}
+
+}  // namespace
+}  // namespace barchan
