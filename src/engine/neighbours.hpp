@@ -22,7 +22,7 @@ class Neighbours {
   /// `spacing` (m): of the particles. `padding`: of the rows of all lists. `skin`: lists reach this fraction beyond an
   /// entry's radius, so that they stay valid while particles move.
   Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin, double spacing,
-             std::size_t padding = simd::native_width<double>);
+             std::size_t padding = simd::width_in_use<double>());
 
   /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most
   /// as wide as given. It depends on positions alone, like everything here.

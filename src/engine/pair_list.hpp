@@ -26,6 +26,12 @@ class PairList {
   /// The index of the dummy record behind `particles` and `images`. Throws SceneError when a list cannot hold it.
   static std::uint32_t dummy_index(std::size_t particles, std::size_t images);
 
+  /// The rows of `chunk` particles.
+  struct Chunk {
+    AlignedVector<std::uint32_t> index;
+    std::vector<std::uint32_t> begin;
+    std::uint64_t entries = 0;
+  };
   struct Row {
     const std::uint32_t* begin;
     const std::uint32_t* end;
@@ -60,16 +66,16 @@ class PairList {
   std::size_t bytes() const;
 
  private:
-  struct Chunk {
-    AlignedVector<std::uint32_t> index;
-    std::vector<std::uint32_t> begin;
-    std::uint64_t entries = 0;
-  };
-  template <int Dim>
-  void search_chunk(const Search& search, std::size_t number);
-
   std::vector<Chunk> chunks_;
-  std::size_t padding_ = simd::native_width<double>;
+  std::size_t padding_ = simd::width_in_use<double>();
 };
+
+BARCHAN_PER_INSTRUCTION_SET(search_chunk,
+                            /// The search of PairList::build_chunk.
+                            void search_chunk(PairList::Chunk& rows, const PairList::Search& what, std::size_t number,
+                                              std::size_t padding);)
+BARCHAN_PER_INSTRUCTION_SET(make_search_scratch,
+                            /// That of PairList::make_scratch.
+                            void make_search_scratch(int dimensions);)
 
 }  // namespace barchan

@@ -3,7 +3,7 @@
 #include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -58,4 +58,4 @@ void fluid_energy(PhaseParticles& fluid, const RecordArray& own, std::span<const
   fluid.dimensions() == 2 ? energy<2>(fluid, own, neighbours) : energy<3>(fluid, own, neighbours);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -11,7 +11,7 @@
 #include "laws/plain_fluid.hpp"
 #include "models/air/fluid_rows.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -139,4 +139,4 @@ void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNe
   else reaction<3>(solid, own, fluid, pores);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

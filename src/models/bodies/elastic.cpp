@@ -5,7 +5,7 @@
 #include "kernels/kernel.hpp"
 #include "laws/elastic.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -228,4 +228,4 @@ void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<cons
   else viscous ? forces<3, true>(body, own, neighbours, q) : forces<3, false>(body, own, neighbours, q);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

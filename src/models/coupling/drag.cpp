@@ -4,7 +4,7 @@
 #include "kernels/kernel.hpp"
 #include "laws/grain_drag.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -56,4 +56,4 @@ void drag_forces(PhaseParticles& a, const RecordArray& own, const PairList& list
   else drag<3>(a, own, list, others, entry, a_is_fluid);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -3,7 +3,7 @@
 #include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -53,4 +53,4 @@ void contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& l
   else contacts<3>(a, own, list, others, kernel, radius, law);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

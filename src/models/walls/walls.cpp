@@ -5,7 +5,7 @@
 #include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -132,4 +132,4 @@ void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<
   extended(solid, own, fluids, gravity, rule, bend);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET
