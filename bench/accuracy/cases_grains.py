@@ -2,9 +2,10 @@
 
 What is closed, from the frames:
   E = kinetic energy of grains and air + potential energy + compression of the air + what touching grains store.
-  Friction, integrated over the frames (trapezoids): viscosity by pairs, 2 mu V_a V_b |F| v_ab^2 (air with air, grains and walls; a solid
-  has the velocity 2 v - mean of the air), and the form drag of grains, K V W |v|^3 (docs/method.md, Sand). What the diffusion of
-  density and the shifting take or give is in neither: it is what the budget finds.
+  Friction, integrated over the frames (trapezoids): viscosity by pairs, 2 mu V_a V_b |F| v_ab^2 (air with air, grains and walls; into a
+  wall the air's velocity goes on as 2 v - its mean, into a grain of a bed as the grain's own, into a grain alone as its mean), the form
+  drag of grains, K V W |v|^3, and what their barrier takes (docs/method.md, Sand). What the diffusion of density and the shifting take
+  or give is in neither: it is what the budget finds.
   The shot: E + friction within 1 % of the start at all times. The pile: the same, with contacts that take no energy (restitution 1).
   The blown bed: its contacts and its wind lose what cannot be seen in frames, so E less the work of the forcing that holds the wind may
   only not grow by more than 1 % of its start.
@@ -87,6 +88,11 @@ class Budget:
         smoothing = .5 * entry["radius"] * self.dx
         self.mu = keys["density"] * (keys["viscosity"] + keys["artificial-viscosity"] * smoothing * keys["sound-speed"] / 8)
         self.drag = .5 * scene["interactions"]["air-sand"].get("drag", 0) * keys["density"] * self.dx
+        self.slow = .1 * keys["sound-speed"]  # of the barrier
+        radius = scene["interactions"]["air-sand"]["radius"]
+        row = numpy.arange(-math.ceil(radius), math.ceil(radius) + 1)
+        about = numpy.hypot(*numpy.meshgrid(row, row)) / radius
+        self.alone = wendland(about[about > 0], radius)[0].sum()  # sum V W about a grain that stands alone on the lattice
         self.stiffness = scene["phases"]["sand"]["density"] * scene["phases"]["sand"].get("contact-speed", 0) ** 2
 
     def split(self, f):
@@ -132,15 +138,32 @@ class Budget:
         i, j, r = pairs(x[air], x[solid], radius, self.size, self.periodic)
         w, slope = wendland(r / radius, radius)
         weight, mean = numpy.zeros(solid.sum()), numpy.zeros((solid.sum(), 2))
-        numpy.add.at(weight, j, w)
-        numpy.add.at(mean, j, w[:, None] * v[air][i])
-        known = numpy.where(weight > 0, weight, 1)[:, None]
-        beyond = 2 * v[solid] - mean / known
+        numpy.add.at(weight, j, volume * w)
+        numpy.add.at(mean, j, (volume * w)[:, None] * v[air][i])
+        mean /= numpy.where(weight > 0, weight, 1)[:, None]
+        lone = numpy.clip((weight / self.alone - .65) / .25, 0, 1) if self.drag else 0 * weight
+        lone = (lone**2 * (3 - 2 * lone))[:, None]
+        beyond = numpy.where(of["sand"][solid][:, None], v[solid] + lone * (mean - v[solid]), 2 * v[solid] - mean)
         relative = v[air][i] - v[solid][j]
         power += (2 * self.mu * volume**2 * slope * ((v[air][i] - beyond[j]) * relative).sum(axis=1)).sum()
-        sand = of["sand"][solid][j]
-        power += (self.drag * volume * w[sand] * numpy.linalg.norm(relative[sand], axis=1) ** 3).sum()
+        if self.drag:
+            sand = of["sand"][solid][j]
+            power += (self.drag * volume * w[sand] * numpy.linalg.norm(relative[sand], axis=1) ** 3).sum()
+            power += self.barrier(x[air][i[sand]], x[solid][j[sand]], relative[sand])
         return power
+
+    def barrier(self, air, sand, relative):
+        """Power that the barrier of grains takes: its dashpot's, and its spring's, which gives back later."""
+        r = air[:, :2] - sand[:, :2]
+        for axis in (0, 1):
+            if self.periodic[axis]:
+                r[:, axis] -= self.size[axis] * numpy.round(r[:, axis] / self.size[axis])
+        distance, reach = numpy.linalg.norm(r, axis=1), .6 * self.dx
+        approach = (relative * r).sum(axis=1) / distance
+        factor = numpy.clip(1 - (2 / self.slow) ** 2 * (relative**2).sum(axis=1), 0, None) * (distance < reach)
+        rate = self.slow / reach
+        force = self.air.mass * factor * rate * (rate * (reach - distance) - numpy.minimum(approach, 0))
+        return -(force * approach).sum()
 
     def series(self, frames):
         """Energy and friction's work up to each frame."""

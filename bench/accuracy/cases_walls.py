@@ -14,9 +14,9 @@ CAVITY_V = {.9688: -.06229, .9609: -.07790, .9531: -.09334, .9453: -.10851, .906
             .5: .05754, .2344: .17955, .2266: .17935, .1563: .16480, .0938: .12638, .0781: .11177, .0703: .10359, .0625: .09480}
 
 
-def cavity(n):
-    """Largest error of u on the vertical and v on the horizontal centre line, mean of the last ten frames (5 s)."""
-    frames, seconds = run("cavity", [f"spacing={1 / n!r}"], "fluid", last=10)
+def cavity_errors(n, seed):
+    """Errors of u on the vertical and v on the horizontal centre line, mean of the last ten frames (5 s), and the seconds."""
+    frames, seconds = run("cavity", [f"spacing={1 / n!r}", f"fill.2.seed={seed}"], "fluid", last=10)
     exact = lambda s: round(s * 128) / 128  # the table's points are multiples of 1/128
     errors = {}
     for name, table, place, component in (("u", CAVITY_U, lambda s: (0.5, s), 0), ("v", CAVITY_V, lambda s: (s, 0.5), 1)):
@@ -25,8 +25,18 @@ def cavity(n):
             errors[f"{name}({s})"] = got - value
     if options.verbose:
         print({k: round(float(e), 4) for k, e in errors.items()})
-    worst = max(errors, key=lambda k: abs(errors[k]))
-    report("cavity, Re 100", "consistent", n, f"largest error, {worst}", abs(errors[worst]), .01 if n < 100 else .004, seconds)
+    return errors, seconds
+
+
+def cavity(n):
+    """The largest error; at 50 a side the mean of it over three seeds of the disturbance, which change it by a few per cent."""
+    runs = [cavity_errors(n, seed) for seed in ((1, 2, 3) if n < 100 else (1,))]
+    largest = [max(map(abs, errors.values())) for errors, _ in runs]
+    seconds = sum(s for _, s in runs)
+    what = "largest error" if len(runs) == 1 else f"largest error, mean of {len(runs)} seeds"
+    report("cavity, Re 100", "consistent", n, what, numpy.mean(largest), .01 if n < 100 else .004, seconds)
+    if len(runs) > 1:
+        tell("cavity, Re 100", "consistent", n, "least and largest of the seeds", f"{min(largest):.4f}, {max(largest):.4f}", "", seconds)
 
 
 # ---- channels --------------------------------------------------------------------------------------------------------

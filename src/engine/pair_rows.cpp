@@ -14,13 +14,18 @@ std::uint32_t PairList::dummy_index(std::size_t particles, std::size_t images) {
   return static_cast<std::uint32_t>(particles + images);
 }
 
-void PairList::build(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
-                     std::uint32_t dummy, std::size_t padding, int dimensions) {
+std::size_t PairList::prepare(std::size_t size_a, std::size_t padding) {
   padding_ = padding;
   const std::size_t needed = (size_a + chunk - 1) / chunk;
   if (chunks_.size() != needed) chunks_.resize(needed);
-  search_pairs(chunks_, grid_a, size_a, grid_b, same, radius, dummy, padding, dimensions);
+  return needed;
 }
+
+void PairList::build_chunk(const Search& search, std::size_t number) {
+  search_chunk(chunks_[number], search, number, padding_);
+}
+
+void PairList::make_scratch(int dimensions) { make_search_scratch(dimensions); }
 
 std::uint64_t PairList::entries() const {
   std::uint64_t total = 0;

@@ -155,11 +155,12 @@ void CommonWork::schedule(Schedule& s) {
 }
 
 void CommonWork::find_neighbours() {
-  const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search);
+  const auto beside = [this] {
+    for (const auto& call : w_->when_sorted) call();
+  };
+  const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search, beside);
   w_->must_search = false;
-  if (!sorted) return;
-  w_->fit_records();
-  for (const auto& call : w_->when_sorted) call();
+  if (sorted) w_->fit_records();
 }
 
 void CommonWork::pack() {

@@ -106,7 +106,11 @@ std::set<std::string> given_to(const Case& c, const std::string& name) {
       const std::string dotted = assignment.substr(0, assignment.find('='));
       const std::string value = assignment.substr(assignment.find('=') + 1);
       if (dotted == name || dotted.ends_with("." + name)) values.insert(value);
-      if (value.find(" " + name + " = ") != std::string::npos) values.insert(value);  // of a section in one line
+      const std::string inside = " " + name + " = ";  // of a section in one line
+      const std::size_t at = value.find(inside);
+      if (at == std::string::npos) continue;
+      const std::string rest = value.substr(at + inside.size());
+      values.insert(rest.front() == '"' ? rest.substr(1, rest.find('"', 1) - 1) : rest);
     }
   }
   return values;
@@ -137,10 +141,11 @@ TEST(KeyConsumers, EveryKeyHasACase) {
       EXPECT_GE(found->second->runs.size(), 2u) << name;
       const std::set<std::string> given = given_to(*found->second, std::string(key.name));
       EXPECT_FALSE(given.empty()) << name << ": the case does not give the key";
-      if (!(key.slot.accepts & as_word)) continue;
-      for (const std::string& word : choices(key))
-        EXPECT_TRUE(given.contains(word)) << name << ": no run with " << word;
+      all_given.insert(given.begin(), given.end());
     }
+    if (!(key.slot.accepts & as_word)) continue;
+    for (const std::string& word : choices(key))
+      EXPECT_TRUE(all_given.contains(word)) << path_of(key) << ": no run with " << word;
   }
   EXPECT_EQ(used, known.size()) << "a case of a key that is not in the table";
 }

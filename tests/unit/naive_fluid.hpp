@@ -80,10 +80,10 @@ inline void keep_shift(Rates& out, const PhaseParticles& p, std::size_t k, Vec3 
 }
 
 /// drho/dt of loose fluid: the density above that at rest decays at the rate `loosening` times what the fullness
-/// (0.67 h|B| - tr M/Dim), 1 on a lattice, misses beyond 4 %, at most a half.
+/// (0.67 h|B| - tr M/Dim), 1 on a lattice, misses beyond 1.5 %, at most a half.
 inline double loosen(Rates& out, double rho, double trace, double h_b, int dimensions, const FluidParameters& q) {
   const double fullness = (0.67 * h_b - trace / dimensions) / q.lattice_moment;
-  const double missing = std::clamp(0.96 - fullness, 0.0, 0.5);
+  const double missing = std::clamp(0.985 - fullness, 0.0, 0.5);
   const double above = std::max(rho - q.reference_density, 0.0);
   if (missing * above > 0.0) ++out.loosened;
   return -q.loosening * missing * above;
@@ -193,12 +193,13 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
                      L_p += vf * p_ab;
                    });
     keep_shift(out, p, k, B, q);
-    // Few neighbours, det(-M) below 0.6: uncorrected, M = -1 and A = 0.
+    // Few neighbours, det(-M) below 0.6 (of half a neighbourhood, 1/2^Dim, at a free surface): uncorrected, M = -1 and
+    // A = 0.
     Matrix minus_m{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (std::size_t d = 0; d < dim; ++d)
       for (std::size_t e = 0; e < dim; ++e) minus_m[d][e] = -M[d][e];
     const double content = determinant(minus_m), h_b = q.smoothing_length * norm(B);
-    const bool whole = content > 0.6;
+    const bool whole = content > (q.loosening > 0.0 ? 0.6 * std::pow(0.5, cast.bounds.dimensions) : 0.6);
     // chi = det(-M) - h|B|/2; the corrected operators count with w(chi), which rises from 0 at 0.3 to 1 at 0.6.
     const double chi = content - 0.5 * h_b, rise = std::clamp((chi - 0.3) / 0.3, 0.0, 1.0);
     const double inner = 3 * rise * rise - 2 * rise * rise * rise, outer = 1 - inner;

@@ -32,8 +32,8 @@ Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd:
   two.push_back(phase(dimensions, lattice(b, 1.0, 0.25, random), 1.2,
                       {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                        Field::shift_velocity, Field::anisotropy}));
-  two.push_back(phase(dimensions, scattered(b, 25, random), 1.0,
-                      {Field::velocity, Field::density, Field::pressure}, 1000));
+  two.push_back(
+      phase(dimensions, scattered(b, 25, random), 1.0, {Field::velocity, Field::density, Field::pressure}, 1000));
   for (auto& p : two) {
     randomise(p, Field::velocity, -2, 2, random);
     randomise(p, Field::density, 1.0, 1.4, random);

@@ -48,6 +48,7 @@ class Air : public Model {
   const Scene& scene_;
   const Layout& layout_;
   const Phase& phase_;
+  const FluidKeys& keys_;  // of phase_
   const PlanPhase& plan_;
   std::size_t number_;
   Workspace* w_ = nullptr;

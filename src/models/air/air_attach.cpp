@@ -106,14 +106,13 @@ void Air::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   const ParticleBlock& block = blocks[number_];
   const std::vector<double> rest = pressure_at_rest(scene_, layout_, blocks, number_);
   const double c2 = plan_.sound_speed * plan_.sound_speed;
-  const FluidKeys& keys = phase_.fluid();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double pressure = !rest.empty() ? rest[i] : block.pressure.empty() ? 0.0 : block.pressure[i];
     p.column(Field::density)[i] =
-        keys.equation_of_state == EquationOfState::linear
+        keys_.equation_of_state == EquationOfState::linear
             ? phase_.density + pressure / c2
             : phase_.density *
-                  std::pow(1.0 + keys.tait_exponent * pressure / (phase_.density * c2), 1.0 / keys.tait_exponent);
+                  std::pow(1.0 + keys_.tait_exponent * pressure / (phase_.density * c2), 1.0 / keys_.tait_exponent);
     p.column(Field::pressure)[i] = pressure_(p.column(Field::density)[i]);
   }
 }
@@ -161,7 +160,7 @@ double Air::largest_speed() const {
 void Air::attach(Workspace& w) {
   w_ = &w;
   particles_ = &w.particles(number_);
-  const bool corrected = phase_.fluid().scheme == FluidScheme::consistent;
+  const bool corrected = keys_.scheme == FluidScheme::consistent;
   // The consistent operators weigh neighbours by the spacing's volume: what they sum is exact for any weights.
   w.packing[number_] = {true, corrected};
   auto& q = parameters_;
@@ -170,8 +169,8 @@ void Air::attach(Workspace& w) {
   q.smoothing_length = plan_.smoothing_length;
   const double speed = largest_speed();
   // Strengths measured in docs/method.md: 2 in the consistent scheme, 4 in the plain one, whose sums need more order.
-  const double pace = speed + phase_.fluid().viscosity / q.smoothing_length;
-  q.shift_speed = (corrected ? 2.0 : 4.0) * phase_.fluid().shifting * pace;
+  const double pace = speed + keys_.viscosity / q.smoothing_length;
+  q.shift_speed = (corrected ? 2.0 : 4.0) * keys_.shifting * pace;
   q.shift_limit = 0.2 * pace;
   q.gravity = scene_.domain.gravity;
   q.acceleration = forces_.uniform();
@@ -201,16 +200,15 @@ void Air::bind_entries() {
     if (!e.has(number_) || e.law == Law::repulsive) continue;
     const std::size_t other = e.partner(number_);
     const bool solid = !layout_.phases[other].flows;
-    FluidNeighbour n{&w_->list(e.direction(number_)),
-                     solid ? &w_->extended[other] : &w_->motion[other],
-                     e.kernel,
-                     e.radius,
-                     pair_viscosity(scene_, layout_, number_, other),
-                     solid || other == number_,
-                     w_->compact[other].get(),
-                     !solid && other != number_ && phase_.fluid().scheme == FluidScheme::consistent
-                         ? scene_.phases[other].density
-                         : 0};
+    FluidNeighbour n{
+        &w_->list(e.direction(number_)),
+        solid ? &w_->extended[other] : &w_->motion[other],
+        e.kernel,
+        e.radius,
+        pair_viscosity(scene_, layout_, number_, other),
+        solid || other == number_,
+        w_->compact[other].get(),
+        !solid && other != number_ && keys_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);
@@ -222,11 +220,11 @@ void Air::bind_entries() {
 
 /// Its entries again with the friction of each, and the ground under it.
 void Air::bind_eddies() {
-  eddies_.model = phase_.fluid().turbulence;
+  eddies_.model = keys_.turbulence;
   eddies_.density = phase_.density;
   eddies_.viscosity = neighbours_.front().viscosity / phase_.density;
   eddies_.spacing = layout_.spacing;
-  eddies_.length = phase_.fluid().smagorinsky * layout_.spacing;
+  eddies_.length = keys_.smagorinsky * layout_.spacing;
   Sides sides;
   bool particles = false;
   for (const auto& n : neighbours_) {
@@ -237,7 +235,7 @@ void Air::bind_eddies() {
         bind_friction(e, other, sides, particles);
     eddy_neighbours_.push_back(e);
   }
-  if (phase_.fluid().turbulence == Turbulence::mixing_length && ground_phases_.empty())
+  if (keys_.turbulence == Turbulence::mixing_length && ground_phases_.empty())
     throw SceneError(scene_.file + ": phases." + plan_.name +
                      ".turbulence: a mixing length needs ground, and this fluid touches no wall with friction and no "
                      "grains; expected such an entry in [interactions], or \"smagorinsky\"");

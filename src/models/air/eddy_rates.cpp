@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/shares.hpp"
 #include "laws/eddy_fluid.hpp"
 #include "models/air/eddies.hpp"
 #include "models/air/fluid_rows.hpp"
@@ -164,8 +165,9 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
   const EddyColumns<Dim> eddy_columns(fluid, eddies);
   const std::size_t n = fluid.size();
   const std::int64_t blocks = FourOf::blocks(n);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t block = 0; block < blocks; ++block) {
+  Shares shares(blocks, 64);
+#pragma omp parallel
+  for (const std::int64_t block : shares) {
     const FourOf at(block, n);
     const auto own_of = [&](std::size_t k) __attribute__((always_inline)) {
       auto own = load_own<Dim, EddyFluid>(own_records + k * record_size);
@@ -193,8 +195,9 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   const double* data = e.records->data();
   const ReadyKernel ready(e.kernel, e.radius, Dim);
   const auto n = static_cast<std::int64_t>(solid.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
+  Shares shares(n, 256);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
     const auto k = static_cast<std::size_t>(i);
     const auto row = e.list->row(k);
     const double* record = own_records[k];
