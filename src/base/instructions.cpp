@@ -8,7 +8,9 @@
 #include <cstring>
 
 #if __has_include(<sys/platform/x86.h>)
+#define _Bool bool  // the header is written in C; clang knows no _Bool in C++
 #include <sys/platform/x86.h>
+#undef _Bool
 #endif
 
 #include "base/errors.hpp"
