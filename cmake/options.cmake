@@ -4,7 +4,17 @@ target_compile_options(barchan_options INTERFACE -Wall -Wextra -Wpedantic -Wshad
 if(BARCHAN_WERROR)
   target_compile_options(barchan_options INTERFACE -Werror)
 endif()
-if(BARCHAN_ARCH)
+if(BARCHAN_ARCH STREQUAL "dispatch" AND NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(BARCHAN_ARCH native)
+endif()
+if(BARCHAN_ARCH STREQUAL "dispatch")
+  # The hot files are compiled a second time with these (src/CMakeLists.txt). The tuning of Zen 3 lets loops that the
+  # compiler vectorizes use whole registers; that of x86-64-v4 itself stops at half of one.
+  add_library(barchan_avx512_options INTERFACE)
+  target_compile_options(barchan_avx512_options INTERFACE -march=x86-64-v4 -mtune=znver3)
+  target_compile_options(barchan_options INTERFACE -march=x86-64-v3)
+  target_compile_definitions(barchan_options INTERFACE BARCHAN_DISPATCH)
+elseif(BARCHAN_ARCH)
   target_compile_options(barchan_options INTERFACE -march=${BARCHAN_ARCH})
 endif()
 # Contraction is fixed by the compiler and the target alone, never by the data or the number of threads.

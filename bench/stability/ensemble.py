@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Is a scene stable, or was it luck? Many runs of it that differ by less than anybody can know.
 
-    /usr/bin/python3 bench/stability/ensemble.py build/barchan dune.toml flat_bed.toml --program build-portable/barchan --write
+    /usr/bin/python3 bench/stability/ensemble.py build/barchan dune.toml flat_bed.toml --write
 
 Between instruction sets bits differ, and a loosened bed is chaos, so one good run says nothing. Each scene runs --runs times (24): the air
-disturbed by 0.01 spacings with another seed in each, u* times 0.98, 1 and 1.02 in turn, mixed and double precision, and the programs
-given (the first, and --program: the same source for other instructions). Asked: every run reaches its end; the density error of the air is
+disturbed by 0.01 spacings with another seed in each, u* times 0.98, 1 and 1.02 in turn, mixed and double precision, and all
+instruction sets that the program and this machine have (or --instructions). Asked: every run reaches its end; the density error of the air is
 at most 2 % in every row of history.csv (a thousand rows a run); no grain leaves. With --ustar-factor or --density-factor
 (grains as heavy by that factor) the scene is another one; then every run must end well or be stopped by the watch with its message.
 
@@ -19,6 +19,7 @@ import concurrent.futures
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -41,13 +42,19 @@ HEAD = ("| run | seed | u* | precision | instructions | status | ended at, ms | 
         "bulk speed, second half/start | u 1 mm over the bed upstream, end/start | user CPU s | message |\n" + "| --- " * 14 + "|")
 
 
-def members(scene, programs, options):
+def available(program):
+    """The instruction sets that the program and this machine have, the widest first."""
+    said = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
+    return re.search(r"instruction set: .*\(of (.*)\)", said)[1].split(", ")[::-1]
+
+
+def members(scene, sets_of_instructions, options):
     """The runs of a scene: what differs, and the command's overrides."""
     air = next(k for k, f in enumerate(scene["fill"]) if f["phase"] == "air")
     friction = scene["fill"][air]["velocity"]["log-profile"]["friction-velocity"]
     for k in range(options.runs):
         factor = (.98, 1., 1.02)[k % 3] * options.ustar_factor
-        precision, program = ("mixed", "double")[k // 3 % 2], programs[k // 6 % len(programs)]
+        precision, instructions = ("mixed", "double")[k // 3 % 2], sets_of_instructions[k // 6 % len(sets_of_instructions)]
         sets = [f"fill.{air}.perturb=0.01", f"fill.{air}.seed={k + 1}", f"precision={precision}",
                 f"fill.{air}.velocity.log-profile.friction-velocity={friction * factor!r}"]
         for n, forcing in enumerate(scene.get("forcing", [])):  # a given force is u*^2/H
@@ -56,7 +63,7 @@ def members(scene, programs, options):
         if options.density_factor != 1:
             sets.append(f"phases.sand.density={scene['phases']['sand']['density'] * options.density_factor!r}")
         sets += [f"output.every={scene['time']['end']!r}", f"output.history-every={scene['time']['end'] / 1000!r}", "output.walls=false"]
-        yield {"run": k + 1, "seed": k + 1, "friction_velocity": friction * factor, "precision": precision}, program, sets + options.set
+        yield {"run": k + 1, "seed": k + 1, "friction_velocity": friction * factor, "precision": precision}, instructions, sets + options.set
 
 
 def figures(out, name, scene):
@@ -87,13 +94,13 @@ def near_bed(scene, first, last):
     return float(now / then) if math.isfinite(now / then) else None
 
 
-def carry_out(member, program, sets, path, out):
+def carry_out(member, program, instructions, sets, path, out):
     """One run, unless it is there; its figures."""
     done = out / "member.json"
     if done.exists():
         return json.loads(done.read_text())
     out.mkdir(parents=True, exist_ok=True)
-    command = [str(program), "run", str(path), "--threads", "1", "--quiet", "--out", str(out)]
+    command = [str(program), "run", str(path), "--threads", "1", "--quiet", "--out", str(out), "--instructions", instructions]
     ended = subprocess.run(command + [x for s in sets for x in ("--set", s)], capture_output=True, text=True)
     result = dict(member, status=ended.returncode, message="" if ended.returncode == 0 else ended.stderr.strip().partition("barchan: ")[2][:300])
     if ended.returncode in (0, 3):
@@ -148,18 +155,19 @@ def write_page():
     PAGE.write_text(before + begin + "\n".join(parts or ["\nNothing was measured.\n"]) + "\n" + end + after)
 
 
-def ensemble(path, programs, options, folder):
+def ensemble(path, program, options, folder):
     """All runs of one scene."""
     scene = tomllib.loads(path.read_text())
     variant = "".join(f"-{name}-{value:g}" for name, value in (("ustar", options.ustar_factor), ("density", options.density_factor)) if value != 1)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        jobs = [pool.submit(carry_out, member, program, sets, path, folder / f"{path.stem}{variant}" / f"{member['run']:02d}")
-                for member, program, sets in members(scene, programs, options)]
+        jobs = [pool.submit(carry_out, member, program, instructions, sets, path, folder / f"{path.stem}{variant}" / f"{member['run']:02d}")
+                for member, instructions, sets in members(scene, options.instructions or available(program), options)]
         runs = []
         for job in jobs:
             runs.append(job.result())
             print(row(runs[-1]), flush=True)
-    command = f"ensemble.py build/barchan {path.name} --runs {options.runs}" + " --program build-portable/barchan" * (len(programs) > 1)
+    command = f"ensemble.py build/barchan {path.name} --runs {options.runs}"
+    command += f" --instructions {' '.join(options.instructions)}" if options.instructions else ""
     command += f" --ustar-factor {options.ustar_factor:g}" * (options.ustar_factor != 1)
     command += f" --density-factor {options.density_factor:g}" * (options.density_factor != 1)
     command += "".join(f" --set {s}" for s in options.set)
@@ -178,7 +186,7 @@ def main():
     parser.add_argument("build", metavar="PROGRAM", help="build/barchan, or none")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="a file, or the name of one in scenes/")
     parser.add_argument("--runs", type=int, default=24)
-    parser.add_argument("--program", help="a second program, the same source for other instructions")
+    parser.add_argument("--instructions", nargs="+", metavar="NAME", help="avx512, avx2 (default: all that there are)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--ustar-factor", type=float, default=1.)
     parser.add_argument("--density-factor", type=float, default=1.)
@@ -188,17 +196,16 @@ def main():
     options = parser.parse_args()
     good = True
     if options.build != "none":
-        programs = [pathlib.Path(p).resolve() for p in (options.build, options.program) if p]
-        missing = [str(p) for p in programs if not p.exists()]
-        if missing or not options.scenes:
-            parser.error(f"no program {', '.join(missing)}" if missing else "which scene?")
+        program = pathlib.Path(options.build).resolve()
+        if not program.exists() or not options.scenes:
+            parser.error("which scene?" if program.exists() else f"no program {program}")
         print(HEAD)
         for name in options.scenes:
             path = next((p for p in (pathlib.Path(name), ROOT / "scenes" / name, ROOT / f"scenes/{name}.toml") if p.is_file()), None)
             if not path:
                 parser.error(f"no scene {name}")
             with tempfile.TemporaryDirectory() as scratch:
-                good = ensemble(path.resolve(), programs, options, options.runs_dir or pathlib.Path(scratch)) and good
+                good = ensemble(path.resolve(), program, options, options.runs_dir or pathlib.Path(scratch)) and good
     if options.write:
         write_page()
     return 0 if good else 1

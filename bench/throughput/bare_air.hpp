@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/integrate.hpp"
 #include "engine/neighbours.hpp"
 #include "models/air/fluid.hpp"
-#include "engine/integrate.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -25,7 +25,7 @@ class BareAir {
     const Plan& plan = from.plan();
     const Phase& phase = from.scene().phases[0];
     const double c = plan.phases[0].sound_speed, h = plan.phases[0].smoothing_length;
-    law_ = {phase.density, c, 1.0, phase.background_pressure * phase.density * c * c};
+    law_ = {phase.density, c, 1.0, phase.fluid().background_pressure * phase.density * c * c};
     q_.reference_density = phase.density;
     q_.sound_speed = c;
     q_.diffusivity = 1.25 * c * c * dt_ + 0.05 * h * c;

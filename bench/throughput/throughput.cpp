@@ -17,8 +17,8 @@
 
 #include "base/denormals.hpp"
 #include "scene/reader.hpp"
-#include "throughput/bare_air.hpp"
 #include "simulation/simulation.hpp"
+#include "throughput/bare_air.hpp"
 
 namespace {
 

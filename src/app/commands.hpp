@@ -14,6 +14,7 @@ struct RunOptions {
   std::vector<std::string> overrides;  // KEY=VALUE
   int threads = 0;                     // 0: all
   std::string restart;                 // empty, "latest" or a checkpoint
+  std::string instructions;            // empty: the best that the machine has
   bool quiet = false;
 };
 

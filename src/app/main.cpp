@@ -67,6 +67,8 @@ int dispatch(int argc, char** argv) {
   c_run->add_option("--threads", run.threads, "number of threads (default: all)")->check(CLI::Range(1, 4096));
   c_run->add_option("--restart", run.restart, "go on from a checkpoint, or from the latest one")
       ->type_name("FILE|latest");
+  c_run->add_option("--instructions", run.instructions, "avx2 or avx512 (default: the best that the machine has)")
+      ->type_name("NAME");
   c_run->add_flag("--quiet", run.quiet, "print errors only");
   add_set(c_run);
   c_run->callback([&] {

@@ -12,6 +12,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "base/errors.hpp"
+#include "base/instructions.hpp"
 #include "base/version.hpp"
 #include "measure/measurements.hpp"
 #include "output/checkpoint.hpp"
@@ -179,7 +180,7 @@ class Run {
     simulation_.archive(archive);
     if (measurements_) measurements_->archive(archive);
     barchan::write_checkpoint(checkpoint_file(directory_, scene_),
-                              {version() + " (" + commit() + ")", instruction_set(), scene_.identity,
+                              {version() + " (" + commit() + ")", name_of(instructions()), scene_.identity,
                                simulation_.time(), simulation_.steps(), archive.bytes()});
     last_checkpoint_ = progress_.seconds();
   }
@@ -304,15 +305,16 @@ std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::
   if (c.time >= scene.time.end * (1.0 - 1e-12))
     throw SceneError("--restart " + restart + ": the checkpoint is at t = " + brief(c.time) +
                      " s, and the scene ends at " + brief(scene.time.end) + " s; expected a larger time.end");
-  if (c.instructions != instruction_set())
-    std::cerr << "barchan: the checkpoint was made with " << c.instructions << "; with " << instruction_set()
-              << " the run goes on with other bits\n";
+  if (const std::string now = name_of(instructions()); c.instructions != now)
+    std::cerr << "barchan: the checkpoint was made with " << c.instructions << "; with " << now
+              << " the run goes on with other bits (see --instructions)\n";
   return c;
 }
 
 }  // namespace
 
 int run(const RunOptions& options) {
+  if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);

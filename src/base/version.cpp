@@ -1,5 +1,7 @@
 #include "base/version.hpp"
 
+#include "base/instructions.hpp"
+
 namespace barchan {
 
 std::string version() { return BARCHAN_VERSION; }
@@ -18,12 +20,12 @@ std::string compiler() {
 }
 
 std::string instruction_set() {
-#if defined(__AVX512F__)
-  return "AVX-512 (-march=" BARCHAN_ARCH ")";
-#elif defined(__AVX2__)
-  return "AVX2 (-march=" BARCHAN_ARCH ")";
+#if defined(BARCHAN_DISPATCH)
+  std::string all;
+  for (const auto& name : available_instructions()) all += (all.empty() ? "" : ", ") + name;
+  return std::string(name_of(instructions())) + " (of " + all + ")";
 #else
-  return "SSE2 (-march=" BARCHAN_ARCH ")";
+  return std::string(name_of(instructions())) + " (-march=" BARCHAN_ARCH ")";
 #endif
 }
 

@@ -5,10 +5,11 @@
 
 namespace barchan {
 
-std::string version();          ///< "0.1.0"
-std::string commit();           ///< git describe at configuration, "unknown" without git
-std::string compiler();         ///< name and version
-std::string instruction_set();  ///< "avx512f", "avx2", ... as compiled, with the -march given
+std::string version();   ///< "0.1.0"
+std::string commit();    ///< git describe at configuration, "unknown" without git
+std::string compiler();  ///< name and version
+std::string
+instruction_set();  ///< "AVX-512 (of avx2, avx512)": the one in use, and those that program and machine have
 std::string vtk_version();
 
 }  // namespace barchan

@@ -1,8 +1,10 @@
 #include "engine/cell_grid.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <numeric>
 
 namespace barchan {
 
@@ -22,6 +24,7 @@ CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks
   begin_.assign(cells, 0);
   end_.assign(cells, 0);
   order_interior(blocks);
+  if (bounds_.periodic[0] || bounds_.periodic[1] || bounds_.periodic[2]) find_halo();
 }
 
 void CellGrid::order_interior(const Blocks& blocks) {
@@ -65,6 +68,62 @@ void CellGrid::order_interior(const Blocks& blocks) {
   }
 }
 
+void CellGrid::sort(PhaseParticles& particles) {
+  const std::size_t n = particles.size();
+  if (cell_of_.size() < n) {
+    cell_of_.resize(n);
+    order_.resize(n);
+  }
+#pragma omp parallel
+  {
+    find_cells(particles);
+#pragma omp single
+    place_cells();
+    fill_cells(n);
+  }
+  make_runs();
+  particles.permute(order_.data());
+  make_images(particles);
+}
+
+/// Wraps, finds the cell of each particle and counts those of each cell in end_. All threads of a team call it.
+void CellGrid::find_cells(PhaseParticles& particles) {
+  const auto n = static_cast<std::int64_t>(particles.size()), cells = static_cast<std::int64_t>(end_.size());
+  const bool alone = omp_get_num_threads() == 1;
+  std::array<double*, 3> x{};
+  for (std::size_t d = 0; d < dimensions_; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
+#pragma omp for schedule(static)
+  for (std::int64_t c = 0; c < cells; ++c) end_[static_cast<std::size_t>(c)] = 0;
+#pragma omp for schedule(static)
+  for (std::int64_t k = 0; k < n; ++k) {
+    std::size_t cell = 0;
+    for (std::size_t d = dimensions_; d-- > 0;) {
+      double& place = x[d][k];
+      if (bounds_.periodic[d] && !(place >= bounds_.low[d] && place < bounds_.high[d])) {
+        place -= period_[d] * std::floor((place - bounds_.low[d]) / period_[d]);
+        if (place < bounds_.low[d] || place >= bounds_.high[d]) place = bounds_.low[d];  // rounding at a side
+      }
+      // Rounding may put a wrapped position onto the upper bound: the interior range is enforced for periodic sides.
+      int c = cell_coordinate(static_cast<float>(place - bounds_.low[d]), d);
+      if (bounds_.periodic[d]) c = std::clamp(c, halo_[d], static_cast<int>(count_[d]) - halo_[d] - 1);
+      cell = cell * count_[d] + static_cast<std::size_t>(c);
+    }
+    cell_of_[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(cell);
+    if (alone) ++end_[cell];
+    else std::atomic_ref(end_[cell]).fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+/// From the counts in end_: where each cell begins, in the order of the walk, also in end_.
+void CellGrid::place_cells() {
+  std::uint32_t sum = 0;
+  for (const std::uint32_t cell : walk_) {
+    begin_[cell] = sum;
+    sum += end_[cell];
+    end_[cell] = begin_[cell];
+  }
+}
+
 void CellGrid::make_runs() {
   runs_.clear();
   for (std::size_t w = 0; w < walk_.size(); ++w) {
@@ -75,91 +134,89 @@ void CellGrid::make_runs() {
   }
 }
 
-void CellGrid::sort(PhaseParticles& particles) {
-  const std::size_t n = particles.size();
-  if (cell_of_.size() < n) {
-    cell_of_.resize(n);
-    order_.resize(n);
+/// Fills order_: by cell, within a cell as they stand now, whichever thread came first. All threads of a team call it.
+void CellGrid::fill_cells(std::size_t particles) {
+  const auto n = static_cast<std::int64_t>(particles), cells = static_cast<std::int64_t>(walk_.size());
+  if (omp_get_num_threads() == 1) {
+    for (std::size_t k = 0; k < particles; ++k) order_[end_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
+    return;
   }
-  // Wrap, then find cells. Rounding may put a wrapped position onto the upper bound: cell_coordinate clamps nothing
-  // there, so the interior range is enforced for periodic sides below.
-  std::fill(end_.begin(), end_.end(), 0u);
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    if (!bounds_.periodic[d]) continue;
-    double* x = particles.column(Field::position, static_cast<int>(d));
-    const double low = bounds_.low[d], high = bounds_.high[d], period = period_[d];
-    for (std::size_t k = 0; k < n; ++k) {
-      if (x[k] >= low && x[k] < high) continue;
-      x[k] -= period * std::floor((x[k] - low) / period);
-      if (x[k] < low || x[k] >= high) x[k] = low;  // rounding at a side
-    }
+#pragma omp for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    order_[std::atomic_ref(end_[cell_of_[k]]).fetch_add(1, std::memory_order_relaxed)] = static_cast<std::uint32_t>(k);
   }
-  std::array<const double*, 3> x{};
-  for (std::size_t d = 0; d < dimensions_; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t cell = 0;
-    for (std::size_t d = dimensions_; d-- > 0;) {
-      int c = cell_coordinate(static_cast<float>(x[d][k] - bounds_.low[d]), d);
-      if (bounds_.periodic[d]) c = std::clamp(c, halo_[d], static_cast<int>(count_[d]) - halo_[d] - 1);
-      cell = cell * count_[d] + static_cast<std::size_t>(c);
-    }
-    cell_of_[k] = static_cast<std::uint32_t>(cell);
-    ++end_[cell];
+#pragma omp for schedule(static)
+  for (std::int64_t w = 0; w < cells; ++w) {
+    const std::uint32_t cell = walk_[static_cast<std::size_t>(w)];
+    std::uint32_t* const first = order_.data() + begin_[cell];
+    std::sort(first, order_.data() + end_[cell]);
   }
-  std::uint32_t sum = 0;
-  for (const std::uint32_t cell : walk_) {
-    begin_[cell] = sum;
-    sum += end_[cell];
-    end_[cell] = begin_[cell];
-  }
-  for (std::size_t k = 0; k < n; ++k) order_[end_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
-  particles.permute(order_.data());
-  make_runs();
-  make_images(particles);
+}
+
+/// The cells of the halo beyond periodic sides, in the order of their numbers, each with the cell that it repeats.
+void CellGrid::find_halo() {
+  std::array<std::size_t, 3> interior{1, 1, 1};
+  for (std::size_t d = 0; d < dimensions_; ++d) interior[d] = count_[d] - 2 * static_cast<std::size_t>(halo_[d]);
+  std::size_t cell = 0;
+  for (std::size_t z = 0; z < count_[2]; ++z)
+    for (std::size_t y = 0; y < count_[1]; ++y)
+      for (std::size_t c = 0; c < count_[0]; ++c, ++cell) {
+        const std::array<std::size_t, 3> at{c, y, z};
+        std::array<std::size_t, 3> from = at;
+        HaloCell halo{static_cast<std::uint32_t>(cell), 0, {0, 0, 0}};
+        bool outside = false;
+        for (std::size_t d = 0; d < dimensions_; ++d) {
+          if (!bounds_.periodic[d]) continue;
+          const auto inside = static_cast<long>(interior[d]);
+          const long relative = static_cast<long>(at[d]) - halo_[d];
+          const long turns = relative >= 0 ? relative / inside : -((inside - 1 - relative) / inside);
+          if (turns == 0) continue;
+          outside = true;
+          halo.shift[d] = static_cast<std::int8_t>(turns);
+          from[d] = static_cast<std::size_t>(relative - turns * inside + halo_[d]);
+        }
+        if (!outside) continue;
+        halo.source = static_cast<std::uint32_t>((from[2] * count_[1] + from[1]) * count_[0] + from[0]);
+        halo_cells_.push_back(halo);
+      }
 }
 
 void CellGrid::make_images(const PhaseParticles& particles) {
   const std::size_t n = particles.size();
-  images_.clear();
-  std::array<std::size_t, 3> interior{1, 1, 1};
-  for (std::size_t d = 0; d < dimensions_; ++d) interior[d] = count_[d] - 2 * static_cast<std::size_t>(halo_[d]);
-  if (bounds_.periodic[0] || bounds_.periodic[1] || bounds_.periodic[2]) {
-    std::size_t cell = 0;
-    for (std::size_t z = 0; z < count_[2]; ++z)
-      for (std::size_t y = 0; y < count_[1]; ++y)
-        for (std::size_t c = 0; c < count_[0]; ++c, ++cell) {
-          const std::array<std::size_t, 3> at{c, y, z};
-          std::array<std::size_t, 3> from = at;
-          Image image{0, {0, 0, 0}};
-          bool outside = false;
-          for (std::size_t d = 0; d < dimensions_; ++d) {
-            if (!bounds_.periodic[d]) continue;
-            const auto inside = static_cast<long>(interior[d]);
-            const long relative = static_cast<long>(at[d]) - halo_[d];
-            const long turns = relative >= 0 ? relative / inside : -((inside - 1 - relative) / inside);
-            if (turns == 0) continue;
-            outside = true;
-            image.shift[d] = static_cast<std::int8_t>(turns);
-            from[d] = static_cast<std::size_t>(relative - turns * inside + halo_[d]);
-          }
-          if (!outside) continue;
-          const std::size_t source = (from[2] * count_[1] + from[1]) * count_[0] + from[0];
-          begin_[cell] = static_cast<std::uint32_t>(n + images_.size());
-          for (std::uint32_t k = begin_[source]; k < end_[source]; ++k) {
-            image.source = k;
-            images_.push_back(image);
-          }
-          end_[cell] = static_cast<std::uint32_t>(n + images_.size());
-        }
+  std::size_t total = n;
+  for (const HaloCell& h : halo_cells_) {
+    begin_[h.cell] = static_cast<std::uint32_t>(total);
+    total += end_[h.source] - begin_[h.source];
+    end_[h.cell] = static_cast<std::uint32_t>(total);
   }
+  images_.resize(total - n);
+  std::array<const double*, 3> x{};
   for (std::size_t d = 0; d < dimensions_; ++d) {
     auto& s = search_[d];
-    const std::size_t needed = n + images_.size() + 16;  // the search reads whole vectors
+    const std::size_t needed = total + 16;  // the search reads whole vectors
     if (s.size() < needed) s.resize(needed + needed / 8);
-    const double* x = particles.column(Field::position, static_cast<int>(d));
-    for (std::size_t k = 0; k < n; ++k) s[k] = static_cast<float>(x[k] - bounds_.low[d]);
-    for (std::size_t k = 0; k < images_.size(); ++k)
-      s[n + k] = static_cast<float>(x[images_[k].source] - bounds_.low[d] + images_[k].shift[d] * period_[d]);
+    x[d] = particles.column(Field::position, static_cast<int>(d));
+  }
+  const auto particles_end = static_cast<std::int64_t>(n), halo_end = static_cast<std::int64_t>(halo_cells_.size());
+#pragma omp parallel
+  {
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      const double low = bounds_.low[d];
+      float* s = search_[d].data();
+#pragma omp for schedule(static) nowait
+      for (std::int64_t k = 0; k < particles_end; ++k) s[k] = static_cast<float>(x[d][k] - low);
+    }
+#pragma omp for schedule(static) nowait
+    for (std::int64_t h = 0; h < halo_end; ++h) {
+      const HaloCell& halo = halo_cells_[static_cast<std::size_t>(h)];
+      std::size_t q = begin_[halo.cell];
+      for (std::uint32_t k = begin_[halo.source]; k < end_[halo.source]; ++k, ++q) {
+        images_[q - n] = {k, halo.shift};
+        for (std::size_t d = 0; d < dimensions_; ++d)
+          search_[d][q] = static_cast<float>(x[d][k] - bounds_.low[d] + halo.shift[d] * period_[d]);
+      }
+    }
   }
 }
 
@@ -173,6 +230,7 @@ void CellGrid::archive(Archive& a) {
 
 std::size_t CellGrid::bytes() const {
   std::size_t total = (begin_.size() + end_.size() + walk_.size() + cell_of_.size() + order_.size()) * 4;
+  total += halo_cells_.size() * sizeof(HaloCell);
   for (const auto& s : search_) total += s.size() * sizeof(float);
   return total + images_.capacity() * sizeof(Image);
 }

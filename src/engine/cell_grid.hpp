@@ -121,6 +121,12 @@ class CellGrid {
   void archive(Archive& a);
 
  private:
+  /// A cell beyond a periodic side.
+  struct HaloCell {
+    std::uint32_t cell, source;
+    std::array<std::int8_t, 3> shift;
+  };
+
   /// Cell of a position relative to low() in the padded grid, clamped to it.
   int cell_coordinate(float x, std::size_t axis) const {
     const float c = x * inverse_cell_[axis] + static_cast<float>(halo_[axis]);
@@ -136,6 +142,10 @@ class CellGrid {
     return std::max(std::max(begin - high, low - (begin + side)) - 1.0e-3f * side, 0.0f);
   }
   void order_interior(const Blocks& blocks);
+  void find_halo();
+  void find_cells(PhaseParticles& particles);
+  void place_cells();
+  void fill_cells(std::size_t particles);
   void make_runs();
   void make_images(const PhaseParticles& particles);
 
@@ -149,6 +159,7 @@ class CellGrid {
   std::vector<int> strip_last_;             // by x of a padded cell: the last one of its strip
   std::vector<std::uint32_t> walk_;         // interior cells in the order of the sort
   std::vector<std::uint32_t> walk_block_;   // block of each walked cell
+  std::vector<HaloCell> halo_cells_;
   std::vector<BlockRun> runs_;
   std::vector<std::uint32_t> cell_of_, order_;
   std::vector<Image> images_;

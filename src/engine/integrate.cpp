@@ -23,12 +23,13 @@ std::array<double*, Dim> columns(PhaseParticles& phase, Field field) {
   return c;
 }
 
+// Called by all threads of a team; each thread goes through the same particles in every loop, so none waits.
 template <std::size_t Dim, bool Shifted>
 void kick_and_drift_all(PhaseParticles& phase, double half_kick, double time) {
   const auto x = columns<Dim>(phase, Field::position), v = columns<Dim>(phase, Field::velocity),
              a = columns<Dim>(phase, Field::acceleration), du = columns<Dim>(phase, Field::shift_velocity);
   const auto n = static_cast<std::int64_t>(phase.size());
-#pragma omp parallel for simd schedule(static)
+#pragma omp for simd schedule(static) nowait
   for (std::int64_t k = 0; k < n; ++k)
     for (std::size_t d = 0; d < Dim; ++d) {
       const double speed = v[d][k] + half_kick * a[d][k];
@@ -45,18 +46,18 @@ void advance_density(PhaseParticles& phase, double time, const PressureLaw& law)
   if (phase.has(Field::energy)) {
     double* e = phase.column(Field::energy);
     const double* e_rate = phase.column(Field::energy_rate);
-#pragma omp parallel for simd schedule(static)
+#pragma omp for simd schedule(static) nowait
     for (std::int64_t k = 0; k < n; ++k) e[k] += time * e_rate[k];
   }
   if (law.exponent == 1.0) {
     const double stiffness = law.sound_speed * law.sound_speed;
-#pragma omp parallel for simd schedule(static)
+#pragma omp for simd schedule(static) nowait
     for (std::int64_t k = 0; k < n; ++k) {
       rho[k] += time * rate[k];
       p[k] = stiffness * (rho[k] - law.reference_density) + law.background;
     }
   } else {
-#pragma omp parallel for schedule(static)
+#pragma omp for schedule(static) nowait
     for (std::int64_t k = 0; k < n; ++k) {
       rho[k] += time * rate[k];
       p[k] = law(rho[k]);
@@ -84,13 +85,16 @@ double kick_all(PhaseParticles& phase, double half_kick) {
 
 void kick_and_drift(PhaseParticles& phase, double half_kick, double time, const PressureLaw* pressure) {
   const bool shifted = phase.has(Field::shift_velocity);
-  if (phase.dimensions() == 2)
-    shifted ? kick_and_drift_all<2, true>(phase, half_kick, time)
-            : kick_and_drift_all<2, false>(phase, half_kick, time);
-  else
-    shifted ? kick_and_drift_all<3, true>(phase, half_kick, time)
-            : kick_and_drift_all<3, false>(phase, half_kick, time);
-  if (pressure) advance_density(phase, time, *pressure);
+#pragma omp parallel
+  {
+    if (phase.dimensions() == 2)
+      shifted ? kick_and_drift_all<2, true>(phase, half_kick, time)
+              : kick_and_drift_all<2, false>(phase, half_kick, time);
+    else
+      shifted ? kick_and_drift_all<3, true>(phase, half_kick, time)
+              : kick_and_drift_all<3, false>(phase, half_kick, time);
+    if (pressure) advance_density(phase, time, *pressure);
+  }
 }
 
 void drift(PhaseParticles& phase, double time) {
@@ -109,11 +113,12 @@ double kick(PhaseParticles& phase, double half_kick) {
 
 void hold_inside(PhaseParticles& phase, const Sides& sides) {
   const auto n = static_cast<std::int64_t>(phase.size());
+#pragma omp parallel
   for (int d = 0; d < phase.dimensions(); ++d) {
     const auto c = static_cast<std::size_t>(d);
     const double low = sides.low[c] + sides.margin, high = sides.high[c] - sides.margin;
     double *x = phase.column(Field::position, d), *v = phase.column(Field::velocity, d);
-#pragma omp parallel for simd schedule(static)
+#pragma omp for simd schedule(static) nowait
     for (std::int64_t k = 0; k < n; ++k) {
       const double place = x[k], speed = v[k];
       v[k] = place < low ? std::max(speed, 0.0) : place > high ? std::min(speed, 0.0) : speed;

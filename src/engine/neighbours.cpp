@@ -186,7 +186,7 @@ void Neighbours::choose_skin() {
   skin_ = std::min(std::clamp(best, least, std::max(least, 1.5 * skin_)), widest_skin_);
 }
 
-bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
+bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force, const std::function<void()>& beside) {
   constexpr long patience = 64;  // steps after which lists that are still good are made anew with a thinner skin
   const bool first = rebuilds_ == 0 || force;
   if (!first && still_valid(particles)) {
@@ -203,21 +203,48 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force) {
   }
   kept_ = 0;
   for (std::size_t p = 0; p < grids_.size(); ++p) {
-    if (!grids_[p]) continue;
+    if (!grids_[p] || (!first && !has_moved(p))) continue;
     PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
     grids_[p]->sort(particles[p]);
   }
-  search(particles);
+  search(particles, beside);
   ++rebuilds_;
   return true;
 }
 
-void Neighbours::search(const std::vector<PhaseParticles>& particles) {
+/// Whether a particle of the phase stands elsewhere than at the last sort, as far as measure() and the search see.
+bool Neighbours::has_moved(std::size_t phase) const {
+  return std::any_of(ranges_[phase].begin(), ranges_[phase].end(), [](const Range& range) {
+    if (range.low[0] > range.high[0]) return false;  // nobody is there
+    for (std::size_t d = 0; d < 3; ++d)
+      if (!(range.low[d] == 0.0f && range.high[d] == 0.0f)) return true;
+    return false;
+  });
+}
+
+/// Builds all lists, chunks of all of them side by side.
+void Neighbours::search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside) {
+  searches_.clear();
+  chunks_.clear();
   for (std::size_t q = 0; q < directions_.size(); ++q) {
     const auto& d = directions_[q];
     const std::uint32_t dummy = PairList::dummy_index(particles[d.b].size(), grids_[d.b]->images());
-    lists_[q].build(*grids_[d.a], particles[d.a].size(), *grids_[d.b], d.a == d.b, d.radius * (1.0 + skin_), dummy,
-                    padding_, bounds_.dimensions);
+    searches_.push_back({grids_[d.a].get(), particles[d.a].size(), grids_[d.b].get(), d.a == d.b,
+                         d.radius * (1.0 + skin_), dummy, bounds_.dimensions});
+    const std::size_t count = lists_[q].prepare(particles[d.a].size(), padding_);
+    for (std::size_t number = 0; number < count; ++number) chunks_.push_back({q, number});
+  }
+  const auto n = static_cast<std::int64_t>(chunks_.size());
+#pragma omp parallel
+  {
+    PairList::make_scratch(bounds_.dimensions);
+#pragma omp single nowait
+    if (beside) beside();
+#pragma omp for schedule(dynamic, 1)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const Chunk& c = chunks_[static_cast<std::size_t>(i)];
+      lists_[c.list].build_chunk(searches_[c.list], c.number);
+    }
   }
 }
 
@@ -227,7 +254,7 @@ void Neighbours::archive(Archive& a, const std::vector<PhaseParticles>& particle
   a.number("steps of the lists", kept_);
   for (auto& grid : grids_)
     if (grid) grid->archive(a);
-  if (a.loads()) search(particles);
+  if (a.loads()) search(particles, {});
 }
 
 std::size_t Neighbours::bytes() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -21,7 +22,7 @@ class Neighbours {
   /// `spacing` (m): of the particles. `padding`: of the rows of all lists. `skin`: lists reach this fraction beyond an
   /// entry's radius, so that they stay valid while particles move.
   Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin, double spacing,
-             std::size_t padding = simd::native_width<double>);
+             std::size_t padding = simd::width_in_use<double>());
 
   /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most
   /// as wide as given. It depends on positions alone, like everything here.
@@ -29,8 +30,9 @@ class Neighbours {
   double skin() const { return skin_; }
 
   /// Sorts and searches if a pair may have come within reach since the last time, or if `force`. Returns whether it
-  /// did; then particles have new places. The decision depends on positions alone.
-  bool update(std::vector<PhaseParticles>& particles, bool force);
+  /// did; then particles have new places. The decision depends on positions alone. `beside` is called after a sort,
+  /// once, by one thread, while the others search: for work that only reads the new places.
+  bool update(std::vector<PhaseParticles>& particles, bool force, const std::function<void()>& beside = {});
 
   const PairList& list(std::size_t direction) const { return lists_[direction]; }
   const CellGrid& grid(std::size_t phase) const { return *grids_[phase]; }
@@ -53,15 +55,21 @@ class Neighbours {
     void widen(const Range& other);
   };
   void choose_skin();
-  void search(const std::vector<PhaseParticles>& particles);
   static double apart(const Range& a, const Range& b);
   bool still_valid(const std::vector<PhaseParticles>& particles);
   void measure(const PhaseParticles& particles, std::size_t phase);
+  bool has_moved(std::size_t phase) const;
+  void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);
 
   Bounds bounds_;
   std::vector<Direction> directions_;
   std::vector<std::unique_ptr<CellGrid>> grids_;  // null for a phase without entries
   std::vector<PairList> lists_;
+  std::vector<PairList::Search> searches_;  // by list, of the last update
+  struct Chunk {
+    std::size_t list, number;
+  };
+  std::vector<Chunk> chunks_;  // of all lists
   Blocks blocks_;
   std::vector<std::vector<Range>> ranges_;  // by phase, block
   std::vector<Range> run_ranges_;

@@ -1,14 +1,15 @@
 #include "engine/pair_list.hpp"
 
 #include <array>
-#include <string>
 
-#include "base/errors.hpp"
 #include "simd/vec.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
+using Chunk = PairList::Chunk;
+constexpr std::size_t chunk = PairList::chunk;
+constexpr std::uint32_t stride = PairList::stride;
 constexpr int lanes = simd::native_width<float>;
 using Floats = simd::Vec<float, lanes>;
 using Indices = simd::Vec<std::int32_t, lanes>;
@@ -16,14 +17,6 @@ using Indices = simd::Vec<std::int32_t, lanes>;
 // Positions of the search are rounded to float; the radius is widened by more than that rounding.
 constexpr double rounding_allowance = 1.0e-5;
 }  // namespace
-
-std::uint32_t PairList::dummy_index(std::size_t particles, std::size_t images) {
-  if (particles > last_index || images > last_index - particles)
-    throw SceneError("a phase of " + std::to_string(particles) + " particles and " + std::to_string(images) +
-                     " periodic images is too large: a list of neighbours counts to " + std::to_string(last_index) +
-                     "; expected a larger spacing or a smaller domain");
-  return static_cast<std::uint32_t>(particles + images);
-}
 
 /// Candidates of a few particles that stand close together: positions and indices, copied side by side once for all of
 /// them, padded to whole vectors with places out of reach.
@@ -98,80 +91,62 @@ Candidates<Dim>& own_candidates() {
 }
 
 template <int Dim>
-void PairList::build_chunks(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same,
-                            double radius, std::uint32_t dummy) {
-  const auto reach = static_cast<float>(radius * (1.0 + rounding_allowance));
+void search_rows(Chunk& c, const PairList::Search& search, std::size_t number, std::size_t padding) {
+  const CellGrid& grid_a = *search.grid_a;
+  const auto reach = static_cast<float>(search.radius * (1.0 + rounding_allowance));
   const Floats reach_squared(reach * reach);
-  const auto count = static_cast<std::int64_t>(chunks_.size());
   const auto place = [&](std::size_t k) {
     std::array<float, 3> x{};
     for (std::size_t d = 0; d < Dim; ++d) x[d] = grid_a.search_position(static_cast<int>(d))[k];
     return x;
   };
-  // All threads make theirs at the first list: on a busy machine one may get its first chunk many steps later.
-#pragma omp parallel
-  own_candidates<Dim>();
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::int64_t number = 0; number < count; ++number) {
-    Candidates<Dim>& candidates = own_candidates<Dim>();
-    Chunk& c = chunks_[static_cast<std::size_t>(number)];
-    const std::size_t first = static_cast<std::size_t>(number) * chunk, last = std::min(first + chunk, size_a);
-    if (c.begin.size() != last - first + 1) c.begin.resize(last - first + 1);
-    if (c.index.empty()) c.index.resize(chunk * 8);
-    std::uint32_t used = 0;
-    c.entries = 0;
-    for (std::size_t group = first; group < last;) {
-      // Particles of one cell share their candidates.
-      auto low = place(group), high = low;
-      const auto cell = grid_a.cell_of(low);
-      std::size_t end = group + 1;
-      for (; end < last; ++end) {
-        const auto x = place(end);
-        if (grid_a.cell_of(x) != cell) break;
-        for (std::size_t d = 0; d < Dim; ++d) {
-          low[d] = std::min(low[d], x[d]);
-          high[d] = std::max(high[d], x[d]);
-        }
-      }
-      candidates.gather(grid_b, low, high, reach);
-      const std::size_t room = used + (end - group) * (candidates.size() + 2 * lanes + padding_);
-      if (c.index.size() < room) c.index.resize(room + room / 2);
-      std::uint32_t* out = c.index.data();
-      for (; group < end; ++group) {
-        c.begin[group - first] = used;
-        const auto self = static_cast<std::int32_t>(stride * (same ? static_cast<std::uint32_t>(group) : dummy));
-        const std::uint32_t* row_end = candidates.near(place(group), reach_squared, self, out + used);
-        auto q = static_cast<std::uint32_t>(row_end - out);
-        c.entries += q - used;
-        while ((q & (padding_ - 1)) != 0) out[q++] = stride * dummy;
-        used = q;
+  Candidates<Dim>& candidates = own_candidates<Dim>();
+  const std::size_t first = number * chunk, last = std::min(first + chunk, search.size_a);
+  if (c.begin.size() != last - first + 1) c.begin.resize(last - first + 1);
+  if (c.index.empty()) c.index.resize(chunk * 8);
+  std::uint32_t used = 0;
+  c.entries = 0;
+  for (std::size_t group = first; group < last;) {
+    // Particles of one cell share their candidates.
+    auto low = place(group), high = low;
+    const auto cell = grid_a.cell_of(low);
+    std::size_t end = group + 1;
+    for (; end < last; ++end) {
+      const auto x = place(end);
+      if (grid_a.cell_of(x) != cell) break;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        low[d] = std::min(low[d], x[d]);
+        high[d] = std::max(high[d], x[d]);
       }
     }
-    c.begin[last - first] = used;
-    // Head room, so that later lists of about this size allocate nothing.
-    if (c.index.capacity() < used + used / 4 + 64) c.index.reserve(used + used / 2 + 64);
+    candidates.gather(*search.grid_b, low, high, reach);
+    const std::size_t room = used + (end - group) * (candidates.size() + 2 * lanes + padding);
+    if (c.index.size() < room) c.index.resize(room + room / 2);
+    std::uint32_t* out = c.index.data();
+    for (; group < end; ++group) {
+      c.begin[group - first] = used;
+      const auto self =
+          static_cast<std::int32_t>(stride * (search.same ? static_cast<std::uint32_t>(group) : search.dummy));
+      const std::uint32_t* row_end = candidates.near(place(group), reach_squared, self, out + used);
+      auto q = static_cast<std::uint32_t>(row_end - out);
+      c.entries += q - used;
+      while ((q & (padding - 1)) != 0) out[q++] = stride * search.dummy;
+      used = q;
+    }
   }
+  c.begin[last - first] = used;
+  // Head room, so that later lists of about this size allocate nothing.
+  if (c.index.capacity() < used + used / 4 + 64) c.index.reserve(used + used / 2 + 64);
 }
 
-void PairList::build(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
-                     std::uint32_t dummy, std::size_t padding, int dimensions) {
-  padding_ = padding;
-  const std::size_t needed = (size_a + chunk - 1) / chunk;
-  if (chunks_.size() != needed) chunks_.resize(needed);
-  if (dimensions == 2) build_chunks<2>(grid_a, size_a, grid_b, same, radius, dummy);
-  else build_chunks<3>(grid_a, size_a, grid_b, same, radius, dummy);
+void search_chunk(PairList::Chunk& rows, const PairList::Search& what, std::size_t number, std::size_t padding) {
+  if (what.dimensions == 2) search_rows<2>(rows, what, number, padding);
+  else search_rows<3>(rows, what, number, padding);
 }
 
-std::uint64_t PairList::entries() const {
-  std::uint64_t total = 0;
-  for (const auto& c : chunks_) total += c.entries;
-  return total;
+void make_search_scratch(int dimensions) {
+  if (dimensions == 2) own_candidates<2>();
+  else own_candidates<3>();
 }
 
-std::size_t PairList::bytes() const {
-  std::size_t total = 0;
-  for (const auto& c : chunks_) total += c.index.capacity() * 4 + c.begin.capacity() * 4;
-  return total;
-}
-
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -17,7 +17,7 @@ namespace barchan {
 
 class PairList {
  public:
-  static constexpr std::size_t chunk = 1024;  // particles
+  static constexpr std::size_t chunk = 512;  // particles
   /// A neighbour is listed as `stride` times its index: where its record begins in an array of records of that size.
   static constexpr std::uint32_t stride = 8;
   /// The largest index that can be listed in 32 bits: 2^29 - 1.
@@ -26,16 +26,35 @@ class PairList {
   /// The index of the dummy record behind `particles` and `images`. Throws SceneError when a list cannot hold it.
   static std::uint32_t dummy_index(std::size_t particles, std::size_t images);
 
+  /// The rows of `chunk` particles.
+  struct Chunk {
+    AlignedVector<std::uint32_t> index;
+    std::vector<std::uint32_t> begin;
+    std::uint64_t entries = 0;
+  };
   struct Row {
     const std::uint32_t* begin;
     const std::uint32_t* end;
   };
 
-  /// Lists, for each particle of `a`, the particles and images of `grid_b` within `radius` (m), itself left out when
-  /// `same` says that both are one phase. `dummy` is the index that pads rows to multiples of
-  /// `padding`, a power of two.
-  void build(const CellGrid& grid_a, std::size_t size_a, const CellGrid& grid_b, bool same, double radius,
-             std::uint32_t dummy, std::size_t padding, int dimensions);
+  /// What a list is of: for each of `size_a` particles of `grid_a`, the particles and images of `grid_b` within
+  /// `radius` (m), itself left out when `same` says that both are one phase. `dummy`: the index that pads rows.
+  struct Search {
+    const CellGrid* grid_a;
+    std::size_t size_a;
+    const CellGrid* grid_b;
+    bool same;
+    double radius;
+    std::uint32_t dummy;
+    int dimensions;
+  };
+
+  /// Makes room for the rows of `size_a` particles, padded to multiples of `padding`, a power of two; returns the
+  /// number of their chunks. The list is whole when build_chunk has been called for each, by any thread, in any order.
+  std::size_t prepare(std::size_t size_a, std::size_t padding);
+  void build_chunk(const Search& search, std::size_t number);
+  /// To be called by all threads before their first chunk: on a busy machine one may get that many steps later.
+  static void make_scratch(int dimensions);
 
   Row row(std::size_t k) const {
     const auto& c = chunks_[k / chunk];
@@ -47,16 +66,16 @@ class PairList {
   std::size_t bytes() const;
 
  private:
-  struct Chunk {
-    AlignedVector<std::uint32_t> index;
-    std::vector<std::uint32_t> begin;
-    std::uint64_t entries = 0;
-  };
-  template <int Dim>
-  void build_chunks(const CellGrid&, std::size_t, const CellGrid&, bool, double, std::uint32_t);
-
   std::vector<Chunk> chunks_;
-  std::size_t padding_ = simd::native_width<double>;
+  std::size_t padding_ = simd::width_in_use<double>();
 };
+
+BARCHAN_PER_INSTRUCTION_SET(search_chunk,
+                            /// The search of PairList::build_chunk.
+                            void search_chunk(PairList::Chunk& rows, const PairList::Search& what, std::size_t number,
+                                              std::size_t padding);)
+BARCHAN_PER_INSTRUCTION_SET(make_search_scratch,
+                            /// That of PairList::make_scratch.
+                            void make_search_scratch(int dimensions);)
 
 }  // namespace barchan

@@ -89,9 +89,9 @@ class Maker {
     i.inward = w.top ? -1.0 : 1.0;
     i.density = fluid.density;
     // Monaghan's viscosity as a kinematic one, as the fluid's passes have it.
-    const double artificial = fluid.artificial_viscosity * 0.5 * i.radius * layout_.phases[i.phase].sound_speed /
-                              (2.0 * (scene_.dimensions + 2));
-    i.viscosity = fluid.density * (fluid.viscosity + artificial);
+    const double artificial = fluid.fluid().artificial_viscosity * 0.5 * i.radius *
+                              layout_.phases[i.phase].sound_speed / (2.0 * (scene_.dimensions + 2));
+    i.viscosity = fluid.density * (fluid.fluid().viscosity + artificial);
     i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
     const Vec3 size = bounds_.high - bounds_.low;
     const std::size_t columns = whole(w.count, size[0]);

@@ -28,7 +28,7 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 }
 
 Kind kind_of(const Phase& phase) {
-  switch (phase.kind) {
+  switch (phase.kind()) {
     case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
     case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, make<ElasticPhase>};
     case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
@@ -39,11 +39,11 @@ Kind kind_of(const Phase& phase) {
 
 Law law_of(const Phase& a, const Phase& b) {
   const auto is = [&](PhaseKind k, PhaseKind l) {
-    return (a.kind == k && b.kind == l) || (a.kind == l && b.kind == k);
+    return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
   };
   using enum PhaseKind;
   if (is(fluid, fluid)) return Law::fluid;
-  if (is(fluid, wall)) return (a.kind == wall ? a : b).wall_law == WallLaw::adami ? Law::boundary : Law::repulsive;
+  if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
   return Law::contact;
@@ -66,10 +66,10 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
 void classify(const Scene& scene, PlanEntry& e) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
   e.law = law_of(a, b);
-  e.fluid = a.kind == PhaseKind::fluid ? e.a : e.b;
+  e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
   e.other = e.partner(e.fluid);
   e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
-                scene.phases[e.fluid].scheme == FluidScheme::consistent;
+                scene.phases[e.fluid].fluid().scheme == FluidScheme::consistent;
 }
 
 Models make_models(const Scene& scene, const Layout& layout) {

@@ -64,21 +64,21 @@ struct PlanEntry {
 
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.
 struct PhaseRules {
-  double way = 0;                    // m a step
-  double signal_speed = 0;           // m/s; what is faster is wrong
-  bool contacts_limit_speed = false;  // the energy that its contacts can store bounds the speed
-  double density_share = 0;          // |rho/rho0 - 1| at most; 0: the density must be above zero only
-  double idle = 0.1;                 // of the sound speed: motion that disorder alone may cause
+  double way = 0;                       // m a step
+  double signal_speed = 0;              // m/s; what is faster is wrong
+  bool contacts_limit_speed = false;    // the energy that its contacts can store bounds the speed
+  double density_share = 0;             // |rho/rho0 - 1| at most; 0: the density must be above zero only
+  double idle = 0.1;                    // of the sound speed: motion that disorder alone may cause
   bool pressure_stores_energy = false;  // the pressure of the start may become motion
-  bool pairs_up = false;             // its own particles may stand in pairs: they are searched
-  bool stops_at_sides = false;       // a centre beyond a closed side is in the wall
-  bool solid = false;                // its contacts must be looked at the sooner, the faster it is
-  std::string one = "particle";      // of it
-  std::string if_not_finite;         // "raise ...", for each fault what to change
+  bool pairs_up = false;                // its own particles may stand in pairs: they are searched
+  bool stops_at_sides = false;          // a centre beyond a closed side is in the wall
+  bool solid = false;                   // its contacts must be looked at the sooner, the faster it is
+  std::string one = "particle";         // of it
+  std::string if_not_finite;            // "raise ...", for each fault what to change
   std::string if_passed, if_dense;
   std::function<std::string(double speed, double bound)> if_fast;  // "is faster than" what, and what to change
-  std::function<std::string(double speed)> if_far;                        // moves too far in one step
-  std::string stiffness_key;                                              // of its contacts
+  std::function<std::string(double speed)> if_far;                 // moves too far in one step
+  std::string stiffness_key;                                       // of its contacts
 };
 
 struct PlanPhase {
@@ -89,13 +89,13 @@ struct PlanPhase {
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
   double smoothing_length = 0;  // m
   Friction friction = Friction::smooth;  // of a turbulent fluid on it
-  bool moves = true;            // false: its particles stay in place
-  bool flows = false;           // a fluid: has a pressure of its own
-  bool held = false;            // a fluid whose bulk speed is held
-  bool free_surface = false;    // a fluid that does not fill its space
-  bool eddies = false;          // a fluid whose viscosity varies, or with a wall whose stress is given
-  bool enclosed = false;        // a fluid whose mean density is kept
-  std::string enclosure = "";   // why it is enclosed or not, of a fluid
+  bool moves = true;                     // false: its particles stay in place
+  bool flows = false;                    // a fluid: has a pressure of its own
+  bool held = false;                     // a fluid whose bulk speed is held
+  bool free_surface = false;             // a fluid that does not fill its space
+  bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
+  bool enclosed = false;                 // a fluid whose mean density is kept
+  std::string enclosure = "";            // why it is enclosed or not, of a fluid
   std::vector<Field> fields;
   PhaseRules rules;
 };

@@ -95,9 +95,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     : scene(scene_),
       layout(layout_),
       state(state_),
-      neighbours(
-          layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
-          scene_.precision == Precision::mixed ? simd::native_width<float> : simd::native_width<double>),
+      neighbours(layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
+                 scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>()),
       packing(layout_.phases.size()) {
   neighbours.adapt_skin();
   const std::size_t phases = layout.phases.size();
@@ -156,11 +155,12 @@ void CommonWork::schedule(Schedule& s) {
 }
 
 void CommonWork::find_neighbours() {
-  const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search);
+  const auto beside = [this] {
+    for (const auto& call : w_->when_sorted) call();
+  };
+  const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search, beside);
   w_->must_search = false;
-  if (!sorted) return;
-  w_->fit_records();
-  for (const auto& call : w_->when_sorted) call();
+  if (sorted) w_->fit_records();
 }
 
 void CommonWork::pack() {

@@ -32,17 +32,16 @@ class Workspace {
     bool pressure = false;      // with its pressure; else 0
     bool fixed_volume = false;  // the spacing's volume for all; else mass/density
   };
-  std::vector<Packing> packing;                    // by phase
-  std::vector<std::function<void()>> when_sorted;  // called when particles have new places
-  bool must_search = true;                         // sort and search whatever the motion was
-  double kick_time = 0.0;                          // s, of the kick that ends a step
+  std::vector<Packing> packing;  // by phase
+  std::vector<std::function<void()>>
+      when_sorted;          // called when particles have new places, beside the search: may only read them
+  bool must_search = true;  // sort and search whatever the motion was
+  double kick_time = 0.0;   // s, of the kick that ends a step
 
   PhaseParticles& particles(std::size_t phase) { return state.phases[phase]; }
   const PairList& list(int direction) const { return neighbours.list(static_cast<std::size_t>(direction)); }
   /// Records of particles and images of a phase.
-  std::size_t records(std::size_t phase) const {
-    return state.phases[phase].size() + neighbours.grid(phase).images();
-  }
+  std::size_t records(std::size_t phase) const { return state.phases[phase].size() + neighbours.grid(phase).images(); }
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;

@@ -35,8 +35,10 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   if (speed > 0) return speed;
   for (const auto& b : blocks)
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
-  for (const auto& p : scene.phases) {  // of walls
-    const Formula u(p.wall_velocity[0]), v(p.wall_velocity[1]), w(p.wall_velocity[2]);
+  for (const auto& p : scene.phases) {
+    const WallKeys* wall = p.if_wall();
+    if (!wall) continue;
+    const Formula u(wall->velocity[0]), v(wall->velocity[1]), w(wall->velocity[2]);
     for (int k = 0; k <= 16; ++k) {
       const double t = scene.time.end * k / 16.0;
       speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));

@@ -17,9 +17,9 @@ struct Plan : Layout {
   std::vector<StepLimit> limits;
   std::vector<std::string> passes, skipped;  // stages of the schedule with and without tasks
   std::vector<Instrument> instruments;       // what is measured
-  double step() const;                ///< the smallest limit, s (or the fixed step)
-  double fixed_step = 0;              // s, 0: none
-  std::vector<std::string> warnings;  // what the scene may mean otherwise, one sentence each
+  double step() const;                       ///< the smallest limit, s (or the fixed step)
+  double fixed_step = 0;                     // s, 0: none
+  std::vector<std::string> warnings;         // what the scene may mean otherwise, one sentence each
 };
 
 /// Decides. What no law can do was refused when the scene was read (scene/check_physics.cpp). Throws SceneError where

@@ -27,11 +27,13 @@ void warn_of_pairing(const Scene& scene, Plan& plan) {
           "interactions." + e.name +
           ": under the cubic spline particles pair with more than 2.4 spacings, and the run may die of "
           "it; take kernel = \"wendland-c2\"" +
-          (scene.phases[e.a].scheme == FluidScheme::plain ? " or a smaller radius" : ""));
+          (scene.phases[e.a].fluid().scheme == FluidScheme::plain ? " or a smaller radius" : ""));
 }
 
 void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
-  const auto meet = [&](std::size_t a, std::size_t b) { return entry_between(scene, scene.phases[a], scene.phases[b]); };
+  const auto meet = [&](std::size_t a, std::size_t b) {
+    return entry_between(scene, scene.phases[a], scene.phases[b]);
+  };
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& phase = plan.phases[k];
     for (std::size_t w = 0; w < plan.phases.size() && phase.moves; ++w) {
@@ -49,8 +51,8 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
     const PlanPhase& p = plan.phases[k];
     const bool body = std::find(p.fields.begin(), p.fields.end(), Field::stress) != p.fields.end();
     if (body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]))
-      plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" + p.name +
-                              "\" together");
+      plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
+                              p.name + "\" together");
   }
 }
 

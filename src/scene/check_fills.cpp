@@ -85,7 +85,7 @@ void check_sides(const SidesShape& sides, const Phase* phase, const std::string&
       report(dotted, "\"" + side + "\" lies on the periodic axis " + std::string(1, static_cast<char>('x' + axis)) +
                          "; expected a side of an axis that is not periodic");
   }
-  if (phase && phase->kind != PhaseKind::wall)
+  if (phase && phase->kind() != PhaseKind::wall)
     report(dotted, "only walls lie outside the domain; expected a phase of kind wall");
 }
 
@@ -106,15 +106,15 @@ void check_sizes(const Fill& fill, const std::string& shape, const Scene& scene,
 /// What the kind of the phase forbids: walls are moved by their phase, only fluids have a pressure, only loose things
 /// pack closely.
 void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dotted, const Report& report) {
-  const bool wall = phase.kind == PhaseKind::wall;
+  const bool wall = phase.kind() == PhaseKind::wall;
   if (wall && report.has(dotted + ".velocity"))
     report(dotted + ".velocity", "a wall has no initial velocity; expected no such key (phases." + phase.name +
                                      ".velocity lets the wall's surface slide)");
   if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random)
     report(dotted + ".seed", "nothing here is random; expected perturb above 0 or packing = \"random\" beside it");
-  if (phase.kind != PhaseKind::fluid && report.has(dotted + ".pressure"))
+  if (phase.kind() != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
-  const bool continuous = phase.kind == PhaseKind::fluid || phase.kind == PhaseKind::elastic;
+  const bool continuous = phase.kind() == PhaseKind::fluid || phase.kind() == PhaseKind::elastic;
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
@@ -129,8 +129,8 @@ void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const s
                   const Report& report) {
   const Fill& fill = scene.fills[k];
   const auto* bed = std::get_if<BedShape>(&fill.shape);
-  const bool wall = phase.kind == PhaseKind::wall && bed;
-  const bool rest = phase.kind == PhaseKind::fluid && std::holds_alternative<TheRestShape>(fill.shape);
+  const bool wall = phase.kind() == PhaseKind::wall && bed;
+  const bool rest = phase.kind() == PhaseKind::fluid && std::holds_alternative<TheRestShape>(fill.shape);
   const bool tried = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
                                  [](const Fill& f) { return f.packing == Packing::fitted; });  // told there
   if (report.touched(dotted + ".shape") || report.touched(dotted + ".packing")) return;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "scene/checks.hpp"
+#include "scene/keys.hpp"
 
 namespace barchan {
 namespace {
@@ -43,8 +44,8 @@ class Checker {
       const Phase* phase = find_phase(scene_, measured.phase);
       const bool known_kind = phase && !report_.touched("phases." + phase->name + ".kind");
       if (!phase) report_(dotted + ".phase", unknown_phase(measured.phase, scene_));
-      else if (known_kind && phase->kind != PhaseKind::fluid && !(grains && phase->kind == PhaseKind::grains))
-        report_(dotted + ".phase", "\"" + phase->name + "\" is of kind " + kind_word(phase->kind) +
+      else if (known_kind && phase->kind() != PhaseKind::fluid && !(grains && phase->kind() == PhaseKind::grains))
+        report_(dotted + ".phase", "\"" + phase->name + "\" is of kind " + kind_word(phase->kind()) +
                                        "; expected a phase of kind fluid" + (grains ? " or grains" : ""));
     }
   }
@@ -102,8 +103,9 @@ class Checker {
 
   void wall_shear(const WallShear& w, const std::string& dotted) {
     const Phase* fluid = find_phase(scene_, w.phase);
-    if (fluid && fluid->kind == PhaseKind::fluid && fine(dotted + ".phase") &&
-        !report_.touched("phases." + fluid->name) && fluid->viscosity <= 0.0 && fluid->artificial_viscosity <= 0.0)
+    if (fluid && fluid->kind() == PhaseKind::fluid && fine(dotted + ".phase") &&
+        !report_.touched("phases." + fluid->name) && fluid->fluid().viscosity <= 0.0 &&
+        fluid->fluid().artificial_viscosity <= 0.0)
       report_(dotted + ".phase", "\"" + fluid->name +
                                      "\" has no viscosity, so that it shears nothing; expected phases." + fluid->name +
                                      ".viscosity above 0");
@@ -112,9 +114,9 @@ class Checker {
     if (!wall) return report_(dotted + ".wall", unknown_phase(w.wall, scene_));
     if (report_.touched("phases." + wall->name)) return;
     const auto wrong = [&](const std::string& what) { report_(dotted + ".wall", "\"" + wall->name + "\" " + what); };
-    if (wall->kind != PhaseKind::wall)
-      return wrong("is of kind " + kind_word(wall->kind) + "; expected a phase of kind wall");
-    if (wall->slip != Slip::no_slip || wall->wall_law != WallLaw::adami)
+    if (wall->kind() != PhaseKind::wall)
+      return wrong("is of kind " + kind_word(wall->kind()) + "; expected a phase of kind wall");
+    if (wall->wall().slip != Slip::no_slip || wall->wall().law != WallLaw::adami)
       return wrong("lets the fluid slip; expected a wall with slip = \"no-slip\" and law = \"adami\"");
     const std::string side = w.top ? "top" : "bottom";
     const bool stands = std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {

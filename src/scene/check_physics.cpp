@@ -23,21 +23,22 @@ class PhysicsChecker {
         sound_speed_known_(some_speed_is_known()) {}
 
   void fluid(const Phase& fluid) {
+    const FluidKeys& own = fluid.fluid();
     const std::string dotted = place(fluid);
-    if (report_.has(dotted + ".tait-exponent") && fluid.equation_of_state != EquationOfState::tait)
+    if (report_.has(dotted + ".tait-exponent") && own.equation_of_state != EquationOfState::tait)
       tell(dotted + ".tait-exponent",
            "the linear equation of state has no exponent; expected equation-of-state = \"tait\" beside it");
-    if (report_.has(dotted + ".smagorinsky") && fluid.turbulence != Turbulence::smagorinsky)
+    if (report_.has(dotted + ".smagorinsky") && own.turbulence != Turbulence::smagorinsky)
       tell(dotted + ".smagorinsky", "nothing reads it; expected turbulence = \"smagorinsky\" beside it");
-    if (!sound_speed_known_ && !fluid.sound_speed)
+    if (!sound_speed_known_ && !own.sound_speed)
       tell(dotted + ".sound-speed",
            "missing: nothing in the scene moves or weighs, so that none can be chosen; expected sound-speed or "
            "time.largest-speed");
-    const bool eddies = has_eddies(scene_, fluid), plain = fluid.scheme == FluidScheme::plain;
+    const bool eddies = has_eddies(scene_, fluid), plain = own.scheme == FluidScheme::plain;
     if (pairs_known_ && eddies && plain)
       tell(dotted + ".scheme",
            "eddy viscosity, rough walls and given shear stresses need corrected operators; expected \"consistent\"");
-    if (fluid.energy && (!plain || eddies))
+    if (own.energy && (!plain || eddies))
       tell(dotted + ".energy",
            "the internal energy of a fluid is computed with the plain sums only; expected scheme = \"plain\" and no "
            "turbulence beside it, or no such key");
@@ -45,7 +46,7 @@ class PhysicsChecker {
     if (!entry_between(scene_, fluid, fluid))
       tell("interactions." + fluid.name + "-" + fluid.name,
            "missing: a fluid needs an entry with itself; expected " + fluid.name + "-" + fluid.name + " = 2.1");
-    if (fluid.turbulence == Turbulence::mixing_length && !has_ground(fluid))
+    if (own.turbulence == Turbulence::mixing_length && !has_ground(fluid))
       tell(dotted + ".turbulence",
            "a mixing length needs ground, and this fluid touches no wall with friction and no grains; expected such an "
            "entry in [interactions], or \"smagorinsky\"");
@@ -68,12 +69,13 @@ class PhysicsChecker {
   void pair(const Interaction& pair, const Phase& a, const Phase& b) {
     const std::string dotted = "interactions." + pair.a + "-" + pair.b;
     const auto is = [&](PhaseKind k, PhaseKind l) {
-      return (a.kind == k && b.kind == l) || (a.kind == l && b.kind == k);
+      return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };
     using enum PhaseKind;
     if (report_.has(dotted + ".drag") && !is(fluid, grains))
       tell(dotted + ".drag", "only a fluid with grains has a drag; expected no such key here");
-    const bool touches = (a.kind != fluid && b.kind != fluid && !is(elastic, elastic)) || repulsive(a) || repulsive(b);
+    const bool touches =
+        (a.kind() != fluid && b.kind() != fluid && !is(elastic, elastic)) || repulsive(a) || repulsive(b);
     if (pair.radius == 0.0)
       tell(dotted + ".radius", std::string("missing: none is recommended for ") +
                                    (touches ? "repulsive walls" : "elastic bodies") +
@@ -93,14 +95,14 @@ class PhysicsChecker {
 
  private:
   static std::string place(const Phase& phase) { return "phases." + phase.name; }
-  static bool repulsive(const Phase& p) { return p.kind == PhaseKind::wall && p.wall_law == WallLaw::repulsive; }
+  static bool repulsive(const Phase& p) { return p.kind() == PhaseKind::wall && p.wall().law == WallLaw::repulsive; }
 
   void tell(const std::string& dotted, const std::string& what) const {
     if (!report_.touched(dotted)) report_(dotted, what);
   }
 
   void fluids(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) const {
-    const bool consistent = a.scheme == FluidScheme::consistent || b.scheme == FluidScheme::consistent;
+    const bool consistent = a.fluid().scheme == FluidScheme::consistent || b.fluid().scheme == FluidScheme::consistent;
     if ((consistent || has_eddies(scene_, a)) && pair.kernel != KernelKind::wendland_c2 && a.name == b.name)
       tell(report_.has(dotted + ".kernel") ? dotted + ".kernel" : "interactions.kernel",
            "the consistent scheme has no pressure that keeps particles apart, and under the cubic spline they pair (" +
@@ -110,15 +112,16 @@ class PhysicsChecker {
            "a turbulent fluid cannot touch one of another density yet; expected turbulence = \"none\", or no such "
            "entry");
     for (const Phase* fluid : {&a, &b})
-      if (consistent && fluid->scheme == FluidScheme::plain)
+      if (consistent && fluid->fluid().scheme == FluidScheme::plain)
         tell(place(*fluid) + ".scheme",
              "two fluids that meet need one scheme; expected \"consistent\", or no entry " + pair.a + "-" + pair.b);
   }
 
   bool has_ground(const Phase& fluid) const {
     return std::any_of(scene_.phases.begin(), scene_.phases.end(), [&](const Phase& other) {
-      const bool ground = other.kind == PhaseKind::grains || (other.kind == PhaseKind::wall && !repulsive(other) &&
-                                                              other.slip == Slip::no_slip && !other.shear_stress);
+      const bool ground =
+          other.kind() == PhaseKind::grains || (other.kind() == PhaseKind::wall && !repulsive(other) &&
+                                                other.wall().slip == Slip::no_slip && !other.wall().shear_stress);
       return ground && entry_between(scene_, fluid, other);
     });
   }
@@ -133,7 +136,7 @@ class PhysicsChecker {
     return scene_.time.largest_speed > 0.0 || norm(scene_.domain.gravity) > 0.0 ||
            std::any_of(scene_.fills.begin(), scene_.fills.end(), moves) ||
            std::any_of(scene_.phases.begin(), scene_.phases.end(),
-                       [](const Phase& p) { return !is_zero(p.wall_velocity); });
+                       [](const Phase& p) { return p.kind() == PhaseKind::wall && !is_zero(p.wall().velocity); });
   }
 
   const Scene& scene_;
@@ -148,11 +151,11 @@ void check_physics(const Scene& scene, const Report& report) {
   const bool all_known = std::all_of(scene.phases.begin(), scene.phases.end(), kind_known);
   PhysicsChecker checker(scene, report);
   for (const Phase& phase : scene.phases) {
-    if (!all_known || phase.kind != PhaseKind::fluid) continue;
+    if (!all_known || phase.kind() != PhaseKind::fluid) continue;
     checker.fluid(phase);
   }
   for (const Phase& phase : scene.phases)
-    if (all_known && phase.kind == PhaseKind::grains) checker.grains(phase);
+    if (all_known && phase.kind() == PhaseKind::grains) checker.grains(phase);
   for (const Interaction& pair : scene.interactions) {
     const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
     if (a && b && kind_known(*a) && kind_known(*b) && !report.touched("interactions." + pair.a + "-" + pair.b))

@@ -73,13 +73,13 @@ void check_keys(const Scene& scene, const Phase& wall, const Report& report) {
       refuse({".law", ".slip", ".velocity", ".roughness", ".shear-stress"},
              "only a fluid feels it, and no fluid feels this wall; expected an entry of a fluid with \"" + wall.name +
                  "\" in [interactions], or no such key");
-  } else if (wall.wall_law == WallLaw::repulsive) {
+  } else if (wall.wall().law == WallLaw::repulsive) {
     refuse({".slip", ".velocity", ".roughness", ".shear-stress"},
            "a repulsive wall only pushes; expected law = \"adami\", or no such key");
-  } else if (wall.shear_stress) {
+  } else if (wall.wall().shear_stress) {
     refuse({".slip", ".velocity", ".roughness"},
            "the friction of this wall is its shear-stress; expected either the one or the other");
-  } else if (wall.slip == Slip::free_slip) {
+  } else if (wall.wall().slip == Slip::free_slip) {
     refuse({".velocity", ".roughness"},
            "a fluid that slips does not feel it; expected slip = \"no-slip\", or no such key");
   }
@@ -88,7 +88,7 @@ void check_keys(const Scene& scene, const Phase& wall, const Report& report) {
 void check_velocity(const Scene& scene, const Phase& wall, const Report& report) {
   const std::string dotted = "phases." + wall.name + ".velocity";
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
-    const Expression& component = wall.wall_velocity[axis];
+    const Expression& component = wall.wall().velocity[axis];
     if (!component.is_formula() && component.value == 0.0) continue;
     for (std::size_t k = 0; k < scene.fills.size(); ++k) {
       const Fill& fill = scene.fills[k];
@@ -108,7 +108,7 @@ void check_velocity(const Scene& scene, const Phase& wall, const Report& report)
 
 void check_walls(const Scene& scene, const Report& report) {
   for (const Phase& wall : scene.phases) {
-    if (wall.kind != PhaseKind::wall || report.touched("phases." + wall.name + ".kind")) continue;
+    if (wall.kind() != PhaseKind::wall || report.touched("phases." + wall.name + ".kind")) continue;
     check_keys(scene, wall, report);
     if (report.has("phases." + wall.name + ".velocity") && !report.touched("fill") && !report.touched("domain"))
       check_velocity(scene, wall, report);

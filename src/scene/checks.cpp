@@ -57,16 +57,6 @@ const Phase* find_phase(const Scene& scene, const std::string& name) {
   return nullptr;
 }
 
-std::string kind_word(PhaseKind kind) {
-  switch (kind) {
-    case PhaseKind::fluid: return "fluid";
-    case PhaseKind::elastic: return "elastic";
-    case PhaseKind::grains: return "grains";
-    case PhaseKind::wall: return "wall";
-  }
-  return "";
-}
-
 std::string unknown_phase(const std::string& name, const Scene& scene) {
   const std::vector<std::string> names = phase_names(scene);
   return "there is no phase \"" + name + "\"; expected " + (names.empty() ? "a phase of [phases]" : one_of(names)) +
@@ -82,13 +72,12 @@ void check_phases(const Scene& scene, const Report& report) {
   for (const Phase& phase : scene.phases) {
     const std::string dotted = "phases." + phase.name;
     if (report.touched(dotted + ".kind")) continue;
-    const std::string kind = kind_word(phase.kind);
+    const std::string kind = kind_word(phase.kind());
     for (const Key* key : keys_of("phases")) {
       const std::string here = dotted + "." + std::string(key->name);
       if (belongs_to_kind(*key, kind) || !report.has(here)) continue;
-      std::string kinds;
-      for (const char c : key->kinds) kinds += c == '|' ? std::string(" or ") : std::string(1, c);
-      report(here, "not a key of a phase of kind " + kind + "; expected in a phase of kind " + kinds + " only");
+      report(here, "not a key of a phase of kind " + kind + "; expected in a phase of kind " +
+                       kinds_text(*key, " or ") + " only");
     }
     const bool filled =
         std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
@@ -121,14 +110,14 @@ void check_interactions(const Scene& scene, const Report& report) {
         report(dotted, "the pair is given twice; expected either " + name + " or " + other->a + "-" + other->b);
     seen.push_back(&pair);
     const bool walls =
-        find_phase(scene, pair.a)->kind == PhaseKind::wall && find_phase(scene, pair.b)->kind == PhaseKind::wall;
+        find_phase(scene, pair.a)->kind() == PhaseKind::wall && find_phase(scene, pair.b)->kind() == PhaseKind::wall;
     if (walls) report(dotted, "walls do not feel each other; expected at least one phase of another kind");
   }
   for (const Phase& phase : scene.phases) {
     const bool alone = std::none_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
       return pair.a == phase.name || pair.b == phase.name;
     });
-    if (phase.kind == PhaseKind::wall && alone && !report.touched("interactions") &&
+    if (phase.kind() == PhaseKind::wall && alone && !report.touched("interactions") &&
         !report.touched("phases." + phase.name + ".kind"))
       report("phases." + phase.name,
              "nothing feels this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
@@ -179,7 +168,7 @@ void check_hold(const Scene& scene, const Report& report, std::size_t number) {
     report(dotted, "expected either acceleration or hold");
   if (!forcing.hold_bulk_speed || report.touched(dotted + ".hold")) return;
   const Phase* phase = find_phase(scene, forcing.phase);
-  if (phase && phase->kind != PhaseKind::fluid)
+  if (phase && phase->kind() != PhaseKind::fluid)
     report(dotted + ".hold", "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
   const auto& periodic = scene.domain.periodic;
   if (!report.touched("domain.periodic") && !periodic[0] && !periodic[1] && !periodic[2])
@@ -197,7 +186,8 @@ void check_forcings(const Scene& scene, const Report& report) {
     if (report.touched(dotted) || !report.has(dotted)) continue;
     const Phase* phase = find_phase(scene, scene.forcings[k].phase);
     if (!phase) report(dotted, unknown_phase(scene.forcings[k].phase, scene));
-    else if (phase->kind == PhaseKind::wall) report(dotted, "a wall feels no force; expected a phase of another kind");
+    else if (phase->kind() == PhaseKind::wall)
+      report(dotted, "a wall feels no force; expected a phase of another kind");
   }
 }
 

@@ -27,7 +27,6 @@ class Report {
 };
 
 const Phase* find_phase(const Scene& scene, const std::string& name);  ///< null when there is none
-std::string kind_word(PhaseKind kind);
 /// "there is no phase ...; expected ...; did you mean ...".
 std::string unknown_phase(const std::string& name, const Scene& scene);
 

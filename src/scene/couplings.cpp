@@ -12,15 +12,15 @@ const Interaction* entry_between(const Scene& scene, const Phase& a, const Phase
 
 bool meets(const Scene& scene, const Phase& phase, PhaseKind kind) {
   return std::any_of(scene.phases.begin(), scene.phases.end(), [&](const Phase& other) {
-    return other.kind == kind && other.name != phase.name && entry_between(scene, phase, other);
+    return other.kind() == kind && other.name != phase.name && entry_between(scene, phase, other);
   });
 }
 
 bool has_eddies(const Scene& scene, const Phase& fluid) {
-  if (fluid.kind != PhaseKind::fluid) return false;
-  return fluid.turbulence != Turbulence::none ||
+  if (fluid.kind() != PhaseKind::fluid) return false;
+  return fluid.fluid().turbulence != Turbulence::none ||
          std::any_of(scene.phases.begin(), scene.phases.end(), [&](const Phase& wall) {
-           return wall.kind == PhaseKind::wall && (wall.roughness || wall.shear_stress) &&
+           return wall.kind() == PhaseKind::wall && (wall.wall().roughness || wall.wall().shear_stress) &&
                   entry_between(scene, fluid, wall);
          });
 }

@@ -167,7 +167,7 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
     std::vector<Vec3> places = places_of(scene, k, occupied);
     perturb(places, fill, scene);
-    check_places(places, k, scene, phase->kind, occupied);
+    check_places(places, k, scene, phase->kind(), occupied);
     if (k + 1 < scene.fills.size())
       for (const Vec3& x : places)
         (inside_domain(scene, x) ? occupied.inside : occupied.outside).add(x, static_cast<int>(k));

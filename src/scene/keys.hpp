@@ -1,12 +1,16 @@
-// The one table of the keys of a scene file. The reader checks against it, the schema and docs/scenes.md are made from
-// it.
+// The table of the keys of a scene file: one row a key. Reading a document into a Scene (read.cpp), checking it
+// (validate.cpp), `barchan schema` and the tables of docs/scenes.md (schema.cpp) are made from the rows (rows.cpp).
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
+
+#include "scene/scene.hpp"
 
 namespace barchan {
 
@@ -16,7 +20,7 @@ enum Accepts : unsigned {
   as_integer = 1u << 1,
   as_boolean = 1u << 2,
   as_text = 1u << 3,
-  as_word = 1u << 4,             // one of Key::words
+  as_word = 1u << 4,             // one of Slot::words
   as_words = 1u << 5,            // an array of them
   as_vector = 1u << 6,           // as many numbers as the scene has dimensions
   as_formula = 1u << 7,          // a number or a formula in Key::variables
@@ -28,7 +32,7 @@ enum Accepts : unsigned {
   as_named_sections = 1u << 13,  // a table of tables whose names the user chooses
 };
 
-/// NumberBounds of a number; `above` and `below` exclude the bound itself.
+/// Bounds of a number; `above` and `below` exclude the bound itself.
 struct NumberBounds {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
@@ -37,26 +41,69 @@ struct NumberBounds {
   bool hold(double value) const { return value >= at_least && value <= at_most && value > above && value < below; }
 };
 
+/// The member of the scene that a value is written to. Monostate: the section that was read has no such member, as a
+/// disc has no layers.
+using Target =
+    std::variant<std::monostate, bool*, std::optional<bool>*, int*, unsigned*, double*, std::optional<double>*,
+                 std::string*, Vec3*, std::optional<Vec3>*, Expression*, VectorExpression*, std::vector<std::string>*,
+                 std::vector<Vec3>*, std::vector<std::array<double, 2>>*>;
+
+/// A word of a document and the number of what it stands for: an enumerator, an axis, true or false.
+struct Word {
+  std::string_view word;
+  int meaning;
+};
+
+/// What a key is when the document does not give it. Without a value the member stays empty or zero.
+struct Default {
+  std::variant<std::monostate, bool, int, double> value{};  // int: also the meaning of a word
+  std::string_view in_words = "";                           // in place of the value, for the documentation
+  bool required = false;
+};
+
+/// Where a key's value goes. Every function takes the object of the key's section: of "domain" a Domain, of
+/// "fill.shape" a Shape. Those that the key does not need are null. rows.hpp makes them from a pointer to a member.
+struct Slot {
+  unsigned accepts = 0;  // of Accepts
+  Default otherwise{};
+  std::span<const Word> words{};
+  Target (*member)(void* object) = nullptr;             // of numbers, strings, formulas, arrays
+  void (*choose)(void* object, int meaning) = nullptr;  // of words
+  void* (*open)(void* object) = nullptr;  // of sections: the object of the inner section; null: there is none
+  bool always = false;                    // the inner section is there without the document: its defaults count
+  bool fields = false;                    // its words are the names of base/fields.hpp
+  std::span<const PhaseKind> kinds{};     // of phases: the kinds whose type has the member; empty: all
+};
+
 struct Key {
   std::string_view section;  // "" for the top of the file; "phases", "fill.shape.disc", ...
   std::string_view name;
-  unsigned accepts = 0;
-  std::string_view unit = "";       // SI; "" for a pure number or a word
-  std::string_view otherwise = "";  // the default in words; "required" when there is none
+  Slot slot;                   // member that it is read into, type, default
+  std::string_view unit = "";  // SI; "" for a pure number or a word
   std::string_view meaning = "";
   NumberBounds bounds{};
-  std::string_view words = "";      // choices, '|' between them; "@fields": the names of base/fields.hpp
   std::string_view variables = "";  // of a formula
-  std::string_view kinds = "";      // phases only: the kinds that have this key; "" for all
   std::string_view spared = "";     // phases only: kinds that may leave out what the others must give
-  bool required() const { return otherwise == "required" || !spared.empty(); }
+  bool required() const { return slot.otherwise.required; }
+};
+
+/// What [interactions] says for all of its pairs; the object of that section.
+struct MatrixDefaults {
+  std::optional<KernelKind> kernel;
 };
 
 std::span<const Key> all_keys();
 const Key* find_key(std::string_view section, std::string_view name);  ///< null when there is none
 std::vector<const Key*> keys_of(std::string_view section);             ///< in the order of the table
+std::string path_of(const Key& key);                                   ///< SECTION.NAME: the section of its inner keys
 std::vector<std::string> choices(const Key& key);
+std::string kind_word(PhaseKind kind);  ///< `fluid`
 bool belongs_to_kind(const Key& key, std::string_view kind);
+std::string kinds_text(const Key& key, std::string_view between);  ///< `fluid, elastic`; "" for all
+
+/// The default for the documentation: `0.05`, `linear`, `10 times the largest speed`, `required`; "" when there is
+/// none.
+std::string default_text(const Key& key);
 
 /// What the key takes, for messages: `a number > 0 (m)`, `"rows", "staggered" or "random"`, `an array of 2 numbers
 /// (m)`.

@@ -28,33 +28,32 @@ Json array_of(Json items, int least, int most) {
 
 /// One schema for each form that the key's value may have.
 std::vector<Json> forms(const Key& key) {
-  const std::string path =
-      key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
+  const std::string path = path_of(key);
   Json number{{"type", "number"}};
   add_bounds(number, key.bounds);
   Json formula{{"type", Json::array({"number", "string"})}};
   Json words{{"enum", choices(key)}};
   std::vector<Json> all;
-  if (key.accepts & as_number) all.push_back(number);
-  if (key.accepts & as_integer) {
+  if (key.slot.accepts & as_number) all.push_back(number);
+  if (key.slot.accepts & as_integer) {
     all.push_back(number);
     all.back()["type"] = "integer";
   }
-  if (key.accepts & as_boolean) all.push_back({{"type", "boolean"}});
-  if (key.accepts & as_text) all.push_back({{"type", "string"}});
-  if (key.accepts & as_word) all.push_back(words);
-  if (key.accepts & as_words) {
+  if (key.slot.accepts & as_boolean) all.push_back({{"type", "boolean"}});
+  if (key.slot.accepts & as_text) all.push_back({{"type", "string"}});
+  if (key.slot.accepts & as_word) all.push_back(words);
+  if (key.slot.accepts & as_words) {
     all.push_back(array_of(words, 0, 0));
     all.back()["uniqueItems"] = true;
   }
-  if (key.accepts & as_vector) all.push_back(array_of(number, 2, 3));
-  if (key.accepts & as_formula) all.push_back(formula);
-  if (key.accepts & as_formulas) all.push_back(array_of(formula, 2, 3));
-  if (key.accepts & as_points) all.push_back(array_of(array_of(number, 2, 3), 1, 0));
-  if (key.accepts & as_corners) all.push_back(array_of(array_of(number, 2, 2), 3, 0));
-  if (key.accepts & as_section) all.push_back(section_schema(path));
-  if (key.accepts & as_sections) all.push_back(array_of(section_schema(path), 0, 0));
-  if (key.accepts & as_named_sections)
+  if (key.slot.accepts & as_vector) all.push_back(array_of(number, 2, 3));
+  if (key.slot.accepts & as_formula) all.push_back(formula);
+  if (key.slot.accepts & as_formulas) all.push_back(array_of(formula, 2, 3));
+  if (key.slot.accepts & as_points) all.push_back(array_of(array_of(number, 2, 3), 1, 0));
+  if (key.slot.accepts & as_corners) all.push_back(array_of(array_of(number, 2, 2), 3, 0));
+  if (key.slot.accepts & as_section) all.push_back(section_schema(path));
+  if (key.slot.accepts & as_sections) all.push_back(array_of(section_schema(path), 0, 0));
+  if (key.slot.accepts & as_named_sections)
     all.push_back({{"type", "object"},
                    {"propertyNames", {{"pattern", "^[A-Za-z][A-Za-z0-9_]*$"}}},
                    {"additionalProperties", section_schema(path)}});
@@ -66,12 +65,9 @@ std::string description(const Key& key) {
   std::string text(key.meaning);
   if (!key.unit.empty()) text += " Unit: " + std::string(key.unit) + ".";
   if (!key.variables.empty()) text += " Formulas in " + std::string(key.variables) + ".";
-  if (!key.kinds.empty()) {
-    std::string kinds;
-    for (const char c : key.kinds) kinds += c == '|' ? std::string(", ") : std::string(1, c);
-    text += " Phases of kind " + kinds + ".";
-  }
-  if (!key.otherwise.empty() && !key.required()) text += " Default: " + std::string(key.otherwise) + ".";
+  if (!key.slot.kinds.empty()) text += " Phases of kind " + kinds_text(key, ", ") + ".";
+  const std::string otherwise = default_text(key);
+  if (!otherwise.empty() && !key.required()) text += " Default: " + otherwise + ".";
   return text;
 }
 
@@ -88,7 +84,7 @@ Json section_schema(const std::string& section) {
   Json required = Json::array();
   for (const Key* key : keys_of(section)) {
     schema["properties"][std::string(key->name)] = key_schema(*key);
-    if (key->required() && key->kinds.empty() && key->spared.empty()) required.push_back(key->name);
+    if (key->required() && key->slot.kinds.empty() && key->spared.empty()) required.push_back(key->name);
   }
   if (!required.empty()) schema["required"] = required;
   if (section == "interactions") {
@@ -108,12 +104,8 @@ std::string table_row(const Key& key) {
   for (std::size_t at; (at = value.find("of 2 ")) != std::string::npos;) value.erase(at, 5).insert(at, "of ");
   for (std::size_t at; (at = value.find('|')) != std::string::npos;) value[at] = '/';
   std::string meaning(key.meaning);
-  if (!key.kinds.empty()) {
-    std::string kinds;
-    for (const char c : key.kinds) kinds += c == '|' ? std::string(", ") : std::string(1, c);
-    meaning += " (" + kinds + ")";
-  }
-  return "| `" + std::string(key.name) + "` | " + value + " | " + std::string(key.otherwise) + " | " + meaning + " |\n";
+  if (!key.slot.kinds.empty()) meaning += " (" + kinds_text(key, ", ") + ")";
+  return "| `" + std::string(key.name) + "` | " + value + " | " + default_text(key) + " | " + meaning + " |\n";
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ class Validator {
     }
     for (const Key* key : keys_of(section)) {
       if (!key->required() || table.contains(key->name)) continue;
-      const bool of_this_kind = key->kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
+      const bool of_this_kind = key->slot.kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
       const bool spared = !kind.empty() && key->spared == kind;
       const bool meant = std::find(misspelt.begin(), misspelt.end(), key->name) != misspelt.end();
       if (of_this_kind && !spared && !meant)
@@ -87,9 +87,8 @@ class Validator {
 
   /// True when the value has one of the forms that the key accepts; then its contents were checked too.
   void value(const Key& key, const toml::node& node, const std::string& here) {
-    const std::string path =
-        key.section.empty() ? std::string(key.name) : std::string(key.section) + "." + std::string(key.name);
-    const unsigned a = key.accepts;
+    const std::string path = path_of(key);
+    const unsigned a = key.slot.accepts;
     if (const auto* table = node.as_table()) {
       if (a & as_section) return section(*table, path, here);
       if (a & as_named_sections) return named_sections(*table, path, here);
@@ -153,7 +152,7 @@ class Validator {
                                expected(key, dimensions_));
     for (const toml::node& node : array) {
       if (node.is_number()) number(key, node, here);
-      else if (const auto* text = node.as_string(); text && (key.accepts & as_formulas)) formula(key, *text, here);
+      else if (const auto* text = node.as_string(); text && (key.slot.accepts & as_formulas)) formula(key, *text, here);
       else problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
     }
   }
@@ -196,7 +195,7 @@ class Validator {
     const std::string problem = formula_problem(text.get(), key.variables);
     if (problem.empty()) return;
     std::string hint;
-    if (key.accepts & as_word) hint = did_you_mean(nearest(text.get(), choices(key)));
+    if (key.slot.accepts & as_word) hint = did_you_mean(nearest(text.get(), choices(key)));
     problems_.add(text.source(), here, problem + "; expected " + expected(key, dimensions_) + hint);
   }
 

@@ -16,6 +16,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/instructions.hpp"
+
 #if defined(__SSE2__)
 #pragma GCC diagnostic push
 #if !defined(__clang__)  // GCC 12 warns about its own _mm512_undefined_pd()
@@ -30,20 +32,22 @@
 #define BARCHAN_SIMD_INLINE inline __attribute__((always_inline))
 #endif
 
+// One namespace for each instruction set: see base/instructions.hpp.
 namespace barchan::simd {
+inline namespace BARCHAN_TARGET {
 
 // Bytes in the widest register the compiler may use.
-#if defined(__AVX512F__)
-inline constexpr int max_bytes = 64;
-#elif defined(__AVX2__)
-inline constexpr int max_bytes = 32;
-#else
-inline constexpr int max_bytes = 16;
-#endif
+inline constexpr int max_bytes = static_cast<int>(register_bytes(compiled_instructions));
 
 // Lanes of T in one register.
 template <class T>
 inline constexpr int native_width = max_bytes / static_cast<int>(sizeof(T));
+
+// The same of the registers that the hot files use (instructions()), which may be wider than those of this file.
+template <class T>
+constexpr std::size_t width_in_use() {
+  return register_bytes(instructions()) / sizeof(T);
+}
 
 template <class T, int W>
 struct Vec;
@@ -893,4 +897,5 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
   }
 }
 
+}  // namespace BARCHAN_TARGET
 }  // namespace barchan::simd

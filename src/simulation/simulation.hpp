@@ -67,8 +67,8 @@ class Simulation {
   /// What is remarkable so far.
   Warnings warnings() const;
 
-  /// Saves everything that the next step starts from, or loads it into a simulation of the same scene: the run then goes
-  /// on with the same bits. Throws SceneError when what is loaded does not fit.
+  /// Saves everything that the next step starts from, or loads it into a simulation of the same scene: the run then
+  /// goes on with the same bits. Throws SceneError when what is loaded does not fit.
   void archive(Archive& a);
 
  private:

@@ -108,7 +108,8 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
     shortest = std::min(shortest, see_.scene.domain.size[d]);
   }
   for (const auto& p : see_.scene.phases)
-    if (p.shear_stress) pull += norm(*p.shear_stress) * face / shortest;
+    if (const WallKeys* wall = p.if_wall(); wall && wall->shear_stress)
+      pull += norm(*wall->shear_stress) * face / shortest;
   for (const auto& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const PlanPhase& plan = see_.plan.phases[g.phase];

@@ -21,8 +21,8 @@
 
 namespace barchan {
 
-/// What the watch lets through in all phases; models give the bounds of their own (PhaseRules). docs/output.md gives the
-/// reasons.
+/// What the watch lets through in all phases; models give the bounds of their own (PhaseRules). docs/output.md gives
+/// the reasons.
 struct WatchBounds {
   static constexpr double outside = 0.5;              // spacings beyond a side of the domain
   static constexpr double coincidence = 0.2;          // spacings between two grains or two particles of bodies

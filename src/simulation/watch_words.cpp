@@ -70,8 +70,8 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
   if (auto outside = wrong_place(g, k)) return outside;
   const double speed = size_of(p, k, Field::velocity);
   if (!(speed <= g.signal_speed))
-    return " is faster (" + brief(speed) + " m/s, with an acceleration of " + brief(size_of(p, k, Field::acceleration)) +
-           " m/s2) than " + rules.if_fast(speed, g.signal_speed);
+    return " is faster (" + brief(speed) + " m/s, with an acceleration of " +
+           brief(size_of(p, k, Field::acceleration)) + " m/s2) than " + rules.if_fast(speed, g.signal_speed);
   if (!(speed * dt <= g.way))
     return " moves " + brief(speed * dt / plan.spacing) + " spacings in one step (" + brief(speed) + " m/s in " +
            brief(dt) + " s; the bound is " + brief(g.way / plan.spacing) +
@@ -159,8 +159,8 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
                          " from a particle of it; it was too fast or pressed too hard for the contact, or the fills "
                          "overlap: raise " +
                          stiffer + ", or move the fills apart");
-  throw BreakdownError(who(pair.a, first, now) + " is in the same place as " + see_.plan.phases[pair.b].rules.one + " " +
-                       std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
+  throw BreakdownError(who(pair.a, first, now) + " is in the same place as " + see_.plan.phases[pair.b].rules.one +
+                       " " + std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
                        " apart; the contact could not keep them apart, or the fills overlap: raise " + stiffer +
                        ", or move the fills apart");
 }

@@ -24,17 +24,13 @@ class Archive {
 
   /// A number or a plain struct. Throws SceneError when the item that comes next is another one.
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void number(std::string_view name, T& value) {
-    item(name, &value, sizeof(T), 1);
-  }
+  requires std::is_trivially_copyable_v<T>
+  void number(std::string_view name, T& value) { item(name, &value, sizeof(T), 1); }
 
   /// `count` values that are there already.
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void values(std::string_view name, T* first, std::size_t count) {
-    item(name, first, sizeof(T), count);
-  }
+  requires std::is_trivially_copyable_v<T>
+  void values(std::string_view name, T* first, std::size_t count) { item(name, first, sizeof(T), count); }
 
   /// A vector; loading gives it the size that was saved.
   template <class V>

@@ -24,15 +24,22 @@ void PhaseParticles::add(Field field) {
 
 void PhaseParticles::permute(const std::uint32_t* order) {
   const auto n = static_cast<std::int64_t>(size_);
+#pragma omp parallel
+  {
+    // Each column goes into the memory of the one before, which all threads have read by then.
+    double* to = scratch_.data();
+    for (auto& columns : columns_)
+      for (auto& column : columns) {
+        double* from = column.data();
+#pragma omp for schedule(static)
+        for (std::int64_t k = 0; k < n; ++k) to[k] = from[order[k]];
+        to = from;
+      }
+#pragma omp for schedule(static)
+    for (std::int64_t k = 0; k < n; ++k) id_scratch_[static_cast<std::size_t>(k)] = id_[order[k]];
+  }
   for (auto& columns : columns_)
-    for (auto& column : columns) {
-      const double* from = column.data();
-      double* to = scratch_.data();
-#pragma omp parallel for schedule(static)
-      for (std::int64_t k = 0; k < n; ++k) to[k] = from[order[k]];
-      column.swap(scratch_);
-    }
-  for (std::size_t k = 0; k < size_; ++k) id_scratch_[k] = id_[order[k]];
+    for (auto& column : columns) column.swap(scratch_);
   id_.swap(id_scratch_);
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/aligned.hpp"
-#include "base/vec3.hpp"
 #include "base/fields.hpp"
+#include "base/vec3.hpp"
 #include "state/access.hpp"
 #include "state/archive.hpp"
 

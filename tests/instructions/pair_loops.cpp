@@ -49,8 +49,7 @@ void print_pairs(const Cast& cast, double radius) {
 void fluid(int dimensions, FluidScheme scheme, bool mixed) {
   Uniform random(21);
   const double radius = dimensions == 2 ? fluid_radius_2d : fluid_radius_3d;
-  Cast cast = particles(dimensions, radius, mixed ? simd::native_width<float> : simd::native_width<double>,
-                        random);
+  Cast cast = particles(dimensions, radius, mixed ? simd::width_in_use<float>() : simd::width_in_use<double>(), random);
   CompactRecords compact(cast.bounds);
   const std::size_t n = cast.phases[0].size(), images = cast.neighbours.grid(0).images();
   compact.resize(n, images);
@@ -71,7 +70,7 @@ void fluid(int dimensions, FluidScheme scheme, bool mixed) {
 
 void body(bool strain) {
   Uniform random(22);
-  Cast cast = particles(2, body_radius, simd::native_width<double>, random);
+  Cast cast = particles(2, body_radius, simd::width_in_use<double>(), random);
   RecordArray records(StressRecord<2>::size);
   records.resize(cast.phases[0].size(), cast.neighbours.grid(0).images());
   pack_stress(cast.phases[0], records);
@@ -86,7 +85,7 @@ void body(bool strain) {
 void lists(int dimensions) {
   Uniform random(23);
   const double radius = dimensions == 2 ? fluid_radius_2d : fluid_radius_3d;
-  const Cast cast = particles(dimensions, radius, simd::native_width<double>, random);
+  const Cast cast = particles(dimensions, radius, simd::width_in_use<double>(), random);
   print_pairs(cast, radius);
 }
 

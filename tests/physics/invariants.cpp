@@ -53,8 +53,8 @@ Bounds patch(int dimensions, bool periodic) {
 }
 
 /// Two phases mixed at random on a perturbed lattice, the second `ratio` times as dense.
-Cast mixture(int dimensions, bool periodic, double ratio,
-             const std::vector<Field>& fields, const std::vector<Direction>& directions) {
+Cast mixture(int dimensions, bool periodic, double ratio, const std::vector<Field>& fields,
+             const std::vector<Direction>& directions) {
   Uniform random(41);
   const Bounds b = patch(dimensions, periodic);
   std::vector<Vec3> one, other;
@@ -234,8 +234,8 @@ TEST_P(Invariants, ElasticPowerIsTheWorkOfStress) {
 
 TEST_P(Invariants, GrainsKeepMomentumAndAngularMomentum) {
   for (const bool periodic : {true, false}) {
-    Cast cast = mixture(GetParam(), periodic, 5.0,
-                        {Field::velocity, Field::acceleration}, {{0, 0, 1.3}, {0, 1, 1.1}, {1, 0, 1.1}, {1, 1, 1.3}});
+    Cast cast = mixture(GetParam(), periodic, 5.0, {Field::velocity, Field::acceleration},
+                        {{0, 0, 1.3}, {0, 1, 1.1}, {1, 0, 1.1}, {1, 1, 1.3}});
     for (auto& p : cast.phases)
       for (int d = 0; d < GetParam(); ++d) std::fill_n(p.column(Field::acceleration, d), p.size(), 0.0);
     for (std::size_t q = 0; q < 4; ++q) {

@@ -122,7 +122,7 @@ struct Cast {
   std::vector<RecordArray> motion;
 
   Cast(const Bounds& b, std::vector<PhaseParticles> p, std::vector<Direction> d, double skin = 0.1,
-       std::size_t padding = simd::native_width<double>)
+       std::size_t padding = simd::width_in_use<double>())
       : bounds(b),
         phases(std::move(p)),
         directions(std::move(d)),

@@ -127,7 +127,8 @@ TEST(CurvedWall, ContinuesThePressureThatTurnsTheFlow) {
     }
     Cast cast(b, std::move(p), {{0, 1, 3.0}});
     const std::vector<ExtensionSource> fluid{{&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, 1.2}};
-    extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, {Slip::free_slip}, bent ? bend : SurfaceBend{});
+    extend_into_solid(cast.phases[0], cast.motion[0], fluid, Vec3{}, ExtensionRule{Slip::free_slip},
+                      bent ? bend : SurfaceBend{});
     for (std::size_t k = 0; k < solid.size(); ++k) {
       const Vec3 x = position(cast.phases[0], k);
       const double r = norm(x);

@@ -84,7 +84,7 @@ sets::Cast fluid_and_wall(int dimensions, bool mixed) {
           std::move(two),
           {{0, 0, 3.0}, {0, 1, 2.2}},
           0.1,
-          static_cast<std::size_t>(mixed ? simd::native_width<float> : simd::native_width<double>)};
+          mixed ? simd::width_in_use<float>() : simd::width_in_use<double>()};
 }
 
 /// The rates of that fluid: of the laminar pass, or of the turbulent one with all viscosities equal. `roots`: each

@@ -26,14 +26,14 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name(); }
 class FluidPass : public testing::TestWithParam<Case> {};
 
 /// A perturbed periodic fluid (phase 0) and a wall (phase 1) within reach of some of it, all fields random.
-Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd::native_width<double>) {
+Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd::width_in_use<double>()) {
   const Bounds b = dimensions == 2 ? box(2, {9, 8, 0}, {true, true, false}) : box(3, {6, 5, 7}, {true, true, true});
   std::vector<PhaseParticles> two;
   two.push_back(phase(dimensions, lattice(b, 1.0, 0.25, random), 1.2,
                       {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::density_rate,
                        Field::shift_velocity, Field::anisotropy}));
-  two.push_back(phase(dimensions, scattered(b, 25, random), 1.0,
-                      {Field::velocity, Field::density, Field::pressure}, 1000));
+  two.push_back(
+      phase(dimensions, scattered(b, 25, random), 1.0, {Field::velocity, Field::density, Field::pressure}, 1000));
   for (auto& p : two) {
     randomise(p, Field::velocity, -2, 2, random);
     randomise(p, Field::density, 1.0, 1.4, random);
@@ -105,7 +105,7 @@ TEST_P(FluidPass, CoincidentParticlesKeepRatesFinite) {
       x[1] = x[0];
       phases[1].column(Field::position, d)[0] = x[2];
     }
-    const std::size_t padding = mixed ? simd::native_width<float> : simd::native_width<double>;
+    const std::size_t padding = mixed ? simd::width_in_use<float>() : simd::width_in_use<double>();
     Cast cast(first.bounds, std::move(phases), first.directions, 0.1, padding);
     std::vector<CompactRecords> compact(2, CompactRecords(cast.bounds));
     for (std::size_t p = 0; p < 2; ++p) {
@@ -129,7 +129,7 @@ TEST_P(FluidPass, CoincidentParticlesKeepRatesFinite) {
 TEST_P(FluidPass, MixedPrecisionEqualsTheNaiveSumsToSinglePrecision) {
   const auto [dimensions, scheme, kernel] = GetParam();
   Uniform random(11);
-  Cast cast = fluid_and_wall(dimensions, random, simd::native_width<float>);
+  Cast cast = fluid_and_wall(dimensions, random, simd::width_in_use<float>());
   std::vector<CompactRecords> compact(2, CompactRecords(cast.bounds));
   for (std::size_t p = 0; p < 2; ++p) {
     const std::size_t n = cast.phases[p].size(), images = cast.neighbours.grid(p).images();
@@ -208,7 +208,7 @@ TEST(FluidPassFields, NoShiftFieldNoShift) {
 
 /// Two fluids, the light one (phase 0) above y = `surface`, the heavy one below.
 Cast light_over_heavy(int dimensions, double surface, Uniform& random,
-                      std::size_t padding = simd::native_width<double>) {
+                      std::size_t padding = simd::width_in_use<double>()) {
   const Bounds b = dimensions == 2 ? box(2, {9, 10, 0}, {true, false, false}) : box(3, {6, 8, 7}, {true, false, true});
   std::array<std::vector<Vec3>, 2> places;
   for (const Vec3& x : lattice(b, 1.0, 0.2, random)) places[x[1] > surface ? 0 : 1].push_back(x);
@@ -229,7 +229,7 @@ TEST(JoinedFluids, EqualTheNaiveSums) {
     for (const bool mixed : {false, true}) {
       Uniform random(15);
       Cast cast = light_over_heavy(dimensions, dimensions == 2 ? 5.0 : 4.0, random,
-                                   mixed ? simd::native_width<float> : simd::native_width<double>);
+                                   mixed ? simd::width_in_use<float>() : simd::width_in_use<double>());
       for (auto& p : cast.phases) {
         randomise(p, Field::velocity, -2, 2, random);
         randomise(p, Field::pressure, -9000, 9000, random);

@@ -20,8 +20,8 @@ constexpr double rounding = 1e-12;
 constexpr int places[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};  // of a stress in the field: xx yy zz xy yz xz
 
 /// Two touching phases on a perturbed periodic lattice, all fields random.
-Cast two_phases(int dimensions, const std::vector<Field>& fields,
-                std::vector<Direction> directions, std::uint64_t seed) {
+Cast two_phases(int dimensions, const std::vector<Field>& fields, std::vector<Direction> directions,
+                std::uint64_t seed) {
   Uniform random(seed);
   const Bounds b = dimensions == 2 ? box(2, {9, 7, 0}, {true, true, false}) : box(3, {5, 6, 5}, {true, false, true});
   std::vector<Vec3> left, right;
@@ -187,8 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, SolidPasses, testing::Values(2, 3));
 
 TEST_P(SolidPasses, ContactsEqualTheNaiveSums) {
   const int dimensions = GetParam();
-  Cast cast = two_phases(dimensions, {Field::velocity, Field::acceleration},
-                         {{0, 0, 1.1}, {0, 1, 1.3}}, 22);
+  Cast cast = two_phases(dimensions, {Field::velocity, Field::acceleration}, {{0, 0, 1.1}, {0, 1, 1.3}}, 22);
   auto& grains = cast.phases[0];
   std::array<std::vector<double>, 3> expected;
   for (std::size_t k = 0; k < grains.size(); ++k)
@@ -243,8 +242,8 @@ TEST_P(SolidPasses, CoincidentGrainsFeelNothing) {
 TEST_P(SolidPasses, ReactionEqualsTheNaiveSums) {
   const int dimensions = GetParam();
   for (const bool pores : {false, true}) {
-    Cast cast = two_phases(dimensions,
-                           {Field::velocity, Field::density, Field::pressure, Field::acceleration}, {{0, 1, 2.5}}, 23);
+    Cast cast = two_phases(dimensions, {Field::velocity, Field::density, Field::pressure, Field::acceleration},
+                           {{0, 1, 2.5}}, 23);
     auto& grains = cast.phases[0];
     const PhaseParticles& fluid = cast.phases[1];
     std::array<std::vector<double>, 3> expected;
@@ -262,8 +261,8 @@ TEST_P(SolidPasses, ReactionEqualsTheNaiveSums) {
       const Vec3 a = vector(grains, Field::acceleration, k) + 1.0 / grains.mass() * force;
       for (std::size_t d = 0; d < 3; ++d) expected[d].push_back(a[d]);
     }
-    fluid_reaction(grains, cast.motion[0], {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 2.5, 0.8, false},
-                   pores);
+    fluid_reaction(grains, cast.motion[0],
+                   FluidNeighbour{&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 2.5, 0.8, false}, pores);
     for (int d = 0; d < dimensions; ++d)
       EXPECT_LT(difference(grains.column(Field::acceleration, d), expected[static_cast<std::size_t>(d)]), rounding);
   }

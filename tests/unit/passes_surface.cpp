@@ -147,8 +147,7 @@ TEST_P(Finder, EqualsTheSearchThroughAllPairs) {
   const Bounds b = dimensions == 2 ? box(2, {31, 17, 0}, {periodic, periodic, false})
                                    : box(3, {8, 9, 7}, {periodic, periodic, periodic});
   std::vector<PhaseParticles> one;
-  one.push_back(phase(dimensions, lattice(b, 1.0, perturb, random), 1.0,
-                      {Field::wholeness, Field::surface_normal}));
+  one.push_back(phase(dimensions, lattice(b, 1.0, perturb, random), 1.0, {Field::wholeness, Field::surface_normal}));
   randomise(one[0], Field::wholeness, 0, 1, random);
   randomise(one[0], Field::surface_normal, -1, 1, random);
   Cast cast(b, std::move(one), {{0, 0, radius}});
@@ -274,8 +273,7 @@ TEST(Shift, LosesOnlyWhatLeadsOutOfTheFluid) {
 TEST(Tension, IsTakenFromTheSurfaceAlone) {
   const PressureLaw law{1000.0, 20.0, 7.0, 5.0};  // 5 Pa behind all of it
   std::vector<PhaseParticles> one;
-  one.push_back(
-      phase(2, std::vector<Vec3>(4), 1.0, {Field::density, Field::pressure, Field::wholeness}));
+  one.push_back(phase(2, std::vector<Vec3>(4), 1.0, {Field::density, Field::pressure, Field::wholeness}));
   PhaseParticles& p = one[0];
   const std::array<double, 4> density{999.0, 1001.0, 999.0, 1001.0}, chi{0.2, 0.2, 0.4, 0.4};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -349,8 +347,7 @@ TEST(PlainSurfaceScheme, EqualsThePlainSchemeInside) {
       const Bounds b =
           dimensions == 2 ? box(2, {12, 14, 0}, {true, false, false}) : box(3, {7, 11, 7}, {true, false, true});
       std::vector<PhaseParticles> one;
-      one.push_back(
-          phase(dimensions, lattice(b, 1.0, 0.02, random), 1.0, surface ? with_surface() : rated));
+      one.push_back(phase(dimensions, lattice(b, 1.0, 0.02, random), 1.0, surface ? with_surface() : rated));
       for (const Field f : {Field::velocity, Field::pressure}) randomise(one[0], f, -1, 2, random);
       randomise(one[0], Field::density, 0.98, 1.02, random);
       Cast cast(b, std::move(one), {{0, 0, 3.0}});

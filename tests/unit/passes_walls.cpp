@@ -135,7 +135,7 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   const std::vector<ExtensionSource> fluids{
       {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, rest[0], about[0]},
       {&cast.list(1), &cast.motion[2], KernelKind::cubic_spline, 2.2, rest[1], about[1]}};
-  extend_into_solid(wall, cast.motion[0], fluids, gravity, {slip, accelerates, kind == PhaseKind::grains});
+  extend_into_solid(wall, cast.motion[0], fluids, gravity, ExtensionRule{slip, accelerates, kind == PhaseKind::grains});
   const auto n = static_cast<std::size_t>(dimensions);
   std::vector<double> got(wall.size());
   for (std::size_t d = 0; d <= n; ++d) {  // the velocity's components, then the pressure
@@ -151,7 +151,7 @@ class Flat {
   Flat(const Vec3& v_wall, const Vec3& gravity, Slip slip, Velocity&& v_of, Pressure&& p_of)
       : cast_(make(v_wall, v_of, p_of)) {
     const std::vector<ExtensionSource> fluid{{&cast_.list(0), &cast_.motion[1], KernelKind::wendland_c2, 3.0, 1.2}};
-    extend_into_solid(cast_.phases[0], cast_.motion[0], fluid, gravity, {slip});
+    extend_into_solid(cast_.phases[0], cast_.motion[0], fluid, gravity, ExtensionRule{slip});
   }
   template <class F>
   void each(F&& f) const {  // f(x, velocity, pressure) of wall particles near the fluid
@@ -171,10 +171,9 @@ class Flat {
     below.low[1] = -3.0;
     below.high[1] = 0.0;
     std::vector<PhaseParticles> p;
-    p.push_back(phase(2, lattice(below, 1.0, 0.0, random), 1.0,
-                      {Field::velocity, Field::wall_normal, Field::wall_depth}));
-    p.push_back(phase(2, lattice(b, 1.0, 0.25, random), 1.2,
-                      {Field::velocity, Field::density, Field::pressure}, 1000));
+    p.push_back(
+        phase(2, lattice(below, 1.0, 0.0, random), 1.0, {Field::velocity, Field::wall_normal, Field::wall_depth}));
+    p.push_back(phase(2, lattice(b, 1.0, 0.25, random), 1.2, {Field::velocity, Field::density, Field::pressure}, 1000));
     for (std::size_t k = 0; k < p[0].size(); ++k) {
       p[0].column(Field::wall_normal, 1)[k] = 1.0;
       p[0].column(Field::wall_depth)[k] = -position(p[0], k)[1];
@@ -255,7 +254,7 @@ std::array<Vec3, 2> seen_in_grains(bool drag) {
       if (i != 0 || j != 0) about += naive::weight(KernelKind::wendland_c2, 2.5, 2, std::hypot(i, j));
   const std::vector<ExtensionSource> fluid{
       {&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 2.5, 1.2, drag ? about : 0.0}};
-  extend_into_solid(cast.phases[0], cast.motion[0], fluid, {}, {Slip::no_slip, false, true});
+  extend_into_solid(cast.phases[0], cast.motion[0], fluid, Vec3{}, ExtensionRule{Slip::no_slip, false, true});
   std::array<Vec3, 2> seen{};
   for (std::size_t k = 0; k < cast.phases[0].size(); ++k)
     if (const auto id = cast.phases[0].id()[k]; id < 2)

@@ -189,7 +189,7 @@ TEST(Plan, SaysWhichEntriesAreConsistent) {
   for (auto& b : blocks) b = {{{0.1, 0.05, 0}}, {{0, 0, 0}}, {}};
   Scene silent = s;
   silent.time.largest_speed = 10.0;
-  silent.phases[0].turbulence = Turbulence::none;
+  std::get<FluidKeys>(silent.phases[0].own).turbulence = Turbulence::none;
   const Plan plan = make_plan(silent, blocks);
   EXPECT_TRUE(entry(plan, "air-air").consistency.consistent());
   EXPECT_TRUE(entry(plan, "air-air").corrected);

@@ -42,13 +42,13 @@ TEST(SceneReader, ReadsTheDesignsExample) {
   EXPECT_EQ(scene.domain.gravity, (Vec3{0.0, -9.81, 0.0}));
   ASSERT_EQ(scene.phases.size(), 2u);
   EXPECT_EQ(scene.phases[0].name, "air");
-  EXPECT_EQ(scene.phases[0].kind, PhaseKind::fluid);
-  EXPECT_DOUBLE_EQ(scene.phases[0].viscosity, 1.48e-5);
-  EXPECT_EQ(scene.phases[0].turbulence, Turbulence::mixing_length);
-  EXPECT_FALSE(scene.phases[0].sound_speed.has_value());
-  EXPECT_EQ(scene.phases[1].kind, PhaseKind::grains);
+  EXPECT_EQ(scene.phases[0].kind(), PhaseKind::fluid);
+  EXPECT_DOUBLE_EQ(scene.phases[0].fluid().viscosity, 1.48e-5);
+  EXPECT_EQ(scene.phases[0].fluid().turbulence, Turbulence::mixing_length);
+  EXPECT_FALSE(scene.phases[0].fluid().sound_speed.has_value());
+  EXPECT_EQ(scene.phases[1].kind(), PhaseKind::grains);
   EXPECT_DOUBLE_EQ(scene.phases[1].density, 2650);
-  EXPECT_DOUBLE_EQ(scene.phases[1].restitution, 0.7);
+  EXPECT_DOUBLE_EQ(scene.phases[1].grains().restitution, 0.7);
   ASSERT_EQ(scene.interactions.size(), 3u);
   EXPECT_EQ(scene.interactions[1].a, "air");
   EXPECT_EQ(scene.interactions[1].b, "sand");
@@ -76,9 +76,10 @@ TEST(SceneReader, DefaultsAreTheBestWeKnow) {
   const Scene scene =
       parse_scene(dune_text, "s.toml",
                   {"interactions.air-air={}", "interactions.sand-sand={}", "interactions.air-sand={ drag = 1 }"});
-  EXPECT_EQ(scene.phases[0].scheme, FluidScheme::consistent);
-  EXPECT_FALSE(scene.phases[0].enclosed.has_value()) << "the plan decides";
-  EXPECT_EQ(Phase{}.restitution, 0.7) << "a bed comes to rest";
+  EXPECT_EQ(scene.phases[0].fluid().scheme, FluidScheme::consistent);
+  EXPECT_FALSE(scene.phases[0].fluid().enclosed.has_value()) << "the plan decides";
+  EXPECT_EQ(parse_scene(with(dune_text, "restitution = 0.7", ""), "s.toml").phases[1].grains().restitution, 0.7)
+      << "a bed comes to rest";
   for (const Interaction& pair : scene.interactions) {
     const bool contact = pair.a == "sand" && pair.b == "sand";
     EXPECT_EQ(pair.kernel, contact ? KernelKind::cubic_spline : KernelKind::wendland_c2) << pair.a << "-" << pair.b;
@@ -249,6 +250,7 @@ largest-speed = 3
 [output]
 every = 0.25
 history-every = 0.125
+checkpoint-every = 60
 fields = ["density_rate"]
 format = "vtu"
 compress = false
@@ -263,7 +265,7 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.domain.origin, (Vec3{-1, 0, 0.5}));
   EXPECT_EQ(scene.domain.gravity, (Vec3{0.5, -9, 0.25}));
   EXPECT_EQ(scene.domain.periodic, (std::array<bool, 3>{true, false, true}));
-  const Phase& water = scene.phases.at(0);
+  const FluidKeys& water = scene.phases.at(0).fluid();
   EXPECT_EQ(water.sound_speed, 20);
   EXPECT_EQ(water.equation_of_state, EquationOfState::tait);
   EXPECT_EQ(water.tait_exponent, 6);
@@ -275,24 +277,24 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(water.enclosed, true);
   EXPECT_EQ(water.turbulence, Turbulence::smagorinsky);
   EXPECT_EQ(water.smagorinsky, 0.1);
-  EXPECT_EQ(scene.phases.at(1).scheme, FluidScheme::plain);
-  EXPECT_TRUE(scene.phases.at(1).energy);
-  const Phase& steel = scene.phases.at(2);
+  EXPECT_EQ(scene.phases.at(1).fluid().scheme, FluidScheme::plain);
+  EXPECT_TRUE(scene.phases.at(1).fluid().energy);
+  const ElasticKeys& steel = scene.phases.at(2).elastic();
   EXPECT_EQ(steel.young, 206e9);
   EXPECT_EQ(steel.poisson, 0.3);
   EXPECT_EQ(steel.artificial_viscosity, 1);
   EXPECT_EQ(steel.artificial_viscosity_beta, 2);
-  const Phase& sand = scene.phases.at(3);
+  const GrainsKeys& sand = scene.phases.at(3).grains();
   EXPECT_EQ(sand.restitution, 0.8);
   EXPECT_EQ(sand.contact_speed, 12);
   const Phase& floor = scene.phases.at(4);
-  EXPECT_EQ(floor.wall_law, WallLaw::repulsive);
-  const Phase& lid = scene.phases.at(5);
-  EXPECT_EQ(lid.wall_velocity[0].value, 0.25);
-  EXPECT_EQ(lid.wall_velocity[2].formula, "sin(t)");
+  EXPECT_EQ(floor.wall().law, WallLaw::repulsive);
+  const WallKeys& lid = scene.phases.at(5).wall();
+  EXPECT_EQ(lid.velocity[0].value, 0.25);
+  EXPECT_EQ(lid.velocity[2].formula, "sin(t)");
   EXPECT_EQ(lid.roughness, 1e-4);
-  EXPECT_EQ(scene.phases.at(6).slip, Slip::free_slip);
-  EXPECT_EQ(scene.phases.at(7).shear_stress, (Vec3{0.5, 0, -0.25}));
+  EXPECT_EQ(scene.phases.at(6).wall().slip, Slip::free_slip);
+  EXPECT_EQ(scene.phases.at(7).wall().shear_stress, (Vec3{0.5, 0, -0.25}));
   EXPECT_EQ(floor.density, 1000) << "a wall without a density has that of the phase it interacts with";
   EXPECT_EQ(scene.interactions.at(0).kernel, KernelKind::wendland_c2);
   EXPECT_EQ(scene.interactions.at(1).kernel, KernelKind::cubic_spline);
@@ -339,6 +341,7 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.time.safety, 0.5);
   EXPECT_EQ(scene.time.largest_speed, 3);
   EXPECT_EQ(scene.output.history_every, 0.125);
+  EXPECT_EQ(scene.output.checkpoint_every, 60);
   EXPECT_EQ(scene.output.format, FrameFormat::vtu);
   EXPECT_FALSE(scene.output.compress);
   EXPECT_FALSE(scene.output.walls);
@@ -392,7 +395,7 @@ TEST(SceneReader, OverridesReplaceAddAndMake) {
   EXPECT_EQ(scene.time.end, 0.01);
   EXPECT_EQ(scene.spacing, 5e-4);
   EXPECT_EQ(scene.title, "Calm");
-  EXPECT_EQ(scene.phases.at(0).scheme, FluidScheme::consistent);
+  EXPECT_EQ(scene.phases.at(0).fluid().scheme, FluidScheme::consistent);
   EXPECT_EQ(scene.output.format, FrameFormat::vtu);
   EXPECT_EQ(std::get<BedShape>(scene.fills.at(0).shape).dune->height, 0.03);
   EXPECT_FALSE(scene.fills.at(1).log_profile.has_value());

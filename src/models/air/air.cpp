@@ -16,6 +16,7 @@ Air::Air(const Scene& scene, const Layout& layout, std::size_t number)
     : scene_(scene),
       layout_(layout),
       phase_(scene.phases[number]),
+      keys_(phase_.fluid()),
       plan_(layout.phases[number]),
       number_(number),
       pressure_(pressure_law(scene, layout, number)),
@@ -27,16 +28,14 @@ Air::Air(const Scene& scene, const Layout& layout, std::size_t number)
 
 void Air::schedule(Schedule& s) {
   using enum Field;
-  const bool corrected = phase_.scheme == FluidScheme::consistent;
+  const bool corrected = keys_.scheme == FluidScheme::consistent;
   FieldSet own;
   for (const Field f : plan_.fields) own = own | FieldSet{f};
   s.add({stage::kick_and_drift, plan_.name, own, own, [this] { kick_and_drift(); }});
   if (plan_.eddies)
-    s.add({stage::eddies,
-           plan_.name,
-           {position, velocity, eddy_viscosity},
-           {ground_distance},
-           [this] { find_eddies(); }});
+    s.add({stage::eddies, plan_.name, {position, velocity, eddy_viscosity}, {ground_distance}, [this] {
+             find_eddies();
+           }});
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
   if (corrected) writes = writes | FieldSet{anisotropy};
   if (plan_.eddies) {
@@ -47,7 +46,7 @@ void Air::schedule(Schedule& s) {
   s.add({stage::fluid, plan_.name, reads, writes, [this] { rate(); }});
   if (plan_.free_surface)
     s.add({stage::surface, plan_.name, {position, wholeness}, {surface_normal}, [this] { find_surface(); }});
-  if (phase_.energy)
+  if (keys_.energy)
     s.add({stage::energy, plan_.name, {position, velocity, density, pressure}, {energy_rate}, [this] {
              fluid_energy(*particles_, w_->motion[number_], neighbours_);
            }});
@@ -60,7 +59,7 @@ void Air::schedule(Schedule& s) {
 void Air::kick_and_drift() {
   const double dt = w_->state.dt;
   barchan::kick_and_drift(*particles_, 0.5 * dt, dt, &pressure_);
-  if (plan_.free_surface) release_surface(*particles_, surface_wholeness(phase_.scheme), pressure_);
+  if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
   if (keeps_inside_) hold_inside(*particles_, held_);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
 }
@@ -85,11 +84,11 @@ void Air::rate() {
   // c^2 dt makes the one-pass step the leapfrog that its velocities, half a step old, would miss; the rest is
   // delta-SPH's own diffusion.
   const double centring = q.sound_speed * q.sound_speed * w_->state.dt;
-  const double delta = phase_.density_diffusion * q.smoothing_length * q.sound_speed;
+  const double delta = keys_.density_diffusion * q.smoothing_length * q.sound_speed;
   q.diffusivity = StepConstants::theta * centring + delta;
   q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
   const auto rates = [&](const auto& own) {
-    if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, phase_.scheme);
+    if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, keys_.scheme);
     else eddy_rates(*particles_, own, w_->eddies[number_], eddy_neighbours_, q, eddies_);
   };
   if (w_->compact[number_]) rates(*w_->compact[number_]);
@@ -100,7 +99,7 @@ void Air::rate() {
 
 void Air::find_surface() {
   const FluidNeighbour& own = neighbours_.front();
-  surface_->find(*particles_, w_->neighbours.grid(number_), *own.list, own.radius, surface_wholeness(phase_.scheme));
+  surface_->find(*particles_, w_->neighbours.grid(number_), *own.list, own.radius, surface_wholeness(keys_.scheme));
 }
 
 // ---- limits, history, state
@@ -113,7 +112,7 @@ void Air::limits(std::vector<StepLimit>& limits) const {
                     scene_.time.safety * (StepConstants::acoustic * h / (plan_.sound_speed + layout_.largest_speed)),
                     "0.4 h/(c + u): sound crosses a spacing"});
   const double nu =
-      phase_.viscosity + phase_.artificial_viscosity * h * plan_.sound_speed / (2.0 * (layout_.dimensions + 2));
+      keys_.viscosity + keys_.artificial_viscosity * h * plan_.sound_speed / (2.0 * (layout_.dimensions + 2));
   if (nu > 0)
     limits.push_back({"viscous " + plan_.name, scene_.time.safety * (StepConstants::viscous * h * h / nu),
                       "0.125 h2/nu: momentum diffuses"});

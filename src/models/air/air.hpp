@@ -48,6 +48,7 @@ class Air : public Model {
   const Scene& scene_;
   const Layout& layout_;
   const Phase& phase_;
+  const FluidKeys& keys_;  // of phase_
   const PlanPhase& plan_;
   std::size_t number_;
   Workspace* w_ = nullptr;
@@ -73,16 +74,16 @@ class Air : public Model {
   StepLimit viscous_limit_;
 };
 
-/// The viscosity of a pair of particles of two phases, at least one of which is a fluid (Pa s): the fluid's own, with the
-/// artificial one; of two fluids the harmonic mean.
+/// The viscosity of a pair of particles of two phases, at least one of which is a fluid (Pa s): the fluid's own, with
+/// the artificial one; of two fluids the harmonic mean.
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
 
 /// The equation of state of a fluid phase.
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid);
 
-/// The pressure of the start where fills ask for the hydrostatic one, by phase and particle (Pa); empty for a phase whose
-/// fills do not. A fluid under another fluid with which it has an entry carries its weight.
-std::vector<double> pressure_at_rest(const Scene& scene, const Layout& layout,
-                                     const std::vector<ParticleBlock>& blocks, std::size_t fluid);
+/// The pressure of the start where fills ask for the hydrostatic one, by phase and particle (Pa); empty for a phase
+/// whose fills do not. A fluid under another fluid with which it has an entry carries its weight.
+std::vector<double> pressure_at_rest(const Scene& scene, const Layout& layout, const std::vector<ParticleBlock>& blocks,
+                                     std::size_t fluid);
 
 }  // namespace barchan

@@ -19,7 +19,7 @@ namespace {
 void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Layout& layout,
              std::vector<std::string>& warnings) {
   PlanPhase& p = layout.phases[fluid];
-  const std::optional<bool>& said = scene.phases[fluid].enclosed;
+  const std::optional<bool>& said = scene.phases[fluid].fluid().enclosed;
   const Enclosure seen = find_enclosure(scene, layout, blocks, fluid);
   p.enclosed = said.value_or(seen.shut_in);
   p.enclosure = said ? "as the scene says" : seen.why;
@@ -29,14 +29,14 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
                        ", so that the mean density should be free; leave the key out");
 }
 
-std::vector<Field> fields_of(const Phase& phase, const PlanPhase& plan) {
+std::vector<Field> fields_of(const FluidKeys& keys, const PlanPhase& plan) {
   using enum Field;
   std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
-  if (phase.shifting > 0) f.push_back(shift_velocity);
-  if (phase.scheme == FluidScheme::consistent) f.push_back(anisotropy);
+  if (keys.shifting > 0) f.push_back(shift_velocity);
+  if (keys.scheme == FluidScheme::consistent) f.push_back(anisotropy);
   if (plan.free_surface) f.insert(f.end(), {wholeness, surface_normal});
   if (plan.eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
-  if (phase.energy) f.insert(f.end(), {energy, energy_rate});
+  if (keys.energy) f.insert(f.end(), {energy, energy_rate});
   return f;
 }
 
@@ -72,8 +72,8 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
   enclose(scene, blocks, number, layout, warnings);
-  p.fields = fields_of(phase, p);
-  p.sound_speed = phase.sound_speed.value_or(10.0 * layout.largest_speed);
+  p.fields = fields_of(phase.fluid(), p);
+  p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
   if (p.sound_speed <= 0)
     throw SceneError(scene.file + ": phases." + p.name +
                      ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
@@ -82,19 +82,19 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
 }
 
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid) {
-  const Phase& s = scene.phases[fluid];
-  const double c = layout.phases[fluid].sound_speed;
-  return {s.density, c, s.equation_of_state == EquationOfState::linear ? 1.0 : s.tait_exponent,
-          s.background_pressure * s.density * c * c};
+  const FluidKeys& keys = scene.phases[fluid].fluid();
+  const double c = layout.phases[fluid].sound_speed, density = scene.phases[fluid].density;
+  return {density, c, keys.equation_of_state == EquationOfState::linear ? 1.0 : keys.tait_exponent,
+          keys.background_pressure * density * c * c};
 }
 
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b) {
   const auto of = [&](std::size_t k) {
-    const Phase& s = scene.phases[k];
+    const FluidKeys& keys = scene.phases[k].fluid();
     const PlanPhase& p = layout.phases[k];
     const double artificial =
-        s.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (layout.dimensions + 2));
-    return s.density * (s.viscosity + artificial);
+        keys.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (layout.dimensions + 2));
+    return scene.phases[k].density * (keys.viscosity + artificial);
   };
   const bool a_fluid = layout.phases[a].flows, b_fluid = layout.phases[b].flows;
   if (a_fluid && b_fluid) return a == b ? of(a) : 2.0 * of(a) * of(b) / std::max(of(a) + of(b), 1e-300);
@@ -109,10 +109,10 @@ void Air::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double pressure = !rest.empty() ? rest[i] : block.pressure.empty() ? 0.0 : block.pressure[i];
     p.column(Field::density)[i] =
-        phase_.equation_of_state == EquationOfState::linear
+        keys_.equation_of_state == EquationOfState::linear
             ? phase_.density + pressure / c2
             : phase_.density *
-                  std::pow(1.0 + phase_.tait_exponent * pressure / (phase_.density * c2), 1.0 / phase_.tait_exponent);
+                  std::pow(1.0 + keys_.tait_exponent * pressure / (phase_.density * c2), 1.0 / keys_.tait_exponent);
     p.column(Field::pressure)[i] = pressure_(p.column(Field::density)[i]);
   }
 }
@@ -160,7 +160,7 @@ double Air::largest_speed() const {
 void Air::attach(Workspace& w) {
   w_ = &w;
   particles_ = &w.particles(number_);
-  const bool corrected = phase_.scheme == FluidScheme::consistent;
+  const bool corrected = keys_.scheme == FluidScheme::consistent;
   // The consistent operators weigh neighbours by the spacing's volume: what they sum is exact for any weights.
   w.packing[number_] = {true, corrected};
   auto& q = parameters_;
@@ -169,8 +169,8 @@ void Air::attach(Workspace& w) {
   q.smoothing_length = plan_.smoothing_length;
   const double speed = largest_speed();
   // Strengths measured in docs/method.md: 2 in the consistent scheme, 4 in the plain one, whose sums need more order.
-  const double pace = speed + phase_.viscosity / q.smoothing_length;
-  q.shift_speed = (corrected ? 2.0 : 4.0) * phase_.shifting * pace;
+  const double pace = speed + keys_.viscosity / q.smoothing_length;
+  q.shift_speed = (corrected ? 2.0 : 4.0) * keys_.shifting * pace;
   q.shift_limit = 0.2 * pace;
   q.gravity = scene_.domain.gravity;
   q.acceleration = forces_.uniform();
@@ -208,7 +208,7 @@ void Air::bind_entries() {
         pair_viscosity(scene_, layout_, number_, other),
         solid || other == number_,
         w_->compact[other].get(),
-        !solid && other != number_ && phase_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
+        !solid && other != number_ && keys_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);
@@ -220,11 +220,11 @@ void Air::bind_entries() {
 
 /// Its entries again with the friction of each, and the ground under it.
 void Air::bind_eddies() {
-  eddies_.model = phase_.turbulence;
+  eddies_.model = keys_.turbulence;
   eddies_.density = phase_.density;
   eddies_.viscosity = neighbours_.front().viscosity / phase_.density;
   eddies_.spacing = layout_.spacing;
-  eddies_.length = phase_.smagorinsky * layout_.spacing;
+  eddies_.length = keys_.smagorinsky * layout_.spacing;
   Sides sides;
   bool particles = false;
   for (const auto& n : neighbours_) {
@@ -235,7 +235,7 @@ void Air::bind_eddies() {
         bind_friction(e, other, sides, particles);
     eddy_neighbours_.push_back(e);
   }
-  if (phase_.turbulence == Turbulence::mixing_length && ground_phases_.empty())
+  if (keys_.turbulence == Turbulence::mixing_length && ground_phases_.empty())
     throw SceneError(scene_.file + ": phases." + plan_.name +
                      ".turbulence: a mixing length needs ground, and this fluid touches no wall with friction and no "
                      "grains; expected such an entry in [interactions], or \"smagorinsky\"");
@@ -251,19 +251,20 @@ void Air::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool&
     if (layout_.phases[other].eddies) e.eddies = &w_->eddies[other];
     e.root = std::sqrt(e.pair.viscosity);
   }
-  e.stress = o.shear_stress.value_or(Vec3{});
-  const bool wall = !layout_.phases[other].moves;
-  if (wall) e.wall = &w_->particles(other);
+  const WallKeys* wall = o.if_wall();
+  if (wall) {
+    e.wall = &w_->particles(other);
+    e.stress = wall->shear_stress.value_or(Vec3{});
+    e.roughness = wall->roughness.value_or(0.0);
+  }
   if (e.friction == Friction::grains) {
     // A form drag is the whole friction of the grains. The logarithmic law of rough ground beside it would take the
     // same momentum twice.
     const bool drag = std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& entry) {
       return entry.drag > 0 && entry.has(number_) && entry.has(other);
     });
-    e.roughness = eddies_.roughness = drag ? 0.0 : o.roughness.value_or(layout_.spacing / 30.0);
+    e.roughness = eddies_.roughness = drag ? 0.0 : o.grains().roughness.value_or(layout_.spacing / 30.0);
     eddies_.grain_reach = std::max(eddies_.grain_reach, e.pair.radius);
-  } else {
-    e.roughness = o.roughness.value_or(0.0);
   }
   if (e.friction != Friction::rough && e.friction != Friction::smooth && e.friction != Friction::grains) return;
   ground_phases_.push_back(&w_->particles(other));

@@ -51,21 +51,26 @@ struct EddyParameters {
 /// Writes ground_distance and the records. Returns the largest kinematic viscosity, m2/s.
 double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDistance& ground, const EddyParameters& e);
 
-/// As fluid_rates of the consistent scheme, with div (mu grad v) for mu lap v; renews eddy_viscosity.
-///   div (mu grad v) = -2 Dim [ sum V F w mu_ab v_ab - T . C ] / (tr M + A:M),   T = (sum V F mu_ab v_ab (x) r) M^-1
-/// T is the flux mu grad v as the pairs have it, and |T|/rho = (nu + nu_t)|S| gives the next step's nu_t. With the
-/// pair's logarithmic mean, a logarithmic profile is an exact solution on any arrangement of particles, up to a wall
-/// that enters by its stress: n the direction to the fluid, mu_ab v_ab = tau (r.n) for its pairs.
-/// In two dimensions the motion records of fluids with eddies hold their roots (give_roots); in three, `eddies` does.
-void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
-                std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);
+BARCHAN_PER_INSTRUCTION_SET(
+    eddy_rates,
+    /// As fluid_rates of the consistent scheme, with div (mu grad v) for mu lap v; renews eddy_viscosity.
+    ///   div (mu grad v) = -2 Dim [ sum V F w mu_ab v_ab - T . C ] / (tr M + A:M),   T = (sum V F mu_ab v_ab (x) r)
+    ///   M^-1
+    /// T is the flux mu grad v as the pairs have it, and |T|/rho = (nu + nu_t)|S| gives the next step's nu_t. With the
+    /// pair's logarithmic mean, a logarithmic profile is an exact solution on any arrangement of particles, up to a
+    /// wall that enters by its stress: n the direction to the fluid, mu_ab v_ab = tau (r.n) for its pairs. In two
+    /// dimensions the motion records of fluids with eddies hold their roots (give_roots); in three, `eddies` does.
+    void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
+                    std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);
 
-/// The same in mixed precision: differences and a row's sums in single, all else in double.
-void eddy_rates(PhaseParticles& fluid, const CompactRecords& own, const EddyRecords& eddies,
-                std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);
+    /// The same in mixed precision: differences and a row's sums in single, all else in double.
+    void eddy_rates(PhaseParticles& fluid, const CompactRecords& own, const EddyRecords& eddies,
+                    std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e);)
 
-/// Adds to a grain's acceleration what the logarithmic law adds to the friction of fluid_reaction.
-void eddy_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid,
-                   const EddyRecords& eddies, double molecular);
+BARCHAN_PER_INSTRUCTION_SET(
+    eddy_reaction,
+    /// Adds to a grain's acceleration what the logarithmic law adds to the friction of fluid_reaction.
+    void eddy_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid,
+                       const EddyRecords& eddies, double molecular);)
 
 }  // namespace barchan

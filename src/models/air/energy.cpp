@@ -1,8 +1,9 @@
 #include "models/air/energy.hpp"
 
+#include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -12,8 +13,9 @@ void energy(PhaseParticles& fluid, const RecordArray& own, std::span<const Fluid
   const double* rho = fluid.column(Field::density);
   double* rate = fluid.column(Field::energy_rate);
   const auto n = static_cast<std::int64_t>(fluid.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
+  Shares shares(n, 256);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
     const auto k = static_cast<std::size_t>(i);
     const double* record = own[k];
     std::array<Lanes, Dim> x, v;
@@ -56,4 +58,4 @@ void fluid_energy(PhaseParticles& fluid, const RecordArray& own, std::span<const
   fluid.dimensions() == 2 ? energy<2>(fluid, own, neighbours) : energy<3>(fluid, own, neighbours);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -4,13 +4,14 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 #include "laws/consistent_fluid.hpp"
 #include "laws/joined_fluids.hpp"
 #include "laws/plain_fluid.hpp"
 #include "models/air/fluid_rows.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -41,8 +42,9 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
   const RateColumns<Dim, L::corrected> columns(fluid);
   const std::size_t n = fluid.size();
   const std::int64_t blocks = FourOf::blocks(n);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t block = 0; block < blocks; ++block) {
+  Shares shares(blocks, 64);
+#pragma omp parallel
+  for (const std::int64_t block : shares) {
     const FourOf at(block, n);
     const auto own_of = [&](std::size_t k) __attribute__((always_inline)) {
       auto own = load_own<Dim, Law>(own_records + k * record_size);
@@ -88,8 +90,9 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   const double inverse_mass = 1.0 / solid.mass();
   const ReadyKernel kernel(e.kernel, e.radius, Dim);
   const auto n = static_cast<std::int64_t>(solid.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
+  Shares shares(n, 256);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
     const auto k = static_cast<std::size_t>(i);
     const auto row = e.list->row(k);
     if (row.begin == row.end) continue;
@@ -136,4 +139,4 @@ void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNe
   else reaction<3>(solid, own, fluid, pores);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

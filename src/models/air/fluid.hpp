@@ -42,17 +42,21 @@ struct FluidParameters {
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.
 constexpr double surface_wholeness(FluidScheme scheme) { return scheme == FluidScheme::consistent ? 0.33 : 0.55; }
 
-/// Writes acceleration, density_rate and (if the field is there) shift_velocity of `fluid`. `own` are its records.
-void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
-                 const FluidParameters& parameters, FluidScheme scheme);
-/// The same in mixed precision: differences and a row's sums in single, all else in double.
-void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
-                 const FluidParameters& parameters, FluidScheme scheme);
+BARCHAN_PER_INSTRUCTION_SET(
+    fluid_rates,
+    /// Writes acceleration, density_rate and (if the field is there) shift_velocity of `fluid`. `own` are its records.
+    void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
+                     const FluidParameters& parameters, FluidScheme scheme);
+    /// The same in mixed precision: differences and a row's sums in single, all else in double.
+    void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
+                     const FluidParameters& parameters, FluidScheme scheme);)
 
-/// Adds to the acceleration of a solid's particles what the fluid does to them, the reaction to fluid_rates of the
-/// plain scheme: m_b dv_b = -m_a dv_a for every pair. With `pores`, the pressure is closed behind a particle that has
-/// fluid on one side only by its own extended pressure (air in the pores of a bed), so that a uniform pressure lifts
-/// nothing.
-void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores);
+BARCHAN_PER_INSTRUCTION_SET(
+    fluid_reaction,
+    /// Adds to the acceleration of a solid's particles what the fluid does to them, the reaction to fluid_rates of the
+    /// plain scheme: m_b dv_b = -m_a dv_a for every pair. With `pores`, the pressure is closed behind a particle that
+    /// has fluid on one side only by its own extended pressure (air in the pores of a bed), so that a uniform pressure
+    /// lifts nothing.
+    void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores);)
 
 }  // namespace barchan

@@ -15,30 +15,40 @@ GroundDistance::GroundDistance(const Bounds& bounds, const Sides& sides, double 
     diagonal_ += size * size;
     count_[d] = std::max(1, static_cast<int>(std::floor(size / spacing + 1e-9)));
     side_[d] = size / count_[d];
-    cells *= static_cast<std::size_t>(count_[d]);
+    halo_[d] = count_[d] > 1 ? 1 : 0;
+    stride_[d] = static_cast<std::ptrdiff_t>(cells);
+    cells *= static_cast<std::size_t>(count_[d] + 2 * halo_[d]);
   }
   diagonal_ = std::sqrt(diagonal_);
-  if (has_particles) {
-    nearest_.assign(cells, -1);
-    crowd_.assign(cells, 0);
-  }
+  if (!has_particles) return;
+  nearest_.assign(cells, -1);
+  crowd_.assign(cells, 0);
+  stale_.assign(cells + 2 * margin(), 0);
+  // Those above each other one after another, as they mostly have the same ground.
+  for (int x = -halo_[0]; x <= halo_[0]; ++x)
+    for (int y = -halo_[1]; y <= halo_[1]; ++y)
+      for (int z = -halo_[2]; z <= halo_[2]; ++z) around_.push_back(x * stride_[0] + y * stride_[1] + z * stride_[2]);
 }
 
-std::size_t GroundDistance::cell_of(const Vec3& x, std::array<int, 3>& at) const {
-  std::size_t cell = 0;
+template <int Dim>
+std::size_t GroundDistance::cell_of(const Vec3& x, Place& at) const {
   at = {0, 0, 0};
-  for (std::size_t d = static_cast<std::size_t>(bounds_.dimensions); d-- > 0;) {
+  for (std::size_t d = 0; d < Dim; ++d)
     at[d] = std::clamp(static_cast<int>(std::floor((x[d] - bounds_.low[d]) / side_[d])), 0, count_[d] - 1);
-    cell = cell * static_cast<std::size_t>(count_[d]) + static_cast<std::size_t>(at[d]);
-  }
-  return cell;
+  return number(at);
 }
 
+std::size_t GroundDistance::number(const Place& at) const {
+  std::ptrdiff_t cell = 0;
+  for (std::size_t d = 0; d < 3; ++d) cell += (at[d] + halo_[d]) * stride_[d];
+  return static_cast<std::size_t>(cell);
+}
+
+template <int Dim>
 double GroundDistance::squared(const Vec3& x, std::int32_t seed) const {
-  if (seed < 0) return 1e300;
   const Vec3& s = seeds_[static_cast<std::size_t>(seed)];
   double sum = 0.0;
-  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
+  for (std::size_t d = 0; d < Dim; ++d) {
     double r = x[d] - s[d];
     const double period = bounds_.high[d] - bounds_.low[d];
     if (bounds_.periodic[d] && std::abs(r) > 0.5 * period) r -= period * std::round(r / period);
@@ -47,40 +57,36 @@ double GroundDistance::squared(const Vec3& x, std::int32_t seed) const {
   return sum;
 }
 
-namespace {
-
-/// Calls f(cell) for the cells about `at`, periodic images taken back; those above each other one after another, as
-/// they mostly have the same ground.
+/// Calls f(number) for the cells of the halo that repeat the cell `at` of the grid, over periodic sides.
 template <class F>
-void around(const std::array<int, 3>& at, const std::array<int, 3>& count, const std::array<bool, 3>& periodic, F&& f) {
-  std::array<std::array<int, 3>, 3> places;  // by axis: before, at, after; -1: none
-  for (std::size_t d = 0; d < 3; ++d)
-    for (int k = 0; k < 3; ++k) {
-      int b = at[d] + k - 1;
-      if (b < 0) b = periodic[d] ? count[d] - 1 : -1;
-      else if (b >= count[d]) b = periodic[d] ? 0 : -1;
-      places[d][static_cast<std::size_t>(k)] = b;
-    }
-  const std::size_t first = count[2] > 1 ? 0 : 1, last = count[2] > 1 ? 2 : 1;
-  const auto row = static_cast<std::size_t>(count[0]), layer = row * static_cast<std::size_t>(count[1]);
-  for (const int x : places[0])
-    for (const int y : places[1])
-      for (std::size_t k = first; k <= last; ++k)
-        if (x >= 0 && y >= 0 && places[2][k] >= 0)
-          f(static_cast<std::size_t>(places[2][k]) * layer + static_cast<std::size_t>(y) * row +
-            static_cast<std::size_t>(x));
+void GroundDistance::images(const Place& at, F&& f) const {
+  std::array<std::array<int, 3>, 3> places;
+  std::array<std::size_t, 3> n{1, 1, 1};
+  for (std::size_t d = 0; d < 3; ++d) {
+    places[d][0] = at[d];
+    if (halo_[d] == 0 || !bounds_.periodic[d]) continue;
+    if (at[d] == 0) places[d][n[d]++] = count_[d];
+    if (at[d] == count_[d] - 1) places[d][n[d]++] = -1;
+  }
+  for (std::size_t z = 0; z < n[2]; ++z)
+    for (std::size_t y = 0; y < n[1]; ++y)
+      for (std::size_t x = 0; x < n[0]; ++x)
+        if (x + y + z > 0) f(number({places[0][x], places[1][y], places[2][z]}));
 }
-
-}  // namespace
 
 void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
   if (nearest_.empty()) return;
+  bounds_.dimensions == 2 ? refresh<2>(phases) : refresh<3>(phases);
+}
+
+template <int Dim>
+void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
   std::fill(nearest_.begin(), nearest_.end(), -1);
   std::fill(crowd_.begin(), crowd_.end(), std::uint8_t{0});
   seeds_.clear();
   surfaces_ = false;
   normals_.clear();
-  std::array<int, 3> at{};
+  Place at{};
   const auto each = [&](auto&& f) {
     for (const PhaseParticles* p : phases)
       for (std::size_t k = 0; k < p->size(); ++k) {
@@ -99,54 +105,78 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
       }
   };
   each([&](const PhaseParticles&, const Vec3& x, const Vec3&) {
-    auto& n = crowd_[cell_of(x, at)];
+    auto& n = crowd_[cell_of<Dim>(x, at)];
     n = static_cast<std::uint8_t>(std::min(n + 1, 255));
+    images(at, [&](std::size_t image) { crowd_[image] = n; });
   });
   each([&](const PhaseParticles& p, const Vec3& x, const Vec3& normal) {
-    const std::size_t cell = cell_of(x, at);
+    const std::size_t cell = cell_of<Dim>(x, at);
     if (!p.has(Field::wall_depth) && !p.has(Field::stress)) {  // grains: neither walls nor bodies
       int crowd = 0;
-      around(at, count_, bounds_.periodic, [&](std::size_t b) { crowd += crowd_[b]; });
+      for (const std::ptrdiff_t step : around_) crowd += crowd_[cell + static_cast<std::size_t>(step)];
       if (crowd < 4) return;
     }
-    if (nearest_[cell] < 0) nearest_[cell] = static_cast<std::int32_t>(seeds_.size());
+    if (nearest_[cell] < 0) give(cell, at, static_cast<std::int32_t>(seeds_.size()));
     seeds_.push_back(x);
     normals_.push_back(normal);
     surfaces_ = surfaces_ || dot(normal, normal) > 0.0;
   });
-  propagate();
+  propagate<Dim>();
 }
 
-/// Sweeps to and fro until nothing changes (a few times; once more for each period crossed).
-void GroundDistance::propagate() {
-  const auto visit = [&](const std::array<int, 3>& at) {
-    const auto c = static_cast<std::size_t>((static_cast<std::int64_t>(at[2]) * count_[1] + at[1]) * count_[0] + at[0]);
-    Vec3 centre{};
-    for (std::size_t d = 0; d < 3; ++d) centre[d] = bounds_.low[d] + (at[d] + 0.5) * side_[d];
-    std::int32_t mine = nearest_[c], last = mine;
-    double least = squared(centre, mine);
-    around(at, count_, bounds_.periodic, [&](std::size_t b) {
-      const std::int32_t theirs = nearest_[b];
-      if (theirs < 0 || theirs == mine || theirs == last) return;
-      last = theirs;
-      const double s = squared(centre, theirs);
-      if (s < least) {
-        least = s;
-        mine = theirs;
-      }
-    });
-    const bool changed = mine != nearest_[c];
-    nearest_[c] = mine;
-    return changed;
+/// Writes the seed into a cell and its images; the cells about them must be visited again.
+void GroundDistance::give(std::size_t cell, const Place& at, std::int32_t seed) {
+  const auto write = [&](std::size_t c) {
+    nearest_[c] = seed;
+    std::uint8_t* stale = stale_.data() + c + margin();
+    for (const std::ptrdiff_t step : around_) stale[step] = 1;
   };
+  write(cell);
+  images(at, write);
+}
+
+/// The nearest of the cell's own seed and those of the cells about it, by the distance to its centre.
+template <int Dim>
+bool GroundDistance::visit(std::size_t cell, const Place& at) {
+  Vec3 centre{};
+  for (std::size_t d = 0; d < Dim; ++d) centre[d] = bounds_.low[d] + (at[d] + 0.5) * side_[d];
+  const std::int32_t before = nearest_[cell];
+  std::int32_t mine = before, last = before;
+  double least = mine < 0 ? 1e300 : squared<Dim>(centre, mine);
+  for (const std::ptrdiff_t step : around_) {
+    const std::int32_t theirs = nearest_[cell + static_cast<std::size_t>(step)];
+    if (theirs < 0 || theirs == mine || theirs == last) continue;
+    last = theirs;
+    const double s = squared<Dim>(centre, theirs);
+    if (s < least) {
+      least = s;
+      mine = theirs;
+    }
+  }
+  if (mine == before) return false;
+  give(cell, at, mine);
+  return true;
+}
+
+/// Sweeps to and fro until nothing changes (a few times; once more for each period crossed). A cell about which nothing
+/// has changed since its last visit would not change: it is passed over.
+template <int Dim>
+void GroundDistance::propagate() {
   const auto sweep = [&](bool back) {
     bool changed = false;
     for (int k = 0; k < count_[2]; ++k)
-      for (int j = 0; j < count_[1]; ++j)
-        for (int i = 0; i < count_[0]; ++i)
-          changed = visit(back ? std::array<int, 3>{count_[0] - 1 - i, count_[1] - 1 - j, count_[2] - 1 - k}
-                               : std::array<int, 3>{i, j, k}) ||
-                    changed;
+      for (int j = 0; j < count_[1]; ++j) {
+        Place at{0, back ? count_[1] - 1 - j : j, back ? count_[2] - 1 - k : k};
+        const std::size_t row = number(at);
+        for (int i = 0; i < count_[0]; ++i) {
+          at[0] = back ? count_[0] - 1 - i : i;
+          const std::size_t cell = row + static_cast<std::size_t>(at[0]);
+          std::uint8_t& stale = stale_[cell + margin()];
+          if (stale == 0) continue;
+          stale = 0;
+          changed = visit<Dim>(cell, at) || changed;
+        }
+      }
     return changed;
   };
   for (int round = 0; round < 8; ++round) {
@@ -178,28 +208,31 @@ double GroundDistance::from_seed(const Vec3& x, std::size_t seed) const {
 }
 
 double GroundDistance::distance(const Vec3& x) const {
+  return bounds_.dimensions == 2 ? distance<2>(x) : distance<3>(x);
+}
+
+template <int Dim>
+double GroundDistance::distance(const Vec3& x) const {
   double least = diagonal_;
-  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
+  for (std::size_t d = 0; d < Dim; ++d) {
     if (sides_.low[d] > -Sides::far) least = std::min(least, x[d] - sides_.low[d]);
     if (sides_.high[d] < Sides::far) least = std::min(least, sides_.high[d] - x[d]);
   }
-  if (!seeds_.empty()) {
-    std::array<int, 3> at{};
-    cell_of(x, at);
-    if (surfaces_) {
-      around(at, count_, bounds_.periodic, [&](std::size_t b) {
-        if (nearest_[b] >= 0) least = std::min(least, from_seed(x, static_cast<std::size_t>(nearest_[b])));
-      });
-    } else {
-      double squared_least = 1e300;
-      std::int32_t last = -1;
-      around(at, count_, bounds_.periodic, [&](std::size_t b) {
-        if (nearest_[b] == last) return;  // neighbours often have the same
-        last = nearest_[b];
-        squared_least = std::min(squared_least, squared(x, last));
-      });
-      least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
+  if (seeds_.empty()) return std::max(least, 0.0);
+  Place at{};
+  const std::int32_t* nearest = nearest_.data() + cell_of<Dim>(x, at);
+  if (surfaces_) {
+    for (const std::ptrdiff_t step : around_)
+      if (nearest[step] >= 0) least = std::min(least, from_seed(x, static_cast<std::size_t>(nearest[step])));
+  } else {
+    double squared_least = 1e300;
+    std::int32_t last = -1;
+    for (const std::ptrdiff_t step : around_) {
+      if (nearest[step] == last) continue;  // neighbours often have the same
+      last = nearest[step];
+      if (last >= 0) squared_least = std::min(squared_least, squared<Dim>(x, last));
     }
+    least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
   }
   return std::max(least, 0.0);
 }

@@ -1,6 +1,7 @@
 // The distance to the ground: closed sides of the domain, walls within it, grains at rest.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,18 +31,40 @@ class GroundDistance {
   void archive(Archive& a);
 
  private:
-  std::size_t cell_of(const Vec3& x, std::array<int, 3>& at) const;
+  using Place = std::array<int, 3>;  // of a cell, by axis
+
+  template <int Dim>
+  void refresh(std::span<const PhaseParticles* const> phases);
+  template <int Dim>
+  double distance(const Vec3& x) const;
+  template <int Dim>
+  std::size_t cell_of(const Vec3& x, Place& at) const;
+  template <int Dim>
   double squared(const Vec3& x, std::int32_t seed) const;
   double from_seed(const Vec3& x, std::size_t seed) const;
+  std::size_t number(const Place& at) const;
+  template <class F>
+  void images(const Place& at, F&& f) const;
+  void give(std::size_t cell, const Place& at, std::int32_t seed);
+  template <int Dim>
+  bool visit(std::size_t cell, const Place& at);
+  template <int Dim>
   void propagate();
+  /// One cell in each direction, as a number of cells.
+  std::size_t margin() const { return static_cast<std::size_t>(stride_[0] + stride_[1] + stride_[2]); }
 
   Bounds bounds_;
   Sides sides_;
   double spacing_, diagonal_ = 0.0;
-  std::array<int, 3> count_{1, 1, 1};
+  // Cells stand in an array with a halo one cell wide, which repeats the far side where that is periodic and is empty
+  // elsewhere; an axis of a single cell has none.
+  std::array<int, 3> count_{1, 1, 1}, halo_{0, 0, 0};
+  std::array<std::ptrdiff_t, 3> stride_{1, 0, 0};
   std::array<double, 3> side_{1, 1, 1};
-  std::vector<std::int32_t> nearest_;  // by cell: number of a seed, -1: none
-  std::vector<std::uint8_t> crowd_;    // by cell: particles in it
+  std::vector<std::ptrdiff_t> around_;  // steps to a cell's neighbours and itself
+  std::vector<std::int32_t> nearest_;   // by cell: number of a seed, -1: none
+  std::vector<std::uint8_t> crowd_;     // by cell: particles in it
+  std::vector<std::uint8_t> stale_;     // by cell, from margin() on: to be visited by the next sweep
   std::vector<Vec3> seeds_;
   std::vector<Vec3>
       normals_;            // by seed: of the surface that it lies on; zero: of a particle, whose surface is not known

@@ -40,7 +40,7 @@ Column column_of(const Scene& scene, const Layout& layout, const ParticleBlock& 
   if (!column.hydrostatic) return column;
   column.density = s.density;
   column.sound_speed = layout.phases[k].sound_speed;
-  column.linear = s.equation_of_state == EquationOfState::linear;
+  column.linear = s.fluid().equation_of_state == EquationOfState::linear;
   const auto highest = std::min_element(block.position.begin(), block.position.end(),
                                         [&](const Vec3& a, const Vec3& b) { return dot(g, a) < dot(g, b); });
   column.potential = dot(g, *highest) - 0.5 * layout.spacing * norm(g);

@@ -1,10 +1,11 @@
 #include "models/bodies/elastic.hpp"
 
 #include "engine/fours.hpp"
+#include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 #include "laws/elastic.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -96,8 +97,9 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
   const Four time(dt), half(0.5 * dt), shear(q.shear_modulus), stiffness(q.bulk_modulus / q.reference_density);
   const std::size_t n = body.size();
   const auto fours = static_cast<std::int64_t>((n + 3) / 4);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t block = 0; block < fours; ++block) {
+  Shares shares(fours, 64);
+#pragma omp parallel
+  for (const std::int64_t block : shares) {
     const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
     std::array<typename Law::template Sums<Lanes>, 4> sums;
     for (std::size_t lane = 0; lane < 4; ++lane) {
@@ -166,8 +168,9 @@ void forces(PhaseParticles& body, const RecordArray& own_records, std::span<cons
   const auto& kernels = ready_kernels(neighbours, Dim);
   const std::size_t n = body.size();
   const auto fours = static_cast<std::int64_t>((n + 3) / 4);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t block = 0; block < fours; ++block) {
+  Shares shares(fours, 64);
+#pragma omp parallel
+  for (const std::int64_t block : shares) {
     const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
     std::array<Sums, 4> sums;
     for (std::size_t lane = 0; lane < 4; ++lane) {
@@ -225,4 +228,4 @@ void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<cons
   else viscous ? forces<3, true>(body, own, neighbours, q) : forces<3, false>(body, own, neighbours, q);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -27,16 +27,21 @@ struct ElasticParameters {
   Vec3 gravity;              // m/s2
 };
 
-/// Packs stress records: position, velocity, (s - p I)/rho^2, m/rho.
-void pack_stress(const PhaseParticles& body, RecordArray& records);
+BARCHAN_PER_INSTRUCTION_SET(pack_stress,
+                            /// Packs stress records: position, velocity, (s - p I)/rho^2, m/rho.
+                            void pack_stress(const PhaseParticles& body, RecordArray& records);)
 
-/// Advances density, pressure and deviatoric stress by dt with the velocity gradient at the records' positions and
-/// velocities (the middle of the step).
-void elastic_strain(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
-                    const ElasticParameters& parameters, double dt);
+BARCHAN_PER_INSTRUCTION_SET(elastic_strain,
+                            /// Advances density, pressure and deviatoric stress by dt with the velocity gradient at the
+                            /// records' positions and velocities (the middle of the step).
+                            void elastic_strain(PhaseParticles& body, const RecordArray& own,
+                                                std::span<const ElasticNeighbour> neighbours,
+                                                const ElasticParameters& parameters, double dt);)
 
-/// Writes the acceleration.
-void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
-                    const ElasticParameters& parameters);
+BARCHAN_PER_INSTRUCTION_SET(elastic_forces,
+                            /// Writes the acceleration.
+                            void elastic_forces(PhaseParticles& body, const RecordArray& own,
+                                                std::span<const ElasticNeighbour> neighbours,
+                                                const ElasticParameters& parameters);)
 
 }  // namespace barchan

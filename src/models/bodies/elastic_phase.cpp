@@ -10,10 +10,10 @@ namespace barchan {
 
 namespace {
 
-double compression_speed(const Phase& p) {
+double compression_speed(const ElasticKeys& p, double density) {
   const double lame = p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson));
   const double shear = p.young / (2 * (1 + p.poisson));
-  return std::sqrt((lame + 2 * shear) / p.density);
+  return std::sqrt((lame + 2 * shear) / density);
 }
 
 PhaseRules rules_of(const PlanPhase& p, double spacing, const std::string& step_key) {
@@ -46,8 +46,8 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
   p.fields = {position, velocity, density, pressure, acceleration, stress};
-  if (phase.energy) p.fields.push_back(energy);
-  p.sound_speed = compression_speed(phase);
+  if (phase.elastic().energy) p.fields.push_back(energy);
+  p.sound_speed = compression_speed(phase.elastic(), phase.density);
   p.rules = rules_of(p, layout.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
@@ -66,13 +66,14 @@ void ElasticPhase::begin(State& state, const std::vector<ParticleBlock>&) {
 
 void ElasticPhase::attach(Workspace& w) {
   w_ = &w;
-  const double shear = phase_.young / (2.0 * (1.0 + phase_.poisson));
-  const double bulk = phase_.young / (3.0 * (1.0 - 2.0 * phase_.poisson));
+  const ElasticKeys& keys = phase_.elastic();
+  const double shear = keys.young / (2.0 * (1.0 + keys.poisson));
+  const double bulk = keys.young / (3.0 * (1.0 - 2.0 * keys.poisson));
   parameters_ = {phase_.density,
                  shear,
                  bulk,
-                 phase_.artificial_viscosity,
-                 phase_.artificial_viscosity_beta,
+                 keys.artificial_viscosity,
+                 keys.artificial_viscosity_beta,
                  std::sqrt(bulk / phase_.density),
                  scene_.domain.gravity};
   w.stress[number_] = RecordArray(layout_.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size);

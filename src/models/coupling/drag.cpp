@@ -1,9 +1,10 @@
 #include "models/coupling/drag.hpp"
 
+#include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 #include "laws/grain_drag.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -16,8 +17,9 @@ void drag(PhaseParticles& a, const RecordArray& own, const PairList& list, const
   const double inverse_mass = 1.0 / a.mass();
   const auto n = static_cast<std::int64_t>(a.size());
   const ReadyKernel ready(e.kernel, e.radius, Dim);
-#pragma omp parallel for schedule(dynamic, 512)
-  for (std::int64_t i = 0; i < n; ++i) {
+  Shares shares(n, 64);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
     const auto k = static_cast<std::size_t>(i);
     const auto row = list.row(k);
     if (row.begin == row.end) continue;
@@ -54,4 +56,4 @@ void drag_forces(PhaseParticles& a, const RecordArray& own, const PairList& list
   else drag<3>(a, own, list, others, entry, a_is_fluid);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -16,9 +16,10 @@ struct DragEntry {
   GrainBarrier barrier;
 };
 
-/// Adds to the acceleration of `a` the drag and the barrier from `others` (motion records with true velocities).
-/// `a_is_fluid` says whose volume weighs a pair.
-void drag_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
-                 const DragEntry& entry, bool a_is_fluid);
+BARCHAN_PER_INSTRUCTION_SET(drag_forces,
+                            /// Adds to the acceleration of `a` the drag and the barrier from `others` (motion records
+                            /// with true velocities). `a_is_fluid` says whose volume weighs a pair.
+                            void drag_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
+                                             const RecordArray& others, const DragEntry& entry, bool a_is_fluid);)
 
 }  // namespace barchan

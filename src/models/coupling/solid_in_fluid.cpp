@@ -5,10 +5,7 @@
 namespace barchan {
 
 SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
-    : scene_(scene),
-      layout_(layout),
-      solid_(solid),
-      grains_(layout.phases[solid].friction == Friction::grains) {}
+    : scene_(scene), layout_(layout), solid_(solid), grains_(layout.phases[solid].friction == Friction::grains) {}
 
 void SolidInFluid::attach(Workspace& w) {
   w_ = &w;
@@ -31,7 +28,7 @@ void SolidInFluid::schedule(Schedule& s) {
 void SolidInFluid::extend() {
   // The acceleration is that of the step before: this step's is not known yet.
   extend_into_solid(w_->particles(solid_), w_->extended[solid_], sources_, scene_.domain.gravity,
-                    {Slip::no_slip, !grains_, grains_});
+                    ExtensionRule{Slip::no_slip, !grains_, grains_});
   share_extended(*w_, solid_);
 }
 

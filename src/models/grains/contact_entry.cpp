@@ -20,7 +20,7 @@ KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEn
   double restitution = 1.0;
   for (const std::size_t k : {e.a, e.b})
     if (layout.phases[k].rules.contacts_limit_speed)  // grains
-      restitution = std::min(restitution, scene.phases[k].restitution);
+      restitution = std::min(restitution, scene.phases[k].grains().restitution);
   KernelContact law{};
   with_kernel<double>(e.kernel, e.radius, layout.dimensions, [&](const auto& kernel) {
     law.rest_value = kernel.value(d);

@@ -43,7 +43,7 @@ void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std:
   // speed of the grains is not looked at: `contact-speed` is there for fast ones.
   double weight = 0;
   for (std::size_t d = 0; d < 3; ++d) weight += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
-  p.sound_speed = scene.phases[number].contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
+  p.sound_speed = scene.phases[number].grains().contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
   p.rules = rules_of(p, layout.spacing, scene.time.fixed_step.has_value());
 }
 

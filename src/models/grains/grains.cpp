@@ -1,8 +1,9 @@
 #include "models/grains/grains.hpp"
 
+#include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -16,8 +17,9 @@ void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, c
   const KernelContact::Constants<Lanes> constants(law);
   const auto n = static_cast<std::int64_t>(a.size());
   const ReadyKernel ready(kind, radius, Dim);
-#pragma omp parallel for schedule(dynamic, 512)
-  for (std::int64_t i = 0; i < n; ++i) {
+  Shares shares(n, 64);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
     const auto k = static_cast<std::size_t>(i);
     const auto row = list.row(k);
     if (row.begin == row.end) continue;
@@ -51,4 +53,4 @@ void contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& l
   else contacts<3>(a, own, list, others, kernel, radius, law);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

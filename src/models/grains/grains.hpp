@@ -8,9 +8,11 @@
 
 namespace barchan {
 
-/// Adds to the acceleration of `a` the contact forces from the particles in `others` (motion records with their true
-/// velocities).
-void contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
-                    KernelKind kernel, double radius, const KernelContact& law);
+BARCHAN_PER_INSTRUCTION_SET(contact_forces,
+                            /// Adds to the acceleration of `a` the contact forces from the particles in `others`
+                            /// (motion records with their true velocities).
+                            void contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
+                                                const RecordArray& others, KernelKind kernel, double radius,
+                                                const KernelContact& law);)
 
 }  // namespace barchan

@@ -11,12 +11,12 @@ namespace barchan {
 void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                    std::vector<std::string>&) {
   using enum Field;
-  const Phase& phase = scene.phases[number];
+  const WallKeys& keys = scene.phases[number].wall();
   PlanPhase& p = layout.phases[number];
-  p.friction = phase.shear_stress              ? Friction::driven
-               : phase.slip == Slip::free_slip ? Friction::slip
-               : phase.roughness               ? Friction::rough
-                                               : Friction::smooth;
+  p.friction = keys.shear_stress              ? Friction::driven
+               : keys.slip == Slip::free_slip ? Friction::slip
+               : keys.roughness               ? Friction::rough
+                                              : Friction::smooth;
   p.fields = {position, velocity, wall_normal, wall_depth};
 }
 
@@ -26,11 +26,12 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
       phase_(scene.phases[number]),
       plan_(layout.phases[number]),
       number_(number),
-      velocity_(compile(phase_.wall_velocity)) {
+      velocity_(compile(phase_.wall().velocity)) {
   extended_ = std::any_of(layout.entries.begin(), layout.entries.end(),
                           [&](const PlanEntry& e) { return e.sees_solid() && e.other == number; });
   // A wall whose stress is given leaves the fluid's velocity along it alone.
-  rule_.slip = phase_.roughness || phase_.shear_stress ? Slip::free_slip : phase_.slip;
+  const WallKeys& keys = phase_.wall();
+  rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
 }
 
 /// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
@@ -127,7 +128,7 @@ void face_walls(const Scene& scene, const Layout& layout, State& state) {
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     if (layout.phases[k].moves) continue;
     walls.push_back(&state.phases[k]);
-    const Phase& s = scene.phases[k];
+    const WallKeys& s = scene.phases[k].wall();
     slips = slips || s.slip == Slip::free_slip || s.roughness || s.shear_stress;
   }
   if (slips) find_wall_normals(walls, layout.bounds, layout.spacing);

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -37,8 +38,9 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
   const bool is_grain = rule.own_velocity;
   const double* depth = has_depth ? solid.column(Field::wall_depth) : nullptr;
   const auto n = static_cast<std::int64_t>(solid.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::int64_t i = 0; i < n; ++i) {
+  Shares shares(n, 64);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
     const auto k = static_cast<std::size_t>(i);
     double* record = own[k];
     std::array<double, Dim> v_wall{}, normal{}, pull{};
@@ -130,4 +132,4 @@ void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<
   extended(solid, own, fluids, gravity, rule, bend);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -53,7 +53,9 @@ inline constexpr double solid_share = 0.65, open_share = 0.9;
 ///   pressure
 ///     falls or rises with what turns the fluid: p_w = ... + rho u.H.u sum W (phi_a + phi_w) / sum W.
 /// Without fluid near, the solid keeps its own velocity and the pressure is zero.
-void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
-                       const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend = {});
+BARCHAN_PER_INSTRUCTION_SET(extend_into_solid,
+                            void extend_into_solid(const PhaseParticles& solid, RecordArray& own,
+                                                   std::span<const ExtensionSource> fluids, const Vec3& gravity,
+                                                   const ExtensionRule& rule, const SurfaceBend& bend = {});)
 
 }  // namespace barchan

@@ -1,0 +1,247 @@
+// The pair passes of eddies.hpp.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/shares.hpp"
+#include "laws/eddy_fluid.hpp"
+#include "models/air/eddies.hpp"
+#include "models/air/fluid_rows.hpp"
+
+namespace barchan::BARCHAN_TARGET {
+
+namespace {
+
+template <int Dim>
+using RawSums = typename ConsistentFluid<Dim>::template Sums<Four>;
+template <int Dim>
+using EddySums = typename EddyFluid<Dim>::template Sums<Four>;
+
+/// What a turbulent fluid's particles have beside the columns of every fluid.
+template <int Dim>
+struct EddyColumns {
+  double* nu_t;
+  const double *distance, *root, *touch;
+  std::array<const double*, Dim> velocity;
+
+  EddyColumns(PhaseParticles& fluid, const EddyRecords& records)
+      : nu_t(fluid.column(Field::eddy_viscosity)),
+        distance(fluid.column(Field::ground_distance)),
+        root(records.root.data()),
+        touch(records.touch.data()) {
+    for (std::size_t d = 0; d < Dim; ++d) velocity[d] = fluid.column(Field::velocity, static_cast<int>(d));
+  }
+};
+
+/// The stress tau that a wall of given friction puts on particles; n: into the fluid.
+template <int Dim>
+std::array<Four, Dim> wall_stress(const EddyNeighbour& e, const std::array<Four, Dim>& normal,
+                                  const EddyColumns<Dim>& columns, const FourOf& at, const EddyParameters& p) {
+  std::array<Four, Dim> tau;
+  Four along(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    tau[d] = e.friction == Friction::driven
+                 ? Four(-e.stress[d])
+                 : load_four(columns.velocity[d], at.first, at.count) - Four(e.wall_velocity[d]);
+    along += tau[d] * normal[d];
+  }
+  for (std::size_t d = 0; d < Dim; ++d) tau[d] -= along * normal[d];
+  if (e.friction == Friction::driven) return tau;
+  alignas(32) std::array<double, 4> law{};
+  for (std::size_t lane = 0; lane < at.count; ++lane)
+    law[lane] = p.density * log_law_friction(columns.distance[at.first + lane], e.roughness, p.spacing);
+  const Four size = Four::load(law.data()) * length_of<Dim, Four>(tau);
+  for (auto& t : tau) t *= size;
+  return tau;
+}
+
+/// The pairs of a wall of given stress: mu_ab v_ab = tau (r.n). The normal is that of the raw sums' own B, which lack
+/// the kernel's constant and its sign: `scale`.
+template <int Dim>
+EddySums<Dim> with_wall_stress(const EddyNeighbour& e, const RawSums<Dim>& raw, double scale,
+                               const EddyColumns<Dim>& columns, const FourOf& at, const EddyParameters& p) {
+  EddySums<Dim> s{raw, {}};
+  const Four size = Four(std::copysign(1.0, scale)) * length_of<Dim, Four>(raw.concentration);
+  std::array<Four, Dim> normal;
+  for (std::size_t d = 0; d < Dim; ++d)
+    normal[d] = simd::select(size != Four(0.0), -raw.concentration[d] / size, Four(0.0));
+  const auto tau = wall_stress<Dim>(e, normal, columns, at, p);
+  Four across(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) across += raw.weighted[d] * normal[d];
+  for (std::size_t f = 0; f < Dim; ++f) {
+    Four moment(0.0);
+    for (std::size_t d = 0; d < Dim; ++d) moment += raw.moment[moment_index(f, d)] * normal[d];
+    for (std::size_t d = 0; d < Dim; ++d) s.flux[d * Dim + f] = tau[d] * moment;
+  }
+  for (std::size_t d = 0; d < Dim; ++d) s.viscous[d] = tau[d] * across;
+  return s;
+}
+
+/// The pairs of a solid that the particle touches with a viscosity of its own.
+template <int Dim>
+EddySums<Dim> with_viscosity(const EddyNeighbour& e, const RawSums<Dim>& raw, const EddyColumns<Dim>& columns,
+                             const FourOf& at, const EddyParameters& p) {
+  const Four root = load_four(columns.root, at.first, at.count);
+  const Four mu = e.friction == Friction::grains   ? load_four(columns.touch, at.first, at.count)
+                  : e.friction == Friction::smooth ? pair_viscosity(root, Four(std::sqrt(p.density * p.viscosity)))
+                                                   : root * root;
+  EddySums<Dim> s{raw, {}};
+  for (auto& v : s.viscous) v *= mu;
+  for (std::size_t m = 0; m < Dim * Dim; ++m) s.flux[m] = mu * raw.velocity[m];
+  return s;
+}
+
+/// Sums over all entries; `company`: share of the neighbourhood that the fluid itself fills, the first entry.
+template <int Dim, class T, class OwnOf>
+BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const EddyNeighbour> neighbours,
+                                              const std::vector<ReadyKernelOf<T>>& kernels, LanesOf<T> unit,
+                                              OwnOf&& own_of, const EddyColumns<Dim>& columns, const Vec3& weight,
+                                              const EddyParameters& p, Four& company) {
+  EddySums<Dim> s{}, pairs;
+  RawSums<Dim> raw;
+  for (std::size_t c = 0; c < neighbours.size(); ++c) {
+    const auto& e = neighbours[c];
+    const double scale = kernels[c].slope_factor();
+    if (e.friction == Friction::fluid) {
+      const Roots roots{e.eddies ? e.eddies->root.data() : nullptr, e.root};
+      if (sum_rows<Dim, EddyFluid, T>(at, e.pair, kernels[c], unit, own_of, pairs, roots)) s.take(pairs, scale, weight);
+    } else if (sum_rows<Dim, ConsistentFluid, T>(at, e.pair, kernels[c], unit, own_of, raw)) {
+      const bool given = e.friction == Friction::rough || e.friction == Friction::driven;
+      s.take(given ? with_wall_stress<Dim>(e, raw, scale, columns, at, p) : with_viscosity<Dim>(e, raw, columns, at, p),
+             scale, weight);
+    }
+    if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);
+  }
+  return s;
+}
+
+/// The friction that the sums make; on the way, the squares of the stress mu |S| and of the strain |S|.
+template <int Dim>
+struct StressOf {
+  const EddySums<Dim>& s;
+  Four phi2{0.0}, shear2{0.0};  // |T|^2 and |S|^2
+
+  template <class Matrix, class Gradient>
+  BARCHAN_SIMD_INLINE std::array<Four, Dim> operator()(const Matrix& inverse, const Gradient& grad_v) {
+    std::array<std::array<Four, Dim>, Dim> t;
+    std::array<Four, Dim> friction = s.viscous;
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e) {
+        t[d][e] = s.flux[d * Dim] * inverse[e];
+        for (std::size_t f = 1; f < Dim; ++f) t[d][e] = simd::fma(s.flux[d * Dim + f], inverse[f * Dim + e], t[d][e]);
+        friction[d] -= t[d][e] * s.weighted[e];
+      }
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e) {
+        const Four both = t[d][e] + t[e][d], strain = grad_v[d][e] + grad_v[e][d];
+        phi2 += Four(0.5) * both * both;
+        shear2 += Four(0.5) * strain * strain;
+      }
+    return friction;
+  }
+};
+
+/// nu_t of the next step; where there is none yet, from the strain alone.
+template <int Dim>
+BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns, const StressOf<Dim>& stress, const FourOf& at,
+                                         const EddyParameters& p) {
+  if (p.model == Turbulence::none) return;
+  const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
+  const Four grown = eddy_viscosity(Four(p.viscosity), length, simd::sqrt(stress.phi2) * Four(1.0 / p.density));
+  const Four begun = length * length * simd::sqrt(stress.shear2);
+  const Four before = load_four(columns.nu_t, at.first, at.count);
+  store_four(simd::select(before > Four(0.0), grown, begun), columns.nu_t, at.first, at.count);
+}
+
+template <int Dim, class T>
+void rates(PhaseParticles& fluid, const T* own_records, double length_unit, const EddyRecords& eddies,
+           std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& p) {
+  using V = LanesOf<T>;
+  constexpr auto record_size = static_cast<std::size_t>(MotionRecord<Dim>::size);
+  const V unit = simd::broadcast<V>(length_unit);
+  const Vec3 weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
+                    q.reference_density * q.gravity[2]};
+  const auto& kernels = ready_kernels<T>(neighbours, Dim, &EddyNeighbour::pair);
+  const RateColumns<Dim, true> columns(fluid);
+  const EddyColumns<Dim> eddy_columns(fluid, eddies);
+  const std::size_t n = fluid.size();
+  const std::int64_t blocks = FourOf::blocks(n);
+  Shares shares(blocks, 64);
+#pragma omp parallel
+  for (const std::int64_t block : shares) {
+    const FourOf at(block, n);
+    const auto own_of = [&](std::size_t k) __attribute__((always_inline)) {
+      auto own = load_own<Dim, EddyFluid>(own_records + k * record_size);
+      columns.weigh(own, k);
+      own.root = simd::broadcast<V>(eddies.root[k]);
+      return own;
+    };
+    Four company(0.0);
+    const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p, company);
+    auto anisotropy = columns.anisotropy(at);
+    auto place = columns.place(at, company);
+    StressOf<Dim> stress{s};
+    const Four rho = load_four(columns.rho, at.first, at.count);
+    const auto r = finish_consistent<Dim, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    renew_viscosity<Dim>(eddy_columns, stress, at, p);
+    columns.store(at, r, anisotropy, place, s.concentration);
+  }
+}
+
+template <int Dim>
+void reaction(PhaseParticles& solid, const RecordArray& own_records, const FluidNeighbour& e, const EddyRecords& eddies,
+              double molecular) {
+  using R = MotionRecord<Dim>;
+  const double inverse_mass = 1.0 / solid.mass();
+  const double* data = e.records->data();
+  const ReadyKernel ready(e.kernel, e.radius, Dim);
+  const auto n = static_cast<std::int64_t>(solid.size());
+  Shares shares(n, 256);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto row = e.list->row(k);
+    const double* record = own_records[k];
+    std::array<Lanes, Dim> x, v, sum{};
+    for (std::size_t d = 0; d < Dim; ++d) {
+      x[d] = Lanes(record[R::position + d]);
+      v[d] = Lanes(record[R::velocity + d]);
+    }
+    double factor = 0.0;
+    ready([&](const auto& kernel) __attribute__((always_inline)) {
+      factor = kernel.slope_factor();
+      for (const std::uint32_t* q = row.begin; q != row.end; q += Lanes::width) {
+        Lanes b[R::size];
+        simd::load_transposed<R::size>(data, R::size / PairList::stride, q, b);
+        std::array<Lanes, Dim> r;
+        const Lanes f = kernel.slope(separation<Dim>(x, b + R::position, r)) * b[R::volume] *
+                        (gather_of<Lanes::width>(eddies.touch.data(), q) - Lanes(molecular));
+        for (std::size_t d = 0; d < Dim; ++d) sum[d] = simd::fma(f, v[d] - b[R::velocity + d], sum[d]);
+      }
+    });
+    for (std::size_t d = 0; d < Dim; ++d)
+      solid.column(Field::acceleration, static_cast<int>(d))[k] +=
+          2.0 * factor * record[R::volume] * inverse_mass * simd::sum(sum[d]);
+  }
+}
+
+}  // namespace
+
+void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
+                std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
+  if (fluid.dimensions() == 2) rates<2>(fluid, own.data(), 1.0, eddies, neighbours, q, e);
+  else rates<3>(fluid, own.data(), 1.0, eddies, neighbours, q, e);
+}
+
+void eddy_rates(PhaseParticles& fluid, const CompactRecords& own, const EddyRecords& eddies,
+                std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
+  if (fluid.dimensions() == 2) rates<2>(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
+  else rates<3>(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
+}
+
+void eddy_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid,
+                   const EddyRecords& eddies, double molecular) {
+  if (solid.dimensions() == 2) reaction<2>(solid, own, fluid, eddies, molecular);
+  else reaction<3>(solid, own, fluid, eddies, molecular);
+}
+
+}  // namespace barchan::BARCHAN_TARGET

@@ -1,0 +1,56 @@
+// Defaults that depend on other keys. All other defaults stand in the rows of the table of keys.
+#include "scene/read.hpp"
+
+namespace barchan {
+namespace {
+
+/// A wall without a density of its own weighs as much as the first phase that feels it.
+void complete_wall_densities(Scene& scene) {
+  const auto density_of = [&](const std::string& name) {
+    for (const Phase& phase : scene.phases)
+      if (phase.name == name && phase.kind() != PhaseKind::wall) return phase.density;
+    return 0.0;
+  };
+  for (Phase& phase : scene.phases) {
+    if (phase.kind() != PhaseKind::wall) continue;
+    for (const Interaction& pair : scene.interactions) {
+      if (phase.density > 0.0) break;
+      if (pair.a == phase.name) phase.density = density_of(pair.b);
+      if (pair.b == phase.name) phase.density = density_of(pair.a);
+    }
+  }
+}
+
+/// A fitted bed has one layer more than a plain wall, because its rows bend.
+void complete_layers(Fill& fill) {
+  if (auto* bed = std::get_if<BedShape>(&fill.shape); bed && bed->layers == 0) bed->layers = 4;
+  if (auto* sides = std::get_if<SidesShape>(&fill.shape); sides && sides->layers == 0) sides->layers = 3;
+}
+
+}  // namespace
+
+/// Fluids: the least error at a given time (docs/accuracy.md), and no pairs. Contacts: eq. (16) of Halik et al. 2015;
+/// their stiffness grows less with the overlap under the cubic spline.
+Interaction recommended(const std::vector<Phase>& phases, const std::string& a, const std::string& b) {
+  Interaction pair;
+  pair.a = a;
+  pair.b = b;
+  bool fluid = false, repulsive = false, bodies = true;
+  for (const Phase& phase : phases) {
+    if (phase.name != a && phase.name != b) continue;
+    fluid = fluid || phase.kind() == PhaseKind::fluid;
+    repulsive = repulsive || (phase.kind() == PhaseKind::wall && phase.wall().law == WallLaw::repulsive);
+    bodies = bodies && phase.kind() == PhaseKind::elastic;
+  }
+  pair.kernel = fluid ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
+  if (fluid) pair.radius = repulsive ? 0.0 : 2.1;
+  else pair.radius = bodies ? 0.0 : 1.1;
+  return pair;
+}
+
+void complete(Scene& scene) {
+  complete_wall_densities(scene);
+  for (Fill& fill : scene.fills) complete_layers(fill);
+}
+
+}  // namespace barchan

@@ -1,0 +1,355 @@
+// The rows of the table of keys: one a key, in the order of docs/scenes.md.
+//
+// To add a key: its member in scene.hpp, without a default; its row here; the model that consumes it; and a case in
+// tests/cli/key_consumers_cases.inc, in which it changes the results. BARCHAN_WRITE_DOCS=1 test_unit brings
+// docs/scenes.md up to date.
+#include "scene/slots.hpp"
+
+namespace barchan {
+namespace slots {
+
+// What the words of a document stand for.
+template <class Enum>
+constexpr Word word(std::string_view word, Enum meaning) {
+  return {word, static_cast<int>(meaning)};
+}
+template <>
+constexpr std::array words_of<PhaseKind>{word("fluid", PhaseKind::fluid), word("elastic", PhaseKind::elastic),
+                                         word("grains", PhaseKind::grains), word("wall", PhaseKind::wall)};
+template <>
+constexpr std::array words_of<EquationOfState>{word("linear", EquationOfState::linear),
+                                               word("tait", EquationOfState::tait)};
+template <>
+constexpr std::array words_of<FluidScheme>{word("plain", FluidScheme::plain),
+                                           word("consistent", FluidScheme::consistent)};
+template <>
+constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
+                                          word("mixing-length", Turbulence::mixing_length),
+                                          word("smagorinsky", Turbulence::smagorinsky)};
+template <>
+constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
+template <>
+constexpr std::array words_of<Slip>{word("no-slip", Slip::no_slip), word("free-slip", Slip::free_slip)};
+template <>
+constexpr std::array words_of<KernelKind>{word("cubic-spline", KernelKind::cubic_spline),
+                                          word("wendland-c2", KernelKind::wendland_c2)};
+template <>
+constexpr std::array words_of<Packing>{word("rows", Packing::square), word("staggered", Packing::hexagonal),
+                                       word("random", Packing::random), word("fitted", Packing::fitted)};
+template <>
+constexpr std::array words_of<DuneShape::Form>{
+    word("cosine", DuneShape::Form::cosine), word("gaussian", DuneShape::Form::gaussian),
+    word("asymmetric", DuneShape::Form::asymmetric), word("rushil", DuneShape::Form::rushil),
+    word("formula", DuneShape::Form::formula)};
+template <>
+constexpr std::array words_of<FrameFormat>{word("vtp", FrameFormat::vtp), word("vtu", FrameFormat::vtu)};
+template <>
+constexpr std::array words_of<Precision>{word("double", Precision::double_precision), word("mixed", Precision::mixed)};
+
+/// Chooses the type of the phase: it comes first in its section, before the keys that only this type has.
+constexpr Slot kind_of_phase() {
+  return {
+      .accepts = as_word, .otherwise = required, .words = words_of<PhaseKind>, .choose = [](void* object, int kind) {
+        auto& own = static_cast<Phase*>(object)->own;
+        switch (static_cast<PhaseKind>(kind)) {
+          case PhaseKind::fluid: own.emplace<FluidKeys>(); break;
+          case PhaseKind::elastic: own.emplace<ElasticKeys>(); break;
+          case PhaseKind::grains: own.emplace<GrainsKeys>(); break;
+          case PhaseKind::wall: own.emplace<WallKeys>(); break;
+        }
+      }};
+}
+
+constexpr std::array axes{Word{"x", 0}, Word{"y", 1}, Word{"z", 2}};
+constexpr std::array sides_of_domain{Word{"bottom", 0}, Word{"top", 1},   Word{"left", 2},
+                                     Word{"right", 3},  Word{"front", 4}, Word{"back", 5}};
+constexpr std::array bottom_or_top{sides_of_domain[0], sides_of_domain[1]};
+constexpr std::array rest_of_the_domain{Word{"the-rest", 0}};
+constexpr std::array hydrostatic{Word{"hydrostatic", 1}};
+constexpr std::array bulk_speed{Word{"bulk-speed", 1}};
+
+// Slots of keys that are more than one member, or that have words for a member of another type.
+
+/// The entries of [interactions] have names that the user chooses: read.cpp reads them, one by one, by the rows of
+/// interactions.pair.
+constexpr Slot pairs() { return {.accepts = as_section, .otherwise = required}; }
+
+template <auto list>
+constexpr Slot measured(const char* in_words) {
+  Slot slot = at<list>(in_words);
+  slot.open = [](void* scene) -> void* { return &(static_cast<Scene*>(scene)->measuring.*list).emplace_back(); };
+  return slot;
+}
+
+constexpr Slot periodic(const char* in_words) {
+  return {.accepts = as_words, .otherwise = otherwise(in_words), .words = axes, .choose = [](void* domain, int axis) {
+            static_cast<Domain*>(domain)->periodic[static_cast<std::size_t>(axis)] = true;
+          }};
+}
+
+constexpr Slot fill_shape() {
+  return {.accepts = as_word | as_section,
+          .otherwise = required,
+          .words = rest_of_the_domain,
+          .choose = [](void* fill, int) { static_cast<Fill*>(fill)->shape = TheRestShape{}; },
+          .open = [](void* fill) -> void* { return &static_cast<Fill*>(fill)->shape; }};
+}
+
+constexpr Slot fill_velocity(const char* in_words) {
+  Slot slot = at<&Fill::velocity>(in_words);
+  slot.accepts |= as_section;
+  slot.open = [](void* fill) { return fill; };
+  return slot;
+}
+
+constexpr Slot fill_pressure(const char* in_words) {
+  Slot slot = at<&Fill::pressure>(in_words);
+  slot.accepts |= as_word;
+  slot.words = hydrostatic;
+  slot.choose = [](void* fill, int) { static_cast<Fill*>(fill)->hydrostatic = true; };
+  return slot;
+}
+
+constexpr Slot sides() {
+  Slot slot = in_shape<&SidesShape::sides>();
+  slot.words = sides_of_domain;
+  return slot;
+}
+
+constexpr Slot layers(const char* in_words) {
+  return {.accepts = as_integer, .otherwise = otherwise(in_words), .member = [](void* shape) -> Target {
+            if (auto* bed = shape_of<BedShape>(shape, belongs)) return &bed->layers;
+            if (auto* sides = shape_of<SidesShape>(shape, belongs)) return &sides->layers;
+            return {};
+          }};
+}
+
+constexpr Slot hold(const char* in_words) {
+  return {.accepts = as_word, .otherwise = otherwise(in_words), .words = bulk_speed, .choose = [](void* forcing, int) {
+            static_cast<Forcing*>(forcing)->hold_bulk_speed = true;
+          }};
+}
+
+constexpr Slot along(int axis) {
+  return {.accepts = as_word, .otherwise = otherwise(axis), .words = axes, .choose = [](void* profile, int chosen) {
+            static_cast<Profile*>(profile)->along = static_cast<std::size_t>(chosen);
+          }};
+}
+
+constexpr Slot side(int side) {
+  return {
+      .accepts = as_word, .otherwise = otherwise(side), .words = bottom_or_top, .choose = [](void* shear, int chosen) {
+        static_cast<WallShear*>(shear)->top = chosen == 1;
+      }};
+}
+
+constexpr Slot fields(const char* in_words) {
+  Slot slot = at<&OutputControl::fields>(in_words);
+  slot.fields = true;
+  return slot;
+}
+
+}  // namespace slots
+
+namespace {
+
+using namespace slots;
+
+constexpr NumberBounds positive{.above = 0.0};
+constexpr NumberBounds not_negative{.at_least = 0.0};
+
+// Columns: section, name, the member that it is read into with its default, unit, meaning; then bounds, variables of a
+// formula and the kind of phase that may leave it out, where they apply. A key of phases is a member of one kind or of
+// several.
+// clang-format off
+constexpr Key table[] = {
+    {"", "title", at<&Scene::title>("the file's name"), "", "What the scene shows, in a few words."},
+    {"", "state", at<&Scene::state>("none"), "", "Name of the ParaView state (in pvstate/) that renders this scene."},
+    {"", "dimensions", at<&Scene::dimensions>(2), "", "Dimensions of space, 2 or 3; vectors have as many components.", {.at_least = 2, .at_most = 3}},
+    {"", "spacing", at<&Scene::spacing>(required), "m", "Distance between neighbouring particles, dx.", positive},
+    {"", "precision", at<&Scene::precision>(Precision::mixed), "", "Arithmetic of the pair loops; the state is always kept in double precision."},
+    {"", "domain", at<&Scene::domain>(required), "", "The box of the computation."},
+    {"", "phases", at<&Scene::phases>(required), "", "One section a phase; a name is a letter followed by letters, digits and underscores."},
+    {"", "interactions", pairs(), "",
+     "The matrix of kernel radii, Halik et al. 2015 eq. (15)-(17): one entry a pair of phases, as in air-sand = 2.5. "
+     "A pair without an entry does not interact."},
+    {"", "fill", at<&Scene::fills>(required), "", "What is where at the beginning; fills are carried out in order."},
+    {"", "forcing", at<&Scene::forcings>("none"), "", "Body forces on single phases."},
+    {"", "probe", measured<&Measuring::probes>("none"), "", "Places at which a fluid is followed in time."},
+    {"", "profile", measured<&Measuring::profiles>("none"), "", "Averages over time along a line."},
+    {"", "grid", measured<&Measuring::grids>("none"), "", "Averages over time on a regular grid."},
+    {"", "wall-shear", measured<&Measuring::wall_shears>("none"), "", "Shear stress and pressure along a no-slip wall, averaged over time."},
+    {"", "time", at<&Scene::time>(required), "", "How long, and in which steps."},
+    {"", "output", at<&Scene::output>("first and last frame"), "", "What is written, and how often."},
+
+    {"domain", "origin", at<&Domain::origin>("zero"), "m", "Lower corner."},
+    {"domain", "size", at<&Domain::size>(required), "m",
+     "Lengths along x, y (and z). Along a periodic axis a whole number of spacings, and more than two kernel radii.", positive},
+    {"domain", "periodic", periodic("none"), "", "Axes along which the domain repeats itself."},
+    {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
+
+    {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
+    {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
+     "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
+    {"phases", "viscosity", of<&FluidKeys::viscosity>(0.0), "m2/s", "Kinematic viscosity.", not_negative},
+    {"phases", "sound-speed", of<&FluidKeys::sound_speed>("10 times the largest speed"), "m/s",
+     "Numerical speed of sound; ten times the largest speed keeps the density within a percent.", positive},
+    {"phases", "equation-of-state", of<&FluidKeys::equation_of_state>(EquationOfState::linear), "",
+     "Pressure as a function of density."},
+    {"phases", "tait-exponent", of<&FluidKeys::tait_exponent>(7.0), "",
+     "Exponent of Tait's equation of state, only with equation-of-state = \"tait\".", positive},
+    {"phases", "artificial-viscosity", of<&FluidKeys::artificial_viscosity, &ElasticKeys::artificial_viscosity>(0.0), "", "Monaghan's alpha.", not_negative},
+    {"phases", "artificial-viscosity-beta", of<&ElasticKeys::artificial_viscosity_beta>(0.0), "", "Monaghan's beta.", not_negative},
+    {"phases", "density-diffusion", of<&FluidKeys::density_diffusion>(0.05), "", "Delta of delta-SPH; 0 switches it off.", not_negative},
+    {"phases", "enclosed", of<&FluidKeys::enclosed>("true of a fluid that is shut in"), "",
+     "The fluid fills a closed space: its mean density is kept. barchan plan says what it is and why."},
+    {"phases", "shifting", of<&FluidKeys::shifting>(1.0), "", "Strength of particle shifting; 0 switches it off.", not_negative},
+    {"phases", "background-pressure", of<&FluidKeys::background_pressure>(0.0), "rho c2",
+     "Pressure at rest, in units of density times sound speed squared.", not_negative},
+    {"phases", "scheme", of<&FluidKeys::scheme>(FluidScheme::consistent), "",
+     "Gradient operators: as they are, or corrected to first order (docs/method.md)."},
+    {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",
+     "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|."},
+    {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", positive},
+    {"phases", "young", of<&ElasticKeys::young>(required), "Pa", "Young's modulus.", positive},
+    {"phases", "poisson", of<&ElasticKeys::poisson>(0.0), "", "Poisson's ratio.", {.above = -1.0, .below = 0.5}},
+    {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
+     "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
+    {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",
+     "Speed after over speed before a head-on collision of two grains. Quartz: 0.7 to 0.8; with 1 a bed never comes to rest.", {.at_most = 1.0, .above = 0.0}},
+    {"phases", "contact-speed", of<&GrainsKeys::contact_speed>("chosen by the plan"), "m/s",
+     "Square root of a contact's stiffness over density.", positive},
+    {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
+     "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
+    {"phases", "slip", of<&WallKeys::slip>(Slip::no_slip), "", "Whether the fluid sticks to the wall; only with law = \"adami\"."},
+    {"phases", "velocity", of<&WallKeys::velocity>("zero"), "m/s",
+     "Velocity at which the surface of a no-slip wall slides along itself, a function of time. Only fluids feel it; the wall stays where it is.", {}, "t"},
+    {"phases", "roughness", of<&WallKeys::roughness, &GrainsKeys::roughness>("smooth; of grains in turbulent air: a thirtieth of the spacing"), "m",
+     "Roughness length z0: the wall's shear stress is that of the logarithmic law at the particles next to it.", positive},
+    {"phases", "shear-stress", of<&WallKeys::shear_stress>("none"), "Pa",
+     "Force by area of the wall on the fluid, instead of no slip; its part along the wall counts."},
+
+    {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
+     "Kernel of every pair that does not name its own."},
+    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required"), "spacings",
+     "Kernel radius (support).", {.at_most = 8.0, .above = 0.0}},
+    {"interactions.pair", "drag", at<&Interaction::drag>(0.0), "",
+     "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve.", not_negative},
+    {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
+
+    {"fill", "phase", at<&Fill::phase>(required), "", "Phase of the particles."},
+    {"fill", "shape", fill_shape(), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
+    {"fill", "packing", at<&Fill::packing>(Packing::square), "",
+     "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
+     "follow the ground: a bed of a wall, and the fluid above it. Fluids and elastic bodies take rows or fitted."},
+    {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
+     "Every coordinate is moved by a random number of at most this size.", {.at_least = 0.0, .at_most = 0.5}},
+    {"fill", "seed", at<&Fill::seed>(1), "",
+     "Seed of the random numbers, of perturb and of the random packing.", {.at_least = 0, .at_most = 4294967295.0}},
+    {"fill", "velocity", fill_velocity("zero"), "m/s", "Initial velocity: components, or { log-profile = ... }.", {}, "x y z"},
+    {"fill", "pressure", fill_pressure("0"), "Pa", "Initial pressure of a fluid; \"hydrostatic\": the weight of what lies above.", {}, "x y z"},
+    {"fill.shape", "bed", in_shape<&BedShape::depth>(), "m", "Depth of a bed on the bottom of the domain.", not_negative},
+    {"fill.shape", "from", in_shape<&BedShape::from, belongs>(0.0), "m",
+     "Only with bed: nothing below this height, where another fill made a floor.", not_negative},
+    {"fill.shape", "dune", in_shape<&BedShape::dune, belongs>("none"), "", "Only with bed: a dune on it."},
+    {"fill.shape", "box", shape<BoxShape>(), "", "Box."},
+    {"fill.shape", "disc", shape<DiscShape>(), "", "Disc; in 3D a cylinder along z."},
+    {"fill.shape", "sphere", shape<SphereShape>(), "", "Sphere; in 2D a disc."},
+    {"fill.shape", "ring", shape<RingShape>(), "", "Ring; in 3D a tube along z."},
+    {"fill.shape", "polygon", in_shape<&PolygonShape::corners>(), "m", "Corners [x, y]; in 3D a prism along z."},
+    {"fill.shape", "cube", shape<CubeShape>(), "", "Square or cube of so many particles along each side."},
+    {"fill.shape", "points", in_shape<&PointsShape::at>(), "m", "Single particles."},
+    {"fill.shape", "formula", in_shape<&FormulaShape::inside>(), "", "Particles where the formula is above zero.", {}, "x y z"},
+    {"fill.shape", "sides", sides(), "",
+     "Layers of wall particles outside the domain. bottom and top: y; left and right: x; back and front: z."},
+    {"fill.shape", "layers", layers("3; of a bed 4"), "", "Only with sides or a fitted bed: number of layers.", {.at_least = 1, .at_most = 16}},
+    {"fill.shape.dune", "form", at<&DuneShape::form>(DuneShape::Form::cosine), "",
+     "cosine: H/2 (1 + cos(2 pi (x - at)/L)); gaussian: L is the width at half height; asymmetric: windward half cosine, straight slip "
+     "face, L from toe to toe; rushil: the hills of Khurshudyan et al. 1981, L from toe to toe; formula."},
+    {"fill.shape.dune", "height", at<&DuneShape::height>("required but for a formula"), "m", "Height H of the crest over the bed.", positive},
+    {"fill.shape.dune", "length", at<&DuneShape::length>("required but for a formula"), "m", "Length L.", positive},
+    {"fill.shape.dune", "at", at<&DuneShape::at>("required but for a formula"), "m", "x of the crest."},
+    {"fill.shape.dune", "slip-face-angle", at<&DuneShape::slip_face_angle>(33.0), "degrees",
+     "Asymmetric only: angle of the lee side.", {.above = 0.0, .below = 90.0}},
+    {"fill.shape.dune", "formula", at<&DuneShape::formula>(), "m", "Form formula only: height over the bed.", {}, "x z"},
+    {"fill.shape.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
+    {"fill.shape.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
+    {"fill.shape.disc", "centre", at<&DiscShape::centre>(required), "m", "Centre; a particle sits on it."},
+    {"fill.shape.disc", "radius", at<&DiscShape::radius>(required), "m", "Radius.", positive},
+    {"fill.shape.sphere", "centre", at<&SphereShape::centre>(required), "m", "Centre; a particle sits on it."},
+    {"fill.shape.sphere", "radius", at<&SphereShape::radius>(required), "m", "Radius.", positive},
+    {"fill.shape.ring", "centre", at<&RingShape::centre>(required), "m", "Centre."},
+    {"fill.shape.ring", "inner", at<&RingShape::inner>(required), "m", "Inner radius.", not_negative},
+    {"fill.shape.ring", "outer", at<&RingShape::outer>(required), "m", "Outer radius.", positive},
+    {"fill.shape.cube", "centre", at<&CubeShape::centre>(required), "m", "Centre."},
+    {"fill.shape.cube", "count", at<&CubeShape::count>(required), "", "Particles along each side.", {.at_least = 1, .at_most = 4096}},
+    {"fill.velocity", "log-profile", at<&Fill::log_profile>(required), "", "Logarithmic wind along x, Halik et al. 2015 eq. (18)."},
+    {"fill.velocity.log-profile", "friction-velocity", at<&LogProfile::friction_velocity>(required), "m/s", "Friction velocity u*.", not_negative},
+    {"fill.velocity.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},
+    {"fill.velocity.log-profile", "over-ground", at<&LogProfile::over_ground>(true), "",
+     "Count the height from the ground (bed and dune) rather than from the bottom of the domain."},
+
+    {"forcing", "phase", at<&Forcing::phase>(required), "", "Phase that feels the force."},
+    {"forcing", "acceleration", at<&Forcing::acceleration>("none"), "m/s2", "Acceleration; this or hold.", {}, "x y z t"},
+    {"forcing", "hold", hold("none"), "",
+     "bulk-speed: the uniform acceleration that keeps the fluid's initial mean velocity along the periodic axes, as in a channel of "
+     "constant mass flux. history.csv has it."},
+
+    {"probe", "name", at<&Probe::name, Probe>(required), "", "Letters, digits and underscores: it is written to probe_NAME.csv."},
+    {"probe", "phase", at<&Probe::phase, Probe>(required), "", "Fluid that is followed."},
+    {"probe", "at", at<&Probe::at>(required), "m", "Place."},
+    {"probe", "every", at<&Probe::every, Probe>("that of history.csv"), "s", "Time between samples.", positive},
+    {"probe", "start", at<&Probe::start, Probe>(0.0), "s", "Time from which means and fluctuations are taken.", not_negative},
+
+    {"profile", "name", at<&Profile::name, Profile>(required), "", "Letters, digits and underscores: it is written to profile_NAME.csv and .vtp."},
+    {"profile", "phase", at<&Profile::phase, Profile>(required), "", "Fluid that is measured; with box also grains."},
+    {"profile", "from", at<&Profile::from>(), "m", "First point of a line on which the fluid is interpolated."},
+    {"profile", "to", at<&Profile::to>(), "m", "Its last point."},
+    {"profile", "box", at<&Profile::box>(), "", "In place of from and to: bins, slices of this box, in which particles are averaged."},
+    {"profile", "along", along(1), "", "Only with box: axis along which the bins follow each other."},
+    {"profile", "count", at<&Profile::count>("one a spacing"), "", "Number of points or bins.", {.at_least = 1, .at_most = 1000000}},
+    {"profile", "every", at<&Profile::every, Profile>("that of history.csv"), "s", "Time between samples.", positive},
+    {"profile", "start", at<&Profile::start, Profile>(0.0), "s", "Time of the first sample.", not_negative},
+    {"profile.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
+    {"profile.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
+
+    {"grid", "name", at<&Grid::name, Grid>(required), "", "Letters, digits and underscores: it is written to grid_NAME.vti."},
+    {"grid", "phase", at<&Grid::phase, Grid>(required), "", "Fluid that is measured."},
+    {"grid", "min", at<&Grid::min>("that of the domain"), "m", "Lower corner."},
+    {"grid", "max", at<&Grid::max>("that of the domain"), "m", "Upper corner; in 3D min and max with the same z (or x, y) make a plane."},
+    {"grid", "spacing", at<&Grid::spacing>("that of the scene"), "m", "Distance between points, adjusted so that it divides the sides.", positive},
+    {"grid", "every", at<&Grid::every, Grid>("that of history.csv"), "s", "Time between samples.", positive},
+    {"grid", "start", at<&Grid::start, Grid>(0.0), "s", "Time of the first sample.", not_negative},
+
+    {"wall-shear", "name", at<&WallShear::name, WallShear>(required), "",
+     "Letters, digits and underscores: it is written to wall_shear_NAME.csv and .vtp."},
+    {"wall-shear", "phase", at<&WallShear::phase, WallShear>(required), "", "Fluid that shears the wall."},
+    {"wall-shear", "wall", at<&WallShear::wall>(required), "", "No-slip wall, a fill with sides."},
+    {"wall-shear", "side", side(0), "", "Side of the domain on which the wall stands."},
+    {"wall-shear", "count", at<&WallShear::count>("one a spacing"), "", "Number of columns along x.", {.at_least = 1, .at_most = 1000000}},
+    {"wall-shear", "every", at<&WallShear::every, WallShear>("that of history.csv"), "s", "Time between samples.", positive},
+    {"wall-shear", "start", at<&WallShear::start, WallShear>(0.0), "s", "Time of the first sample.", not_negative},
+
+    {"time", "end", at<&TimeControl::end>(required), "s", "Time at which the run ends.", positive},
+    {"time", "step", at<&TimeControl::fixed_step>("from the stability limits"), "s", "Fixed time step.", positive},
+    {"time", "safety", at<&TimeControl::safety>(1.0), "", "Factor on every stability limit; not with a fixed step.", {.at_most = 10.0, .above = 0.0}},
+    {"time", "largest-speed", at<&TimeControl::largest_speed>("from the fills"), "m/s",
+     "Largest speed that will occur; sets automatic sound speeds.", not_negative},
+
+    {"output", "every", at<&OutputControl::every>("first and last only"), "s", "Time between frames.", not_negative},
+    {"output", "history-every", at<&OutputControl::history_every>("a hundredth of the end time"), "s",
+     "Time between rows of history.csv.", not_negative},
+    {"output", "checkpoint-every", at<&OutputControl::checkpoint_every>(600.0), "s",
+     "Wall time between checkpoints; 0: at the end and at signals only.", not_negative},
+    {"output", "fields", fields("none"), "", "Fields beside id, phase, velocity, smoothing_length, density and pressure."},
+    {"output", "format", at<&OutputControl::format>(FrameFormat::vtp), "", "File format of the frames."},
+    {"output", "compress", at<&OutputControl::compress>(true), "", "Compress the frames."},
+    {"output", "walls", at<&OutputControl::walls>(true), "", "Write wall particles too."},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Key> all_keys() { return table; }
+
+}  // namespace barchan
