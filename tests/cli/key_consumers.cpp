@@ -70,14 +70,14 @@ Results results_of(const std::string& base, const std::string& overrides, bool k
   fs::create_directories(place);
   const fs::path scene = place / "scene.toml", out = place / "out", said = place / "said";
   std::ofstream(scene) << scene_texts().at(base);
-  std::string command = std::string(killed ? "timeout -s KILL 1 " : "") + "'" BARCHAN_PROGRAM "' run '" +
+  std::string command = std::string(killed ? "timeout -s KILL 3 " : "") + "'" BARCHAN_PROGRAM "' run '" +
                         scene.string() + "' --quiet --threads 1 --out '" + out.string() + "'";
   std::istringstream list(overrides);
   for (std::string assignment; std::getline(list, assignment, '|');) command += " --set '" + assignment + "'";
   command += " > '" + said.string() + "' 2>&1";
   const int status = std::system(command.c_str());
   if (killed) {
-    EXPECT_TRUE(fs::exists(out)) << base << ": " << overrides << ": did not begin in a second";
+    EXPECT_TRUE(fs::exists(out)) << base << ": " << overrides << ": did not begin in three seconds";
     const Results results{{"checkpoint", fs::exists(out / "scene.checkpoint") ? "is there" : "is not there"}};
     fs::remove_all(place);
     return results;
