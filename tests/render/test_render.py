@@ -258,7 +258,7 @@ class Rendering(unittest.TestCase):
 
     def test_kernels_lie_within_the_plot(self):
         """In the second window the air is a strip at the top that is lower than its kernel; that kernel is not drawn."""
-        for window in ([], ["--window", "0.0465,0.0535,0.0057,0.0087"]):
+        for window in ([], ["--window", "0.0465,0.0535,0.0047,0.0077"]):
             picture = self.render(self.dune, ["smoothing_length"], *window)["smoothing_length"]
             rows, columns = np.nonzero(np.abs(picture - MARK).max(axis=2) < 0.12)
             self.assertGreater(len(rows), 100, "the kernels are missing")
