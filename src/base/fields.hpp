@@ -27,6 +27,7 @@ enum class Field : int {
   ground_distance,
   wall_normal,
   wall_depth,
+  drag_acceleration,
   smoothing_length,
   count
 };
@@ -72,6 +73,8 @@ inline constexpr std::array<FieldInfo, field_count> field_table{{
     {Field::wall_normal, "wall_normal", "n", "1", Rank::vector, true, "unit normal of a wall particle, into the fluid"},
     {Field::wall_depth, "wall_depth", "phi", "m", Rank::scalar, true,
      "distance of a wall particle behind the wall's surface, 0: unknown"},
+    {Field::drag_acceleration, "drag_acceleration", "a_d", "m/s2", Rank::vector, true,
+     "acceleration of a grain by the drag of a column of air"},
     {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false,
      "half the kernel radius of the phase with itself"},
 }};

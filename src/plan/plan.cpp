@@ -15,6 +15,7 @@ std::string to_string(Law law) {
     case Law::boundary: return "boundary";
     case Law::repulsive: return "repulsive";
     case Law::coupling: return "coupling";
+    case Law::column: return "column";
     case Law::contact: return "contact";
     case Law::elastic: return "elastic";
   }
@@ -51,6 +52,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 
 /// The first direction of an entry, and its opposite. A wall looks for nobody but the fluid that is extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
+  if (e.law == Law::column) return;  // by height: nobody is looked for
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
@@ -75,8 +77,9 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.kernel = i.kernel;
     e.radius = i.radius * scene.spacing;
     e.drag = i.drag;
-    e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
+    e.drag_law = i.drag_law;
     classify(scene, e);
+    if (e.law != Law::column) e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     add_directions(plan, e);
     plan.entries.push_back(e);
     if (e.a == e.b || e.law == Law::contact) {
@@ -89,6 +92,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (p.smoothing_length == 0)
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
+    if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // nobody is looked for
     if (p.flows) p.rules.way = 2.0 * p.smoothing_length;
   }
 }

@@ -25,6 +25,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 /// What the kernel sums of an entry mean.
 std::string meaning(const PlanEntry& e) {
+  if (e.law == Law::column) return "no kernel: the wind of the grain's height";
   if (e.corrected) return "corrected to first order by the consistent scheme";
   if (e.law == Law::contact || e.law == Law::repulsive) return "a contact law, not an approximation";
   if (e.consistency.consistent()) return "consistent";

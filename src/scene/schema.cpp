@@ -122,6 +122,7 @@ std::string scene_tables() {
   const std::pair<const char*, const char*> sections[] = {{"", "Top of the file"},
                                                           {"domain", "`[domain]`"},
                                                           {"phases", "`[phases.NAME]`"},
+                                                          {"phases.log-profile", "`log-profile = { ... }` of a column"},
                                                           {"interactions", "`[interactions]`"},
                                                           {"interactions.pair", "`[interactions]` `a-b = { ... }`"},
                                                           {"fill", "`[[fill]]`"},

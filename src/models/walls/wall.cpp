@@ -126,7 +126,7 @@ void face_walls(const Scene& scene, const Layout& layout, State& state) {
   std::vector<PhaseParticles*> walls;
   bool slips = false;
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
-    if (layout.phases[k].moves) continue;
+    if (layout.phases[k].moves || layout.phases[k].count == 0) continue;
     walls.push_back(&state.phases[k]);
     const WallKeys& s = scene.phases[k].wall();
     slips = slips || s.slip == Slip::free_slip || s.roughness || s.shear_stress;
