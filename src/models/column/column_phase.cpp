@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "engine/means.hpp"
+#include "output/numbers.hpp"
 #include "scene/log_wind.hpp"
 
 namespace barchan {
@@ -12,6 +14,7 @@ namespace {
 
 constexpr double fine_diameters = 20.0;   // of fine cells above the grains of the start
 constexpr double cells_a_diameter = 4.0;
+constexpr double most_cells = 20000.0;
 constexpr double most_over_friction_velocity = 35.0;  // of a wind: ln(1 m/1 um)/0.4
 /// Of sqrt(d/g), the time in which a grain falls half its diameter: 20 us for 0.25 mm.
 constexpr double interval_share = 0.004;
@@ -81,8 +84,15 @@ void ColumnPhase::make_profile() {
     std::nth_element(heights.begin(), most, heights.end());
     highest = *most;
   }
-  profile() = AirColumn::grid(bottom, highest + fine_diameters * d, bottom + keys_.height.value_or(scene_.domain.size[1]),
-                              keys_.resolution.value_or(d / cells_a_diameter));
+  const double top = bottom + keys_.height.value_or(scene_.domain.size[1]);
+  const bool known = keys_.held && (keys_.speed || keys_.log_profile);  // nothing has to be resolved
+  const double resolution = known ? top - bottom : keys_.resolution.value_or(d / cells_a_diameter);
+  const double fine_top = std::min(highest + fine_diameters * d, top), cells = (fine_top - bottom) / resolution;
+  if (cells > most_cells)
+    throw SceneError(scene_.file + ": phases." + scene_.phases[number_].name + ".resolution: " + brief(resolution) +
+                     " m makes " + brief(cells) + " cells up to the grains, " + brief(fine_top - bottom) +
+                     " m over the bottom; expected at most " + brief(most_cells));
+  profile() = AirColumn::grid(bottom, fine_top, top, resolution);
   profile().phase = number_;
   const AirColumn::Air air{density_, keys_.viscosity, keys_.mixing_length, keys_.slip};
   air_ = std::make_unique<AirColumn>(air, profile());
