@@ -118,6 +118,14 @@ void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& f
   }
 }
 
+/// Radii of new spheres. The seed is another one than that of their places.
+void append_radii(ParticleBlock& block, const SphereSize& size, unsigned seed) {
+  Random random(0x5eed00000000ull + seed);
+  while (block.radius.size() < block.position.size())
+    block.radius.push_back(0.5 * size.mean *
+                           (size.spread > 0.0 ? random.uniform(1.0 - size.spread, 1.0 + size.spread) : 1.0));
+}
+
 /// Where the surface of a fitted wall is, seen from each of its particles.
 void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed, const Scene& scene) {
   const Terrain terrain(Ground(bed, scene.domain), scene.domain, scene.spacing);
@@ -154,22 +162,26 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     if (!misfit.empty()) throw SceneError(scene.file + ": domain.size: " + misfit);
   }
   const PeriodicSpace space(scene.domain);
-  Occupied occupied{Places(space, scene.spacing), Places(space, scene.spacing)};
+  double widest = scene.spacing;
+  for (const Phase& phase : scene.phases) widest = std::max(widest, spacing_of(scene, phase));
+  Occupied occupied{Places(space, widest), Places(space, widest)};
   std::vector<ParticleBlock> blocks(scene.phases.size());
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     const Fill& fill = scene.fills[k];
     const auto phase =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
-    std::vector<Vec3> places = places_of(scene, k, occupied);
-    perturb(places, fill, scene);
-    check_places(places, k, scene, phase->kind(), occupied);
+    const Scene seen = at_spacing_of(scene, *phase);
+    std::vector<Vec3> places = places_of(seen, k, occupied);
+    perturb(places, fill, seen);
+    check_places(places, k, seen, phase->kind(), occupied);
     if (k + 1 < scene.fills.size())
       for (const Vec3& x : places)
         (inside_domain(scene, x) ? occupied.inside : occupied.outside).add(x, static_cast<int>(k));
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);
+    if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
       append_surface(block, first, *bed, scene);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/generate.hpp"
+
 namespace barchan {
 namespace {
 
@@ -61,9 +63,16 @@ bool hangs_on_origin(const Shape& shape) {
 }
 
 std::string misfit_of_period(const Scene& scene, std::size_t axis) {
+  // Spheres of their own diameter stretch their lattice (shapes.cpp).
+  const auto stretches = [&](const Fill& fill) {
+    return std::any_of(scene.phases.begin(), scene.phases.end(),
+                       [&](const Phase& phase) { return phase.name == fill.phase && phase.diameter(); });
+  };
+  if (std::all_of(scene.fills.begin(), scene.fills.end(), stretches) && !scene.fills.empty()) return "";
   const auto hangs = [&](Packing packing) {
-    return std::any_of(scene.fills.begin(), scene.fills.end(),
-                       [&](const Fill& fill) { return fill.packing == packing && hangs_on_origin(fill.shape); });
+    return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+      return fill.packing == packing && hangs_on_origin(fill.shape) && !stretches(fill);
+    });
   };
   const bool staggered = hangs(Packing::hexagonal);
   const auto misfit = [&](double period, const char* whole) -> std::string {
@@ -85,6 +94,17 @@ std::string misfit_of_period(const Scene& scene, std::size_t axis) {
   if (text.empty() && axis != 0 && staggered)
     text = misfit(period_of(Packing::hexagonal, scene.dimensions, axis, scene.spacing), "staggered double rows");
   return text;
+}
+
+double spacing_of(const Scene& scene, const Phase& phase) {
+  const auto size = phase.diameter();
+  return size ? size->largest() : scene.spacing;
+}
+
+Scene at_spacing_of(const Scene& scene, const Phase& phase) {
+  Scene seen = scene;
+  seen.spacing = spacing_of(scene, phase);
+  return seen;
 }
 
 int cells_along(const Scene& scene, std::size_t axis) {

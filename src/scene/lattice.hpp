@@ -29,6 +29,9 @@ bool hangs_on_origin(const Shape& shape);
 /// do.
 std::string misfit_of_period(const Scene& scene, std::size_t axis);
 
+/// The scene as the places of a phase see it: with their spacing.
+Scene at_spacing_of(const Scene& scene, const Phase& phase);
+
 /// Cells of the square lattice along an axis of the domain: the nearest whole number of spacings.
 int cells_along(const Scene& scene, std::size_t axis);
 

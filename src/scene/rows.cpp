@@ -37,6 +37,9 @@ constexpr std::array words_of<DragLaw>{word("stokes", DragLaw::stokes),
 template <>
 constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
 template <>
+constexpr std::array words_of<ContactLaw>{word("kernel", ContactLaw::kernel), word("linear", ContactLaw::linear),
+                                          word("hertz", ContactLaw::hertz)};
+template <>
 constexpr std::array words_of<Slip>{word("no-slip", Slip::no_slip), word("free-slip", Slip::free_slip)};
 template <>
 constexpr std::array words_of<KernelKind>{word("cubic-spline", KernelKind::cubic_spline),
@@ -94,6 +97,26 @@ constexpr Slot periodic(const char* in_words) {
   return {.accepts = as_words, .otherwise = otherwise(in_words), .words = axes, .choose = [](void* domain, int axis) {
             static_cast<Domain*>(domain)->periodic[static_cast<std::size_t>(axis)] = true;
           }};
+}
+
+/// Sizes of spheres: the mean alone, or a section.
+inline std::optional<SphereSize>* sizes_of(void* object) {
+  Phase& phase = *static_cast<Phase*>(object);
+  auto* grains = member_of(phase, &GrainsKeys::diameter);
+  return grains ? grains : member_of(phase, &WallKeys::diameter);
+}
+constexpr Slot sizes(const char* in_words) {
+  Slot slot{.accepts = as_number | as_section, .otherwise = otherwise(in_words)};
+  slot.member = [](void* object) -> Target {
+    auto* size = sizes_of(object);
+    return size ? Target{&size->emplace().mean} : Target{};
+  };
+  slot.open = [](void* object) -> void* {
+    auto* size = sizes_of(object);
+    return size ? &size->emplace() : nullptr;
+  };
+  slot.kinds = kinds_with<PhaseKind::grains, PhaseKind::wall>;
+  return slot;
 }
 
 constexpr Slot fill_shape() {
@@ -197,6 +220,7 @@ constexpr Key table[] = {
     {"", "profile", measured<&Measuring::profiles>("none"), "", "Averages over time along a line."},
     {"", "grid", measured<&Measuring::grids>("none"), "", "Averages over time on a regular grid."},
     {"", "wall-shear", measured<&Measuring::wall_shears>("none"), "", "Shear stress and pressure along a no-slip wall, averaged over time."},
+    {"", "saltation", measured<&Measuring::saltation>("none"), "", "Sand in flight by height over its bed: concentration, flux, stress, and the wind of a column."},
     {"", "time", at<&Scene::time>(required), "", "How long, and in which steps."},
     {"", "output", at<&Scene::output>("first and last frame"), "", "What is written, and how often."},
 
@@ -229,14 +253,26 @@ constexpr Key table[] = {
     {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",
      "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|."},
     {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", positive},
-    {"phases", "young", of<&ElasticKeys::young>(required), "Pa", "Young's modulus.", positive},
-    {"phases", "poisson", of<&ElasticKeys::poisson>(0.0), "", "Poisson's ratio.", {.above = -1.0, .below = 0.5}},
+    {"phases", "young", of<&ElasticKeys::young, &GrainsKeys::young>(required, "required; of grains: from largest-overlap"), "Pa",
+     "Young's modulus; of grains for contacts with law = \"hertz\".", positive, "", "grains"},
+    {"phases", "poisson", of<&ElasticKeys::poisson, &GrainsKeys::poisson>(0.0), "", "Poisson's ratio; of grains for contacts with law = \"hertz\".", {.above = -1.0, .below = 0.5}},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
      "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",
      "Speed after over speed before a head-on collision of two grains. Quartz: 0.7 to 0.8; with 1 a bed never comes to rest.", {.at_most = 1.0, .above = 0.0}},
     {"phases", "contact-speed", of<&GrainsKeys::contact_speed>("chosen by the plan"), "m/s",
      "Square root of a contact's stiffness over density.", positive},
+    {"phases", "diameter", sizes("none: particles of one spacing"), "m",
+     "Grains as spheres, in 2D in a slab as thick as the mean diameter; needs contacts with law = \"linear\" or \"hertz\". Of a wall: what "
+     "such grains feel of its particles.", positive},
+    {"phases", "friction", of<&GrainsKeys::friction>(0.0), "", "Coulomb's coefficient of friction of spheres.", not_negative},
+    {"phases", "rolling-friction", of<&GrainsKeys::rolling_friction>(0.0), "",
+     "Rolling resistance of spheres: the largest torque over normal force and reduced radius.", not_negative},
+    {"phases", "stiffness", of<&GrainsKeys::stiffness>("from largest-overlap"), "N/m",
+     "Stiffness of a contact of two grains with law = \"linear\".", positive},
+    {"phases", "largest-overlap", of<&GrainsKeys::largest_overlap>(0.02), "",
+     "Overlap of two spheres that meet with the largest speed of the scene (time.largest-speed), in mean diameters: makes the stiffness.",
+     {.at_most = 0.2, .above = 0.0}},
     {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
      "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
     {"phases", "slip", of<&WallKeys::slip, &ColumnKeys::slip>(Slip::no_slip), "",
@@ -261,10 +297,16 @@ constexpr Key table[] = {
     {"phases.log-profile", "friction-velocity", at<&LogProfile::friction_velocity>(required), "m/s", "Friction velocity u*.", not_negative},
     {"phases.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},
 
+    {"phases.diameter", "mean", at<&SphereSize::mean>(required), "m", "Mean diameter.", positive},
+    {"phases.diameter", "spread", at<&SphereSize::spread>(0.0), "",
+     "Diameters are spread evenly over mean (1 - spread) to mean (1 + spread), by the seed of the fill.", {.at_least = 0.0, .at_most = 0.5}},
+
     {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},
     {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required; a column has none"), "spacings",
      "Kernel radius (support).", {.at_most = 8.0, .above = 0.0}},
+    {"interactions.pair", "law", at<&Interaction::law>(ContactLaw::kernel), "",
+     "Contact of grains: through the kernel, or of spheres that touch (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
     {"interactions.pair", "drag", drag("0; duran with a column"), "",
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
      "grain's drag by name (docs/method.md).", not_negative},
@@ -362,6 +404,13 @@ constexpr Key table[] = {
     {"wall-shear", "count", at<&WallShear::count>("one a spacing"), "", "Number of columns along x.", {.at_least = 1, .at_most = 1000000}},
     {"wall-shear", "every", at<&WallShear::every, WallShear>("that of history.csv"), "s", "Time between samples.", positive},
     {"wall-shear", "start", at<&WallShear::start, WallShear>(0.0), "s", "Time of the first sample.", not_negative},
+
+    {"saltation", "name", at<&SaltationLayer::name, SaltationLayer>(required), "", "Letters, digits and underscores: it is written to saltation_NAME.csv, .vtp and .json."},
+    {"saltation", "phase", at<&SaltationLayer::phase, SaltationLayer>(required), "", "Grains that are measured."},
+    {"saltation", "flight", at<&SaltationLayer::flight>(5.0), "diameters", "Height over the bed above which a grain is in flight.", positive},
+    {"saltation", "count", at<&SaltationLayer::count>("one a diameter"), "", "Number of slices of the domain's height.", {.at_least = 1, .at_most = 100000}},
+    {"saltation", "every", at<&SaltationLayer::every, SaltationLayer>("that of history.csv"), "s", "Time between samples.", positive},
+    {"saltation", "start", at<&SaltationLayer::start, SaltationLayer>(0.0), "s", "Time from which averages are taken.", not_negative},
 
     {"time", "end", at<&TimeControl::end>(required), "s", "Time at which the run ends.", positive},
     {"time", "step", at<&TimeControl::fixed_step>("from the stability limits"), "s", "Fixed time step.", positive},

@@ -92,7 +92,8 @@ std::vector<std::string> Simulation::history_columns() const {
                              "largest_speed [m/s]",
                              "largest_density_error"};
   for (const auto& model : models_) {
-    if (model->phase() >= 0 && plan_.phases[static_cast<std::size_t>(model->phase())].moves) {
+    if (model->phase() < 0) continue;
+    if (plan_.phases[static_cast<std::size_t>(model->phase())].moves) {
       const std::string& name = plan_.phases[static_cast<std::size_t>(model->phase())].name;
       c.push_back(name + "_kinetic_energy [J]");
       c.push_back(name + "_largest_speed [m/s]");
@@ -100,14 +101,17 @@ std::vector<std::string> Simulation::history_columns() const {
     }
     model->columns(c);
   }
+  for (const auto& model : models_)
+    if (model->phase() < 0) model->columns(c);
   return c;
 }
 
 std::vector<double> Simulation::history_row() const {
   std::vector<double> row{state_.time, static_cast<double>(state_.steps), state_.dt, 0, 0, 0, 0, 0};
   for (const auto& model : models_) {
+    if (model->phase() < 0) continue;
     const auto k = static_cast<std::size_t>(model->phase());
-    if (model->phase() < 0 || !plan_.phases[k].moves) {
+    if (!plan_.phases[k].moves) {
       model->row(row);
       continue;
     }
@@ -116,18 +120,19 @@ std::vector<double> Simulation::history_row() const {
     std::array<const double*, 3> v{};
     for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
     double fastest = 0.0;
+    const bool sizes = p.has(Field::radius);
     const double square = ordered_sum(n, [&](std::size_t i) {
       double s = 0;
       for (int d = 0; d < plan_.dimensions; ++d)
         s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
       fastest = std::max(fastest, s);
-      return s;
+      return sizes ? s * p.mass_of(i) / p.mass() : s;
     });
     std::array<double, 3> mean{};
     for (int d = 0; d < plan_.dimensions; ++d) {
       const auto c = static_cast<std::size_t>(d);
       const double total = ordered_sum(n, [&](std::size_t i) { return v[c][i]; });
-      row[3 + c] += p.mass() * total;
+      row[3 + c] += sizes ? ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
       mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
     }
     fastest = std::sqrt(fastest);
@@ -137,6 +142,8 @@ std::vector<double> Simulation::history_row() const {
     row.push_back(mean[0]);
     model->row(row);
   }
+  for (const auto& model : models_)
+    if (model->phase() < 0) model->row(row);
   return row;
 }
 

@@ -11,6 +11,7 @@ void AirProfile::archive(Archive& a) {
   a.array("air: rate", rate);
   a.number("air: boundary", boundary);
   a.number("air: elapsed", elapsed);
+  a.number("air: kicked", kicked);
   a.number("air: last", last);
   a.number("air: step", step);
 }

@@ -18,7 +18,8 @@ struct AirProfile {
   std::vector<double> given;        // Pa s, impulse by area that the grains of a cell will have got before the next step
   std::vector<double> rate;         // Pa s/m, stress that the grains of a cell take off by speed of the air
   double boundary = 0.0;            // Pa s, impulse by area through bottom and top so far
-  double elapsed = 0.0, last = 0.0;  // s, since the profile's last step; of the last step of the particles
+  double elapsed = 0.0, kicked = 0.0;  // s, of steps and of kicks since the profile's last step
+  double last = 0.0;                   // s, of the last step of the particles
   long step = -1;                   // of the particles, that the clock has counted
 
   std::size_t cells() const { return speed.size(); }

@@ -12,6 +12,18 @@ namespace barchan {
 
 namespace {
 
+/// Diameters of the grains of a phase, each its own or all the same.
+class Diameters {
+ public:
+  Diameters(const PhaseParticles& grains, double mean)
+      : radius_(grains.has(Field::radius) ? grains.column(Field::radius) : nullptr), mean_(mean) {}
+  double operator[](std::size_t k) const { return radius_ ? 2.0 * radius_[k] : mean_; }
+
+ private:
+  const double* radius_;
+  double mean_;  // m
+};
+
 constexpr double fine_diameters = 20.0;   // of fine cells above the grains of the start
 constexpr double cells_a_diameter = 4.0;
 constexpr double most_cells = 20000.0;
@@ -41,14 +53,17 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
       density_(scene.phases[number].density),
       area_(scene.domain.size[0] * (layout.dimensions == 3 ? scene.domain.size[2] : 1.0)),
       friction_velocity_(keys_.friction_velocity) {
-  const double g = std::abs(scene.domain.gravity[1]);
-  interval_ = interval_share * std::sqrt(layout.spacing / (g > 0.0 ? g : 9.81));
   for (const PlanEntry& e : layout.entries) {
     if (e.law != Law::column || !e.has(number)) continue;
     const std::size_t grains = e.partner(number);
-    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, {}});
+    const PlanPhase& plan = layout.phases[grains];
+    const double d = plan.diameter > 0.0 ? plan.diameter : layout.spacing;
+    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, d, plan.diameter > 0.0, {}});
+    diameter_ = std::max(diameter_, d);
     crowded_ = crowded_ || e.drag_law == DragLaw::di_felice;
   }
+  const double g = std::abs(scene.domain.gravity[1]);
+  interval_ = interval_share * std::sqrt(diameter_ / (g > 0.0 ? g : 9.81));
 }
 
 void ColumnPhase::attach(Workspace& w) {
@@ -77,7 +92,7 @@ void ColumnPhase::make_profile() {
     const PhaseParticles& p = w_->particles(grains.phase);
     heights.insert(heights.end(), p.column(Field::position, 1), p.column(Field::position, 1) + p.size());
   }
-  const double bottom = scene_.domain.origin[1], d = layout_.spacing;
+  const double bottom = scene_.domain.origin[1], d = diameter_;
   double highest = bottom;
   if (!heights.empty()) {
     const auto most = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size() - 1));
@@ -128,7 +143,7 @@ void ColumnPhase::find_steady_wind() {
 
 void ColumnPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::drag, scene_.phases[number_].name, {position, velocity, drag_acceleration},
+  s.add({stage::drag, scene_.phases[number_].name, {position, velocity, radius, drag_acceleration},
          {acceleration, drag_acceleration}, [this] { act(); }});
 }
 
@@ -140,8 +155,8 @@ void ColumnPhase::act() {
   if (first) {
     p.last = 0.0;
   } else if (p.step != state.steps) {
-    // The drag of the last step acted in the kick that ended it and in the one that began this step.
-    p.elapsed += 0.5 * (p.last + state.dt);
+    p.elapsed += state.dt;
+    p.kicked += 0.5 * (p.last + state.dt);
     p.last = state.dt;
   }
   p.step = state.steps;
@@ -164,16 +179,14 @@ void ColumnPhase::act() {
 void ColumnPhase::exchange() {
   AirProfile& p = profile();
   if (!keys_.held && p.elapsed > 0.0) {
-    spread_impulses(p.elapsed);
+    spread_impulses(0.0);
     air_->advance(p.elapsed, top_stress(w_->state.time), taken_);
   }
-  p.elapsed = 0.0;
+  p.elapsed = p.kicked = 0.0;
   if (crowded_) find_voidage();
   feel();
   if (!keys_.held) spread_rates();
 }
-
-double ColumnPhase::diameter(const PhaseParticles&, std::size_t) const { return layout_.spacing; }
 
 /// The wind that a grain feels: the mean over its height; of a logarithmic profile that is held, that at its centre.
 double ColumnPhase::wind(double y, double radius) const {
@@ -210,12 +223,14 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     drag[d] = p.column(Field::drag_acceleration, static_cast<int>(d));
   }
   const double* y = p.column(Field::position, 1);
-  const double time = hold_, ahead = 0.5 * (hold_ - w_->state.dt);
+  const Diameters diameter(p, grains.diameter);
+  // Speeds of the common integrator are half a step behind their places.
+  const double time = hold_, ahead = 0.5 * (hold_ - (grains.own_steps ? 0.0 : w_->state.dt));
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double d = diameter(p, k), stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
+    const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
     const double at = y[k] + std::max(ahead, 0.0) * v[1][k];
     const double speed = wind(at, 0.5 * d);
     std::array<double, dimensions> mean{};  // total acceleration, gravity and drag
@@ -242,24 +257,33 @@ void ColumnPhase::spread_rates() {
   spread_->clear();
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
     const double* y = p.column(Field::position, 1);
     for (std::size_t k = 0; k < p.size(); ++k) {
-      const double r = 0.5 * diameter(p, k);
-      spread_->add(*air_, y[k] - r, y[k] + r, p.mass() * grains.rate[k] / area_);
+      const double r = 0.5 * diameter[k];
+      spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) * grains.rate[k] / area_);
     }
   }
   spread_->gather(*air_, profile().rate);
 }
 
-/// What the present drag gives the grains of each cell in a time.
-void ColumnPhase::spread_impulses(double time) {
+/// For how long the present drag has acted since the last exchange. Grains of the common integrator are kicked twice a
+/// step: by the drag of the step before at its beginning, and by that of its end.
+double ColumnPhase::impulse_time(const Feeling& grains) const {
+  return grains.own_steps ? profile().elapsed : profile().kicked;
+}
+
+/// What the present drag has given the grains of each cell since the last exchange, or gives them in a `wanted` time.
+void ColumnPhase::spread_impulses(double wanted) {
   spread_->clear();
   for (const Feeling& grains : feeling_) {
+    const double time = wanted > 0.0 ? wanted : impulse_time(grains);
     const PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
     const double *y = p.column(Field::position, 1), *drag = p.column(Field::drag_acceleration, 0);
     for (std::size_t k = 0; k < p.size(); ++k) {
-      const double r = 0.5 * diameter(p, k);
-      spread_->add(*air_, y[k] - r, y[k] + r, p.mass() * drag[k] * time / area_);
+      const double r = 0.5 * diameter[k];
+      spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) * drag[k] * time / area_);
     }
   }
   spread_->gather(*air_, taken_);
@@ -270,10 +294,11 @@ void ColumnPhase::find_voidage() {
   spread_->clear();
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
     const double* y = p.column(Field::position, 1);
     for (std::size_t k = 0; k < p.size(); ++k) {
-      const double r = 0.5 * diameter(p, k);
-      spread_->add(*air_, y[k] - r, y[k] + r, p.mass() / (grains.density * area_));
+      const double r = 0.5 * diameter[k];
+      spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) / (grains.density * area_));
     }
   }
   spread_->gather(*air_, solid_);
@@ -297,8 +322,8 @@ void ColumnPhase::row(std::vector<double>& values) const {
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
     const double* drag = p.column(Field::drag_acceleration, 0);
-    const double mass = p.mass();
-    momentum -= (air.elapsed + 0.5 * air.last) * ordered_sum(p.size(), [&](std::size_t k) { return mass * drag[k]; });
+    const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
+    momentum -= time * ordered_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }
   values.push_back(momentum);
   values.push_back(area_ * air.boundary);

@@ -33,6 +33,8 @@ class ColumnPhase : public Model {
     std::size_t phase;
     DragLaw law;
     double density;            // kg/m3, of the grains
+    double diameter;           // m, mean
+    bool own_steps;            // moved by models/grains/spheres.hpp: a step's drag acts in the whole of the next one
     std::vector<double> rate;  // 1/s, of each grain: drag by difference of speed
   };
   AirProfile& profile() const { return w_->state.air[place_]; }
@@ -48,12 +50,13 @@ class ColumnPhase : public Model {
   void find_voidage();
   double wind(double y, double radius) const;
   double top_stress(double time) const;
-  double diameter(const PhaseParticles& grains, std::size_t k) const;
+  double impulse_time(const Feeling& grains) const;
 
   const Scene& scene_;
   const Layout& layout_;
   const ColumnKeys& keys_;
   std::size_t number_, place_ = 0;  // of the phase; of the profile in the state
+  double diameter_ = 0.0;             // m, of the largest phase
   double density_, area_, interval_;  // kg/m3; m2 (2D: of a metre of depth); s, between exchanges
   double hold_ = 0.0;                 // s, for which the next drag is kept
   Formula friction_velocity_;
