@@ -2,7 +2,8 @@
 // length.
 //
 //   rho dU/dt = d tau/dy - (what the grains take),   tau = rho (nu + l^2 |U'|) U',   tau = rho u*^2 on the top,
-//   dl/dy = kappa [1 - exp(-sqrt(U l/(7 nu)))]                                  (Duran, Andreotti & Claudin 2012, eq. 7)
+//   dl/dy = kappa [1 - exp(-sqrt(U l/(7 nu)))]                                  (Duran, Andreotti & Claudin 2012, eq.
+//   7)
 //
 // In a bed U vanishes and l with it; over it l grows as over a rough or smooth wall: no surface of the bed is needed.
 #pragma once
@@ -56,10 +57,16 @@ class AirColumn {
     std::vector<double> part_, step_;  // of the cells where spreads begin and end; changes of the density between them
   };
 
-  /// One implicit step of the air (s): `stress` on its top (Pa), `taken` (Pa s) by area and cell what the grains took
-  /// already. profile.rate says how much more they take as the air gets faster; what they will take by that in the next
-  /// step is profile.given. Any dt is stable. Updates the mixing length for the next step.
-  void advance(double dt, double stress, const std::vector<double>& taken);
+  /// What the grains of each cell do to the air.
+  struct Load {
+    std::vector<double> pull;  // Pa: what they take at the present speed of the air
+    std::vector<double> rate;  // Pa s/m: how much more they take as it gets faster
+    std::vector<double> owed;  // Pa s: what they have got beyond profile.given of the last step
+    explicit Load(std::size_t cells) : pull(cells, 0.0), rate(cells, 0.0), owed(cells, 0.0) {}
+  };
+  /// One step of the air (s), implicit in shear and drag so that any dt is stable, with a stress on its top (Pa). What
+  /// the grains are to get in this time is then profile.given. Updates the mixing length for the next step.
+  void advance(double dt, double stress, const Load& load);
   void update_mixing_length();
 
   /// Momentum of the air by area, Pa s.
