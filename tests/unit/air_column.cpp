@@ -41,8 +41,7 @@ struct Reference {
       speed.push_back(u);
       length.push_back(l);
       // nu u' + l^2 u'^2 = u*^2
-      const double slope =
-          l > 0.0 ? (-nu + std::sqrt(nu * nu + 4.0 * l * l * u_star * u_star)) / (2.0 * l * l) : u_star * u_star / nu;
+      const double slope = 2.0 * u_star * u_star / (nu + std::sqrt(nu * nu + 4.0 * l * l * u_star * u_star));
       u += dy * slope;
       l += dy * 0.4 * (1.0 - std::exp(-std::sqrt(u * l / (7.0 * nu))));
     }
