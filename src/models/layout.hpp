@@ -34,7 +34,7 @@ enum class Friction {
   grains,  // the logarithmic law, as a viscosity of the pair, so that the grain feels it too
 };
 
-/// The kernel sums of an entry on a regular lattice of the scene's spacing; 1 and 1 are the truth.
+/// The kernel sums of an entry on a regular lattice of its spacing; 1 and 1 are the truth.
 struct Consistency {
   int neighbours = 0;
   double volume_sum = 0;    // sum V W, the particle itself included
@@ -50,7 +50,8 @@ struct PlanEntry {
   Law law = Law::fluid;
   std::size_t fluid = 0, other = 0;  // of laws between a fluid and something else: which is which
   KernelKind kernel = KernelKind::cubic_spline;
-  double radius = 0;  // m
+  double radius = 0;   // m
+  double spacing = 0;  // m, of its coarser phase
   Consistency consistency;
   bool corrected = false;           // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                  // drag coefficient, 0: none
@@ -85,6 +86,7 @@ struct PlanPhase {
   std::string name;
   std::string kind;  // as the scene calls it
   std::size_t count = 0;
+  double spacing = 0;           // m, of its particles
   double mass = 0;              // kg a particle (per metre of depth in 2D)
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
   double smoothing_length = 0;  // m
@@ -102,7 +104,6 @@ struct PlanPhase {
 
 struct Layout {
   int dimensions = 2;
-  double spacing = 0;        // m
   double largest_speed = 0;  // m/s, what the automatic sound speed is ten times of
   double skin = 0.1;         // of the lists, in their radii; the widest
   Bounds bounds;
