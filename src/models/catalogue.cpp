@@ -8,6 +8,7 @@
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_phase.hpp"
+#include "models/grains/spheres.hpp"
 #include "models/walls/wall.hpp"
 
 namespace barchan {
@@ -81,9 +82,11 @@ Models make_models(const Scene& scene, const Layout& layout) {
     if (std::any_of(layout.entries.begin(), layout.entries.end(),
                     [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))
       models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
+  if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.diameter > 0; }))
+    models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {
     if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
-    if (e.law == Law::contact || e.law == Law::repulsive)
+    if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
   }
   return models;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace barchan {
 namespace stage {
 enum Stage : std::size_t {
   kick_and_drift,
+  grain_contacts,
   strain_records,
   strain,
   walls,
@@ -68,6 +70,8 @@ class Model {
   /// Columns of history.csv of its own, behind those that every moving phase has, and their values.
   virtual void columns(std::vector<std::string>&) const {}
   virtual void row(std::vector<double>&) const {}
+  /// What has gone wrong in what only it sees, with the remedy; empty: nothing.
+  virtual std::optional<std::string> trouble() const { return std::nullopt; }
   /// Its numbers that a step starts from.
   virtual void archive(Archive&) {}
 };

@@ -10,6 +10,7 @@
 namespace barchan {
 
 const std::array<const char*, stage::count> stage::names{"kick and drift",
+                                                         "grain contacts",
                                                          "elastic packing",
                                                          "elastic strain",
                                                          "wall motion",
@@ -164,6 +165,7 @@ void CommonWork::find_neighbours() {
   const auto beside = [this] {
     for (const auto& call : w_->when_sorted) call();
   };
+  if (layout_.directions.empty()) return;
   const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search, beside);
   w_->must_search = false;
   if (sorted) w_->fit_records();
@@ -195,7 +197,11 @@ void CommonWork::pack() {
 void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
-    if (layout_.phases[k].moves) largest = std::max(largest, barchan::kick(w_->particles(k), w_->kick_time));
+    if (layout_.phases[k].moves) {
+      // Spheres were kicked in the steps of their contacts.
+      const double time = layout_.phases[k].diameter > 0 ? 0.0 : w_->kick_time;
+      largest = std::max(largest, barchan::kick(w_->particles(k), time));
+    }
   w_->state.largest_acceleration = largest;
 }
 

@@ -23,9 +23,15 @@ std::string joined(const std::vector<std::string>& words) {
   return all.empty() ? "none" : all;
 }
 
+std::string law_of(const PlanEntry& e) {
+  if (!e.of_spheres()) return to_string(e.law);
+  return e.contact == ContactLaw::linear ? "linear" : "hertz";
+}
+
 /// What the kernel sums of an entry mean.
 std::string meaning(const PlanEntry& e) {
   if (e.corrected) return "corrected to first order by the consistent scheme";
+  if (e.of_spheres()) return "spheres: touching decides";
   if (e.law == Law::contact || e.law == Law::repulsive) return "a contact law, not an approximation";
   if (e.consistency.consistent()) return "consistent";
   if (e.law == Law::elastic && e.a != e.b) return "a contact law, not an approximation";
@@ -50,9 +56,9 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
             "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
-    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), to_string(e.law).c_str(),
-              kernel_name(e.kernel), e.radius / e.spacing, e.consistency.neighbours, e.consistency.volume_sum,
-              e.consistency.gradient_sum, meaning(e).c_str());
+    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), law_of(e).c_str(),
+              e.of_spheres() ? "-" : kernel_name(e.kernel), e.radius / e.spacing, e.consistency.neighbours,
+              e.consistency.volume_sum, e.consistency.gradient_sum, meaning(e).c_str());
   t += "\n";
   for (const auto& p : plan.phases)
     if (p.flows) t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
@@ -104,8 +110,8 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   }
   for (const auto& e : plan.entries) {
     nlohmann::ordered_json q;
-    q["law"] = to_string(e.law);
-    q["kernel"] = kernel_name(e.kernel);
+    q["law"] = law_of(e);
+    q["kernel"] = e.of_spheres() ? "none" : kernel_name(e.kernel);
     q["radius"] = e.radius;
     q["neighbours"] = e.consistency.neighbours;
     q["volume_sum"] = e.consistency.volume_sum;

@@ -104,8 +104,11 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   if (wall && report.has(dotted + ".velocity"))
     report(dotted + ".velocity", "a wall has no initial velocity; expected no such key (phases." + phase.name +
                                      ".velocity lets the wall's surface slide)");
-  if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random)
-    report(dotted + ".seed", "nothing here is random; expected perturb above 0 or packing = \"random\" beside it");
+  const bool sizes = phase.diameter() && phase.diameter()->spread > 0.0;
+  if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random && !sizes)
+    report(dotted + ".seed",
+           "nothing here is random; expected perturb above 0 or packing = \"random\" beside it, or diameters with a "
+           "spread");
   if (phase.kind() != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
   const bool continuous = phase.kind() == PhaseKind::fluid || phase.kind() == PhaseKind::elastic;

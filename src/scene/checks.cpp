@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/couplings.hpp"
 #include "scene/keys.hpp"
 #include "scene/lattice.hpp"
 #include "scene/nearest.hpp"
@@ -144,7 +145,7 @@ void check_domain(const Scene& scene, const Report& report) {
   const Interaction* widest = nullptr;
   const auto reach = [&](const Interaction& pair) { return pair.radius * spacing_of(scene, pair); };
   for (const Interaction& pair : scene.interactions)
-    if (!widest || reach(pair) > reach(*widest)) widest = &pair;
+    if (!of_spheres(pair) && (!widest || reach(pair) > reach(*widest))) widest = &pair;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     if (!scene.domain.periodic[axis]) continue;
     const std::string misfit = misfit_of_period(scene, axis);

@@ -51,7 +51,7 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
 
 void complete(Scene& scene) {
   for (Phase& phase : scene.phases)
-    if (!(phase.spacing > 0.0)) phase.spacing = scene.spacing;
+    if (!(phase.spacing > 0.0)) phase.spacing = phase.diameter() ? phase.diameter()->largest() : scene.spacing;
   for (Interaction& pair : scene.interactions)
     if (const double dx = spacing_of(scene, pair); pair.radius_in_metres && dx > 0.0)
       pair.radius = *pair.radius_in_metres / dx;

@@ -32,6 +32,12 @@ bool meets(const Scene& scene, const Phase& phase, PhaseKind kind) {
   });
 }
 
+bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law) {
+  return std::any_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
+    return pair.law == law && (pair.a == phase.name || pair.b == phase.name);
+  });
+}
+
 bool has_eddies(const Scene& scene, const Phase& fluid) {
   if (fluid.kind() != PhaseKind::fluid) return false;
   return fluid.fluid().turbulence != Turbulence::none ||

@@ -20,6 +20,12 @@ double spacing_of(const Scene& scene, const Interaction& pair);
 /// Whether the phase has an entry with another phase of this kind.
 bool meets(const Scene& scene, const Phase& phase, PhaseKind kind);
 
+/// Whether the entry is a contact of spheres: touching decides, and its radius is not read.
+inline bool of_spheres(const Interaction& pair) { return pair.law != ContactLaw::kernel; }
+
+/// Whether the phase has an entry with this law of contact.
+bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law);
+
 /// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
 /// `roughness` or `shear-stress`.
 bool has_eddies(const Scene& scene, const Phase& fluid);

@@ -124,6 +124,14 @@ void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& f
   }
 }
 
+/// Radii of new spheres. The seed is another one than that of their places.
+void append_radii(ParticleBlock& block, const SphereSize& size, unsigned seed) {
+  Random random(0x5eed00000000ull + seed);
+  while (block.radius.size() < block.position.size())
+    block.radius.push_back(0.5 * size.mean *
+                           (size.spread > 0.0 ? random.uniform(1.0 - size.spread, 1.0 + size.spread) : 1.0));
+}
+
 /// Where the surface of a fitted wall is, seen from each of its particles.
 void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed, const Scene& scene, double spacing) {
   const Terrain terrain(Ground(bed, scene.domain), scene.domain, spacing);
@@ -179,6 +187,7 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);
+    if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
       append_surface(block, first, *bed, scene, phase->spacing);

@@ -63,6 +63,11 @@ bool hangs_on_origin(const Shape& shape) {
 }
 
 std::string misfit_of_period(const Scene& scene, std::size_t axis) {
+  // Spheres of their own diameter stretch their lattice (shapes.cpp).
+  const auto stretches = [&](const Fill& fill) {
+    const Phase* phase = find_phase(scene, fill.phase);
+    return phase && phase->diameter();
+  };
   const auto misfit = [&](double period, const char* whole) -> std::string {
     const double size = scene.domain.size[axis];
     const double count = size / period;
@@ -79,7 +84,7 @@ std::string misfit_of_period(const Scene& scene, std::size_t axis) {
   // Square lattices first: a size that they fit is the shorter list.
   for (const bool staggered : {false, true})
     for (const Fill& fill : scene.fills) {
-      if (!hangs_on_origin(fill.shape) || fill.packing == Packing::random) continue;
+      if (!hangs_on_origin(fill.shape) || fill.packing == Packing::random || stretches(fill)) continue;
       const double dx = spacing_of(scene, fill);
       if (staggered != (fill.packing == Packing::hexagonal)) continue;
       const std::string text =

@@ -133,6 +133,35 @@ std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spac
   return places;
 }
 
+/// Places of a lattice of the region. That of spheres is widened along periodic axes until whole rows fit.
+std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const Region& region, double dx) {
+  const Phase* phase = find_phase(scene, fill.phase);
+  if (!phase || !phase->diameter() || !hangs_on_origin(fill.shape))
+    return lattice(fill.packing, scene.dimensions, dx, region.anchor, region.lower, region.upper);
+  Vec3 stretch{1, 1, 1}, anchor = region.anchor, lower = region.lower, upper = region.upper;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
+    const double low = scene.domain.origin[axis], size = scene.domain.size[axis];
+    const double period = period_of(fill.packing, scene.dimensions, axis, dx);
+    if (scene.domain.periodic[axis] && size > period) {
+      stretch[axis] = size / (std::floor(size / period * (1.0 + 1e-9)) * period);
+      // Square cells were rounded to whole spacings; the stretched ones fill the domain.
+      upper[axis] = std::min(upper[axis], low + size);
+    }
+    if (!scene.domain.periodic[axis]) {  // whole spheres inside
+      lower[axis] = std::max(lower[axis], low + (0.5 - 1e-6) * dx);
+      upper[axis] = std::min(upper[axis], low + size - (0.5 - 1e-6) * dx);
+    }
+    const auto shrunk = [&](double x) { return low + (x - low) / stretch[axis]; };
+    lower[axis] = shrunk(lower[axis]);
+    upper[axis] = shrunk(upper[axis]);
+  }
+  std::vector<Vec3> places = lattice(fill.packing, scene.dimensions, dx, anchor, lower, upper);
+  for (Vec3& x : places)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      x[axis] = scene.domain.origin[axis] + (x[axis] - scene.domain.origin[axis]) * stretch[axis];
+  return places;
+}
+
 /// Random sequential addition.
 std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, double dx,
                                 const Occupied& occupied) {
@@ -201,7 +230,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     if (fill.packing == Packing::random) {
       places = random_places(scene, region, cells, fill.seed, dx, occupied);
     } else {
-      places = lattice(fill.packing, scene.dimensions, dx, region.anchor, region.lower, region.upper);
+      places = stretched_lattice(scene, fill, region, dx);
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
     }
     if (std::holds_alternative<TheRestShape>(fill.shape)) keep_the_rest(places, scene, k, dx, occupied);

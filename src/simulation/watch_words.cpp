@@ -36,6 +36,10 @@ std::string Watch::who(std::size_t phase, std::size_t k, const Moment& now) cons
          text_of(place_of(p, k), p.dimensions()) + ", t = " + brief(now.time) + " s, step " + std::to_string(now.step);
 }
 
+void Watch::tell(const std::string& trouble, const Moment& now) const {
+  throw BreakdownError("t = " + brief(now.time) + " s, step " + std::to_string(now.step) + ": " + trouble);
+}
+
 /// The key that makes the step shorter.
 std::string Watch::step_key() const { return see_.plan.fixed_step > 0 ? "time.step" : "time.safety"; }
 
