@@ -44,6 +44,9 @@ void check_wind(const Phase& column, const std::string& dotted, const Report& re
 void check_column(const Scene& scene, const Phase& column, const Report& report) {
   const std::string dotted = "phases." + column.name;
   check_wind(column, dotted, report);
+  if (report.has(dotted + ".spacing"))
+    report(dotted + ".spacing",
+           "a column has no particles; expected no such key (resolution is the height of its cells)");
   for (std::size_t k = 0; k < scene.fills.size(); ++k)
     if (scene.fills[k].phase == column.name)
       report("fill." + std::to_string(k) + ".phase",
@@ -75,7 +78,7 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
                         kind_word(other->kind()) + "; expected no such entry");
       continue;
     }
-    for (const char* key : {".radius", ".kernel"})
+    for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
       if (report.has(entry + key))
         report(entry + key,
                "a column of air has no kernel: a grain feels the wind of its height; expected no such key");
