@@ -44,9 +44,6 @@ void check_wind(const Phase& column, const std::string& dotted, const Report& re
 void check_column(const Scene& scene, const Phase& column, const Report& report) {
   const std::string dotted = "phases." + column.name;
   check_wind(column, dotted, report);
-  if (report.has(dotted + ".spacing"))
-    report(dotted + ".spacing",
-           "a column has no particles; expected no such key (resolution is the height of its cells)");
   for (std::size_t k = 0; k < scene.fills.size(); ++k)
     if (scene.fills[k].phase == column.name)
       report("fill." + std::to_string(k) + ".phase",

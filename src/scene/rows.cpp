@@ -141,6 +141,13 @@ constexpr Slot fill_pressure(const char* in_words) {
   return slot;
 }
 
+/// Of all kinds of phases that have particles.
+constexpr Slot spacing_of_particles(const char* in_words) {
+  Slot slot = at<&Phase::spacing>(in_words);
+  slot.kinds = kinds_with<PhaseKind::fluid, PhaseKind::elastic, PhaseKind::grains, PhaseKind::wall>;
+  return slot;
+}
+
 /// A number, or the name of a law.
 constexpr Slot drag(const char* in_words) {
   Slot slot = at<&Interaction::drag>(0.0, in_words);
@@ -230,7 +237,7 @@ constexpr Key table[] = {
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
-    {"phases", "spacing", at<&Phase::spacing>("that of the scene"), "m", "Distance between the particles of this phase.", positive},
+    {"phases", "spacing", spacing_of_particles("that of the scene"), "m", "Distance between the particles of this phase.", positive},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
      "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
     {"phases", "viscosity", of<&FluidKeys::viscosity, &ColumnKeys::viscosity>(0.0, "0; of a column required"), "m2/s", "Kinematic viscosity.", not_negative},
