@@ -337,6 +337,11 @@ void ColumnPhase::find_voidage() {
   for (std::size_t c = 0; c < solid_.size(); ++c) solid_[c] /= air.face[c + 1] - air.face[c];
 }
 
+/// The profile belongs to the state; what is made of it is made again.
+void ColumnPhase::archive(Archive& a) {
+  if (a.loads()) air_->integrate_speed();
+}
+
 void ColumnPhase::columns(std::vector<std::string>& names) const {
   const std::string& name = scene_.phases[number_].name;
   names.push_back(name + "_momentum_x [kg m/s]");

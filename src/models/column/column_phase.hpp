@@ -26,6 +26,7 @@ class ColumnPhase : public Model {
   int phase() const override { return static_cast<int>(number_); }
   void columns(std::vector<std::string>& names) const override;
   void row(std::vector<double>& values) const override;
+  void archive(Archive& a) override;
 
  private:
   /// A phase of grains that feels the wind.
