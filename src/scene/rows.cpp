@@ -299,6 +299,9 @@ constexpr Key table[] = {
      "Height of the column's cells as far up as grains stand at the start, and 20 diameters more; above they grow by 5 % a cell.", positive},
     {"phases", "mixing-length", of<&ColumnKeys::mixing_length>(MixingLength::duran), "",
      "How the column's turbulence carries momentum down: Duran, Andreotti & Claudin 2012, which needs no bed surface; or not at all."},
+    {"phases", "averaging", of<&ColumnKeys::averaging>("none: the air has inertia"), "s",
+     "The wind is at every moment the steady one for the grains' drag averaged over this time: it follows a storm at once, where air with "
+     "inertia takes a second or more.", positive},
     {"phases", "held", of<&ColumnKeys::held>(false), "", "The wind of the start stays as it is: the air does not feel the grains."},
     {"phases", "speed", of<&ColumnKeys::speed>("that of the steady wind over the grains at rest"), "m/s", "Speed of the air at the start, the same at all heights."},
     {"phases", "log-profile", of<&ColumnKeys::log_profile>("none"), "",

@@ -46,6 +46,7 @@ class ColumnPhase : public Model {
   void feel();
   template <int Dim, class DragOf>
   void feel(Feeling& grains, const DragOf& excess);
+  void average_load();
   void follow_wind();
   void spread_rates();
   void spread_drag(bool so_far, std::vector<double>& sums);
