@@ -265,7 +265,7 @@ class Run {
     const auto columns = simulation_.history_columns();
     const auto row = simulation_.history_row();
     for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
-    r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.neighbours().rebuilds());
+    r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.searches());
     r.budgets["bytes_per_particle"] = static_cast<double>(simulation_.bytes()) / std::max(plan.particles(), 1.0);
     r.end_reason = reason_;
     r.warnings = simulation_.warnings().texts();

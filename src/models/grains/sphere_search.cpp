@@ -42,6 +42,25 @@ void SphereSearch::prepare(const Bounds& bounds, double reach, std::size_t kinds
   found_.resize(static_cast<std::size_t>(std::max(omp_get_max_threads(), omp_get_num_procs())));
 }
 
+void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks) {
+  constexpr std::size_t batch = SphereChunk::batch;
+  const std::size_t pairs = bounds_.dimensions == 2 ? 6 : 11;  // of a sphere, of two in different chunks both
+  for (SphereChunk& chunk : chunks) {
+    const std::size_t spheres = chunk.end - chunk.begin, room = pairs * spheres + 64;
+    chunk.a.reserve(room);
+    chunk.b.reserve(room);
+    chunk.memory.reserve(room * numbers_);
+    chunk.touches.reserve(room / batch);
+    chunk.groups.reserve(2 * kinds_ * kinds_ + 2);
+    if (!sides_.empty()) chunk.sides.reserve(spheres);
+  }
+  for (auto& found : found_) found.reserve(pairs * SphereChunk::most + 64);
+  kept_.reserve(pairs * all / 2 + 64);
+  begin_.reserve(8 * all + 65536 + 1);
+  cell_of_.reserve(all);
+  order_.reserve(all);
+}
+
 std::size_t SphereSearch::coordinate(double x, std::size_t axis) const {
   x -= bounds_.low[axis];
   if (period_[axis] > 0.0) x -= period_[axis] * std::floor(x / period_[axis]);

@@ -33,6 +33,8 @@ class SphereSearch {
   /// `reach` (m): the largest sum of radii; `laws`: by kind and kind, `none` where two do not touch.
   void prepare(const Bounds& bounds, double reach, std::size_t kinds, std::vector<std::uint32_t> laws,
                std::vector<Side> sides, std::size_t numbers_of_a_pair);
+  /// Room for what packings of `all` spheres need, so that later searches seldom allocate.
+  void reserve(std::size_t all, std::vector<SphereChunk>& chunks);
 
   /// Fills the chunks with the pairs nearer than `slack` (m), with the memory that they had. `before`: numbers of the
   /// spheres when the chunks were filled last. Allocates only to grow.
