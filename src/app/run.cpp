@@ -21,6 +21,7 @@
 #include "output/run_report.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -316,7 +317,7 @@ std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::
 int run(const RunOptions& options) {
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   const Plan plan = make_plan(scene, blocks);
   use_threads(options.threads, plan);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);

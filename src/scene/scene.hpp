@@ -182,7 +182,8 @@ struct BedShape {
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
                            FormulaShape, SidesShape, BedShape, TheRestShape>;
 
-enum class Packing { square, hexagonal, random, fitted };  // rows, staggered rows, without overlap, along the ground
+/// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
+enum class Packing { square, hexagonal, random, fitted, settled };
 
 /// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
 struct LogProfile {

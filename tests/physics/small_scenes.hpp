@@ -7,6 +7,7 @@
 
 #include "scene/generate.hpp"
 #include "scene/reader.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan::small {
@@ -260,8 +261,8 @@ velocity = ["0.2*sin(2*pi*x/0.04)", "-0.3*y/0.02"]
 end = 10
 )toml";
 
-/// Spheres of two phases and many sizes, with friction and rolling resistance, that are shaken over a side of the domain
-/// and fixed spheres.
+/// Spheres of two phases and many sizes, with friction and rolling resistance, that are shaken over a side of the
+/// domain and fixed spheres.
 inline const std::string spheres = R"toml(
 spacing = 1e-3
 [domain]
@@ -358,7 +359,7 @@ inline void PrintTo(const Named& scene, std::ostream* out) { *out << scene.name;
 
 inline std::unique_ptr<Simulation> simulation(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const Scene scene = parse_scene(text, "test.toml", overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   return std::make_unique<Simulation>(scene, make_plan(scene, blocks), blocks);
 }
 
