@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "app/guard.hpp"
 #include "base/denormals.hpp"
 #include "base/version.hpp"
+#include "output/numbers.hpp"
 #include "scene/nearest.hpp"
 
 namespace {
@@ -98,7 +100,11 @@ int dispatch(int argc, char** argv) {
   c_compare->add_option("a", file_a, ".vtp, .vtu or .pvd")->required();
   c_compare->add_option("b", file_b, ".vtp, .vtu or .pvd")->required();
   c_compare->add_option("--tolerance", tolerance, "relative difference that still counts as the same (default 0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) {
+        const auto number = barchan::parse_number(text);
+        return number && *number >= 0 && std::isfinite(*number) ? ""
+                                                                : "expected a number >= 0, found " + text.substr(0, 40);
+      });
   c_compare->add_flag("--json", json, "as JSON");
   c_compare->callback([&] { status = barchan::compare(file_a, file_b, tolerance, json); });
 
