@@ -2,9 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "app/commands.hpp"
 #include "app/guard.hpp"
 #include "base/denormals.hpp"
+#include "base/errors.hpp"
 #include "base/version.hpp"
 #include "output/numbers.hpp"
 #include "scene/nearest.hpp"
@@ -44,6 +48,14 @@ std::string not_a_command(const CLI::App& app, const std::string& word) {
          '\n' + list;
 }
 
+/// The status of a command whose answer is what it prints: it has failed when that could not be written.
+int all_was_said(int status) {
+  errno = 0;
+  if (std::cout.flush() && std::fflush(stdout) == 0) return status;
+  throw barchan::OutputError("cannot write to standard output" +
+                             (errno ? ": " + std::string(std::strerror(errno)) : std::string()));
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
   app.set_version_flag("--version", [] {
@@ -53,7 +65,8 @@ int dispatch(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done, 1 compare: different, 2 wrong scene or command, 3 the run broke down,\n"
-      "4 input/output failed or out of memory, 5 a mistake in Barchan itself, 130 or 143 stopped by a signal.\n"
+      "4 input/output failed, no threads or out of memory, 5 a mistake in Barchan itself, 128 + n stopped by signal "
+      "n.\n"
       "A file named TERMINATE in the output folder ends a run well.");
 
   int status = 0;
@@ -71,6 +84,8 @@ int dispatch(int argc, char** argv) {
       ->type_name("FILE|latest");
   c_run->add_option("--instructions", run.instructions, "avx2 or avx512 (default: the best that the machine has)")
       ->type_name("NAME");
+  c_run->add_option("--retreats", run.retreats, "how often to go back after a failed step and take smaller ones (10)")
+      ->check(CLI::Range(0, 1000));
   c_run->add_flag("--quiet", run.quiet, "print errors only");
   add_set(c_run);
   c_run->callback([&] {
@@ -118,9 +133,9 @@ int dispatch(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);
-    return code == 0 ? 0 : 2;
+    return code == 0 ? all_was_said(0) : 2;
   }
-  return status;
+  return c_run->parsed() ? status : all_was_said(status);
 }
 
 }  // namespace

@@ -1,7 +1,4 @@
 // barchan plan, generate, compare, schema.
-#include <omp.h>
-
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -14,11 +11,6 @@
 #include "simulation/simulation.hpp"
 
 namespace barchan {
-
-void use_threads(int wanted, const Plan& plan) {
-  const int useful = 1 + static_cast<int>(plan.particles() / 2000.0);
-  omp_set_num_threads(wanted > 0 ? wanted : std::min(omp_get_max_threads(), useful));
-}
 
 int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
   const Scene scene = read_scene(file, overrides);
@@ -37,6 +29,7 @@ int generate(const std::string& file, const std::string& output, const std::vect
   const bool vtu = std::filesystem::path(output).extension() == ".vtu";
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
+  use_threads(0, plan);
   write_frame(output, Simulation(scene, plan, blocks).frame(0), vtu ? FrameFormat::vtu : FrameFormat::vtp,
               scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";

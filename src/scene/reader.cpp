@@ -8,23 +8,11 @@
 
 #include "base/errors.hpp"
 #include "scene/checks.hpp"
+#include "scene/identity.hpp"
 #include "scene/read.hpp"
 #include "scene/validate.hpp"
 
 namespace barchan {
-namespace {
-
-/// The document less what a run that goes on may change.
-std::string identity_of(toml::table document) {
-  for (const char* key : {"title", "state"}) document.erase(key);
-  if (toml::table* output = document["output"].as_table()) output->erase("checkpoint-every");
-  if (toml::table* time = document["time"].as_table()) time->erase("end");
-  std::ostringstream text;
-  text << document;
-  return text.str();
-}
-
-}  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   Problems problems(file);

@@ -254,8 +254,7 @@ enum class Precision { double_precision, mixed };
 struct Scene {
   std::string file;      // as given, for messages
   std::string name;      // file name without directory and suffix
-  std::string identity;  // its document with the overrides, less what a run that goes on may change: title, state,
-                         // time.end and output.checkpoint-every
+  std::string identity;  // its document with the overrides, less what a run that goes on may change (scene/identity.hpp)
   std::string title;
   std::string state;  // pvstate that scripts/run renders; empty: none
   int dimensions{};

@@ -16,7 +16,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   work_ = std::make_unique<Workspace>(scene_, plan_, state_);
   for (const auto& model : models_) model->attach(*work_);
   for (const auto& l : plan_.limits) state_.limit_counts[l.name] = 0;
-  for (const char* name : {"force", "output", "fixed"}) state_.limit_counts[name] = 0;
+  for (const char* name : {"force", "output", "fixed", "retreat"}) state_.limit_counts[name] = 0;
   state_.dt = plan_.step();
   schedule_.run(stage::walls, stage::hold);
   work_->must_search = true;
@@ -98,6 +98,10 @@ double Simulation::stable_step() {
 
 void Simulation::choose_step(double largest) {
   double dt = stable_step();
+  if (state_.retreat.share < 1.0 && state_.time < state_.retreat.until) {
+    dt *= state_.retreat.share;
+    state_.ruling_limit = "retreat";
+  }
   // The last steps before an output share what is left, so that none is tiny.
   const double left = std::ceil(largest / dt * (1.0 - 1e-9));
   if (left * dt > largest) {

@@ -36,6 +36,7 @@ class Simulation {
   std::vector<PhaseParticles>& phases() { return state_.phases; }
   const State& state() const { return state_; }
   OutputClock& outputs() { return state_.outputs; }
+  Retreat& retreat() { return state_.retreat; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   const Neighbours& neighbours() const { return work_->neighbours; }
