@@ -56,12 +56,20 @@ int all_was_said(int status) {
                              (errno ? ": " + std::string(std::strerror(errno)) : std::string()));
 }
 
+std::string version_text(bool verbose) {
+  std::string text = "barchan " + barchan::version() + " (" + barchan::commit() +
+                     ")\ncompiler: " + barchan::compiler() + "\ninstruction set: " + barchan::instruction_set();
+  if (!verbose) return text + "\nVTK: " + barchan::vtk_version();
+  for (const auto& [name, version] : barchan::packages()) text += "\n" + name + ": " + version;
+  return text;
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
-  app.set_version_flag("--version", [] {
-    return "barchan " + barchan::version() + " (" + barchan::commit() + ")\ncompiler: " + barchan::compiler() +
-           "\ninstruction set: " + barchan::instruction_set() + "\nVTK: " + barchan::vtk_version();
-  });
+  bool verbose = false;
+  app.set_version_flag(
+      "--version", [&] { return version_text(verbose); }, "version, compiler and instruction set");
+  app.add_flag("--verbose", verbose, "with --version: the versions of all packages too");
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done, 1 compare: different, 2 wrong scene or command, 3 the run broke down,\n"

@@ -17,8 +17,19 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   const auto blocks = generate(scene);
   Plan plan = make_plan(scene, blocks);
   use_threads(threads, plan);
-  const Estimate estimate = measure(scene, plan, blocks);
-  std::cout << (json ? to_json(plan, scene, estimate) : to_text(plan, scene) + to_text(estimate));
+  const MemoryNeed memory = memory_need(scene, plan, !scene.time.fixed_step);
+  if (!json) std::cout << to_text(plan, scene) << to_text(memory) << std::flush;  // before anything is allocated
+  Estimate estimate;
+  try {
+    check_memory(scene, memory);
+    estimate = measure(scene, plan, blocks);
+  } catch (const SceneError& error) {
+    if (json) throw;
+    std::cout << "not measured\n";
+    throw;
+  }
+  std::cout << (json ? to_json(plan, scene, memory, estimate) : to_text(estimate));
+  if (!estimate.failure.empty()) throw BreakdownError("the run breaks down in its first steps: " + estimate.failure);
   return 0;
 }
 

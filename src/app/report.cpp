@@ -54,6 +54,8 @@ void add_budgets(RunReport& r, const Simulation& simulation) {
   const auto columns = simulation.history_columns();
   const auto row = simulation.history_row();
   for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
+  if (const auto drift = simulation.budget().momentum_drift(simulation.state())) r.budgets["momentum_drift"] = *drift;
+  if (const auto growth = simulation.budget().energy_growth(simulation.state())) r.budgets["energy_growth"] = *growth;
   r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation.neighbours().rebuilds());
   r.budgets["bytes_per_particle"] =
       static_cast<double>(simulation.bytes()) / std::max(simulation.plan().particles(), 1.0);

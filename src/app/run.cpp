@@ -13,6 +13,7 @@
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
+#include "plan/memory.hpp"
 #include "scene/identity.hpp"
 #include "scene/reader.hpp"
 
@@ -150,6 +151,7 @@ int run(const RunOptions& options) {
   const Scene scene = read_scene(options.scene, options.overrides);
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
+  check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
   use_threads(options.threads, plan);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   std::optional<FolderLock> lock;

@@ -19,6 +19,11 @@ struct Direction {
 
 class Neighbours {
  public:
+  /// So many cells and blocks a particle, and no fewer than so many in all: more than any domain has that is a
+  /// twentieth full.
+  static constexpr std::size_t cells_a_particle = 16, least_cells = std::size_t{1} << 20;
+  static constexpr std::size_t blocks_a_particle = 4, least_blocks = std::size_t{1} << 16;
+
   /// `spacing` (m): of the particles. `padding`: of the rows of all lists. `skin`: lists reach this fraction beyond an
   /// entry's radius, so that they stay valid while particles move. `particles`: of all phases; an empty domain has
   /// cells and blocks for so many and not for its size.
@@ -48,10 +53,6 @@ class Neighbours {
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
   /// in wide ones particles may go further before blocks that are not adjacent matter.
   static constexpr double block_width = 1.5;
-  /// So many cells and blocks a particle, and no fewer than so many in all: more than any domain has that is a
-  /// twentieth full.
-  static constexpr std::size_t cells_a_particle = 16, least_cells = std::size_t{1} << 20;
-  static constexpr std::size_t blocks_a_particle = 4, least_blocks = std::size_t{1} << 16;
 
   /// Displacements since the last sort: bounds of their components.
   struct Range {

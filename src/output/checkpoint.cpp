@@ -38,6 +38,17 @@ void items(Archive& a, Checkpoint& c) {
   a.array("state", c.state);
 }
 
+std::vector<char> bytes_of(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw SceneError("there is no such file; expected a checkpoint, or \"latest\"");
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> all{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.good() && !stream.eof())
+    throw SceneError(std::string("cannot be read: ") + std::strerror(errno ? errno : EIO));
+  return all;
+}
+
 /// Gives the file of the last checkpoint the name of the older one. A link, so that at no moment there is none; a file
 /// system without links has none for a moment.
 void keep_as_older(const std::filesystem::path& file) {
@@ -90,21 +101,21 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& what) -> SceneError {
     return SceneError("--restart " + file.string() + ": " + what);
   };
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw fail("there is no such file; expected a checkpoint, or \"latest\"");
-  std::ifstream stream(file, std::ios::binary);
-  const std::vector<char> all{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream.good() && !stream.eof()) throw fail(std::string("cannot be read: ") + std::strerror(errno ? errno : EIO));
+  try {
+    return parse_checkpoint(bytes_of(file));
+  } catch (const SceneError& e) { throw fail(e.what()); }
+}
+
+Checkpoint parse_checkpoint(const std::vector<char>& all) {
   Head head;
   if (all.size() < magic.size() + sizeof head || std::string_view(all.data(), magic.size()) != magic)
-    throw fail("is no checkpoint of this version; expected a file that begins with \"barchan checkpoint 2\"");
+    throw SceneError("is no checkpoint of this version; expected a file that begins with \"barchan checkpoint 2\"");
   std::memcpy(&head, all.data() + magic.size(), sizeof head);
   const char* begin = all.data() + magic.size() + sizeof head;
   const std::size_t size = all.size() - magic.size() - sizeof head;
   if (head.size != size)
-    throw fail("is damaged: it holds " + std::to_string(size) + " bytes; expected " + std::to_string(head.size));
-  if (head.unused != 0 || checksum(begin, size) != head.sum) throw fail("is damaged: its checksum is wrong");
+    throw SceneError("is damaged: it holds " + std::to_string(size) + " bytes; expected " + std::to_string(head.size));
+  if (head.unused != 0 || checksum(begin, size) != head.sum) throw SceneError("is damaged: its checksum is wrong");
   Archive archive(std::vector<char>(begin, begin + size));
   Checkpoint checkpoint;
   items(archive, checkpoint);

@@ -25,6 +25,9 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 /// CRC-32 of zlib over all that follows the head).
 Checkpoint read_checkpoint(const std::filesystem::path& file);
 
+/// The same of the bytes of a file.
+Checkpoint parse_checkpoint(const std::vector<char>& bytes);
+
 /// Of a file's ring of two: the one before the newest.
 std::filesystem::path older_checkpoint(const std::filesystem::path& file);
 void remove_checkpoints(const std::filesystem::path& file);  ///< Both.

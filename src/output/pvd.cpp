@@ -22,7 +22,9 @@ std::string escape(std::string_view text) {
   return escaped;
 }
 
-std::vector<SeriesWriter::Entry> parse(std::string_view text) {
+}  // namespace
+
+std::vector<SeriesWriter::Entry> parse_pvd(std::string_view text) {
   std::vector<SeriesWriter::Entry> entries;
   XmlTags tags(text);
   XmlTags::Tag tag;
@@ -42,8 +44,6 @@ std::vector<SeriesWriter::Entry> parse(std::string_view text) {
   return entries;
 }
 
-}  // namespace
-
 void write_pvd(const std::filesystem::path& pvd, const std::vector<SeriesWriter::Entry>& entries) {
   std::string text =
       "<?xml version=\"1.0\"?>\n"
@@ -58,7 +58,7 @@ void write_pvd(const std::filesystem::path& pvd, const std::vector<SeriesWriter:
 std::vector<SeriesWriter::Entry> read_pvd(const std::filesystem::path& pvd) {
   const std::string text = read_text(pvd);
   try {
-    return parse(text);
+    return parse_pvd(text);
   } catch (const OutputError& e) { throw OutputError("cannot read '" + pvd.string() + "': " + e.what()); }
 }
 

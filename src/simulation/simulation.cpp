@@ -7,6 +7,7 @@
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -25,6 +26,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
     if (const StepLimit* l = model->moving_limit()) state_.limit_counts[l->name] = 0;
   watch_ = std::make_unique<Watch>(
       Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, work_->motion, work_->stress});
+  budget_.emplace(scene_, plan_, state_);
   FieldSet all;
   for (const auto& p : plan_.phases)
     for (const Field f : p.fields) all = all | FieldSet{f};
@@ -124,7 +126,7 @@ void Simulation::check_start() {
                            " m/s: lower the [[forcing]] or the pressure of the fills, or raise the sound speed or the "
                            "contact-speed");
   } catch (const BreakdownError& e) {
-    throw SceneError(scene_.file + ": the scene is wrong at its start: " + e.what());
+    throw SceneError(located(scene_, "fill") + ": the scene is wrong at its start: " + e.what());
   }
 }
 
@@ -140,6 +142,7 @@ void Simulation::archive(Archive& a) {
   work_->archive(a);
   for (const auto& model : models_) model->archive(a);
   watch_->archive(a);
+  budget_->archive(a);
 }
 
 }  // namespace barchan

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "models/workspace.hpp"
 #include "output/frame.hpp"
 #include "plan/plan.hpp"
+#include "simulation/budget.hpp"
 #include "simulation/watch.hpp"
 
 namespace barchan {
@@ -65,6 +67,8 @@ class Simulation {
   long good_step() const { return watch_->good().step(); }
   double good_time() const { return watch_->good().time(); }
   Frame good_frame(int index);
+  /// What should have been kept since the beginning.
+  const Budget& budget() const { return *budget_; }
   /// What is remarkable so far.
   Warnings warnings() const;
 
@@ -86,6 +90,7 @@ class Simulation {
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
   std::unique_ptr<Watch> watch_;
+  std::optional<Budget> budget_;
 };
 
 }  // namespace barchan
