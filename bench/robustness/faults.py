@@ -161,7 +161,7 @@ class Faults:
         self.check("no threads", (done.returncode == 4, f"status {done.returncode}"), ("cannot make" in done.stderr, done.stderr))
 
         self.fresh()
-        done = self.run("--set", "spacing=2.5e-6", before=["prlimit", "--as=500000000"])
+        done = self.run("--set", "spacing=1e-6", before=["prlimit", "--as=500000000"])
         self.check("no memory", (done.returncode == 2, f"status {done.returncode}"), ("ulimit -v leaves" in done.stderr, done.stderr[-300:]))
 
         done = self.run(before=["prlimit", "--nofile=4:4"])

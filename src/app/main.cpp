@@ -66,7 +66,8 @@ std::string version_text(bool verbose) {
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
-  bool verbose = false;
+  const std::vector<std::string> words(argv, argv + argc);  // --version answers before the options behind it are read
+  bool verbose = std::find(words.begin(), words.end(), "--verbose") != words.end();
   app.set_version_flag(
       "--version", [&] { return version_text(verbose); }, "version, compiler and instruction set");
   app.add_flag("--verbose", verbose, "with --version: the versions of all packages too");

@@ -147,6 +147,7 @@ int run_to_the_end(Course& course, const std::optional<Checkpoint>& from, int re
 }  // namespace
 
 int run(const RunOptions& options) {
+  outlive_readers();
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   const auto blocks = generate(scene);
@@ -169,7 +170,7 @@ int run(const RunOptions& options) {
   if (!lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
   clear(directory, scene, plan, from.has_value());
-  Course course{scene, simulation, directory, Progress(scene.time.end, plan.particles(), options.quiet), 0.0, {}};
+  Course course{scene, simulation, directory, Progress(scene.time.end, plan.particles(), options.quiet)};
   return run_to_the_end(course, from, options.retreats);
 }
 

@@ -105,7 +105,7 @@ int Run::go(Past* past) {
     simulation_.check();
     write_frame();
   }
-  if (reason_ == "end") write_checkpoint();
+  if (reason_ == "end") bring_checkpoint_up_to_date();
   finish(reason_);
   return status;
 }
@@ -163,7 +163,7 @@ bool Run::asked_to_stop(int& status) {
 
 int Run::stop(const std::string& why, int status) {
   reason_ = why;
-  write_checkpoint();
+  bring_checkpoint_up_to_date();
   std::cerr << "barchan: stopped by " << why << " at t = " << simulation_.time() << " s after " << simulation_.steps()
             << " steps; the last frame and a checkpoint are written, --restart latest goes on\n";
   return status;
@@ -185,6 +185,12 @@ void Run::write_checkpoint() {
                             {version() + " (" + commit() + ")", name_of(instructions()), scene_.identity,
                              simulation_.time(), simulation_.steps(), archive.bytes()});
   course_.last_checkpoint = course_.progress.seconds();
+  course_.checkpoint_step = simulation_.steps();
+  course_.checkpoint_frames = clock().frames;
+}
+
+void Run::bring_checkpoint_up_to_date() {
+  if (course_.checkpoint_step != simulation_.steps() || course_.checkpoint_frames != clock().frames) write_checkpoint();
 }
 
 void Run::checkpoint_of_retreat() {

@@ -22,8 +22,9 @@ struct Course {
   Simulation& simulation;
   std::filesystem::path directory;
   Progress progress;
-  double last_checkpoint = 0.0;  // s of the run's wall time
-  std::vector<RunReport::Retreat> retreats;
+  double last_checkpoint = 0.0;                       // s of the run's wall time
+  long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
+  std::vector<RunReport::Retreat> retreats{};
 };
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);
@@ -79,6 +80,8 @@ class Run {
   int stop(const std::string& why, int status);
   bool asked_to_stop(int& status);
   bool checkpoint_due() const;
+  /// A checkpoint, unless the last one says the same.
+  void bring_checkpoint_up_to_date();
   void write_frame();
   void write_row() { history_->row(simulation_.history_row()); }
   RunReport report(const std::string& reason) const;

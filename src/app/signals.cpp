@@ -24,6 +24,8 @@ void handle(int number, void (*handler)(int)) {
 
 }  // namespace
 
+void outlive_readers() { handle(SIGPIPE, SIG_IGN); }
+
 void listen_to_signals() {
   for (const auto& [number, name] : stops) {
     struct sigaction inherited {};
@@ -32,7 +34,6 @@ void listen_to_signals() {
     if (!off) handle(number, on_stop);
   }
   handle(SIGUSR1, on_question);
-  handle(SIGPIPE, SIG_IGN);
 }
 
 int stop_signal() { return stop_number; }

@@ -9,6 +9,9 @@
 
 namespace barchan {
 
+/// From now on a closed pipe is an error of writing and no longer the end of the program.
+void outlive_readers();
+
 /// SIGHUP and SIGQUIT that the program's parent has switched off (nohup) stay off.
 void listen_to_signals();
 

@@ -177,7 +177,8 @@ void check_fills(const Scene& scene, const Report& report) {
     if (report.is_section(shape)) check_shape_keys(shape, fill.packing == Packing::fitted, report);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && bed->dune)
       check_dune(*bed->dune, shape + ".dune", scene, report);
-    if (const auto* bed = std::get_if<BedShape>(&fill.shape)) check_bed(*bed, shape, scene, report);
+    if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing != Packing::fitted)
+      check_bed(*bed, shape, scene, report);
     if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
       check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);
