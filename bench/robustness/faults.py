@@ -49,8 +49,8 @@ class Faults:
         shutil.copy(program, self.program)
         self.out = self.top / "out"
 
-    def command(self, *options, scene=None, short=True):
-        return [str(self.program), "run", str(scene or SCENE), "--out", str(self.out), "--threads", "1", *(SHORT if short else LONG), *options]
+    def command(self, *options, scene=None, short=True, threads=1):
+        return [str(self.program), "run", str(scene or SCENE), "--out", str(self.out), "--threads", str(threads), *(SHORT if short else LONG), *options]
 
     def run(self, *options, before=(), **more):
         return subprocess.run([*before, *self.command("--quiet", *options, **more)], capture_output=True, text=True, timeout=300)
@@ -118,7 +118,7 @@ class Faults:
     def others(self):
         self.fresh()
         run = self.start()
-        shutil.rmtree(self.out)
+        self.out.rename(self.top / "gone")
         self.check("folder removed", *self.stopped(run, 4, str(self.out)))
         self.fresh()
         self.check("begun again after that", (self.goes_on(), "does not go on"))
@@ -139,13 +139,13 @@ class Faults:
         self.fresh()
         subprocess.run(["mount", "-t", "tmpfs", "barchan", str(self.out)], check=True)
         run = self.start()
-        subprocess.run(["mount", "-o", "remount,ro", str(self.out)])
-        conditions = self.stopped(run, 4, "Read-only file system") if subprocess.run(["touch", str(self.out / "x")], capture_output=True).returncode else []
-        if run.poll() is None:
-            run.kill()
-            run.wait()
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+        subprocess.run(["mount", "-o", "remount,ro", str(self.out)], check=True)
+        done = self.run("--restart", "latest")
         subprocess.run(["mount", "-o", "remount,rw", str(self.out)], check=True)
-        self.check("folder made read-only", *conditions, (self.goes_on(), "does not go on"))
+        self.check("folder read-only", (done.returncode == 4, f"status {done.returncode}"), ("Read-only file system" in done.stderr, done.stderr),
+                   (series_is_whole(self.out), "series"), (self.goes_on(), "does not go on"))
         subprocess.run(["umount", str(self.out)], check=True)
 
         self.fresh()
@@ -157,7 +157,7 @@ class Faults:
         self.check("clock set back", (self.goes_on(), "does not go on with files of the future"))
 
         self.fresh(65534)
-        done = subprocess.run(["prlimit", "--nproc=1:1", *NOBODY, *self.command("--quiet", "--threads", "8")], capture_output=True, text=True)
+        done = subprocess.run(["prlimit", "--nproc=1:1", *NOBODY, *self.command("--quiet", threads=8)], capture_output=True, text=True)
         self.check("no threads", (done.returncode == 4, f"status {done.returncode}"), ("cannot make" in done.stderr, done.stderr))
 
         self.fresh()

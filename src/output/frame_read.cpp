@@ -78,38 +78,78 @@ void read_file_tag(const XmlTags::Tag& tag, Head& head, const std::string& suffi
   else if (!compressor.empty()) refuse("its compressor \"" + compressor + "\" is not known");
 }
 
+bool is_known(const XmlTags::Tag& tag) {
+  static const std::map<std::string_view, std::vector<std::string_view>> known{
+      {"VTKFile", {"type", "version", "byte_order", "header_type", "compressor"}},
+      {"PolyData", {}},
+      {"UnstructuredGrid", {}},
+      {"FieldData", {}},
+      {"Piece", {"NumberOf"}},
+      {"PointData", {"Scalars", "Vectors", "Normals", "Tensors", "TCoords", "GlobalIds", "PedigreeIds"}},
+      {"CellData", {"Scalars", "Vectors", "Normals", "Tensors", "TCoords", "GlobalIds", "PedigreeIds"}},
+      {"Points", {}},
+      {"Verts", {}},
+      {"Lines", {}},
+      {"Strips", {}},
+      {"Polys", {}},
+      {"Cells", {}},
+      {"DataArray",
+       {"type", "IdType", "Name", "NumberOf", "ComponentName", "format", "RangeMin", "RangeMax", "offset"}},
+      {"Array", {"type", "Name", "NumberOf", "format", "offset"}}};
+  const auto found = known.find(tag.name);
+  return found != known.end() && std::all_of(tag.attributes.begin(), tag.attributes.end(), [&](const auto& attribute) {
+           return std::any_of(found->second.begin(), found->second.end(),
+                              [&](std::string_view begin) { return attribute.first.starts_with(begin); });
+         });
+}
+
+Array read_array(const XmlTags::Tag& tag, const std::string& section, std::uint64_t most) {
+  Array array;
+  array.section = section;
+  array.name = word(tag, "Name", "");
+  array.type = word(tag, "type", "");
+  if (const std::string format = word(tag, "format", ""); format != "appended")
+    refuse("the array \"" + array.name + "\" has the format \"" + format + "\"; expected \"appended\"");
+  array.components = whole_number(tag, "NumberOfComponents", 1, most);
+  array.has_tuples = tag.attributes.contains("NumberOfTuples");
+  array.tuples = whole_number(tag, "NumberOfTuples", 0, most);
+  array.offset = whole_number(tag, "offset", most, most);
+  return array;
+}
+
+void read_piece(const XmlTags::Tag& tag, Head& head, const std::string& suffix, std::uint64_t most) {
+  ++head.pieces;
+  head.points = whole_number(tag, "NumberOfPoints", 0, most);
+  head.cells = whole_number(tag, suffix == ".vtp" ? "NumberOfVerts" : "NumberOfCells", 0, most);
+  for (const char* other : {"NumberOfLines", "NumberOfStrips", "NumberOfPolys"})
+    if (whole_number(tag, other, 0, most) != 0) refuse("it holds other cells than vertices");
+}
+
 /// The text before the data. `most`: no count in it can be larger.
 Head parse_head(std::string_view text, const std::string& suffix, std::uint64_t most) {
+  for (const char c : text)
+    if (const auto u = static_cast<unsigned char>(c); u >= 0x7f || (u < 0x20 && c != '\n' && c != '\t' && c != '\r'))
+      refuse("its head holds bytes that are no text");
   Head head;
   XmlTags tags(text);
   XmlTags::Tag tag;
-  std::string section;
+  std::vector<std::string> open;  // tags that are not closed yet
   while (tags.next(tag)) {
     const std::string name(tag.name);
-    if (name == "VTKFile") read_file_tag(tag, head, suffix);
-    else if (name == "Piece") {
-      ++head.pieces;
-      head.points = whole_number(tag, "NumberOfPoints", 0, most);
-      head.cells = whole_number(tag, suffix == ".vtp" ? "NumberOfVerts" : "NumberOfCells", 0, most);
-    } else if (name == "DataArray" || name == "Array") {
-      Array array;
-      array.section = section;
-      array.name = word(tag, "Name", "");
-      array.type = word(tag, "type", "");
-      if (const std::string format = word(tag, "format", ""); format != "appended")
-        refuse("the array \"" + array.name + "\" has the format \"" + format + "\"; expected \"appended\"");
-      array.components = whole_number(tag, "NumberOfComponents", 1, most);
-      array.has_tuples = tag.attributes.contains("NumberOfTuples");
-      array.tuples = whole_number(tag, "NumberOfTuples", 0, most);
-      array.offset = whole_number(tag, "offset", most, most);
-      head.arrays.push_back(array);
-    } else if (name == "FieldData" || name == "PointData" || name == "CellData" || name == "Points" ||
-               name == "Verts" || name == "Lines" || name == "Strips" || name == "Polys" || name == "Cells") {
-      section = name;
-    } else if (!name.starts_with("/") && name != "PolyData" && name != "UnstructuredGrid") {
-      refuse("the tag \"" + name.substr(0, 40) + "\" is not known");
+    if (name.starts_with("/")) {
+      if (open.empty() || open.back() != name.substr(1))
+        refuse("the tag \"" + name.substr(0, 40) + "\" closes another");
+      open.pop_back();
+      continue;
     }
+    if (!is_known(tag)) refuse("the tag \"" + name.substr(0, 40) + "\" or an attribute of it is not known");
+    if (name == "VTKFile") read_file_tag(tag, head, suffix);
+    else if (name == "Piece") read_piece(tag, head, suffix, most);
+    else if (name == "DataArray" || name == "Array")
+      head.arrays.push_back(read_array(tag, open.empty() ? "" : open.back(), most));
+    if (!tag.alone) open.push_back(name);
   }
+  if (open != std::vector<std::string>{"VTKFile"}) refuse("its tags do not close");  // AppendedData comes
   if (head.pieces != 1) refuse("it has " + std::to_string(head.pieces) + " pieces; expected 1");
   return head;
 }
@@ -234,6 +274,8 @@ std::vector<std::string> lines_of(const Array& array, const std::vector<char>& b
   for (const char c : bytes)
     if (c == end) lines.emplace_back();
     else lines.back() += c;
+  if (end == '\n' && array.has_tuples && array.tuples != bytes.size())
+    refuse("array '" + array.name + "' is incomplete");
   if (end == '\0' && !lines.empty()) {  // each string has its end
     if (!lines.back().empty() || lines.size() - 1 != array.tuples) refuse("array '" + array.name + "' is incomplete");
     lines.pop_back();

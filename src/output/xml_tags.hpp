@@ -34,6 +34,7 @@ class XmlTags {
   struct Tag {
     std::string_view name;
     std::map<std::string_view, std::string> attributes;
+    bool alone = false;  // <Name/>: has no closing tag
   };
 
   explicit XmlTags(std::string_view text) : text_(text) {}
@@ -49,10 +50,10 @@ class XmlTags {
       else if (rest().starts_with("!")) skip_behind(">");
       else break;
     }
-    tag = {word(), {}};
+    tag = {word(), {}, false};
     while (true) {
       skip_space();
-      if (rest().starts_with("/>")) return at_ += 2, true;
+      if (rest().starts_with("/>")) return tag.alone = true, at_ += 2, true;
       if (rest().starts_with(">")) return at_ += 1, true;
       const auto name = word();
       skip_space();
