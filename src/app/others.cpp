@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "base/denormals.hpp"
 #include "base/errors.hpp"
 #include "output/compare.hpp"
 #include "output/series.hpp"
@@ -48,6 +49,7 @@ int generate(const std::string& file, const std::string& output, const std::vect
 }
 
 int compare(const std::string& a, const std::string& b, double tolerance, bool json) {
+  keep_denormals();
   const auto differences = compare_files(a, b, tolerance);
   std::cout << (json ? to_json(differences) : to_text(differences)) << '\n';
   for (const auto& d : differences)

@@ -62,10 +62,9 @@ void keep_as_older(const std::filesystem::path& file) {
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint) {
   Archive archive;
-  Checkpoint copy = checkpoint;
-  items(archive, copy);
+  items(archive, checkpoint);
   const auto& bytes = archive.bytes();
   const Head head{bytes.size(), checksum(bytes.data(), bytes.size()), 0};
   WholeFile out(file);

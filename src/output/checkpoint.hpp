@@ -19,7 +19,7 @@ struct Checkpoint {
 
 /// Replaces the file by rename when all of it is on the disk; the one before stays as older_checkpoint(). Throws
 /// OutputError.
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint);
 
 /// Throws SceneError when there is no such file, or it is no checkpoint, of another format, cut off or damaged (the
 /// CRC-32 of zlib over all that follows the head).

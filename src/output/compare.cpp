@@ -76,7 +76,8 @@ FieldDifference difference(const std::string& name, std::span<const double> a, s
     double most = 0, most_a = 0, most_b = 0;
     for (std::size_t c = 0; c < components; ++c) {
       const double value_a = a[m.a * components + c], value_b = b[m.b * components + c];
-      const double relative = distance(value_a, value_b) / unit;
+      const double apart = distance(value_a, value_b);
+      const double relative = apart > 0 ? std::max(apart / unit, std::numeric_limits<double>::denorm_min()) : 0.0;
       sum += relative;
       squares += relative * relative;
       if (relative > most) most = relative, most_a = value_a, most_b = value_b;

@@ -313,7 +313,7 @@ class FrameReader {
  private:
   template <class To>
   std::vector<To> take(const Array& array, std::uint64_t tuples, std::uint64_t components) {
-    if (array.components != components || array.type == "String")
+    if (array.components != components || array.type == "String" || (array.has_tuples && array.tuples != tuples))
       refuse("array '" + array.name + "' has another shape");
     const std::vector<char> bytes = data_.bytes(array);
     const std::size_t width = width_of(array.type);

@@ -95,6 +95,7 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
   MemoryNeed need;
   need.parts = {{"fields", fields},           {"records", records},      {"cells", grids}, {"pair lists", lists(plan)},
                 {"frames that wait", frames}, {"last good state", kept}, {"start", start}, {"program", 6e7}};
+  need.parts.emplace_back("checkpoint", 3.0 * past);  // the state, in its envelope, and as the bytes of a file
   if (retreats) need.parts.emplace_back("states to go back to", 2.0 * past);
   return need;
 }
