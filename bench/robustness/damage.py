@@ -140,7 +140,7 @@ class Damager:
         subprocess.run([self.options.program, "run", SCENE, *SMALL, "--quiet", "--threads", "1", "--out", out], check=True)
         frames = [out / "taylor_green_000001.vtp", self.top / "frame.vtu", self.top / "impact.vtp"]
         subprocess.run([self.options.program, "generate", SCENE, "-o", frames[1]], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([self.options.program, "generate", SOURCE / "scenes/impact_single.toml", "-o", frames[2]], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([self.options.program, "generate", SOURCE / "scenes/paper/impact_single.toml", "-o", frames[2]], check=True, stdout=subprocess.DEVNULL)
         checkpoint = (out / "taylor_green.checkpoint").read_bytes()
         chance = random.Random(self.options.seed)
         self.other(checkpoint)

@@ -28,11 +28,16 @@ enum class Field : int {
   wall_normal,
   wall_depth,
   smoothing_length,
+  radius,
+  angular_velocity,
+  contact_acceleration,
+  angular_acceleration,
   count
 };
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
-enum class Rank { scalar, vector, deviator, symmetric, matrix };  // deviator: symmetric, traceless (2 or 6 numbers)
+/// deviator: symmetric, traceless (2 or 6 numbers); axial: about an axis (1 number in 2D, about z, or 3).
+enum class Rank { scalar, vector, deviator, symmetric, matrix, axial };
 
 struct FieldInfo {
   Field id;
@@ -74,6 +79,13 @@ inline constexpr std::array<FieldInfo, field_count> field_table{{
      "distance of a wall particle behind the wall's surface, 0: unknown"},
     {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false,
      "half the kernel radius of the phase with itself"},
+    {Field::radius, "radius", "r", "m", Rank::scalar, true, "of a sphere whose phase has sizes"},
+    {Field::angular_velocity, "angular_velocity", "w", "1/s", Rank::axial, true,
+     "of a sphere that rubs; in 2D about z"},
+    {Field::contact_acceleration, "contact_acceleration", "a_c", "m/s2", Rank::vector, true,
+     "of a sphere: what its contacts gave in their last step; acceleration holds all the rest"},
+    {Field::angular_acceleration, "angular_acceleration", "dw/dt", "1/s2", Rank::axial, true,
+     "of a sphere that rubs, in the last step of its contacts"},
 }};
 
 constexpr const FieldInfo& info(Field f) { return field_table[static_cast<std::size_t>(f)]; }
@@ -85,6 +97,7 @@ constexpr int components(Rank rank, int dimensions) {
     case Rank::deviator: return dimensions == 2 ? 2 : 6;
     case Rank::symmetric: return 6;
     case Rank::matrix: return dimensions * dimensions;
+    case Rank::axial: return dimensions == 2 ? 1 : 3;
   }
   return 0;
 }

@@ -8,13 +8,13 @@
 
 namespace barchan {
 
-Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin,
-                       double spacing, std::size_t padding, std::size_t particles)
+Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, double skin,
+                       const std::vector<double>& spacings, std::size_t padding, std::size_t particles)
     : bounds_(bounds),
       directions_(std::move(directions)),
-      grids_(phases),
+      grids_(spacings.size()),
       lists_(directions_.size()),
-      ranges_(phases),
+      ranges_(spacings.size()),
       padding_(padding),
       skin_(skin),
       widest_skin_(skin) {
@@ -29,13 +29,13 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
     }
     if (blocks_.size() <= most_blocks) break;
   }
-  for (std::size_t p = 0; p < phases; ++p) {
+  for (std::size_t p = 0; p < spacings.size(); ++p) {
     double longest = 0.0;
     for (const auto& d : directions_)
       if (d.a == p || d.b == p) longest = std::max(longest, d.radius);
     if (longest == 0.0) continue;
     // Half a search a cell: a ball's cells then cover little more than the ball. Cells emptier than that are no gain.
-    const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacing);
+    const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacings[p]);
     grids_[p] = std::make_unique<CellGrid>(bounds_, cell, longest * (1.0 + skin_) * 1.001, blocks_,
                                            std::max(cells_a_particle * few, least_cells));
     ranges_[p].resize(blocks_.size());

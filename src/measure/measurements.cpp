@@ -226,7 +226,7 @@ void Measurements::take_slices(std::size_t k, const State& state) {
     for (std::size_t d = 0; d < dimensions; ++d) sample[1 + d] = v[d][a];
     sample[1 + dimensions] = pressure ? pressure[a] : 0.0;
     average(k, row).add({sample.data(), i.quantities()});
-    memory_.fraction[places_[k].row + row] += p.mass() / (density ? density[a] : reference) / volume;
+    memory_.fraction[places_[k].row + row] += p.mass_of(a) / (density ? density[a] : reference) / volume;
   }
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "models/air/air.hpp"
 #include "models/bodies/elastic_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_phase.hpp"
+#include "models/grains/spheres.hpp"
 #include "models/walls/wall.hpp"
 
 namespace barchan {
@@ -46,7 +48,10 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
-  return Law::contact;
+  const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
+  if (touches(a) && touches(b)) return Law::contact;
+  throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + kind_of(a).name + ", and \"" + b.name +
+                   "\", of kind " + kind_of(b).name + "; expected no such entry");
 }
 
 }  // namespace
@@ -81,9 +86,11 @@ Models make_models(const Scene& scene, const Layout& layout) {
     if (std::any_of(layout.entries.begin(), layout.entries.end(),
                     [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))
       models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
+  if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.diameter > 0; }))
+    models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {
     if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
-    if (e.law == Law::contact || e.law == Law::repulsive)
+    if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
   }
   return models;

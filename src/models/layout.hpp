@@ -34,7 +34,7 @@ enum class Friction {
   grains,  // the logarithmic law, as a viscosity of the pair, so that the grain feels it too
 };
 
-/// The kernel sums of an entry on a regular lattice of the scene's spacing; 1 and 1 are the truth.
+/// The kernel sums of an entry on a regular lattice of its spacing; 1 and 1 are the truth.
 struct Consistency {
   int neighbours = 0;
   double volume_sum = 0;    // sum V W, the particle itself included
@@ -48,9 +48,11 @@ struct PlanEntry {
   std::size_t a = 0, b = 0;  // phase numbers, a <= b
   std::string name;          // "air-sand"
   Law law = Law::fluid;
-  std::size_t fluid = 0, other = 0;  // of laws between a fluid and something else: which is which
+  std::size_t fluid = 0, other = 0;         // of laws between a fluid and something else: which is which
+  ContactLaw contact = ContactLaw::kernel;  // of Law::contact
   KernelKind kernel = KernelKind::cubic_spline;
-  double radius = 0;  // m
+  double radius = 0;   // m; of spheres the distance at which the largest touch
+  double spacing = 0;  // m, of its coarser phase
   Consistency consistency;
   bool corrected = false;           // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                  // drag coefficient, 0: none
@@ -59,7 +61,10 @@ struct PlanEntry {
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
+  bool of_spheres() const { return law == Law::contact && contact != ContactLaw::kernel; }
   bool sees_solid() const { return law == Law::boundary || law == Law::coupling; }
+  /// The other phase is part of the neighbourhood in which a fluid sums its rates.
+  bool continues_fluid() const { return law == Law::fluid || sees_solid(); }
 };
 
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.
@@ -85,7 +90,10 @@ struct PlanPhase {
   std::string name;
   std::string kind;  // as the scene calls it
   std::size_t count = 0;
-  double mass = 0;              // kg a particle (per metre of depth in 2D)
+  double spacing = 0;           // m, of its particles at the start
+  double diameter = 0;          // m, mean, of spheres; 0: its particles are none
+  double largest_diameter = 0;  // m
+  double mass = 0;              // kg a particle (per metre of depth in 2D); of spheres that of the mean diameter
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
   double smoothing_length = 0;  // m
   Friction friction = Friction::smooth;  // of a turbulent fluid on it
@@ -102,9 +110,9 @@ struct PlanPhase {
 
 struct Layout {
   int dimensions = 2;
-  double spacing = 0;        // m
   double largest_speed = 0;  // m/s, what the automatic sound speed is ten times of
-  double skin = 0.1;         // of the lists, in their radii; the widest
+  double slab = 1;    // m, thickness in 2D of what spheres stand in: the largest mean diameter; 1 without spheres
+  double skin = 0.1;  // of the lists, in their radii; the widest
   Bounds bounds;
   std::vector<PlanPhase> phases;
   std::vector<PlanEntry> entries;

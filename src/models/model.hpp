@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace barchan {
 namespace stage {
 enum Stage : std::size_t {
   kick_and_drift,
+  grain_contacts,
   strain_records,
   strain,
   walls,
@@ -65,9 +67,13 @@ class Model {
   virtual const StepLimit* moving_limit() { return nullptr; }
   /// Its phase; -1: it belongs to an entry.
   virtual int phase() const { return -1; }
-  /// Columns of history.csv of its own, behind those that every moving phase has, and their values.
+  /// Columns of history.csv of its own, and their values: of a moving phase behind those that all have, of an entry at
+  /// the end; a phase that does not move has none. A row may follow the loading of a checkpoint at once, before records
+  /// are filled: it reads the fields and what archive() saves.
   virtual void columns(std::vector<std::string>&) const {}
   virtual void row(std::vector<double>&) const {}
+  /// What has gone wrong in what only it sees, with the remedy; empty: nothing.
+  virtual std::optional<std::string> trouble() const { return std::nullopt; }
   /// Its numbers that a step starts from.
   virtual void archive(Archive&) {}
 };

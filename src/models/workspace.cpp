@@ -10,6 +10,7 @@
 namespace barchan {
 
 const std::array<const char*, stage::count> stage::names{"kick and drift",
+                                                         "grain contacts",
                                                          "elastic packing",
                                                          "elastic strain",
                                                          "wall motion",
@@ -89,13 +90,19 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
   records.fill_images<Dim>(grid, x);
 }
 
+std::vector<double> spacings(const Layout& layout) {
+  std::vector<double> all;
+  for (const auto& p : layout.phases) all.push_back(p.spacing);
+  return all;
+}
+
 }  // namespace
 
 Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     : scene(scene_),
       layout(layout_),
       state(state_),
-      neighbours(layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
+      neighbours(layout_.bounds, layout_.directions, layout_.skin, spacings(layout_),
                  scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>(),
                  static_cast<std::size_t>(layout_.particles())),
       packing(layout_.phases.size()) {
@@ -103,7 +110,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   const std::size_t phases = layout.phases.size();
   const int size = layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
   const bool mixed = scene.precision == Precision::mixed;
-  // Who reads records in double: every law but the fluid's own in mixed precision, and its energy.
+  // Who reads records in double: every law but the fluid's own in mixed precision, and who asks for it (need_motion).
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
     if (e.sees_solid()) seen[e.other] = true;
@@ -111,12 +118,17 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   }
   eddies.resize(phases);
   for (std::size_t k = 0; k < phases; ++k) {
-    motion.emplace_back(read[k] || (layout.phases[k].flows && state.phases[k].has(Field::energy)) ? size : 0);
+    motion.emplace_back(read[k] ? size : 0);
     extended.emplace_back(seen[k] ? size : 0);
     stress.emplace_back(0);
     compact.push_back(mixed && (layout.phases[k].flows || seen[k]) ? std::make_unique<CompactRecords>(layout.bounds)
                                                                    : nullptr);
   }
+}
+
+void Workspace::need_motion(std::size_t phase) {
+  if (motion[phase].stride() == 0)
+    motion[phase] = RecordArray(layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size);
 }
 
 void Workspace::fit_records() {
@@ -159,6 +171,7 @@ void CommonWork::find_neighbours() {
   const auto beside = [this] {
     for (const auto& call : w_->when_sorted) call();
   };
+  if (layout_.directions.empty()) return;
   const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search, beside);
   w_->must_search = false;
   if (sorted) w_->fit_records();
@@ -166,9 +179,9 @@ void CommonWork::find_neighbours() {
 
 void CommonWork::pack() {
   const bool flat = layout_.dimensions == 2;
-  const double volume = std::pow(layout_.spacing, layout_.dimensions);
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
     if (!w_->neighbours.has_grid(k)) continue;
+    const double volume = std::pow(layout_.phases[k].spacing, layout_.dimensions);
     const PhaseParticles& p = w_->particles(k);
     const CellGrid& grid = w_->neighbours.grid(k);
     const Workspace::Packing& how = w_->packing[k];
@@ -190,7 +203,11 @@ void CommonWork::pack() {
 void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
-    if (layout_.phases[k].moves) largest = std::max(largest, barchan::kick(w_->particles(k), w_->kick_time));
+    if (layout_.phases[k].moves) {
+      // Spheres were kicked in the steps of their contacts.
+      const double time = layout_.phases[k].diameter > 0 ? 0.0 : w_->kick_time;
+      largest = std::max(largest, barchan::kick(w_->particles(k), time));
+    }
   w_->state.largest_acceleration = largest;
 }
 

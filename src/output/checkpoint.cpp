@@ -54,7 +54,7 @@ std::vector<char> bytes_of(const std::filesystem::path& file) {
 void keep_as_older(const std::filesystem::path& file) {
   const std::filesystem::path older = older_checkpoint(file);
   std::error_code failed;
-  if (!std::filesystem::exists(file, failed)) return;
+  if (!std::filesystem::is_regular_file(file, failed)) return;
   std::filesystem::remove(older, failed);
   std::filesystem::create_hard_link(file, older, failed);
   if (failed) std::filesystem::rename(file, older, failed);

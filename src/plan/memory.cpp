@@ -38,7 +38,7 @@ double cells(const Plan& plan, std::size_t phase) {
   for (const auto& d : plan.directions)
     if (d.a == phase || d.b == phase) longest = std::max(longest, d.radius);
   if (longest == 0.0) return 0.0;
-  const double cell = std::max(0.5 * longest * (1.0 + plan.skin), 1.2 * plan.spacing);
+  const double cell = std::max(0.5 * longest * (1.0 + plan.skin), 1.2 * plan.phases[phase].spacing);
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan.dimensions); ++d)
     count *= (plan.bounds.high[d] - plan.bounds.low[d]) / cell + (plan.bounds.periodic[d] ? 8.0 : 2.0);
   const double most = std::max(static_cast<double>(Neighbours::cells_a_particle) * plan.particles(),

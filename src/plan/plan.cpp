@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
 #include "output/numbers.hpp"
+#include "scene/couplings.hpp"
 #include "scene/formula.hpp"
 #include "scene/located.hpp"
 
@@ -57,6 +59,7 @@ void add_directions(Plan& plan, PlanEntry& e) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
+  if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
   const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.law == Law::boundary; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);
   if (e.a != e.b && looks(e.b)) e.backward = direction(e.b, e.a);
@@ -75,10 +78,19 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (e.a > e.b) std::swap(e.a, e.b);
     e.name = i.a + "-" + i.b;
     e.kernel = i.kernel;
-    e.radius = i.radius * scene.spacing;
+    e.spacing = spacing_of(scene, i);
+    e.radius = i.radius * e.spacing;
     e.drag = i.drag;
-    e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
+    e.contact = i.law;
     classify(scene, e);
+    if (e.of_spheres()) {
+      const auto across = [&](std::size_t k) {
+        return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
+      };
+      e.radius = 0.5 * (across(e.a) + across(e.b));
+    } else {
+      e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
+    }
     add_directions(plan, e);
     plan.entries.push_back(e);
     if (e.a == e.b || e.law == Law::contact) {
@@ -120,22 +132,31 @@ void check_steps(const Scene& scene, Plan& plan) {
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   Plan plan;
   plan.dimensions = scene.dimensions;
-  plan.spacing = scene.spacing;
   plan.fixed_step = scene.time.fixed_step.value_or(0.0);
   plan.bounds.dimensions = scene.dimensions;
   plan.bounds.low = scene.domain.origin;
   plan.bounds.high = scene.domain.origin + scene.domain.size;
   plan.bounds.periodic = scene.domain.periodic;
   plan.largest_speed = largest_speed(scene, blocks);
-  const double volume = std::pow(scene.spacing, scene.dimensions);
+  double thickest = 0;
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& p = scene.phases[k];
     PlanPhase q;
     q.name = p.name;
     q.count = blocks[k].position.size();
-    q.mass = (p.density > 0 ? p.density : 1.0) * volume;
+    q.spacing = p.spacing;
+    q.mass = (p.density > 0 ? p.density : 1.0) * std::pow(p.spacing, scene.dimensions);
+    if (const auto size = p.diameter(); size && p.if_grains()) {
+      q.diameter = size->mean;
+      q.largest_diameter = size->largest();
+      thickest = std::max(thickest, size->mean);
+    }
     plan.phases.push_back(q);
   }
+  if (scene.dimensions == 2 && thickest > 0) plan.slab = thickest;
+  for (std::size_t k = 0; k < plan.phases.size(); ++k)
+    if (PlanPhase& q = plan.phases[k]; q.diameter > 0)
+      q.mass = scene.phases[k].density * std::numbers::pi / 6.0 * std::pow(q.diameter, 3) / plan.slab;
   describe_phases(scene, blocks, plan, plan.warnings);
   add_entries(scene, plan);
   const Models models = make_models(scene, plan);

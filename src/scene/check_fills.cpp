@@ -12,12 +12,6 @@ namespace {
 const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring",
                                    "polygon", "cube", "points", "formula", "sides"};
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
 /// The shape must be one, and companions (dune, layers) need the shape that they belong to.
 void check_shape_keys(const std::string& shape, bool fitted, const Report& report) {
   std::string first;
@@ -125,8 +119,11 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   if (wall && report.has(dotted + ".velocity"))
     report(dotted + ".velocity", "a wall has no initial velocity; expected no such key (phases." + phase.name +
                                      ".velocity lets the wall's surface slide)");
-  if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random)
-    report(dotted + ".seed", "nothing here is random; expected perturb above 0 or packing = \"random\" beside it");
+  const bool sizes = phase.diameter() && phase.diameter()->spread > 0.0;
+  if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random && !sizes)
+    report(dotted + ".seed",
+           "nothing here is random; expected perturb above 0 or packing = \"random\" beside it, or diameters with a "
+           "spread");
   if (phase.kind() != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
   const bool continuous = phase.kind() == PhaseKind::fluid || phase.kind() == PhaseKind::elastic;
@@ -157,8 +154,8 @@ void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const s
     report(
         dotted + ".packing",
         "no ground to follow; expected an earlier fill of a wall with shape = { bed = ... } and packing = \"fitted\"");
-  else if (wall && scene.spacing > 0.0 && !report.touched("spacing") && !report.touched("domain")) {
-    const std::string misfit = misfit_of_ground(scene, *bed);
+  else if (wall && phase.spacing > 0.0 && !report.touched("spacing") && !report.touched("domain")) {
+    const std::string misfit = misfit_of_ground(scene, *bed, phase.spacing);
     if (!misfit.empty()) report(dotted + ".shape.bed", misfit);
   }
 }

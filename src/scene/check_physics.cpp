@@ -66,8 +66,68 @@ class PhysicsChecker {
                grains.name + "\"");
   }
 
+  /// Spheres and what only they have.
+  void spheres(const Phase& phase) {
+    const std::string dotted = place(phase);
+    const auto without = [&](const char* key, const std::string& needs) {
+      if (report_.has(dotted + "." + key)) tell(dotted + "." + key, "nothing reads it; expected " + needs);
+    };
+    if (!phase.diameter()) {
+      for (const char* key : {"friction", "rolling-friction", "stiffness", "largest-overlap"})
+        without(key, "diameter beside it");
+      if (phase.kind() == PhaseKind::grains)
+        for (const char* key : {"young", "poisson"}) without(key, "diameter beside it");
+      return;
+    }
+    if (!pairs_known_) return;
+    const bool linear = touches_by(scene_, phase, ContactLaw::linear),
+               hertz = touches_by(scene_, phase, ContactLaw::hertz);
+    if (phase.kind() == PhaseKind::wall) {
+      if (!linear && !hertz) without("diameter", "an entry with grains and law = \"linear\" or \"hertz\"");
+      return;
+    }
+    if (!linear) without("stiffness", "an entry with law = \"linear\"");
+    if (!hertz)
+      for (const char* key : {"young", "poisson"}) without(key, "an entry with law = \"hertz\"");
+    if (!linear && !hertz)
+      for (const char* key : {"friction", "rolling-friction", "largest-overlap", "restitution"})
+        without(key, "an entry with law = \"linear\" or \"hertz\"");
+    const GrainsKeys& own = *phase.if_grains();
+    if ((!linear || own.stiffness) && (!hertz || own.young > 0.0) && (linear || hertz))
+      without("largest-overlap", "no such key: stiffness or young says how stiff contacts are");
+    without("contact-speed", "stiffness, young or largest-overlap, which spheres have");
+    if (own.restitution < 0.1 && !report_.touched(dotted + ".restitution"))
+      tell(dotted + ".restitution", "the dashpot of spheres cannot take that much; expected at least 0.1");
+  }
+
+  void contact(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) {
+    const auto grains_or_wall = [](const Phase& p) {
+      return p.kind() == PhaseKind::grains || p.kind() == PhaseKind::wall;
+    };
+    if (!of_spheres(pair)) {
+      for (const Phase* p : {&a, &b})
+        if (p->if_grains() && p->diameter() && grains_or_wall(a) && grains_or_wall(b))
+          tell(dotted,
+               "\"" + p->name +
+                   "\" has a diameter: its grains are spheres; expected { law = \"linear\" } or { law = \"hertz\" }");
+      return;
+    }
+    if (!grains_or_wall(a) || !grains_or_wall(b))
+      return tell(dotted + ".law", "only grains touch as spheres, each other and walls; expected no such key here");
+    if (report_.has(dotted + ".radius"))
+      tell(dotted + ".radius", "spheres feel each other when they touch; expected no such key beside law");
+    if (report_.has(dotted + ".kernel"))
+      tell(dotted + ".kernel", "a contact of spheres has no kernel; expected no such key beside law");
+    for (const Phase* p : {&a, &b})
+      if (p->if_grains() && !p->diameter())
+        tell(place(*p) + ".diameter", "missing: the contacts " + pair.a + "-" + pair.b +
+                                          " are of spheres; expected diameter = a number > 0 (m)");
+  }
+
   void pair(const Interaction& pair, const Phase& a, const Phase& b) {
     const std::string dotted = "interactions." + pair.a + "-" + pair.b;
+    contact(pair, a, b, dotted);
+    if (of_spheres(pair)) return;
     const auto is = [&](PhaseKind k, PhaseKind l) {
       return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };
@@ -76,6 +136,11 @@ class PhysicsChecker {
       tell(dotted + ".drag", "only a fluid with grains has a drag; expected no such key here");
     const bool touches =
         (a.kind() != fluid && b.kind() != fluid && !is(elastic, elastic)) || repulsive(a) || repulsive(b);
+    if (report_.has(dotted + ".radius") && report_.has(dotted + ".radius-in-metres"))
+      tell(dotted + ".radius-in-metres", "a radius in metres beside one in spacings; expected one of the two");
+    if (pair.radius_in_metres && !(pair.radius <= 8.0))
+      tell(dotted + ".radius-in-metres", number_text(*pair.radius_in_metres) + " m is " + number_text(pair.radius) +
+                                             " spacings of the coarser phase; expected at most 8");
     if (pair.radius == 0.0)
       tell(dotted + ".radius", std::string("missing: none is recommended for ") +
                                    (touches ? "repulsive walls" : "elastic bodies") +
@@ -154,8 +219,10 @@ void check_physics(const Scene& scene, const Report& report) {
     if (!all_known || phase.kind() != PhaseKind::fluid) continue;
     checker.fluid(phase);
   }
-  for (const Phase& phase : scene.phases)
+  for (const Phase& phase : scene.phases) {
     if (all_known && phase.kind() == PhaseKind::grains) checker.grains(phase);
+    if (all_known && (phase.if_grains() || phase.if_wall())) checker.spheres(phase);
+  }
   for (const Interaction& pair : scene.interactions) {
     const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
     if (a && b && kind_known(*a) && kind_known(*b) && !report.touched("interactions." + pair.a + "-" + pair.b))

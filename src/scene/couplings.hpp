@@ -8,8 +8,23 @@ namespace barchan {
 /// The entry of two phases in either order; null when there is none.
 const Interaction* entry_between(const Scene& scene, const Phase& a, const Phase& b);
 
+/// The phase of this name; null when there is none.
+const Phase* find_phase(const Scene& scene, const std::string& name);
+
+/// The spacing (m) of the particles of a fill: that of its phase.
+double spacing_of(const Scene& scene, const Fill& fill);
+
+/// The spacing (m) that a pair's radius counts in: that of its coarser phase.
+double spacing_of(const Scene& scene, const Interaction& pair);
+
 /// Whether the phase has an entry with another phase of this kind.
 bool meets(const Scene& scene, const Phase& phase, PhaseKind kind);
+
+/// Whether the entry is a contact of spheres: touching decides, and its radius is not read.
+inline bool of_spheres(const Interaction& pair) { return pair.law != ContactLaw::kernel; }
+
+/// Whether the phase has an entry with this law of contact.
+bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law);
 
 /// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
 /// `roughness` or `shear-stress`.

@@ -11,6 +11,7 @@ struct ParticleBlock {
   std::vector<Vec3> position;      // m
   std::vector<Vec3> velocity;      // m/s
   std::vector<double> pressure{};  // Pa, initial; empty when no fill of the phase gives one
+  std::vector<double> radius{};    // m, of spheres; empty when the phase gives no diameter
   std::vector<Vec3> normal{};      // of fitted walls: towards the nearest place of the surface; zero: not known
   std::vector<double> depth{};     // m, the distance to it; both empty when no fill of the phase is a fitted wall
   std::vector<std::array<double, 3>> bend{};  // 1/m, as depth: second derivatives of the height, over sqrt(1 + slope^2)
@@ -21,6 +22,9 @@ struct ParticleBlock {
 /// Throws SceneError when a periodic bed's rows do not fit the domain (and names the nearest size that does), when a
 /// fill makes no particle, or when particles of different fills overlap (closer than 0.5 spacings).
 std::vector<ParticleBlock> generate(const Scene& scene);
+
+/// Distance of the places of a phase's fills: of spheres the largest diameter, else the scene's spacing.
+double spacing_of(const Scene& scene, const Phase& phase);
 
 /// Height of the ground (bed and dune of the first fill that has one) over the domain's bottom at x, z; 0 without a
 /// bed.

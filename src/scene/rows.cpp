@@ -16,6 +16,8 @@ constexpr Word word(std::string_view word, Enum meaning) {
 template <>
 constexpr std::array words_of<PhaseKind>{word("fluid", PhaseKind::fluid), word("elastic", PhaseKind::elastic),
                                          word("grains", PhaseKind::grains), word("wall", PhaseKind::wall)};
+static_assert(words_of<PhaseKind>.size() == std::variant_size_v<decltype(Phase::own)>,
+              "each alternative of Phase::own needs its word here");
 template <>
 constexpr std::array words_of<EquationOfState>{word("linear", EquationOfState::linear),
                                                word("tait", EquationOfState::tait)};
@@ -28,6 +30,9 @@ constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
                                           word("smagorinsky", Turbulence::smagorinsky)};
 template <>
 constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
+template <>
+constexpr std::array words_of<ContactLaw>{word("kernel", ContactLaw::kernel), word("linear", ContactLaw::linear),
+                                          word("hertz", ContactLaw::hertz)};
 template <>
 constexpr std::array words_of<Slip>{word("no-slip", Slip::no_slip), word("free-slip", Slip::free_slip)};
 template <>
@@ -85,6 +90,26 @@ constexpr Slot periodic(const char* in_words) {
   return {.accepts = as_words, .otherwise = otherwise(in_words), .words = axes, .choose = [](void* domain, int axis) {
             static_cast<Domain*>(domain)->periodic[static_cast<std::size_t>(axis)] = true;
           }};
+}
+
+/// Sizes of spheres: the mean alone, or a section.
+inline std::optional<SphereSize>* sizes_of(void* object) {
+  Phase& phase = *static_cast<Phase*>(object);
+  auto* grains = member_of(phase, &GrainsKeys::diameter);
+  return grains ? grains : member_of(phase, &WallKeys::diameter);
+}
+constexpr Slot sizes(const char* in_words) {
+  Slot slot{.accepts = as_number | as_section, .otherwise = otherwise(in_words)};
+  slot.member = [](void* object) -> Target {
+    auto* size = sizes_of(object);
+    return size ? Target{&size->emplace().mean} : Target{};
+  };
+  slot.open = [](void* object) -> void* {
+    auto* size = sizes_of(object);
+    return size ? &size->emplace() : nullptr;
+  };
+  slot.kinds = kinds_with<PhaseKind::grains, PhaseKind::wall>;
+  return slot;
 }
 
 constexpr Slot fill_shape() {
@@ -189,6 +214,7 @@ constexpr Key table[] = {
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
+    {"phases", "spacing", at<&Phase::spacing>("that of the scene"), "m", "Distance between the particles of this phase.", positive},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
      "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
     {"phases", "viscosity", of<&FluidKeys::viscosity>(0.0), "m2/s", "Kinematic viscosity.", not_negative},
@@ -211,14 +237,26 @@ constexpr Key table[] = {
     {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",
      "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|."},
     {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", positive},
-    {"phases", "young", of<&ElasticKeys::young>(required), "Pa", "Young's modulus.", positive},
-    {"phases", "poisson", of<&ElasticKeys::poisson>(0.0), "", "Poisson's ratio.", {.above = -1.0, .below = 0.5}},
+    {"phases", "young", of<&ElasticKeys::young, &GrainsKeys::young>(required, "required; of grains: from largest-overlap"), "Pa",
+     "Young's modulus; of grains for contacts with law = \"hertz\".", positive, "", "grains"},
+    {"phases", "poisson", of<&ElasticKeys::poisson, &GrainsKeys::poisson>(0.0), "", "Poisson's ratio; of grains for contacts with law = \"hertz\".", {.above = -1.0, .below = 0.5}},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
      "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",
      "Speed after over speed before a head-on collision of two grains. Quartz: 0.7 to 0.8; with 1 a bed never comes to rest.", {.at_most = 1.0, .above = 0.0}},
     {"phases", "contact-speed", of<&GrainsKeys::contact_speed>("chosen by the plan"), "m/s",
      "Square root of a contact's stiffness over density.", positive},
+    {"phases", "diameter", sizes("none: particles of one spacing"), "m",
+     "Grains as spheres, in 2D in a slab as thick as the mean diameter; needs contacts with law = \"linear\" or \"hertz\". Of a wall: what "
+     "such grains feel of its particles.", positive},
+    {"phases", "friction", of<&GrainsKeys::friction>(0.0), "", "Coulomb's coefficient of friction of spheres.", not_negative},
+    {"phases", "rolling-friction", of<&GrainsKeys::rolling_friction>(0.0), "",
+     "Rolling resistance of spheres: the largest torque over normal force and reduced radius.", not_negative},
+    {"phases", "stiffness", of<&GrainsKeys::stiffness>("from largest-overlap"), "N/m",
+     "Stiffness of a contact of two grains with law = \"linear\".", positive},
+    {"phases", "largest-overlap", of<&GrainsKeys::largest_overlap>(0.02), "",
+     "Overlap of two spheres that meet with the largest speed of the scene (time.largest-speed), in mean diameters: makes the stiffness.",
+     {.at_most = 0.2, .above = 0.0}},
     {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
      "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
     {"phases", "slip", of<&WallKeys::slip>(Slip::no_slip), "", "Whether the fluid sticks to the wall; only with law = \"adami\"."},
@@ -229,10 +267,18 @@ constexpr Key table[] = {
     {"phases", "shear-stress", of<&WallKeys::shear_stress>("none"), "Pa",
      "Force by area of the wall on the fluid, instead of no slip; its part along the wall counts."},
 
+    {"phases.diameter", "mean", at<&SphereSize::mean>(required), "m", "Mean diameter.", positive},
+    {"phases.diameter", "spread", at<&SphereSize::spread>(0.0), "",
+     "Diameters are spread evenly over mean (1 - spread) to mean (1 + spread), by the seed of the fill.", {.at_least = 0.0, .at_most = 0.5}},
+
     {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},
     {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required"), "spacings",
-     "Kernel radius (support).", {.at_most = 8.0, .above = 0.0}},
+     "Kernel radius (support), in spacings of the coarser of the two phases.", {.at_most = 8.0, .above = 0.0}},
+    {"interactions.pair", "radius-in-metres", at<&Interaction::radius_in_metres>("radius says it"), "m",
+     "Kernel radius (support) as a length, in place of radius.", positive},
+    {"interactions.pair", "law", at<&Interaction::law>(ContactLaw::kernel), "",
+     "Contact of grains: through the kernel, or of spheres that touch (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
     {"interactions.pair", "drag", at<&Interaction::drag>(0.0), "",
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve.", not_negative},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},

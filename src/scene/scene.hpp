@@ -33,6 +33,14 @@ enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 201
 enum class Slip { no_slip, free_slip };
 enum class FluidScheme { plain, consistent };  // docs/method.md
 enum class Turbulence { none, mixing_length, smagorinsky };
+enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; laws/sphere_contact.hpp
+
+/// Sizes of the spheres of a phase: diameters spread evenly over mean (1 - spread) .. mean (1 + spread).
+struct SphereSize {
+  double mean{};    // m
+  double spread{};  // fraction of the mean
+  double largest() const { return mean * (1.0 + spread); }
+};
 
 // The keys of each kind of phase: a key that a kind does not have does not exist in its type.
 
@@ -66,21 +74,30 @@ struct GrainsKeys {
   static constexpr PhaseKind kind = PhaseKind::grains;
   double restitution{};                 // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
   std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
-  std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of the spacing
+  std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of its spacing
+  std::optional<SphereSize> diameter;   // m; empty: particles of one spacing, whose contacts are kernels
+  double friction{};                    // Coulomb's coefficient, of spheres
+  double rolling_friction{};            // largest rolling torque over normal force and reduced radius, of spheres
+  std::optional<double> stiffness;      // N/m, of a linear contact of two grains of the phase
+  double largest_overlap{};             // of the mean diameter, at the largest speed of the scene
+  double young{};                       // Pa, of a Hertzian contact; 0: from largest_overlap
+  double poisson{};
 };
 
 struct WallKeys {
   static constexpr PhaseKind kind = PhaseKind::wall;
   WallLaw law{};
   Slip slip{};
-  VectorExpression velocity;         // m/s, a function of time: the surface slides, the particles stay in place
-  std::optional<double> roughness;   // m, z0 of the logarithmic law; empty: a smooth wall
-  std::optional<Vec3> shear_stress;  // Pa, on the fluid, instead of no slip
+  VectorExpression velocity;           // m/s, a function of time: the surface slides, the particles stay in place
+  std::optional<double> roughness;     // m, z0 of the logarithmic law; empty: a smooth wall
+  std::optional<Vec3> shear_stress;    // Pa, on the fluid, instead of no slip
+  std::optional<SphereSize> diameter;  // m, of its particles as grains feel them; empty: one spacing
 };
 
 struct Phase {
   std::string name;
   double density{};                                                // kg/m3, at rest
+  double spacing{};                                                // m, of its particles
   std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys> own;  // in the order of PhaseKind
 
   PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }
@@ -90,6 +107,12 @@ struct Phase {
   const GrainsKeys& grains() const { return std::get<GrainsKeys>(own); }
   const WallKeys& wall() const { return std::get<WallKeys>(own); }
   const WallKeys* if_wall() const { return std::get_if<WallKeys>(&own); }  ///< null of another kind
+  const GrainsKeys* if_grains() const { return std::get_if<GrainsKeys>(&own); }
+  /// The sizes of its spheres, if it says them.
+  std::optional<SphereSize> diameter() const {
+    if (const GrainsKeys* grains = if_grains()) return grains->diameter;
+    return if_wall() ? if_wall()->diameter : std::nullopt;
+  }
 };
 
 // ---- the interaction matrix
@@ -97,10 +120,12 @@ struct Phase {
 
 /// One entry of the matrix: an unordered pair of phases. A pair without an entry does not interact.
 struct Interaction {
-  std::string a, b;  // phase names as written, "air-sand"
-  double radius{};   // kernel radius (support) in spacings, eq. (15)-(17)
+  std::string a, b;                        // phase names as written, "air-sand"
+  double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
+  std::optional<double> radius_in_metres;  // m; empty: `radius` says it
   KernelKind kernel{};
-  double drag{};  // fluid-grains: drag coefficient of a grain, 0 switches it off
+  double drag{};     // fluid-grains: drag coefficient of a grain, 0 switches it off
+  ContactLaw law{};  // of grains with grains, walls and bodies
 };
 
 // ---- fills: what is where at the beginning
@@ -171,7 +196,7 @@ struct Fill {
   std::string phase;
   Shape shape = TheRestShape{};
   Packing packing{};
-  double perturb{};  // spacings: each coordinate moved by a uniform number in +-perturb
+  double perturb{};  // spacings of its phase: each coordinate moved by a uniform number in +-perturb
   unsigned seed{};
   VectorExpression velocity;              // m/s, formulas in x, y, z
   std::optional<LogProfile> log_profile;  // added to `velocity`, along x
@@ -259,7 +284,7 @@ struct Scene {
   std::string title;
   std::string state;  // pvstate that scripts/run renders; empty: none
   int dimensions{};
-  double spacing{};  // m, dx
+  double spacing{};  // m, dx: of the phases that do not say their own
   Precision precision{};
   Domain domain;
   std::vector<Phase> phases;

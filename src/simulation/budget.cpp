@@ -41,14 +41,14 @@ Budget::Sums Budget::sums(const State& state) const {
   for (const std::size_t k : moving_) {
     const PhaseParticles& p = state.phases[k];
     const std::size_t n = p.size();
-    s.mass += p.mass() * static_cast<double>(n);
+    s.mass += ordered_sum(n, [&](std::size_t i) { return p.mass_of(i); });
     for (int d = 0; d < p.dimensions(); ++d) {
       const auto c = static_cast<std::size_t>(d);
       const double *v = p.column(Field::velocity, d), *x = p.column(Field::position, d);
-      s.momentum[c] += p.mass() * ordered_sum(n, [&](std::size_t i) { return v[i]; });
-      s.kinetic += 0.5 * p.mass() * ordered_sum(n, [&](std::size_t i) { return v[i] * v[i]; });
+      s.momentum[c] += ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i]; });
+      s.kinetic += 0.5 * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i] * v[i]; });
       if (gravity_[c] != 0.0)
-        s.potential -= gravity_[c] * p.mass() * ordered_sum(n, [&](std::size_t i) { return x[i]; });
+        s.potential -= gravity_[c] * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * x[i]; });
     }
   }
   return s;

@@ -100,6 +100,8 @@ std::vector<std::string> Simulation::history_columns() const {
     c.push_back(p.name + "_mean_vx [m/s]");
     model->columns(c);
   }
+  for (const auto& model : models_)
+    if (model->phase() < 0) model->columns(c);
   return c;
 }
 
@@ -114,18 +116,19 @@ std::vector<double> Simulation::history_row() const {
     std::array<const double*, 3> v{};
     for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
     double fastest = 0.0;
+    const bool sizes = p.has(Field::radius);
     const double square = ordered_sum(n, [&](std::size_t i) {
       double s = 0;
       for (int d = 0; d < plan_.dimensions; ++d)
         s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
       fastest = std::max(fastest, s);
-      return s;
+      return sizes ? s * p.mass_of(i) / p.mass() : s;
     });
     std::array<double, 3> mean{};
     for (int d = 0; d < plan_.dimensions; ++d) {
       const auto c = static_cast<std::size_t>(d);
       const double total = ordered_sum(n, [&](std::size_t i) { return v[c][i]; });
-      row[3 + c] += p.mass() * total;
+      row[3 + c] += sizes ? ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
       mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
     }
     fastest = std::sqrt(fastest);
@@ -135,6 +138,8 @@ std::vector<double> Simulation::history_row() const {
     row.push_back(mean[0]);
     model->row(row);
   }
+  for (const auto& model : models_)
+    if (model->phase() < 0) model->row(row);
   return row;
 }
 

@@ -57,12 +57,14 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
 
 void Simulation::step(double largest) {
   choose_step(largest);
-  schedule_.run(stage::kick_and_drift, stage::kick_and_drift);
+  schedule_.run(stage::kick_and_drift, stage::grain_contacts);
   state_.time += state_.dt;
   ++state_.steps;
   work_->kick_time = 0.5 * state_.dt;
   schedule_.run(stage::strain_records, stage::kick);
   if (!std::isfinite(state_.largest_acceleration)) watch_->explain(moment());
+  for (const auto& model : models_)
+    if (const auto trouble = model->trouble()) watch_->tell(*trouble, moment());
   if (watch_->due(state_.steps) || state_.largest_acceleration * state_.dt > watch_->signal_speed())
     schedule_.run(stage::watch, stage::watch);
 }

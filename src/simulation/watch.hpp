@@ -62,6 +62,8 @@ class Watch {
   void look_closely(const Moment& now);
   /// For an acceleration that is not finite: throws BreakdownError with the particle of lowest id.
   void explain(const Moment& now);
+  /// Throws BreakdownError with what a model found.
+  [[noreturn]] void tell(const std::string& trouble, const Moment& now) const;
   /// "particle 12 of phase "air" at (...) m, t = ... s, step ...": the particle with the largest acceleration.
   std::string most_accelerated(const Moment& now) const;
 

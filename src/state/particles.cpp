@@ -8,6 +8,7 @@ PhaseParticles::PhaseParticles(std::string name, int dimensions, std::size_t siz
     : name_(std::move(name)),
       dimensions_(dimensions),
       size_(size),
+      first_id_(first_id),
       mass_(mass),
       id_(size),
       id_scratch_(size),

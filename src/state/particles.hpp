@@ -23,7 +23,17 @@ class PhaseParticles {
   const std::string& name() const { return name_; }
   int dimensions() const { return dimensions_; }
   std::size_t size() const { return size_; }
-  double mass() const { return mass_; }  ///< kg a particle (kg per metre of depth in 2D)
+  double mass() const { return mass_; }  ///< kg a particle (kg per metre of depth in 2D); of spheres of the mean radius
+  std::int64_t first_id() const { return first_id_; }  ///< ids are first_id() .. first_id() + size() - 1
+  /// kg, of the particle at a place: spheres have their own where the phase has the field radius.
+  double mass_of(std::size_t k) const {
+    if (!has(Field::radius)) return mass_;
+    const double share = columns_[index(Field::radius)][0][k] / mean_radius_;
+    return mass_ * share * share * share;
+  }
+  /// The radius of a sphere of mass() (m).
+  void set_mean_radius(double radius) { mean_radius_ = radius; }
+  double mean_radius() const { return mean_radius_; }
 
   void add(Field field);  ///< makes the field, zero; does nothing if it is there
   bool has(Field field) const { return !columns_[index(field)].empty(); }
@@ -58,7 +68,8 @@ class PhaseParticles {
   std::string name_;
   int dimensions_;
   std::size_t size_;
-  double mass_;
+  std::int64_t first_id_;
+  double mass_, mean_radius_ = 1.0;
   std::vector<std::int64_t> id_, id_scratch_;
   std::array<std::vector<AlignedVector<double>>, field_count> columns_;
   AlignedVector<double> scratch_;

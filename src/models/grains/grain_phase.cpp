@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "engine/integrate.hpp"
+#include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -33,18 +35,69 @@ PhaseRules rules_of(const PlanPhase& p, double spacing, bool fixed_step) {
 
 }  // namespace
 
+namespace {
+
+/// Of spheres: what their own contacts bear. Their way in a step needs no bound: what is slow enough for its contacts
+/// goes an eighth of its radius at most in one of their steps.
+PhaseRules sphere_rules(const PlanPhase& p, double bound) {
+  PhaseRules r;
+  r.way = 1e300;
+  r.signal_speed = bound;
+  r.stops_at_sides = r.solid = true;
+  r.one = "grain";
+  r.stiffness_key = "phases." + p.name + ".stiffness or .young";
+  r.if_not_finite = r.stiffness_key;
+  r.if_passed = "raise time.largest-speed, " + r.stiffness_key;
+  r.if_fast = [name = p.name](double speed, double most) {
+    return "its contacts can stop (" + brief(most) + " m/s): raise time.largest-speed to " + brief(2.0 * speed) +
+           ", or make the contacts of \"" + name + "\" stiffer";
+  };
+  r.if_far = [](double) { return std::string("lower time.safety"); };
+  return r;
+}
+
+/// Spheres: their fields, the speed of waves through their contacts (d sqrt(K/m), of Hertz at the largest speed), and
+/// the speed at which two of them would overlap by half a diameter.
+void describe_spheres(const Scene& scene, std::size_t number, Layout& layout) {
+  using enum Field;
+  PlanPhase& p = layout.phases[number];
+  p.smoothing_length = 0.5 * p.diameter;
+  p.fields = {position, velocity, acceleration, contact_acceleration};
+  if (p.largest_diameter > p.diameter) p.fields.push_back(radius);
+  if (spheres_turn(scene, number)) p.fields.insert(p.fields.end(), {angular_velocity, angular_acceleration});
+  const Phase& phase = scene.phases[number];
+  const double mass = p.mass * layout.slab;
+  double bound = 1e300;
+  p.sound_speed = 1.0;
+  for (const bool hertz : {false, true}) {
+    if (!touches_by(scene, phase, hertz ? ContactLaw::hertz : ContactLaw::linear)) continue;
+    SphereContact law;
+    law.hertz = hertz;
+    law.stiffness = sphere_stiffness(scene, layout, number, hertz);
+    const double v = std::max(layout.largest_speed, 1e-3),
+                 overlap = law.largest_overlap(0.5 * mass, 0.25 * p.diameter, v);
+    bound = std::min(bound, v * std::pow(0.5 * p.diameter / overlap, hertz ? 1.25 : 1.0));
+    const double stiffness = hertz ? law.stiffness * std::sqrt(0.25 * p.diameter * overlap) : law.stiffness;
+    p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(stiffness / mass));
+  }
+  p.rules = sphere_rules(p, bound);
+}
+
+}  // namespace
+
 void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                      std::vector<std::string>&) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
   p.friction = Friction::grains;
+  if (p.diameter > 0) return describe_spheres(scene, number, layout);
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
   // speed of the grains is not looked at: `contact-speed` is there for fast ones.
   double weight = 0;
   for (std::size_t d = 0; d < 3; ++d) weight += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   p.sound_speed = scene.phases[number].grains().contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
-  p.rules = rules_of(p, layout.spacing, scene.time.fixed_step.has_value());
+  p.rules = rules_of(p, p.spacing, scene.time.fixed_step.has_value());
 }
 
 GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t number)
@@ -56,14 +109,15 @@ GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t num
 
 void GrainPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
+  if (plan_.diameter == 0)  // else models/grains/spheres.hpp
+    s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
   s.add({stage::weight, plan_.name, {position}, {acceleration}, [this] { weigh(); }});
 }
 
 void GrainPhase::limits(std::vector<StepLimit>& limits) const {
-  if (plan_.count == 0) return;
+  if (plan_.count == 0 || plan_.diameter > 0) return;
   limits.push_back({"contact " + plan_.name,
-                    scene_.time.safety * (StepConstants::contact * layout_.spacing / plan_.sound_speed),
+                    scene_.time.safety * (StepConstants::contact * plan_.spacing / plan_.sound_speed),
                     "0.1 sqrt(m/K): a contact lasts about thirty steps"});
 }
 

@@ -1,0 +1,312 @@
+#include "models/grains/sphere_forces.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "engine/pair_loop.hpp"
+
+namespace barchan::BARCHAN_TARGET {
+
+namespace {
+
+constexpr std::size_t batch = SphereChunk::batch;
+constexpr std::size_t width = Lanes::width < static_cast<int>(batch) ? static_cast<std::size_t>(Lanes::width) : batch;
+using V = simd::Vec<double, static_cast<int>(width)>;
+using Four = simd::Vec<double, 4>;
+using One = simd::Vec<double, 1>;
+
+/// Sums of the forces on a chunk's spheres, and of one that takes what belongs to other chunks. 2D: fx fy t -; 3D: fx
+/// fy fz - tx ty tz -.
+template <int Dim>
+struct Sums {
+  static constexpr std::size_t size = Dim == 2 ? 4 : 8;
+  alignas(64) double of[(SphereChunk::most + 1) * size];
+  void clear(std::size_t spheres) { std::memset(of, 0, spheres * size * sizeof(double)); }
+};
+
+/// Adds the forces of a vector of pairs to both sides, pair after pair.
+template <int Dim, bool Rubs>
+BARCHAN_SIMD_INLINE void add_up(Sums<Dim>& sums, const ContactForces<V, Dim>& f, const std::uint32_t* a,
+                                const std::uint32_t* b, std::size_t begin, std::uint32_t count) {
+  static constexpr std::uint32_t rows[4] = {0, 1, 2, 3};
+  const auto slot = [&](std::uint32_t sphere) {
+    return static_cast<std::size_t>(std::min(sphere - static_cast<std::uint32_t>(begin), count)) * Sums<Dim>::size;
+  };
+  constexpr std::size_t sets = Dim == 2 ? 2 : Rubs ? 3 : 1;
+  alignas(64) double lanes[sets][4][width];
+  const auto put = [&](std::size_t set, V x, V y, V z) {
+    x.store(lanes[set][0]);
+    y.store(lanes[set][1]);
+    z.store(lanes[set][2]);
+    V(0.0).store(lanes[set][3]);
+  };
+  if constexpr (Dim == 2) {
+    put(0, f.force[0], f.force[1], f.torque_a[0]);
+    put(1, f.force[0], f.force[1], -f.torque_b[0]);
+  } else {
+    put(0, f.force[0], f.force[1], f.force[2]);
+    if constexpr (Rubs) {
+      put(1, f.torque_a[0], f.torque_a[1], f.torque_a[2]);
+      put(2, f.torque_b[0], f.torque_b[1], f.torque_b[2]);
+    }
+  }
+  Four of[sets][width];
+  for (std::size_t set = 0; set < sets; ++set)
+    for (std::size_t q = 0; q < width; q += 4)  // four pairs at once
+      simd::load_transposed<4>(&lanes[set][0][q], width, rows, of[set] + q);
+  for (std::size_t k = 0; k < width; ++k) {
+    double *to_a = sums.of + slot(a[k]), *to_b = sums.of + slot(b[k]);
+    (Four::load(to_a) + of[0][k]).store(to_a);
+    (Four::load(to_b) - of[Dim == 2 ? 1 : 0][k]).store(to_b);
+    if constexpr (Dim == 3 && Rubs) {
+      (Four::load(to_a + 4) + of[1][k]).store(to_a + 4);
+      (Four::load(to_b + 4) + of[2][k]).store(to_b + 4);
+    }
+  }
+}
+
+/// What a chunk's pairs add up to, lane by lane.
+struct Tally {
+  V lost{0.0}, stored{0.0}, deepest{0.0};
+  double contacts = 0.0;
+};
+
+/// The pairs of one law.
+template <int Dim, bool Hertz, bool Rubs, bool Rolls>
+void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Group& group, Sums<Dim>& sums,
+              Tally& tally) {
+  using R = SphereRecord<Dim>;
+  constexpr std::size_t spins = R::spins, numbers = Rubs ? (Rolls ? 2 * spins : spins) : 0;
+  const SphereContact& law = step.laws[group.law];
+  const sphere_contact::Constants<V> constants(law, step.dt);
+  const V of_a(step.inverse_densities[2 * group.law]), of_b(step.inverse_densities[2 * group.law + 1]);
+  const V drop(Hertz || !Rubs ? 0.0 : 0.5 * law.tangential * law.stiffness);
+  std::array<V, Dim> period, turns;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    period[d] = V(step.period[d]);
+    turns[d] = V(step.period[d] > 0.0 ? 1.0 / step.period[d] : 0.0);
+  }
+  const auto count = static_cast<std::uint32_t>(chunk.end - chunk.begin);
+  const double* records = step.records;
+  const std::size_t stride = R::size;
+  constexpr double magic = 6755399441055744.0;  // 1.5 2^52: added and taken off it rounds to the nearest whole number
+  for (std::size_t q = group.first; q < group.end; ++q)
+    for (std::size_t half = 0; half < batch; half += width) {
+      const std::uint32_t *a = chunk.a.data() + q * batch + half, *b = chunk.b.data() + q * batch + half;
+      const std::uint32_t had = chunk.touches[q] >> half & ((1u << width) - 1u);
+      V x_a[4], x_b[4];
+      simd::load_transposed<4>(records, stride, a, x_a);
+      simd::load_transposed<4>(records, stride, b, x_b);
+      TouchingSpheres<V, Dim> s;
+      V r2(least_square);
+      for (std::size_t d = 0; d < Dim; ++d) {
+        V r = x_a[d] - x_b[d];
+        const V away = (fma(r, turns[d], V(magic))) - V(magic);
+        r = fnma(away, period[d], r);
+        s.normal[d] = r;
+        r2 = fma(r, r, r2);
+      }
+      const V r_a = x_a[R::radius], r_b = x_b[R::radius], reach = r_a + r_b;
+      const auto touching = r2 < reach * reach;
+      const std::uint32_t has = to_bits(touching);
+      double* memory = chunk.memory.data() + q * batch * numbers + half;
+      if (has == 0) {
+        if (had == 0) continue;
+        for (std::size_t k = 0; k < numbers; ++k) {
+          const V slip = V::load(memory + k * batch);
+          tally.lost = fma(drop * V(group.weight), slip * slip, tally.lost);
+          V(0.0).store(memory + k * batch);
+        }
+        chunk.touches[q] = static_cast<std::uint8_t>(chunk.touches[q] & ~(((1u << width) - 1u) << half));
+        continue;
+      }
+      V v_a[4], v_b[4], w_a[4], w_b[4];
+      simd::load_transposed<4>(records + R::velocity, stride, a, v_a);
+      simd::load_transposed<4>(records + R::velocity, stride, b, v_b);
+      if constexpr (Dim == 3 && Rubs) {
+        simd::load_transposed<4>(records + R::spin, stride, a, w_a);
+        simd::load_transposed<4>(records + R::spin, stride, b, w_b);
+      }
+      const V distance = simd::sqrt(r2), inverse = V(1.0) / distance, inverse_reach = V(1.0) / reach;
+      s.overlap = simd::max(reach - distance, V(1e-30));
+      for (std::size_t d = 0; d < Dim; ++d) {
+        s.normal[d] *= inverse;
+        s.velocity[d] = v_a[d] - v_b[d];
+      }
+      for (std::size_t d = 0; d < spins; ++d) {
+        s.spin_a[d] = Rubs ? (Dim == 2 ? v_a[2] : w_a[d]) : V(0.0);
+        s.spin_b[d] = Rubs ? (Dim == 2 ? v_b[2] : w_b[d]) : V(0.0);
+      }
+      const V share_a = r_a * inverse_reach;
+      s.lever_a = share_a * distance;
+      s.lever_b = distance - s.lever_a;
+      s.reduced_radius = share_a * r_b;
+      const V a3 = r_a * r_a * r_a, b3 = r_b * r_b * r_b;
+      s.reduced_mass = a3 * b3 / fma(of_a, b3, of_b * a3);
+      std::array<V, numbers> slip;
+      for (std::size_t k = 0; k < numbers; ++k) slip[k] = V::load(memory + k * batch);
+      if constexpr (Rubs) {
+        if (had & ~has) {
+          const V gone = select(touching, V(0.0), drop * V(group.weight));
+          for (std::size_t k = 0; k < numbers; ++k) tally.lost = fma(gone, slip[k] * slip[k], tally.lost);
+        }
+      }
+      ContactForces<V, Dim> f = touch<Hertz, Rubs, Rolls>(constants, s, slip);
+      for (std::size_t k = 0; k < numbers; ++k) mask_zero(touching, slip[k]).store(memory + k * batch);
+      for (auto& x : f.force) x = mask_zero(touching, x);
+      if constexpr (Rubs)
+        for (std::size_t d = 0; d < spins; ++d) {
+          f.torque_a[d] = mask_zero(touching, f.torque_a[d]);
+          f.torque_b[d] = mask_zero(touching, f.torque_b[d]);
+        }
+      tally.lost = fma(V(group.weight), mask_zero(touching, f.lost), tally.lost);
+      tally.stored = fma(V(group.weight), mask_zero(touching, f.stored), tally.stored);
+      tally.deepest = simd::max(mask_zero(touching, s.overlap * inverse_reach), tally.deepest);
+      chunk.touches[q] = static_cast<std::uint8_t>((chunk.touches[q] & ~(((1u << width) - 1u) << half)) | has << half);
+      tally.contacts += group.weight * std::popcount(has);
+      add_up<Dim, Rubs>(sums, f, a, b, chunk.begin, count);
+    }
+}
+
+/// The chunk's spheres at the sides of the domain: a side is a sphere without end that does not move.
+template <int Dim, bool Hertz, bool Rubs, bool Rolls>
+void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at, Sums<Dim>& sums) {
+  using R = SphereRecord<Dim>;
+  constexpr std::size_t spins = R::spins, numbers = Rubs ? (Rolls ? 2 * spins : spins) : 0;
+  const double* r = step.records + at.sphere * R::size;
+  const double radius = r[R::radius], distance = at.sign * (r[at.axis] - at.place), overlap = radius - distance;
+  const SphereContact& law = step.laws[at.law];
+  if (!(overlap > 0.0)) {
+    if (at.touches && Rubs && !Hertz)
+      for (std::size_t k = 0; k < numbers; ++k)
+        chunk.lost += 0.5 * law.tangential * law.stiffness * at.memory[k] * at.memory[k];
+    at.touches = false;
+    std::fill_n(at.memory, 6, 0.0);
+    return;
+  }
+  at.touches = true;
+  TouchingSpheres<One, Dim> s;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    s.normal[d] = One(d == at.axis ? at.sign : 0.0);
+    s.velocity[d] = One(r[R::velocity + d]);
+  }
+  for (std::size_t d = 0; d < spins; ++d) {
+    s.spin_a[d] = One(r[R::spin + d]);
+    s.spin_b[d] = One(0.0);
+  }
+  s.overlap = One(overlap);
+  s.lever_a = One(distance);
+  s.lever_b = One(0.0);
+  s.reduced_radius = One(radius);
+  s.reduced_mass = One(1.0 / step.passive[at.sphere * passive_size + passive_mass]);
+  std::array<One, numbers> slip;
+  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(at.memory[k]);
+  const auto f = touch<Hertz, Rubs, Rolls>(sphere_contact::Constants<One>(law, step.dt), s, slip);
+  for (std::size_t k = 0; k < numbers; ++k) at.memory[k] = slip[k].v;
+  double* to = sums.of + (at.sphere - chunk.begin) * Sums<Dim>::size;
+  for (std::size_t d = 0; d < Dim; ++d) to[d] += f.force[d].v;
+  for (std::size_t d = 0; d < spins; ++d) to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
+  chunk.lost += f.lost.v;
+  chunk.stored += f.stored.v;
+  chunk.deepest = std::max(chunk.deepest, 0.5 * overlap / radius);
+  chunk.contacts += 1.0;
+}
+
+/// v += dt a, x += dt v for the chunk's spheres; in the last step half of the kick and no drift.
+template <int Dim>
+void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
+  using R = SphereRecord<Dim>;
+  const double dt = step.dt;
+  float farthest2 = 0.0f;
+  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
+    const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
+    const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
+    double* to = step.next + k * R::size;
+    const double inverse_mass = passive[passive_mass], radius = from[R::radius];
+    const double inverse_inertia = 2.5 * inverse_mass / (radius * radius);
+    float way2 = 0.0f;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double v = from[R::velocity + d] + dt * (passive[d] + inverse_mass * force[d]);
+      to[d] = from[d] + dt * v;
+      to[R::velocity + d] = v;
+      const float way = way_of<Dim>(from, d) + static_cast<float>(dt * v);
+      set_way<Dim>(to, d, way);
+      way2 += way * way;
+    }
+    to[R::radius] = radius;
+    for (std::size_t d = 0; d < R::spins; ++d)
+      to[R::spin + d] = from[R::spin + d] + dt * inverse_inertia * force[(Dim == 2 ? 2 : 4) + d];
+    farthest2 = std::max(farthest2, way2);
+  }
+  chunk.farthest2 = static_cast<double>(farthest2);
+}
+
+template <int Dim>
+void leave(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
+  using R = SphereRecord<Dim>;
+  const SphereColumns& c = step.columns[chunk.phase];
+  const double half = 0.5 * step.dt;
+  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
+    const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
+    const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
+    const double inverse_mass = passive[passive_mass], radius = from[R::radius];
+    const std::size_t at = k - c.first;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double a = inverse_mass * force[d];
+      c.acceleration[d][at] = a;
+      c.position[d][at] = from[d];
+      c.velocity[d][at] = from[R::velocity + d] + half * (passive[d] + a);
+    }
+    if (!c.spin[0]) continue;
+    for (std::size_t d = 0; d < R::spins; ++d) {
+      const double rate = 2.5 * inverse_mass / (radius * radius) * force[(Dim == 2 ? 2 : 4) + d];
+      c.spin_rate[d][at] = rate;
+      c.spin[d][at] = from[R::spin + d] + half * rate;
+    }
+  }
+}
+
+template <int Dim, bool Hertz>
+void group_by_friction(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Group& g, Sums<Dim>& sums,
+                       Tally& tally) {
+  if (step.rolls) group_of<Dim, Hertz, true, true>(step, chunk, g, sums, tally);
+  else if (step.rubs) group_of<Dim, Hertz, true, false>(step, chunk, g, sums, tally);
+  else group_of<Dim, Hertz, false, false>(step, chunk, g, sums, tally);
+}
+
+template <int Dim, bool Hertz>
+void side_by_friction(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at, Sums<Dim>& sums) {
+  if (step.rolls) side_of<Dim, Hertz, true, true>(step, chunk, at, sums);
+  else if (step.rubs) side_of<Dim, Hertz, true, false>(step, chunk, at, sums);
+  else side_of<Dim, Hertz, false, false>(step, chunk, at, sums);
+}
+
+template <int Dim>
+void step_chunk(const SphereStep& step, SphereChunk& chunk) {
+  Sums<Dim> sums;  // 16 or 32 kB
+  sums.clear(chunk.end - chunk.begin);
+  Tally tally;
+  chunk.lost = chunk.stored = chunk.deepest = 0.0;
+  chunk.contacts = 0.0;
+  for (const auto& group : chunk.groups)
+    step.laws[group.law].hertz ? group_by_friction<Dim, true>(step, chunk, group, sums, tally)
+                               : group_by_friction<Dim, false>(step, chunk, group, sums, tally);
+  for (auto& at : chunk.sides)
+    step.laws[at.law].hertz ? side_by_friction<Dim, true>(step, chunk, at, sums)
+                            : side_by_friction<Dim, false>(step, chunk, at, sums);
+  chunk.lost += simd::sum(tally.lost);
+  chunk.stored += simd::sum(tally.stored);
+  for (std::size_t k = 0; k < width; ++k) chunk.deepest = std::max(chunk.deepest, tally.deepest[static_cast<int>(k)]);
+  chunk.contacts += tally.contacts;
+  step.last ? leave<Dim>(step, chunk, sums) : move_on<Dim>(step, chunk, sums);
+}
+
+}  // namespace
+
+void step_spheres(const SphereStep& step, SphereChunk& chunk) {
+  if (step.dimensions == 2) step_chunk<2>(step, chunk);
+  else step_chunk<3>(step, chunk);
+}
+
+}  // namespace barchan::BARCHAN_TARGET

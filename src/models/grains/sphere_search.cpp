@@ -1,0 +1,298 @@
+#include "models/grains/sphere_search.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace barchan {
+
+namespace {
+
+/// Room for `size` without allocating at every growth.
+template <class Vector>
+void fit(Vector& vector, std::size_t size) {
+  if (vector.capacity() < size) vector.reserve(size + size / 2 + 64);
+  vector.resize(size);
+}
+
+std::size_t stride_of(const SphereSet& s) { return s.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size; }
+std::size_t radius_of(const SphereSet& s) {
+  return s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius;
+}
+
+constexpr std::size_t most_keys = 256;  // four a law
+
+/// A side as the partner of a sphere.
+std::uint32_t side_number(std::uint16_t axis, std::int16_t sign) {
+  return 0xfffffff0u + 2u * axis + (sign > 0 ? 1u : 0u);
+}
+
+}  // namespace
+
+void SphereSearch::prepare(const Bounds& bounds, double reach, std::size_t kinds, std::vector<std::uint32_t> laws,
+                           std::vector<Side> sides, std::size_t numbers_of_a_pair) {
+  bounds_ = bounds;
+  reach_ = reach;
+  kinds_ = kinds;
+  laws_ = std::move(laws);
+  sides_ = std::move(sides);
+  numbers_ = numbers_of_a_pair;
+  for (std::size_t d = 0; d < 3; ++d) period_[d] = bounds.periodic[d] ? bounds.high[d] - bounds.low[d] : 0.0;
+  found_.resize(static_cast<std::size_t>(std::max(omp_get_max_threads(), omp_get_num_procs())));
+}
+
+std::size_t SphereSearch::coordinate(double x, std::size_t axis) const {
+  x -= bounds_.low[axis];
+  if (period_[axis] > 0.0) x -= period_[axis] * std::floor(x / period_[axis]);
+  const double c = x * inverse_cell_[axis];
+  if (!(c > 0.0)) return 0;  // NaN too
+  return std::min(static_cast<std::size_t>(std::min(c, 1e9)), count_[axis] - 1);
+}
+
+/// Sorts all spheres into cells as wide as a search.
+void SphereSearch::sort(const SphereSet& s, double slack) {
+  const auto dimensions = static_cast<std::size_t>(s.dimensions);
+  double cell = reach_ + slack;
+  std::size_t cells = 0;
+  for (;; cell *= 1.3) {
+    cells = 1;
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const double size = bounds_.high[d] - bounds_.low[d];
+      count_[d] = static_cast<std::size_t>(std::clamp(std::floor(size / cell), 1.0, 1e6));
+      inverse_cell_[d] = static_cast<double>(count_[d]) / size;
+      cells *= count_[d];
+    }
+    if (cells <= 8 * s.all + 4096) break;
+  }
+  const std::size_t stride = stride_of(s), radius = radius_of(s);
+  fit(cell_of_, s.all);
+  fit(order_, s.all);
+  fit(begin_, cells + 1);
+  fit(sorted_, 4 * s.all);
+  std::fill(begin_.begin(), begin_.end(), 0u);
+  const auto n = static_cast<std::int64_t>(s.all);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    std::size_t c = 0;
+    for (std::size_t d = dimensions; d-- > 0;) c = c * count_[d] + coordinate(s.records[k * stride + d], d);
+    cell_of_[k] = static_cast<std::uint32_t>(c);
+  }
+  for (std::size_t k = 0; k < s.all; ++k) ++begin_[cell_of_[k] + 1];
+  for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
+  for (std::size_t k = 0; k < s.all; ++k) {
+    const std::size_t at = begin_[cell_of_[k]]++;
+    order_[at] = static_cast<std::uint32_t>(k);
+    const double* r = s.records + k * stride;
+    for (std::size_t d = 0; d < 3; ++d) sorted_[4 * at + d] = d < dimensions ? r[d] : 0.0;
+    sorted_[4 * at + 3] = r[radius];
+  }
+  for (std::size_t c = cells; c > 0; --c) begin_[c] = begin_[c - 1];
+  begin_[0] = 0;
+}
+
+/// The memory of all pairs that touch, by the number of the first.
+void SphereSearch::keep(const SphereSet& s, const std::vector<SphereChunk>& chunks, const std::uint32_t* before) {
+  fit(kept_begin_, s.all + 1);
+  std::fill(kept_begin_.begin(), kept_begin_.end(), 0u);
+  // Both chunks of a pair have the same bits: that of the first counts, or the only one.
+  const auto each = [&](auto&& call) {
+    for (const SphereChunk& chunk : chunks) {
+      for (std::size_t q = 0; q < chunk.touches.size(); ++q)
+        for (unsigned bits = chunk.touches[q]; bits != 0; bits &= bits - 1) {
+          const std::size_t lane = static_cast<std::size_t>(__builtin_ctz(bits)), at = q * SphereChunk::batch + lane;
+          const std::uint32_t a = chunk.a[at];
+          if (a < s.moving && (a < chunk.begin || a >= chunk.end)) continue;
+          call(before[a], before[chunk.b[at]], chunk.memory.data() + q * SphereChunk::batch * numbers_ + lane,
+               SphereChunk::batch);
+        }
+      for (const auto& at : chunk.sides)
+        if (at.touches) call(before[at.sphere], side_number(at.axis, at.sign), at.memory, std::size_t{1});
+    }
+  };
+  each([&](std::uint32_t number, std::uint32_t, const double*, std::size_t) { ++kept_begin_[number + 1]; });
+  for (std::size_t k = 0; k < s.all; ++k) kept_begin_[k + 1] += kept_begin_[k];
+  fit(kept_, kept_begin_[s.all]);
+  each([&](std::uint32_t number, std::uint32_t with, const double* memory, std::size_t step) {
+    Kept& k = kept_[kept_begin_[number]++];
+    k.number = number;
+    k.with = with;
+    for (std::size_t m = 0; m < numbers_; ++m) k.memory[m] = memory[m * step];
+  });
+  for (std::size_t k = s.all; k > 0; --k) kept_begin_[k] = kept_begin_[k - 1];
+  kept_begin_[0] = 0;
+}
+
+const double* SphereSearch::memory_of(std::uint32_t number, std::uint32_t with) const {
+  for (std::size_t k = kept_begin_[number]; k < kept_begin_[number + 1]; ++k)
+    if (kept_[k].with == with) return kept_[k].memory;
+  return nullptr;
+}
+
+/// The pairs of a chunk, in the order in which its spheres meet them.
+void SphereSearch::fill(const SphereSet& s, double slack, SphereChunk& chunk, std::vector<Found>& found) const {
+  const std::size_t stride = stride_of(s), radius = radius_of(s);
+  const bool flat = s.dimensions == 2;
+  found.clear();
+  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
+    const double* r = s.records + k * stride;
+    const std::array<double, 3> x{r[0], r[1], flat ? 0.0 : r[2]};
+    const double own = r[radius] + slack;
+    const std::uint32_t number = s.numbers[k];
+    const auto look = [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t q = begin; q < end; ++q) {
+        double r2 = 0.0;
+        for (std::size_t d = 0; d < 3; ++d) {
+          double apart = x[d] - sorted_[4 * q + d];
+          if (period_[d] > 0.0) apart -= period_[d] * std::round(apart / period_[d]);
+          r2 += apart * apart;
+        }
+        const double reach = own + sorted_[4 * q + 3];
+        if (r2 >= reach * reach) continue;
+        const std::uint32_t j = order_[q];
+        const std::uint32_t law = laws_[s.kinds[k] * kinds_ + s.kinds[j]];
+        const bool inside = j >= chunk.begin && j < chunk.end;
+        if (law == none || j == k || (inside && s.numbers[j] < number)) continue;
+        const bool first = number < s.numbers[j], fixed = j >= s.moving, near = r2 < (reach - slack) * (reach - slack);
+        const auto k32 = static_cast<std::uint32_t>(k);
+        found.push_back({first ? k32 : j, first ? j : k32, law * 4 + (inside || fixed ? 0u : 2u) + (near ? 0u : 1u)});
+      }
+    };
+    std::array<std::size_t, 3> low{0, 0, 0}, many{1, 1, 1};
+    for (std::size_t d = 0; d < (flat ? 2u : 3u); ++d) {
+      const std::size_t c = coordinate(x[d], d), n = count_[d];
+      if (period_[d] > 0.0) {
+        many[d] = std::min<std::size_t>(3, n);
+        low[d] = n < 3 ? 0 : (c + n - 1) % n;
+      } else {
+        low[d] = c > 0 ? c - 1 : 0;
+        many[d] = std::min(c + 2, n) - low[d];
+      }
+    }
+    for (std::size_t dz = 0; dz < many[2]; ++dz)
+      for (std::size_t dy = 0; dy < many[1]; ++dy) {
+        const std::size_t row = ((low[2] + dz) % count_[2] * count_[1] + (low[1] + dy) % count_[1]) * count_[0];
+        const std::size_t end = low[0] + many[0], inside = std::min(end, count_[0]);
+        look(begin_[row + low[0]], begin_[row + inside]);
+        if (end > inside) look(begin_[row], begin_[row + end - inside]);
+      }
+  }
+}
+
+/// Orders the pairs by law, those of the chunk alone before those of two, those that touch before others, and gives
+/// them their memory.
+void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vector<Found>& found) const {
+  constexpr std::size_t batch = SphereChunk::batch;
+  std::array<std::uint32_t, most_keys> count{}, next{};
+  for (const Found& f : found) ++count[f.key];
+  // A batch belongs to one law and one weight: pairs of the keys 2k and 2k + 1 stand together.
+  chunk.groups.clear();
+  std::uint32_t at = 0;
+  for (std::uint32_t key = 0; key < most_keys; key += 2) {
+    const std::uint32_t all = count[key] + count[key + 1];
+    if (all == 0) continue;
+    const auto batches = static_cast<std::uint32_t>((all + batch - 1) / batch);
+    const auto first = at / static_cast<std::uint32_t>(batch);
+    if (chunk.groups.capacity() == chunk.groups.size()) chunk.groups.reserve(2 * chunk.groups.size() + 8);
+    chunk.groups.push_back({key / 4, first, first + batches, key % 4 == 0 ? 1.0 : 0.5});
+    next[key] = at;
+    next[key + 1] = at + count[key];
+    at += batches * static_cast<std::uint32_t>(batch);
+  }
+  const std::uint32_t far = static_cast<std::uint32_t>(s.all);
+  fit(chunk.a, at);
+  fit(chunk.b, at);
+  fit(chunk.touches, at / batch);
+  fit(chunk.memory, at * numbers_);
+  std::fill(chunk.a.begin(), chunk.a.end(), far);
+  std::fill(chunk.b.begin(), chunk.b.end(), far + 1);
+  std::fill(chunk.touches.begin(), chunk.touches.end(), std::uint8_t{0});
+  std::fill(chunk.memory.begin(), chunk.memory.end(), 0.0);
+  for (const Found& f : found) {
+    const std::uint32_t to = next[f.key]++;
+    chunk.a[to] = f.a;
+    chunk.b[to] = f.b;
+    const double* memory = memory_of(s.numbers[f.a], s.numbers[f.b]);
+    if (!memory) continue;
+    const std::size_t q = to / batch, lane = to % batch;
+    chunk.touches[q] = static_cast<std::uint8_t>(chunk.touches[q] | 1u << lane);
+    for (std::size_t m = 0; m < numbers_; ++m) chunk.memory[(q * numbers_ + m) * batch + lane] = memory[m];
+  }
+}
+
+void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& chunk) const {
+  const std::size_t stride = stride_of(s), radius = radius_of(s);
+  chunk.sides.clear();
+  for (std::size_t k = chunk.begin; k < chunk.end; ++k)
+    for (const Side& side : sides_) {
+      const double* r = s.records + k * stride;
+      const std::uint32_t law = laws_[s.kinds[k] * kinds_ + side.kind];
+      if (law == none || !(side.sign * (r[side.axis] - side.place) < r[radius] + slack)) continue;
+      if (chunk.sides.capacity() == chunk.sides.size()) chunk.sides.reserve(2 * chunk.sides.size() + 64);
+      SphereChunk::AtSide& at = chunk.sides.emplace_back();
+      at.sphere = static_cast<std::uint32_t>(k);
+      at.law = law;
+      at.axis = side.axis;
+      at.sign = side.sign;
+      at.place = side.place;
+      if (const double* memory = memory_of(s.numbers[k], side_number(side.axis, side.sign))) {
+        std::copy_n(memory, numbers_, at.memory);
+        at.touches = true;
+      }
+    }
+}
+
+void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks,
+                        const std::uint32_t* before) {
+  keep(s, chunks, before);
+  sort(s, slack);
+  const auto n = static_cast<std::int64_t>(chunks.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::int64_t c = 0; c < n; ++c) {
+    SphereChunk& chunk = chunks[static_cast<std::size_t>(c)];
+    std::vector<Found>& found = found_[static_cast<std::size_t>(omp_get_thread_num())];
+    fill(s, slack, chunk, found);
+    place(s, chunk, found);
+    place_sides(s, slack, chunk);
+  }
+}
+
+void SphereSearch::order(const std::array<const double*, 3>& x, std::size_t count, std::vector<std::uint32_t>& order) {
+  // Blocks of about a chunk: 22 x 22 or 8 x 8 x 8 cells of a sphere each.
+  const bool flat = bounds_.dimensions == 2;
+  const std::size_t side = flat ? 22 : 8;
+  const auto dimensions = static_cast<std::size_t>(bounds_.dimensions);
+  std::array<std::size_t, 3> blocks{1, 1, 1};
+  double cell = reach_;
+  std::size_t cells = 0;
+  for (;; cell *= 1.3) {
+    cells = 1;
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const double size = bounds_.high[d] - bounds_.low[d];
+      count_[d] = static_cast<std::size_t>(std::clamp(std::floor(size / cell), 1.0, 1e6));
+      inverse_cell_[d] = static_cast<double>(count_[d]) / size;
+      blocks[d] = (count_[d] + side - 1) / side;
+      cells *= blocks[d] * side;
+    }
+    if (cells <= 8 * count + 65536) break;
+  }
+  fit(cell_of_, count);
+  fit(begin_, cells + 1);
+  fit(order, count);
+  std::fill(begin_.begin(), begin_.end(), 0u);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::size_t block = 0, within = 0;
+    for (std::size_t d = dimensions; d-- > 0;) {
+      const std::size_t c = coordinate(x[d][k], d);
+      block = block * blocks[d] + c / side;
+      within = within * side + c % side;
+    }
+    cell_of_[k] = static_cast<std::uint32_t>(block * (flat ? side * side : side * side * side) + within);
+    ++begin_[cell_of_[k] + 1];
+  }
+  for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
+  for (std::size_t k = 0; k < count; ++k) order[begin_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
+}
+
+}  // namespace barchan

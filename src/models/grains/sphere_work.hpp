@@ -1,0 +1,102 @@
+// What the steps of contacts work on: records of all spheres, and pairs that may touch.
+//
+// All spheres of a scene stand side by side: phase after phase in the present order of their particles, then walls
+// whose particles are spheres, then two far away that pad the lists. A record holds
+//   2D  x y r moved | vx vy w -            3D  x y z r | vx vy vz moved | wx wy wz moved
+// `moved` (floats): the way since the last search. What a step does not change stands in another one, ax ay (az) 1/m:
+// the acceleration by all but contacts, and the inverse mass (0 of walls).
+//
+// The records are there twice. A step reads one set and writes the other, so that one loop does all: a chunk of spheres
+// that has its forces can move on while its neighbours still read where it was.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "base/aligned.hpp"
+#include "laws/sphere_contact.hpp"
+
+namespace barchan {
+
+template <int Dim>
+struct SphereRecord {
+  static constexpr std::size_t size = Dim == 2 ? 8 : 12, radius = Dim == 2 ? 2 : 3;
+  static constexpr std::size_t velocity = 4, spin = Dim == 2 ? 6 : 8, spins = Dim == 2 ? 1 : 3;
+  // Places of the floats among those of the record.
+  static constexpr std::size_t moved(std::size_t d) { return Dim == 2 ? 6 + d : d < 2 ? 14 + d : 22; }
+};
+/// The way of a sphere since the last search, along an axis (m).
+template <int Dim>
+float way_of(const double* record, std::size_t axis) {
+  float way;
+  std::memcpy(&way, reinterpret_cast<const char*>(record) + sizeof(float) * SphereRecord<Dim>::moved(axis), sizeof way);
+  return way;
+}
+template <int Dim>
+void set_way(double* record, std::size_t axis, float way) {
+  std::memcpy(reinterpret_cast<char*>(record) + sizeof(float) * SphereRecord<Dim>::moved(axis), &way, sizeof way);
+}
+
+inline constexpr std::size_t passive_size = 4, passive_mass = 3;
+
+/// Spheres that move together in one share of a step, and the pairs in which they are. A pair stands in the chunk of
+/// each of its spheres, once; the first of a pair is that with the lower id, so that both chunks compute the same bits.
+struct SphereChunk {
+  static constexpr std::size_t most = 512;  // spheres
+  static constexpr std::size_t batch = 8;   // pairs
+
+  /// Batches of one law; `weight`: of their energies, 1/2 where another chunk has the pair too.
+  struct Group {
+    std::uint32_t law = 0, first = 0, end = 0;
+    double weight = 1.0;
+  };
+  /// A sphere at a side of the domain: the side at `place` on `axis` holds what is above (`side` +1) or below (-1).
+  struct AtSide {
+    std::uint32_t sphere = 0, law = 0;
+    std::uint16_t axis = 0;
+    std::int16_t sign = 1;
+    double place = 0.0;
+    double memory[6] = {};
+    bool touches = false;
+  };
+
+  std::size_t begin = 0, end = 0;  // spheres
+  std::size_t phase = 0;           // of the scene
+  std::vector<Group> groups;
+  AlignedVector<std::uint32_t> a, b;    // by pair; what pads them is the two far away
+  AlignedVector<double> memory;         // by batch: of each number of the memory eight, a pair's beside the next one's
+  AlignedVector<std::uint8_t> touches;  // by batch: a bit a pair
+  std::vector<AtSide> sides;
+
+  // of the last step
+  double lost = 0.0, stored = 0.0;  // J
+  double deepest = 0.0;             // overlap over the sum of radii
+  double farthest2 = 0.0;           // m2, square of the longest way since the search
+  double contacts = 0.0;
+};
+
+/// Where the last step of a bundle leaves the spheres of a phase. Null: the phase has no such field.
+struct SphereColumns {
+  double *position[3]{}, *velocity[3]{}, *acceleration[3]{}, *spin[3]{}, *spin_rate[3]{};
+  std::size_t first = 0;  // sphere at the columns' begin
+};
+
+/// One step of contacts.
+struct SphereStep {
+  int dimensions = 2;
+  const double* records = nullptr;
+  double* next = nullptr;
+  const double* passive = nullptr;
+  const SphereContact* laws = nullptr;
+  const double* inverse_densities =
+      nullptr;                             // by law, of the first and of the second: inverse mass times r^3 (1/kg m3)
+  const SphereColumns* columns = nullptr;  // by phase
+  std::array<double, 3> period{};          // m, 0: not periodic
+  double dt = 0.0;                         // s
+  bool last = false;                       // of its bundle: half a kick, and into the columns
+  bool rubs = false, rolls = false;        // some law does
+  std::size_t numbers = 0;                 // of the memory of a pair
+};
+
+}  // namespace barchan

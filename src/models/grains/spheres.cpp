@@ -1,0 +1,345 @@
+#include "models/grains/spheres.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/means.hpp"
+#include "models/grains/sphere_forces.hpp"
+#include "output/numbers.hpp"
+
+namespace barchan {
+
+Spheres::Spheres(const Scene& scene, const Layout& layout) : scene_(scene), layout_(layout), laws_(scene, layout) {}
+
+void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  for (std::size_t k = 0; k < layout_.phases.size(); ++k) {
+    const PlanPhase& plan = layout_.phases[k];
+    if (plan.diameter > 0.0) {
+      parts_.push_back({k, moving_, plan.count, 0.5 * plan.diameter});
+      moving_ += plan.count;
+      PhaseParticles& p = state.phases[k];
+      p.set_mean_radius(0.5 * plan.diameter);
+      if (p.has(Field::radius)) std::copy(blocks[k].radius.begin(), blocks[k].radius.end(), p.column(Field::radius));
+    }
+  }
+  // Particles of walls inside the domain are spheres; those behind a side of it are the side.
+  const std::size_t n = layout_.phases.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto row = laws_.table().begin() + static_cast<std::ptrdiff_t>(k * n);
+    if (layout_.phases[k].moves ||
+        std::all_of(row, row + static_cast<std::ptrdiff_t>(n), [](auto law) { return law == SphereSearch::none; }))
+      continue;
+    for (std::size_t i = 0; i < blocks[k].position.size(); ++i) {
+      const Vec3& x = blocks[k].position[i];
+      bool inside = true;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+        inside =
+            inside && (layout_.bounds.periodic[d] || (x[d] >= layout_.bounds.low[d] && x[d] <= layout_.bounds.high[d]));
+      if (!inside) continue;
+      const double radius = blocks[k].radius.empty() ? 0.5 * layout_.phases[k].spacing : blocks[k].radius[i];
+      fixed_.insert(fixed_.end(), {x[0], x[1], x[2], radius});
+      fixed_kind_.push_back(static_cast<std::uint8_t>(k));
+    }
+  }
+}
+
+void Spheres::attach(Workspace& w) {
+  w_ = &w;
+  const std::size_t n = layout_.phases.size(), all = moving_ + fixed_kind_.size();
+  w.when_sorted.push_back([this] { must_search_ = true; });
+  columns_.resize(n);
+  numbers_.resize(all);
+  listed_numbers_.resize(all);
+  kinds_.resize(all);
+  passive_.assign((all + 2) * passive_size, 0.0);
+  for (const Part& part : parts_) {
+    std::fill_n(kinds_.begin() + static_cast<std::ptrdiff_t>(part.first), part.count,
+                static_cast<std::uint8_t>(part.phase));
+    for (std::size_t from = 0; from < part.count; from += SphereChunk::most) {
+      SphereChunk& chunk = chunks_.emplace_back();
+      chunk.begin = part.first + from;
+      chunk.end = part.first + std::min(from + SphereChunk::most, part.count);
+      chunk.phase = part.phase;
+    }
+  }
+  for (std::size_t k = moving_; k < all; ++k) {
+    kinds_[k] = fixed_kind_[k - moving_];
+    numbers_[k] = static_cast<std::uint32_t>(k);
+  }
+  layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
+
+  std::vector<SphereSearch::Side> sides;
+  for (const Fill& fill : scene_.fills) {
+    const auto* shape = std::get_if<SidesShape>(&fill.shape);
+    if (!shape) continue;
+    const auto kind =
+        std::find_if(layout_.phases.begin(), layout_.phases.end(), [&](const auto& p) { return p.name == fill.phase; });
+    const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+    for (std::uint16_t axis = 0; axis < layout_.dimensions; ++axis)
+      for (const bool high : {false, true})
+        if (std::find(shape->sides.begin(), shape->sides.end(), names[axis][high]) != shape->sides.end())
+          sides.push_back({axis, static_cast<std::int16_t>(high ? -1 : 1),
+                           high ? layout_.bounds.high[axis] : layout_.bounds.low[axis],
+                           static_cast<std::uint8_t>(kind - layout_.phases.begin())});
+  }
+  step_.dimensions = layout_.dimensions;
+  step_.rubs = laws_.rubs();
+  step_.rolls = laws_.rolls();
+  step_.numbers = (step_.rolls ? 2u : step_.rubs ? 1u : 0u) * (layout_.dimensions == 2 ? 1u : 3u);
+  step_.laws = laws_.laws().data();
+  step_.inverse_densities = laws_.inverse_densities().data();
+  step_.columns = columns_.data();
+  search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), std::move(sides), step_.numbers);
+  for (std::size_t d = 0; d < 3; ++d)
+    step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
+}
+
+/// Both sets of records, with what never changes in them.
+template <int Dim>
+void Spheres::make_records() {
+  using R = SphereRecord<Dim>;
+  const std::size_t all = moving_ + fixed_kind_.size();
+  for (auto& records : records_) {
+    records.assign((all + 2) * R::size, 0.0);
+    for (std::size_t k = moving_; k < all; ++k) {
+      double* r = records.data() + k * R::size;
+      for (std::size_t d = 0; d < Dim; ++d) r[d] = fixed_[4 * (k - moving_) + d];
+      r[R::radius] = fixed_[4 * (k - moving_) + 3];
+    }
+    // What pads the lists: two points that are apart by half of every period.
+    for (std::size_t d = 0; d < Dim; ++d)
+      records[(all + 1) * R::size + d] = 0.5 * (layout_.bounds.high[d] - layout_.bounds.low[d]);
+  }
+}
+
+void Spheres::schedule(Schedule& s) {
+  using enum Field;
+  std::string owners;
+  FieldSet fields{position, velocity,         acceleration,        contact_acceleration,
+                  radius,   angular_velocity, angular_acceleration};
+  FieldSet all = fields;
+  for (const auto& p : layout_.phases)
+    if (p.diameter > 0.0) {
+      owners += (owners.empty() ? "" : ", ") + p.name;
+      for (const Field f : p.fields) all = all | FieldSet{f};  // sorting moves them all
+    }
+  s.add({stage::grain_contacts, owners, fields, all, [this] { advance(); }});
+}
+
+void Spheres::limits(std::vector<StepLimit>& limits) const {
+  const bool air = std::any_of(layout_.phases.begin(), layout_.phases.end(), [](const auto& p) { return p.flows; });
+  if (laws_.laws().empty() || air) return;
+  limits.push_back({"contacts", 8.0 * scene_.time.safety * laws_.step(),
+                    "eight steps of the grains, each a twelfth of a contact's duration"});
+}
+
+void Spheres::point_at_columns() {
+  for (const Part& part : parts_) {
+    PhaseParticles& p = w_->particles(part.phase);
+    SphereColumns& c = columns_[part.phase];
+    c.first = part.first;
+    for (int d = 0; d < layout_.dimensions; ++d) {
+      c.position[d] = p.column(Field::position, d);
+      c.velocity[d] = p.column(Field::velocity, d);
+      c.acceleration[d] = p.column(Field::contact_acceleration, d);
+    }
+    for (int d = 0; p.has(Field::angular_velocity) && d < p.components(Field::angular_velocity); ++d) {
+      c.spin[d] = p.column(Field::angular_velocity, d);
+      c.spin_rate[d] = p.column(Field::angular_acceleration, d);
+    }
+  }
+}
+
+/// A step of the scene.
+void Spheres::advance() {
+  const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : scene_.time.safety * laws_.step();
+  const auto steps = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
+  if (must_search_ || since_sort_ >= searches_a_sort) sort();
+  point_at_columns();
+  const double each = dt / static_cast<double>(steps);
+  layout_.dimensions == 2 ? pack<2>(each) : pack<3>(each);
+  for (long k = 0; k < steps; ++k) go(k + 1 == steps, each);
+}
+
+/// Puts neighbours near in memory, and particles into the periodic domain, where nobody else does.
+void Spheres::sort() {
+  must_search_ = true;
+  for (const Part& part : parts_) {
+    if (w_->neighbours.has_grid(part.phase)) continue;
+    PhaseParticles& p = w_->particles(part.phase);
+    std::array<const double*, 3> x{};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+      double* place = p.column(Field::position, static_cast<int>(d));
+      x[d] = place;
+      const double low = layout_.bounds.low[d], period = step_.period[d];
+      for (std::size_t k = 0; period > 0.0 && k < p.size(); ++k)
+        place[k] -= period * std::floor((place[k] - low) / period);
+    }
+    search_.order(x, p.size(), order_);
+    p.permute(order_.data());
+  }
+  since_sort_ = 0;
+}
+
+/// The state into the records; half a kick and the first drift.
+template <int Dim>
+void Spheres::pack(double dt) {
+  using R = SphereRecord<Dim>;
+  const double half = 0.5 * dt;
+  double* records = records_[now_].data();
+  double* passive = passive_.data();
+  float farthest2 = 0.0f;
+  for (const Part& part : parts_) {
+    const PhaseParticles& p = w_->particles(part.phase);
+    const SphereColumns& c = columns_[part.phase];
+    const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+    std::array<const double*, Dim> a{};
+    for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
+    const double inverse_mass = 1.0 / (p.mass() * layout_.slab);
+    const auto n = static_cast<std::int64_t>(part.count);
+    const bool fresh = must_search_;
+#pragma omp parallel for schedule(static) reduction(max : farthest2)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      double* r = records + (part.first + k) * R::size;
+      double* q = passive + (part.first + k) * passive_size;
+      float way2 = 0.0f;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        const double v = c.velocity[d][k] + half * (c.acceleration[d][k] + a[d][k]);
+        r[d] = c.position[d][k] + dt * v;
+        r[R::velocity + d] = v;
+        q[d] = a[d][k];
+        const float way = fresh ? 0.0f : way_of<Dim>(r, d) + static_cast<float>(dt * v);
+        set_way<Dim>(r, d, way);
+        way2 += way * way;
+      }
+      r[R::radius] = radius ? radius[k] : part.mean_radius;
+      const double share = part.mean_radius / r[R::radius];
+      q[passive_mass] = inverse_mass * share * share * share;
+      for (std::size_t d = 0; d < R::spins; ++d)
+        r[R::spin + d] = c.spin[d] ? c.spin[d][k] + half * c.spin_rate[d][k] : 0.0;
+      farthest2 = std::max(farthest2, way2);
+    }
+  }
+  if (!(static_cast<double>(farthest2) < 0.24 * slack() * slack())) must_search_ = true;
+  if (must_search_) search();
+}
+
+SphereSet Spheres::set() const {
+  return {layout_.dimensions,           records_[now_].data(), moving_,
+          moving_ + fixed_kind_.size(), numbers_.data(),       kinds_.data()};
+}
+
+/// Fills the lists from the present records.
+void Spheres::search() {
+  for (const Part& part : parts_) {
+    const auto& id = w_->particles(part.phase).id();
+    const std::int64_t lowest = w_->particles(part.phase).first_id();
+    for (std::size_t k = 0; k < part.count; ++k)
+      numbers_[part.first + k] = static_cast<std::uint32_t>(part.first + static_cast<std::size_t>(id[k] - lowest));
+  }
+  // A search costs about four steps of all pairs and a step (1 + s)^D pairs of the slack s (see
+  // Neighbours::choose_skin).
+  if (searches_ > 0) {
+    const double per_slack = static_cast<double>(kept_ + 1) / slack_;
+    slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.01, 0.5 * slack_),
+                        std::min(0.4, 1.5 * slack_));
+  }
+  search_.find(set(), slack(), chunks_, listed_numbers_.data());
+  listed_numbers_ = numbers_;
+  for (auto& records : {&records_[0], &records_[1]})
+    for (std::size_t k = 0; k < moving_; ++k)
+      for (int d = 0; d < layout_.dimensions; ++d)
+        layout_.dimensions == 2
+            ? set_way<2>(records->data() + k * SphereRecord<2>::size, static_cast<std::size_t>(d), 0.0f)
+            : set_way<3>(records->data() + k * SphereRecord<3>::size, static_cast<std::size_t>(d), 0.0f);
+  must_search_ = false;
+  kept_ = 0;
+  ++searches_;
+  ++since_sort_;
+}
+
+/// One step of the contacts; then searches if it must.
+void Spheres::go(bool last, double dt) {
+  step_.records = records_[now_].data();
+  step_.next = records_[1 - now_].data();
+  step_.passive = passive_.data();
+  step_.dt = dt;
+  step_.last = last;
+  const auto n = static_cast<std::int64_t>(chunks_.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t c = 0; c < n; ++c) step_spheres(step_, chunks_[static_cast<std::size_t>(c)]);
+  stored_ = 0.0;
+  contacts_ = 0.0;
+  double farthest2 = 0.0;
+  for (const SphereChunk& chunk : chunks_) {
+    lost_ += chunk.lost;
+    stored_ += chunk.stored;
+    contacts_ += chunk.contacts;
+    deepest_ = std::max(deepest_, chunk.deepest);
+    farthest2 = std::max(farthest2, chunk.farthest2);
+  }
+  ++kept_;
+  if (last) return;
+  now_ = 1 - now_;
+  // Half of the slack, less what rounding in single precision may hide.
+  if (!(farthest2 < 0.24 * slack() * slack())) search();
+}
+
+void Spheres::columns(std::vector<std::string>& names) const {
+  names.insert(names.end(), {"contacts", "contacts_deepest", "contacts_stored_energy [J]", "contacts_lost_energy [J]",
+                             "rotation_energy [J]"});
+}
+
+void Spheres::row(std::vector<double>& values) const {
+  double turning = 0.0;
+  for (const Part& part : parts_) {
+    const PhaseParticles& p = w_->particles(part.phase);
+    if (!p.has(Field::angular_velocity)) continue;
+    const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+    turning += ordered_sum(p.size(), [&](std::size_t k) {
+      const double r = radius ? radius[k] : part.mean_radius;
+      double w2 = 0.0;
+      for (int d = 0; d < p.components(Field::angular_velocity); ++d)
+        w2 += std::pow(p.column(Field::angular_velocity, d)[k], 2);
+      return 0.2 * p.mass_of(k) * r * r * w2;
+    });
+  }
+  const double depth = layout_.slab;  // energies are by metre of depth in 2D
+  values.insert(values.end(), {contacts_, deepest_, stored_ / depth, lost_ / depth, turning});
+}
+
+std::optional<std::string> Spheres::trouble() const {
+  if (deepest_ <= most_overlap) return std::nullopt;
+  return "two grains overlap by " + brief(100.0 * deepest_) + " % of their mean diameter (the bound is " +
+         brief(100.0 * most_overlap) +
+         " %): contacts are too soft for what presses them, or fills overlap; raise stiffness, young or "
+         "time.largest-speed, or lower "
+         "largest-overlap";
+}
+
+void Spheres::archive(Archive& a) {
+  a.number("must search", must_search_);
+  a.number("slack", slack_);
+  a.number("steps of the pairs", kept_);
+  a.number("searches", searches_);
+  a.number("searches since sorting", since_sort_);
+  a.number("lost energy", lost_);
+  a.number("stored energy", stored_);
+  a.number("deepest", deepest_);
+  a.number("contacts", contacts_);
+  a.number("set of records", now_);
+  a.array("records of spheres", records_[now_]);
+  a.array("numbers of spheres", listed_numbers_);
+  for (SphereChunk& chunk : chunks_) {
+    a.array("groups", chunk.groups);
+    a.array("first of pairs", chunk.a);
+    a.array("second of pairs", chunk.b);
+    a.array("memory of pairs", chunk.memory);
+    a.array("pairs that touch", chunk.touches);
+    a.array("at sides", chunk.sides);
+  }
+}
+
+}  // namespace barchan

@@ -1,0 +1,102 @@
+// All grains of a scene that are spheres: their contacts and their motion, in steps of their own.
+//
+// A step of the scene holds a bundle of steps of the contacts (velocity Verlet; the acceleration by all but contacts
+// stays what it was at the beginning). Between two searches no two spheres can touch that the lists do not hold: they
+// have all pairs nearer than a slack, and are made anew as soon as one sphere has gone half of it.
+#pragma once
+
+#include <optional>
+
+#include "models/grains/sphere_search.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+/// The laws of all entries of spheres of a scene. Throws SceneError where nothing says how stiff they are.
+class SphereLaws {
+ public:
+  SphereLaws(const Scene& scene, const Layout& layout);
+
+  const std::vector<SphereContact>& laws() const { return laws_; }
+  /// Inverse mass times r^3 of the first and second phase of each law (1/kg m3), 0 of a wall.
+  const std::vector<double>& inverse_densities() const { return inverse_densities_; }
+  /// By phase and phase; SphereSearch::none where two do not touch.
+  const std::vector<std::uint32_t>& table() const { return table_; }
+  bool rubs() const;
+  bool rolls() const;
+  /// A twelfth of the shortest contact at the largest speed of the scene (s); infinite without contacts.
+  double step() const { return step_; }
+  double reach() const { return reach_; }  ///< m, the largest sum of two radii
+
+ private:
+  std::vector<SphereContact> laws_;
+  std::vector<double> inverse_densities_;
+  std::vector<std::uint32_t> table_;
+  double step_ = 1e300, reach_ = 0.0;
+};
+
+/// Of a contact of two grains of the phase: N/m, or of Hertz 4/3 E* in Pa.
+double sphere_stiffness(const Scene& scene, const Layout& layout, std::size_t phase, bool hertz);
+/// Whether spheres of the phase turn: some law of theirs rubs.
+bool spheres_turn(const Scene& scene, std::size_t phase);
+
+class Spheres : public Model {
+ public:
+  Spheres(const Scene& scene, const Layout& layout);
+
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void limits(std::vector<StepLimit>& limits) const override;
+  void columns(std::vector<std::string>& names) const override;
+  void row(std::vector<double>& values) const override;
+  std::optional<std::string> trouble() const override;
+  void archive(Archive& a) override;
+
+ private:
+  /// Spheres of one phase, side by side.
+  struct Part {
+    std::size_t phase = 0, first = 0, count = 0;
+    double mean_radius = 0.0;  // m
+  };
+
+  void advance();
+  void sort();
+  template <int Dim>
+  void pack(double dt);
+  void search();
+  void go(bool last, double dt);
+  void point_at_columns();
+  template <int Dim>
+  void make_records();
+  SphereSet set() const;
+  double slack() const { return slack_ * laws_.reach(); }
+
+  static constexpr double most_overlap = 0.3;  // of the sum of radii: beyond it a law means nothing
+  static constexpr long searches_a_sort = 32;
+
+  const Scene& scene_;
+  const Layout& layout_;
+  SphereLaws laws_;
+  Workspace* w_ = nullptr;
+  std::vector<Part> parts_;    // of the phases of grains
+  std::vector<double> fixed_;  // x y z r of the walls' spheres
+  std::vector<std::uint8_t> fixed_kind_;
+  std::size_t moving_ = 0;
+
+  AlignedVector<double> records_[2], passive_;
+  std::size_t now_ = 0;  // which set of records
+  std::vector<SphereChunk> chunks_;
+  std::vector<SphereColumns> columns_;  // by phase
+  std::vector<std::uint32_t> numbers_, listed_numbers_, order_;
+  std::vector<std::uint8_t> kinds_;
+  SphereSearch search_;
+  SphereStep step_;
+  bool must_search_ = true;
+  double slack_ = 0.1;  // of the reach
+  long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
+  double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;
+  double contacts_ = 0.0;
+};
+
+}  // namespace barchan
