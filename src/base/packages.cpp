@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <toml++/impl/version.h>
 #include "base/version.hpp"
-#include "toml++/impl/version.h"
 
 namespace barchan {
 
