@@ -103,7 +103,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
       layout(layout_),
       state(state_),
       neighbours(layout_.bounds, layout_.directions, layout_.skin, spacings(layout_),
-                 scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>()),
+                 scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>(),
+                 static_cast<std::size_t>(layout_.particles())),
       packing(layout_.phases.size()) {
   neighbours.adapt_skin();
   const std::size_t phases = layout.phases.size();

@@ -6,8 +6,10 @@
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
+#include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -69,7 +71,7 @@ void add_entries(const Scene& scene, Plan& plan) {
   const auto number = [&](const std::string& name) {
     for (std::size_t k = 0; k < scene.phases.size(); ++k)
       if (scene.phases[k].name == name) return k;
-    throw SceneError("interactions: no phase \"" + name + "\"");
+    throw SceneError(located(scene, "interactions") + ": no phase \"" + name + "\"");
   };
   for (const auto& i : scene.interactions) {
     PlanEntry e;
@@ -116,6 +118,19 @@ void add_passes(Plan& plan, const Models& models) {
     (schedule.has(k) || k == stage::watch ? plan.passes : plan.skipped).push_back(schedule.name(k));
 }
 
+/// A time to which a step adds nothing stands still: the end is never reached.
+void check_steps(const Scene& scene, Plan& plan) {
+  const double steps = scene.time.end / plan.step();
+  constexpr double most = 1e12;  // 4500 roundings of the time a step are left
+  constexpr double remarkable = 1e9;
+  const std::string number =
+      brief(scene.time.end) + " s are " + brief(steps) + " steps of " + brief(plan.step()) + " s";
+  if (!(steps <= most))
+    throw SceneError(located(scene, "time.end") + ": " + number +
+                     "; expected at most 10^12 steps, beyond which the time stands still in its last digits");
+  if (steps > remarkable) plan.warnings.push_back("time.end: " + number + ", which will take long");
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
@@ -153,7 +168,8 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.instruments = make_instruments(scene, plan);
   for (const auto& model : models) model->limits(plan.limits);
   if (plan.limits.empty() && plan.fixed_step == 0)
-    throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");
+    throw SceneError(located(scene, "time.step") + ": missing: nothing limits the step; expected a number > 0 (s)");
+  check_steps(scene, plan);
   add_warnings(scene, plan);
   return plan;
 }

@@ -83,6 +83,21 @@ void check_sides(const SidesShape& sides, const Phase* phase, const std::string&
     report(dotted, "only walls lie outside the domain; expected a phase of kind wall");
 }
 
+/// A bed that the domain cuts off would be another one than the scene says.
+void check_bed(const BedShape& bed, const std::string& shape, const Scene& scene, const Report& report) {
+  if (report.touched(shape) || report.touched("domain")) return;
+  const double height = scene.domain.size[1];
+  const bool rises = bed.dune && bed.dune->form != DuneShape::Form::formula;
+  const double top = bed.depth + (rises ? bed.dune->height : 0.0);
+  if (bed.depth > height * (1.0 + 1e-9))
+    report(shape + ".bed", number_text(bed.depth) + " m is more than the height of the domain; expected at most " +
+                               number_text(height) + " m");
+  else if (top > height * (1.0 + 1e-9))
+    report(shape + ".dune.height", "the crest is " + number_text(top) +
+                                       " m over the bottom of the domain; expected at most its height, " +
+                                       number_text(height) + " m");
+}
+
 void check_sizes(const Fill& fill, const std::string& shape, const Scene& scene, const Report& report) {
   if (const auto* box = std::get_if<BoxShape>(&fill.shape); box && !report.touched(shape))
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
@@ -165,6 +180,8 @@ void check_fills(const Scene& scene, const Report& report) {
     if (report.is_section(shape)) check_shape_keys(shape, fill.packing == Packing::fitted, report);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && bed->dune)
       check_dune(*bed->dune, shape + ".dune", scene, report);
+    if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing != Packing::fitted)
+      check_bed(*bed, shape, scene, report);
     if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
       check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);

@@ -171,6 +171,7 @@ Frame Simulation::good_frame(int index) {
 Warnings Simulation::warnings() const {
   Warnings all;
   watch_->report(all);
+  budget_->report(state_, all);
   return all;
 }
 

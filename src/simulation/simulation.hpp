@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "models/workspace.hpp"
 #include "output/frame.hpp"
 #include "plan/plan.hpp"
+#include "simulation/budget.hpp"
 #include "simulation/watch.hpp"
 
 namespace barchan {
@@ -36,6 +38,7 @@ class Simulation {
   std::vector<PhaseParticles>& phases() { return state_.phases; }
   const State& state() const { return state_; }
   OutputClock& outputs() { return state_.outputs; }
+  Retreat& retreat() { return state_.retreat; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   const Neighbours& neighbours() const { return work_->neighbours; }
@@ -66,6 +69,8 @@ class Simulation {
   long good_step() const { return watch_->good().step(); }
   double good_time() const { return watch_->good().time(); }
   Frame good_frame(int index);
+  /// What should have been kept since the beginning.
+  const Budget& budget() const { return *budget_; }
   /// What is remarkable so far.
   Warnings warnings() const;
 
@@ -87,6 +92,7 @@ class Simulation {
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
   std::unique_ptr<Watch> watch_;
+  std::optional<Budget> budget_;
 };
 
 }  // namespace barchan

@@ -21,6 +21,14 @@ struct OutputClock {
   void archive(Archive& a);
 };
 
+/// Smaller steps for a while, after a step that failed (app/run.cpp).
+struct Retreat {
+  long count = 0;      // how often the run went back
+  double share = 1.0;  // of the step that the limits allow
+  double until = 0.0;  // s, from then on all of it
+  void archive(Archive& a);
+};
+
 struct State {
   std::vector<PhaseParticles> phases;
   std::vector<AirProfile> air;  // of the phases that are air without particles
@@ -30,6 +38,7 @@ struct State {
   std::string ruling_limit;                  // of the last step
   std::map<std::string, long> limit_counts;  // steps by the limit that ruled
   OutputClock outputs;
+  Retreat retreat;
 
   /// Particles of the same phases and counts must be there: loading overwrites their values.
   void archive(Archive& a);
