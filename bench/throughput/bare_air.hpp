@@ -18,8 +18,8 @@ class BareAir {
   /// From the state of a simulation of one fluid phase in double precision.
   explicit BareAir(const Simulation& from)
       : particles_(from.phases()),
-        neighbours_(from.plan().bounds, {{0, 0, from.plan().directions[0].radius}}, 1, from.plan().skin,
-                    from.plan().spacing),
+        neighbours_(from.plan().bounds, {{0, 0, from.plan().directions[0].radius}}, from.plan().skin,
+                    {from.plan().phases[0].spacing}),
         records_(MotionRecord<2>::size),
         dt_(from.last_step()) {
     const Plan& plan = from.plan();

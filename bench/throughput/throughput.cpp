@@ -71,7 +71,9 @@ std::string elastic(double n) {
 /// Directed pairs within the radius itself: the simulation's lists hold those in the skin too.
 double true_pairs(Simulation& s) {
   auto particles = s.phases();
-  Neighbours exact(s.plan().bounds, s.plan().directions, particles.size(), 1e-4, s.plan().spacing);
+  std::vector<double> spacings;
+  for (const auto& p : s.plan().phases) spacings.push_back(p.spacing);
+  Neighbours exact(s.plan().bounds, s.plan().directions, 1e-4, spacings);
   exact.update(particles, true);
   double pairs = 0;
   for (std::size_t k = 0; k < s.plan().directions.size(); ++k) pairs += static_cast<double>(exact.list(k).entries());

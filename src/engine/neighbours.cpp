@@ -8,13 +8,13 @@
 
 namespace barchan {
 
-Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin,
-                       double spacing, std::size_t padding)
+Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, double skin,
+                       const std::vector<double>& spacings, std::size_t padding)
     : bounds_(bounds),
       directions_(std::move(directions)),
-      grids_(phases),
+      grids_(spacings.size()),
       lists_(directions_.size()),
-      ranges_(phases),
+      ranges_(spacings.size()),
       padding_(padding),
       skin_(skin),
       widest_skin_(skin) {
@@ -24,13 +24,13 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
     blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / (block_width * widest_)), 1.0, 4096.0));
     blocks_.side[d] = size / static_cast<double>(blocks_.count[d]);
   }
-  for (std::size_t p = 0; p < phases; ++p) {
+  for (std::size_t p = 0; p < spacings.size(); ++p) {
     double longest = 0.0;
     for (const auto& d : directions_)
       if (d.a == p || d.b == p) longest = std::max(longest, d.radius);
     if (longest == 0.0) continue;
     // Half a search a cell: a ball's cells then cover little more than the ball. Cells emptier than that are no gain.
-    const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacing);
+    const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacings[p]);
     grids_[p] = std::make_unique<CellGrid>(bounds_, cell, longest * (1.0 + skin_) * 1.001, blocks_);
     ranges_[p].resize(blocks_.size());
   }

@@ -19,9 +19,9 @@ struct Direction {
 
 class Neighbours {
  public:
-  /// `spacing` (m): of the particles. `padding`: of the rows of all lists. `skin`: lists reach this fraction beyond an
-  /// entry's radius, so that they stay valid while particles move.
-  Neighbours(const Bounds& bounds, std::vector<Direction> directions, std::size_t phases, double skin, double spacing,
+  /// `spacings` (m): of the particles, by phase. `padding`: of the rows of all lists. `skin`: lists reach this fraction
+  /// beyond an entry's radius, so that they stay valid while particles move.
+  Neighbours(const Bounds& bounds, std::vector<Direction> directions, double skin, const std::vector<double>& spacings,
              std::size_t padding = simd::width_in_use<double>());
 
   /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/couplings.hpp"
+
 namespace barchan {
 namespace {
 
@@ -27,7 +29,7 @@ class Maker {
     for (const Interaction& pair : scene_.interactions)
       if (pair.a == measured.phase && pair.b == measured.phase) {
         i.kernel = pair.kernel;
-        i.radius = pair.radius * scene_.spacing;
+        i.radius = pair.radius * spacing_of(scene_, pair);
       }
     return i;
   }
@@ -45,7 +47,7 @@ class Maker {
       i.low = p.box->min;
       i.high = p.box->max;
       const double length = i.high[i.axis] - i.low[i.axis];
-      const std::size_t n = whole(p.count, length);
+      const std::size_t n = whole(p.count, length, i);
       for (std::size_t k = 0; k < n; ++k) {
         Vec3 x = 0.5 * (i.low + i.high);
         x[i.axis] = i.low[i.axis] + (static_cast<double>(k) + 0.5) * length / static_cast<double>(n);
@@ -54,7 +56,7 @@ class Maker {
       return i;
     }
     const Vec3 along = p.to - p.from;
-    const std::size_t n = p.count > 0 ? static_cast<std::size_t>(p.count) : whole(0, norm(along)) + 1;
+    const std::size_t n = p.count > 0 ? static_cast<std::size_t>(p.count) : whole(0, norm(along), i) + 1;
     for (std::size_t k = 0; k < n; ++k)
       i.rows.push_back(p.from + (static_cast<double>(k) / static_cast<double>(n - 1)) * along);
     i.points = i.rows;
@@ -65,7 +67,7 @@ class Maker {
     Instrument i = common(g, InstrumentKind::grid, "grid");
     i.low = g.min.value_or(bounds_.low);
     i.high = g.max.value_or(bounds_.high);
-    const double spacing = g.spacing > 0 ? g.spacing : scene_.spacing;
+    const double spacing = g.spacing > 0 ? g.spacing : layout_.phases[i.phase].spacing;
     for (std::size_t d = 0; d < 3; ++d) {
       const double side = d < dimensions() ? i.high[d] - i.low[d] : 0.0;
       const double steps = std::round(side / spacing);
@@ -94,9 +96,9 @@ class Maker {
     i.viscosity = fluid.density * (fluid.fluid().viscosity + artificial);
     i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
     const Vec3 size = bounds_.high - bounds_.low;
-    const std::size_t columns = whole(w.count, size[0]);
+    const std::size_t columns = whole(w.count, size[0], i);
     const double width = size[0] / static_cast<double>(columns);
-    const std::size_t across = whole(0, width * (1.0 - 1e-9)), deep = dimensions() == 3 ? whole(0, size[2]) : 1;
+    const std::size_t across = whole(0, width * (1.0 - 1e-9), i), deep = dimensions() == 3 ? whole(0, size[2], i) : 1;
     i.points_per_row = across * deep;
     for (std::size_t c = 0; c < columns; ++c) {
       Vec3 x = 0.5 * (bounds_.low + bounds_.high);
@@ -119,7 +121,7 @@ class Maker {
     i.axis = 1;
     i.low = bounds_.low;
     i.high = bounds_.high;
-    i.diameter = layout_.phases[i.phase].diameter > 0 ? layout_.phases[i.phase].diameter : layout_.spacing;
+    i.diameter = layout_.phases[i.phase].diameter > 0 ? layout_.phases[i.phase].diameter : layout_.phases[i.phase].spacing;
     i.flight = s.flight * i.diameter;
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)
@@ -141,10 +143,10 @@ class Maker {
     while (k + 1 < scene_.phases.size() && scene_.phases[k].name != name) ++k;
     return k;
   }
-  /// `count`, or as many as there are spacings in the length.
-  std::size_t whole(int count, double length) const {
+  /// `count`, or as many as there are spacings of the measured phase in the length.
+  std::size_t whole(int count, double length, const Instrument& i) const {
     if (count > 0) return static_cast<std::size_t>(count);
-    return static_cast<std::size_t>(std::max(std::round(length / scene_.spacing), 1.0));
+    return static_cast<std::size_t>(std::max(std::round(length / layout_.phases[i.phase].spacing), 1.0));
   }
 
   const Scene& scene_;

@@ -35,7 +35,7 @@ enum class Friction {
   grains,  // the logarithmic law, as a viscosity of the pair, so that the grain feels it too
 };
 
-/// The kernel sums of an entry on a regular lattice of the scene's spacing; 1 and 1 are the truth.
+/// The kernel sums of an entry on a regular lattice of its spacing; 1 and 1 are the truth.
 struct Consistency {
   int neighbours = 0;
   double volume_sum = 0;    // sum V W, the particle itself included
@@ -52,7 +52,8 @@ struct PlanEntry {
   std::size_t fluid = 0, other = 0;         // of laws between a fluid and something else: which is which
   ContactLaw contact = ContactLaw::kernel;  // of Law::contact
   KernelKind kernel = KernelKind::cubic_spline;
-  double radius = 0;  // m; of spheres the distance at which the largest touch
+  double radius = 0;   // m; of spheres the distance at which the largest touch
+  double spacing = 0;  // m, of its coarser phase
   Consistency consistency;
   bool corrected = false;           // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                  // drag coefficient, 0: none
@@ -110,7 +111,6 @@ struct PlanPhase {
 
 struct Layout {
   int dimensions = 2;
-  double spacing = 0;        // m
   double largest_speed = 0;  // m/s, what the automatic sound speed is ten times of
   double slab = 1;    // m, thickness in 2D of what spheres stand in: the largest mean diameter; 1 without spheres
   double skin = 0.1;  // of the lists, in their radii; the widest

@@ -90,13 +90,19 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
   records.fill_images<Dim>(grid, x);
 }
 
+std::vector<double> spacings(const Layout& layout) {
+  std::vector<double> all;
+  for (const auto& p : layout.phases) all.push_back(p.spacing);
+  return all;
+}
+
 }  // namespace
 
 Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     : scene(scene_),
       layout(layout_),
       state(state_),
-      neighbours(layout_.bounds, layout_.directions, layout_.phases.size(), layout_.skin, layout_.spacing,
+      neighbours(layout_.bounds, layout_.directions, layout_.skin, spacings(layout_),
                  scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>()),
       packing(layout_.phases.size()) {
   neighbours.adapt_skin();
@@ -167,9 +173,9 @@ void CommonWork::find_neighbours() {
 
 void CommonWork::pack() {
   const bool flat = layout_.dimensions == 2;
-  const double volume = std::pow(layout_.spacing, layout_.dimensions);
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
     if (!w_->neighbours.has_grid(k)) continue;
+    const double volume = std::pow(layout_.phases[k].spacing, layout_.dimensions);
     const PhaseParticles& p = w_->particles(k);
     const CellGrid& grid = w_->neighbours.grid(k);
     const Workspace::Packing& how = w_->packing[k];

@@ -30,7 +30,7 @@ class Workspace {
   /// How the motion records of a phase are filled.
   struct Packing {
     bool pressure = false;      // with its pressure; else 0
-    bool fixed_volume = false;  // the spacing's volume for all; else mass/density
+    bool fixed_volume = false;  // its spacing's volume for all; else mass/density
   };
   std::vector<Packing> packing;  // by phase
   std::vector<std::function<void()>>

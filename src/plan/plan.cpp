@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
+#include "scene/couplings.hpp"
 #include "scene/formula.hpp"
 
 namespace barchan {
@@ -77,7 +78,8 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (e.a > e.b) std::swap(e.a, e.b);
     e.name = i.a + "-" + i.b;
     e.kernel = i.kernel;
-    e.radius = i.radius * scene.spacing;
+    e.spacing = spacing_of(scene, i);
+    e.radius = i.radius * e.spacing;
     e.drag = i.drag;
     e.contact = i.law;
     e.drag_law = i.drag_law;
@@ -119,22 +121,20 @@ void add_passes(Plan& plan, const Models& models) {
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   Plan plan;
   plan.dimensions = scene.dimensions;
-  plan.spacing = scene.spacing;
   plan.fixed_step = scene.time.fixed_step.value_or(0.0);
   plan.bounds.dimensions = scene.dimensions;
   plan.bounds.low = scene.domain.origin;
   plan.bounds.high = scene.domain.origin + scene.domain.size;
   plan.bounds.periodic = scene.domain.periodic;
   plan.largest_speed = largest_speed(scene, blocks);
-  const double volume = std::pow(scene.spacing, scene.dimensions);
   double thickest = 0;
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& p = scene.phases[k];
     PlanPhase q;
     q.name = p.name;
     q.count = blocks[k].position.size();
-    q.mass = (p.density > 0 ? p.density : 1.0) * volume;
-    q.spacing = spacing_of(scene, p);
+    q.spacing = p.spacing;
+    q.mass = (p.density > 0 ? p.density : 1.0) * std::pow(p.spacing, scene.dimensions);
     if (const auto size = p.diameter(); size && p.if_grains()) {
       q.diameter = size->mean;
       q.largest_diameter = size->largest();

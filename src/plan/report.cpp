@@ -43,20 +43,22 @@ std::string meaning(const PlanEntry& e) {
 
 std::string to_text(const Plan& plan, const Scene& scene) {
   std::string t = scene.title.empty() ? scene.name + "\n" : scene.title + "\n";
-  t +=
-      line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, plan.spacing, plan.particles(), scene.time.end);
-  t += line("%-12s %-8s %10s %12s %10s  %s\n", "phase", "kind", "particles", "mass [kg]", "c [m/s]", "fields");
+  t += line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, scene.spacing, plan.particles(),
+            scene.time.end);
+  t += line("%-12s %-8s %10s %10s %12s %10s  %s\n", "phase", "kind", "particles", "dx [m]", "mass [kg]", "c [m/s]",
+            "fields");
   for (const auto& p : plan.phases) {
     std::vector<std::string> names;
     for (const Field f : p.fields) names.emplace_back(info(f).name);
-    t += line("%-12s %-8s %10zu %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.mass, p.sound_speed);
+    t += line("%-12s %-8s %10zu %10.4g %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.spacing, p.mass,
+              p.sound_speed);
     t += joined(names) + "\n";
   }
   t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
             "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
     t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), law_of(e).c_str(),
-              e.of_spheres() ? "-" : kernel_name(e.kernel), e.radius / plan.spacing, e.consistency.neighbours,
+              e.of_spheres() ? "-" : kernel_name(e.kernel), e.radius / e.spacing, e.consistency.neighbours,
               e.consistency.volume_sum, e.consistency.gradient_sum, meaning(e).c_str());
   t += "\n";
   for (const auto& p : plan.phases)
@@ -89,12 +91,13 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   nlohmann::ordered_json j;
   j["title"] = scene.title;
   j["dimensions"] = plan.dimensions;
-  j["spacing"] = plan.spacing;
+  j["spacing"] = scene.spacing;
   j["end"] = scene.time.end;
   for (const auto& p : plan.phases) {
     nlohmann::ordered_json q;
     q["kind"] = p.kind;
     q["particles"] = p.count;
+    q["spacing"] = p.spacing;
     q["mass"] = p.mass;
     q["sound_speed"] = p.sound_speed;
     q["smoothing_length"] = p.smoothing_length;

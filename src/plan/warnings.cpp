@@ -22,7 +22,7 @@ bool stands_behind_sides(const Scene& scene, const Phase& wall) {
 void warn_of_pairing(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries)
     if (e.law == Law::fluid && e.kernel == KernelKind::cubic_spline &&
-        e.radius > widest_cubic_spline * plan.spacing * (1.0 + 1e-9))
+        e.radius > widest_cubic_spline * e.spacing * (1.0 + 1e-9))
       plan.warnings.push_back(
           "interactions." + e.name +
           ": under the cubic spline particles pair with more than 2.4 spacings, and the run may die of "

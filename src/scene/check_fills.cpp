@@ -12,12 +12,6 @@ namespace {
 const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring",
                                    "polygon", "cube", "points", "formula", "sides"};
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
 /// The shape must be one, and companions (dune, layers) need the shape that they belong to.
 void check_shape_keys(const std::string& shape, bool fitted, const Report& report) {
   std::string first;
@@ -145,8 +139,8 @@ void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const s
     report(
         dotted + ".packing",
         "no ground to follow; expected an earlier fill of a wall with shape = { bed = ... } and packing = \"fitted\"");
-  else if (wall && scene.spacing > 0.0 && !report.touched("spacing") && !report.touched("domain")) {
-    const std::string misfit = misfit_of_ground(scene, *bed);
+  else if (wall && phase.spacing > 0.0 && !report.touched("spacing") && !report.touched("domain")) {
+    const std::string misfit = misfit_of_ground(scene, *bed, phase.spacing);
     if (!misfit.empty()) report(dotted + ".shape.bed", misfit);
   }
 }

@@ -11,12 +11,6 @@ namespace {
 
 constexpr double most_points = 1e7;  // of one instrument
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
 /// The checks of one scene, an instrument at a time; `dotted` is its place, "profile.0".
 class Checker {
  public:
@@ -87,7 +81,8 @@ class Checker {
     if (report_.touched(dotted + ".min") || report_.touched(dotted + ".max") || !box_known_) return;
     const Vec3 min = g.min.value_or(scene_.domain.origin);
     const Vec3 max = g.max.value_or(scene_.domain.origin + scene_.domain.size);
-    const double spacing = g.spacing > 0.0 ? g.spacing : scene_.spacing;
+    const Phase* phase = find_phase(scene_, g.phase);
+    const double spacing = g.spacing > 0.0 ? g.spacing : phase ? phase->spacing : scene_.spacing;
     double points = 1.0;
     for (std::size_t axis = 0; axis < dimensions(); ++axis) {
       const double side = max[axis] - min[axis];

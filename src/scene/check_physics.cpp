@@ -140,6 +140,11 @@ class PhysicsChecker {
       tell(dotted + ".drag",
            "laws of drag by name act in air of kind column; of a fluid with particles expected a number >= 0");
     if (a.kind() == column || b.kind() == column) return;  // check_column.cpp
+    if (report_.has(dotted + ".radius") && report_.has(dotted + ".radius-in-metres"))
+      tell(dotted + ".radius-in-metres", "a radius in metres beside one in spacings; expected one of the two");
+    if (pair.radius_in_metres && !(pair.radius <= 8.0))
+      tell(dotted + ".radius-in-metres", number_text(*pair.radius_in_metres) + " m is " + number_text(pair.radius) +
+                                             " spacings of the coarser phase; expected at most 8");
     if (pair.radius == 0.0)
       tell(dotted + ".radius", std::string("missing: none is recommended for ") +
                                    (touches ? "repulsive walls" : "elastic bodies") +

@@ -52,10 +52,10 @@ std::vector<std::string> phase_names(const Scene& scene) {
 
 }  // namespace
 
-const Phase* find_phase(const Scene& scene, const std::string& name) {
-  for (const Phase& phase : scene.phases)
-    if (phase.name == name) return &phase;
-  return nullptr;
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
 }
 
 std::string unknown_phase(const std::string& name, const Scene& scene) {
@@ -143,14 +143,15 @@ void check_domain(const Scene& scene, const Report& report) {
     return;
   }
   const Interaction* widest = nullptr;
+  const auto reach = [&](const Interaction& pair) { return pair.radius * spacing_of(scene, pair); };
   for (const Interaction& pair : scene.interactions)
-    if (!of_spheres(pair) && (!widest || pair.radius > widest->radius)) widest = &pair;
+    if (!of_spheres(pair) && (!widest || reach(pair) > reach(*widest))) widest = &pair;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     if (!scene.domain.periodic[axis]) continue;
     const std::string misfit = misfit_of_period(scene, axis);
     if (!misfit.empty()) report("domain.size", misfit);
     if (!widest || report.touched("interactions") || !(widest->radius > 0.0)) continue;
-    const double least = 2.0 * widest->radius * scene.spacing;
+    const double least = 2.0 * reach(*widest);
     if (scene.domain.size[axis] > least) continue;
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, "%.10g m along the periodic axis %c is too short for the kernel of ",

@@ -1,6 +1,7 @@
 // What concerns several keys of a scene at once. Internal to src/scene.
 #pragma once
 
+#include "scene/couplings.hpp"
 #include "scene/document.hpp"
 #include "scene/scene.hpp"
 
@@ -26,7 +27,7 @@ class Report {
   Problems& problems_;
 };
 
-const Phase* find_phase(const Scene& scene, const std::string& name);  ///< null when there is none
+std::string number_text(double value);  ///< ten digits at most
 /// "there is no phase ...; expected ...; did you mean ...".
 std::string unknown_phase(const std::string& name, const Scene& scene);
 

@@ -1,4 +1,5 @@
 // Defaults that depend on other keys. All other defaults stand in the rows of the table of keys.
+#include "scene/couplings.hpp"
 #include "scene/read.hpp"
 
 namespace barchan {
@@ -51,6 +52,11 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
 }
 
 void complete(Scene& scene) {
+  for (Phase& phase : scene.phases)
+    if (!(phase.spacing > 0.0)) phase.spacing = phase.diameter() ? phase.diameter()->largest() : scene.spacing;
+  for (Interaction& pair : scene.interactions)
+    if (const double dx = spacing_of(scene, pair); pair.radius_in_metres && dx > 0.0)
+      pair.radius = *pair.radius_in_metres / dx;
   complete_wall_densities(scene);
   for (Fill& fill : scene.fills) complete_layers(fill);
 }

@@ -4,6 +4,22 @@
 
 namespace barchan {
 
+const Phase* find_phase(const Scene& scene, const std::string& name) {
+  for (const Phase& phase : scene.phases)
+    if (phase.name == name) return &phase;
+  return nullptr;
+}
+
+double spacing_of(const Scene& scene, const Fill& fill) {
+  const Phase* phase = find_phase(scene, fill.phase);
+  return phase ? phase->spacing : scene.spacing;
+}
+
+double spacing_of(const Scene& scene, const Interaction& pair) {
+  const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
+  return a && b ? std::max(a->spacing, b->spacing) : scene.spacing;
+}
+
 const Interaction* entry_between(const Scene& scene, const Phase& a, const Phase& b) {
   for (const Interaction& pair : scene.interactions)
     if ((pair.a == a.name && pair.b == b.name) || (pair.a == b.name && pair.b == a.name)) return &pair;

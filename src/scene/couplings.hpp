@@ -8,6 +8,15 @@ namespace barchan {
 /// The entry of two phases in either order; null when there is none.
 const Interaction* entry_between(const Scene& scene, const Phase& a, const Phase& b);
 
+/// The phase of this name; null when there is none.
+const Phase* find_phase(const Scene& scene, const std::string& name);
+
+/// The spacing (m) of the particles of a fill: that of its phase.
+double spacing_of(const Scene& scene, const Fill& fill);
+
+/// The spacing (m) that a pair's radius counts in: that of its coarser phase.
+double spacing_of(const Scene& scene, const Interaction& pair);
+
 /// Whether the phase has an entry with another phase of this kind.
 bool meets(const Scene& scene, const Phase& phase, PhaseKind kind);
 

@@ -45,9 +45,8 @@ namespace {
 
 /// Calls f(x, z) for every column of the square lattice.
 template <class F>
-void each_column(const Scene& scene, F&& f) {
-  const double dx = scene.spacing;
-  const int columns = cells_along(scene, 0), deep = scene.dimensions == 3 ? cells_along(scene, 2) : 1;
+void each_column(const Scene& scene, double dx, F&& f) {
+  const int columns = cells_along(scene, 0, dx), deep = scene.dimensions == 3 ? cells_along(scene, 2, dx) : 1;
   for (int k = 0; k < deep; ++k)
     for (int i = 0; i < columns; ++i)
       f(scene.domain.origin[0] + (i + 0.5) * dx, scene.dimensions == 3 ? scene.domain.origin[2] + (k + 0.5) * dx : 0.0);
@@ -55,22 +54,22 @@ void each_column(const Scene& scene, F&& f) {
 
 }  // namespace
 
-std::vector<Vec3> fitted_wall(const Scene& scene, const BedShape& bed) {
+std::vector<Vec3> fitted_wall(const Scene& scene, const BedShape& bed, double spacing) {
   const Ground ground(bed, scene.domain);
   std::vector<Vec3> places;
   for (int row = bed.layers - 1; row >= 0; --row)
-    each_column(scene, [&](double x, double z) {
-      places.push_back({x, scene.domain.origin[1] + ground.height(x, z) - (row + 0.5) * scene.spacing, z});
+    each_column(scene, spacing, [&](double x, double z) {
+      places.push_back({x, scene.domain.origin[1] + ground.height(x, z) - (row + 0.5) * spacing, z});
     });
   return places;
 }
 
-std::vector<Vec3> fitted_fluid(const Scene& scene, const BedShape& bed) {
+std::vector<Vec3> fitted_fluid(const Scene& scene, const BedShape& bed, double spacing) {
   const Ground ground(bed, scene.domain);
   std::vector<Vec3> places;
-  each_column(scene, [&](double x, double z) {
+  each_column(scene, spacing, [&](double x, double z) {
     const double low = ground.height(x, z), room = scene.domain.size[1] - low;
-    const long rows = std::lround(room / scene.spacing);
+    const long rows = std::lround(room / spacing);
     for (long row = 0; row < rows; ++row)
       places.push_back(
           {x, scene.domain.origin[1] + low + (static_cast<double>(row) + 0.5) * room / static_cast<double>(rows), z});
@@ -78,16 +77,16 @@ std::vector<Vec3> fitted_fluid(const Scene& scene, const BedShape& bed) {
   return places;
 }
 
-std::string misfit_of_ground(const Scene& scene, const BedShape& bed) {
-  const Terrain terrain(Ground(bed, scene.domain), scene.domain, scene.spacing);
+std::string misfit_of_ground(const Scene& scene, const BedShape& bed, double spacing) {
+  const Terrain terrain(Ground(bed, scene.domain), scene.domain, spacing);
   const double low = scene.domain.origin[1], high = low + scene.domain.size[1];
   std::string problem;
-  each_column(scene, [&](double x, double z) {
+  each_column(scene, spacing, [&](double x, double z) {
     if (!problem.empty()) return;
     const auto s = terrain.slopes(x, z);
     const double h = terrain.height(x, z), steep = std::hypot(s[0], s[1]);
     char text[160] = "";
-    if (!std::isfinite(h) || h < low - 1e-9 * scene.spacing || h > high)
+    if (!std::isfinite(h) || h < low - 1e-9 * spacing || h > high)
       std::snprintf(text, sizeof text, "the ground at x = %.6g m is %.6g m high; expected the ground inside the domain",
                     x, h);
     else if (!(steep <= 1.0 + 1e-6))

@@ -33,11 +33,11 @@ class Terrain {
 /// Fitted rows: columns of the square lattice, each filled from the ground on. A wall's rows stand k + 1/2 spacings
 /// below the surface; a fluid's column is divided into the whole number of rows that fits best between the ground and
 /// the top of the domain, so that both have a row half a step away and every particle has its volume to 1/(2 rows).
-std::vector<Vec3> fitted_wall(const Scene& scene, const BedShape& bed);
-std::vector<Vec3> fitted_fluid(const Scene& scene, const BedShape& bed);
+std::vector<Vec3> fitted_wall(const Scene& scene, const BedShape& bed, double spacing);
+std::vector<Vec3> fitted_fluid(const Scene& scene, const BedShape& bed, double spacing);
 
-/// Why the ground is none for fitted rows, or empty.
-std::string misfit_of_ground(const Scene& scene, const BedShape& bed);
+/// Why the ground is none for fitted rows of this spacing (m), or empty.
+std::string misfit_of_ground(const Scene& scene, const BedShape& bed, double spacing);
 
 /// Number of the fill whose fitted bed the fitted rows of a fluid stand on, or -1.
 int fitted_bed(const Scene& scene, std::size_t fill);

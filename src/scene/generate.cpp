@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/errors.hpp"
+#include "scene/couplings.hpp"
 #include "scene/fitted.hpp"
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
@@ -29,8 +30,8 @@ std::string point_text(const Vec3& x, int dimensions) {
   return text;
 }
 
-bool inside_domain(const Scene& scene, const Vec3& x) {
-  const double slack = 1e-6 * scene.spacing;
+bool inside_domain(const Scene& scene, const Vec3& x, double spacing) {
+  const double slack = 1e-6 * spacing;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const double s = x[axis] - scene.domain.origin[axis];
     if (!scene.domain.periodic[axis] && (s < -slack || s > scene.domain.size[axis] + slack)) return false;
@@ -42,7 +43,7 @@ void perturb(std::vector<Vec3>& places, const Fill& fill, const Scene& scene) {
   if (fill.perturb <= 0.0) return;
   const PeriodicSpace space(scene.domain);
   Random random(fill.seed);
-  const double most = fill.perturb * scene.spacing;
+  const double most = fill.perturb * spacing_of(scene, fill);
   for (Vec3& x : places) {
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       x[axis] += random.uniform(-most, most);
@@ -75,16 +76,17 @@ class InitialVelocity {
 void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind,
                   const Occupied& occupied) {
   const std::string phase = " of phase \"" + scene.fills[k].phase + "\"";
+  const double dx = spacing_of(scene, scene.fills[k]);
   if (places.empty())
     fail(scene, k,
          "no particle" + phase + "; expected a larger shape, a smaller spacing, or an earlier place in the file");
   for (const Vec3& x : places) {
-    if (kind != PhaseKind::wall && !inside_domain(scene, x))
+    if (kind != PhaseKind::wall && !inside_domain(scene, x, dx))
       fail(scene, k,
            "a particle" + phase + " at " + point_text(x, scene.dimensions) +
                " m lies outside the domain; expected a shape inside it");
-    const double least = (1.0 - 1e-6) * overlap_distance * scene.spacing;
-    const int other = std::max(occupied.inside.owner_near(x, least), occupied.outside.owner_near(x, least));
+    constexpr double least = (1.0 - 1e-6) * overlap_distance;
+    const int other = std::max(occupied.inside.owner_near(x, dx, least), occupied.outside.owner_near(x, dx, least));
     if (other < 0) continue;
     fail(scene, k,
          "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
@@ -127,8 +129,8 @@ void append_radii(ParticleBlock& block, const SphereSize& size, unsigned seed) {
 }
 
 /// Where the surface of a fitted wall is, seen from each of its particles.
-void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed, const Scene& scene) {
-  const Terrain terrain(Ground(bed, scene.domain), scene.domain, scene.spacing);
+void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed, const Scene& scene, double spacing) {
+  const Terrain terrain(Ground(bed, scene.domain), scene.domain, spacing);
   block.normal.resize(first, Vec3{});
   block.depth.resize(first, 0.0);
   block.bend.resize(first, {});
@@ -162,8 +164,8 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     if (!misfit.empty()) throw SceneError(scene.file + ": domain.size: " + misfit);
   }
   const PeriodicSpace space(scene.domain);
-  double widest = scene.spacing;
-  for (const Phase& phase : scene.phases) widest = std::max(widest, spacing_of(scene, phase));
+  double widest = 0.0;
+  for (const Fill& fill : scene.fills) widest = std::max(widest, spacing_of(scene, fill));
   Occupied occupied{Places(space, widest), Places(space, widest)};
   std::vector<ParticleBlock> blocks(scene.phases.size());
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
@@ -171,20 +173,20 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     const auto phase =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
-    const Scene seen = at_spacing_of(scene, *phase);
-    std::vector<Vec3> places = places_of(seen, k, occupied);
-    perturb(places, fill, seen);
-    check_places(places, k, seen, phase->kind(), occupied);
+    std::vector<Vec3> places = places_of(scene, k, occupied);
+    perturb(places, fill, scene);
+    check_places(places, k, scene, phase->kind(), occupied);
     if (k + 1 < scene.fills.size())
       for (const Vec3& x : places)
-        (inside_domain(scene, x) ? occupied.inside : occupied.outside).add(x, static_cast<int>(k));
+        (inside_domain(scene, x, phase->spacing) ? occupied.inside : occupied.outside)
+            .add(x, phase->spacing, static_cast<int>(k));
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
-      append_surface(block, first, *bed, scene);
+      append_surface(block, first, *bed, scene, phase->spacing);
     else if (!block.depth.empty()) {
       block.normal.resize(block.position.size(), Vec3{});
       block.depth.resize(block.position.size(), 0.0);

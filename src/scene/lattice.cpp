@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scene/generate.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 namespace {
@@ -65,16 +65,9 @@ bool hangs_on_origin(const Shape& shape) {
 std::string misfit_of_period(const Scene& scene, std::size_t axis) {
   // Spheres of their own diameter stretch their lattice (shapes.cpp).
   const auto stretches = [&](const Fill& fill) {
-    return std::any_of(scene.phases.begin(), scene.phases.end(),
-                       [&](const Phase& phase) { return phase.name == fill.phase && phase.diameter(); });
+    const Phase* phase = find_phase(scene, fill.phase);
+    return phase && phase->diameter();
   };
-  if (std::all_of(scene.fills.begin(), scene.fills.end(), stretches) && !scene.fills.empty()) return "";
-  const auto hangs = [&](Packing packing) {
-    return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
-      return fill.packing == packing && hangs_on_origin(fill.shape) && !stretches(fill);
-    });
-  };
-  const bool staggered = hangs(Packing::hexagonal);
   const auto misfit = [&](double period, const char* whole) -> std::string {
     const double size = scene.domain.size[axis];
     const double count = size / period;
@@ -88,30 +81,26 @@ std::string misfit_of_period(const Scene& scene, std::size_t axis) {
                   static_cast<char>('x' + axis), whole, period, nearest);
     return text;
   };
-  std::string text;
-  const bool only_staggered = staggered && !hangs(Packing::square) && !hangs(Packing::fitted);
-  if (axis == 0 || !only_staggered) text = misfit(scene.spacing, "spacings");
-  if (text.empty() && axis != 0 && staggered)
-    text = misfit(period_of(Packing::hexagonal, scene.dimensions, axis, scene.spacing), "staggered double rows");
-  return text;
+  // Square lattices first: a size that they fit is the shorter list.
+  for (const bool staggered : {false, true})
+    for (const Fill& fill : scene.fills) {
+      if (!hangs_on_origin(fill.shape) || fill.packing == Packing::random || stretches(fill)) continue;
+      const double dx = spacing_of(scene, fill);
+      if (staggered != (fill.packing == Packing::hexagonal)) continue;
+      const std::string text =
+          staggered && axis != 0
+              ? misfit(period_of(Packing::hexagonal, scene.dimensions, axis, dx), "staggered double rows")
+              : misfit(dx, "spacings");
+      if (!text.empty()) return text;
+    }
+  return "";
 }
 
-double spacing_of(const Scene& scene, const Phase& phase) {
-  const auto size = phase.diameter();
-  return size ? size->largest() : scene.spacing;
+int cells_along(const Scene& scene, std::size_t axis, double spacing) {
+  return std::max(1, static_cast<int>(std::lround(scene.domain.size[axis] / spacing)));
 }
 
-Scene at_spacing_of(const Scene& scene, const Phase& phase) {
-  Scene seen = scene;
-  seen.spacing = spacing_of(scene, phase);
-  return seen;
-}
-
-int cells_along(const Scene& scene, std::size_t axis) {
-  return std::max(1, static_cast<int>(std::lround(scene.domain.size[axis] / scene.spacing)));
-}
-
-std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides) {
+std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides, double spacing) {
   struct Axis {
     int cells = 1, first = 0, end = 1;  // cells of the domain; range with the layers outside
     bool below = false, above = false;  // which of its two sides are asked for
@@ -123,11 +112,11 @@ std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides) {
   const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const int layers = scene.domain.periodic[axis] ? 0 : sides.layers;
-    const int cells = cells_along(scene, axis);
+    const int cells = cells_along(scene, axis, spacing);
     axes[axis] = {cells, -layers, cells + layers, asked(names[axis][0]), asked(names[axis][1])};
   }
   const auto coordinate = [&](std::size_t axis, int i) {
-    const double dx = scene.spacing, low = scene.domain.origin[axis];
+    const double dx = spacing, low = scene.domain.origin[axis];
     const int cells = axes[axis].cells;
     if (i < cells) return low + (i + 0.5) * dx;
     return low + scene.domain.size[axis] + (i - cells + 0.5) * dx;

@@ -29,14 +29,11 @@ bool hangs_on_origin(const Shape& shape);
 /// do.
 std::string misfit_of_period(const Scene& scene, std::size_t axis);
 
-/// The scene as the places of a phase see it: with their spacing.
-Scene at_spacing_of(const Scene& scene, const Phase& phase);
-
-/// Cells of the square lattice along an axis of the domain: the nearest whole number of spacings.
-int cells_along(const Scene& scene, std::size_t axis);
+/// Cells of the square lattice along an axis of the domain: the nearest whole number of spacings (m).
+int cells_along(const Scene& scene, std::size_t axis, double spacing);
 
 /// Layers of places outside the domain behind the given sides: the first half a spacing outside, then a spacing apart,
 /// continued around the corners of axes that are not periodic, each place once.
-std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides);
+std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides, double spacing);
 
 }  // namespace barchan

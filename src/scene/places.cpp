@@ -28,11 +28,11 @@ std::size_t Places::Hash::operator()(const Cell& cell) const {
   return hash ^ (hash >> 29);
 }
 
-Places::Places(const PeriodicSpace& space, double reach) : space_(space) {
+Places::Places(const PeriodicSpace& space, double widest) : space_(space) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    width_[axis] = reach;
+    width_[axis] = widest;
     if (!space.domain().periodic[axis]) continue;
-    cells_[axis] = std::max(1l, static_cast<long>(std::floor(space.domain().size[axis] / reach)));
+    cells_[axis] = std::max(1l, static_cast<long>(std::floor(space.domain().size[axis] / widest)));
     width_[axis] = space.domain().size[axis] / static_cast<double>(cells_[axis]);
   }
 }
@@ -46,13 +46,13 @@ Places::Cell Places::cell_of(const Vec3& x) const {
   return cell;
 }
 
-void Places::add(const Vec3& x, int owner) { grid_[cell_of(x)].push_back({x, owner}); }
+void Places::add(const Vec3& x, double spacing, int owner) { grid_[cell_of(x)].push_back({x, spacing, owner}); }
 
-int Places::owner_near(const Vec3& x, double distance, int except) const {
+int Places::owner_near(const Vec3& x, double spacing, double distance, int except) const {
   if (grid_.empty()) return -1;
   const Cell centre = cell_of(x);
   int owner = -1;
-  double nearest = distance;
+  double nearest = 1e300;
   const bool flat = !(space_.domain().size[2] > 0.0);
   for (int k = 0; k < (flat ? 9 : 27); ++k) {
     Cell cell = centre;
@@ -65,7 +65,7 @@ int Places::owner_near(const Vec3& x, double distance, int except) const {
     if (found == grid_.end()) continue;
     for (const Point& point : found->second) {
       const double r = space_.distance(x, point.x);
-      if (point.owner == except || !(r < nearest)) continue;
+      if (point.owner == except || !(r < nearest) || !(r < distance * (0.5 * (spacing + point.spacing)))) continue;
       nearest = r;
       owner = point.owner;
     }

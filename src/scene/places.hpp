@@ -20,14 +20,16 @@ class PeriodicSpace {
   Domain domain_;
 };
 
-/// Points that can be asked for neighbours within `reach`.
+/// Particles that can be asked for neighbours. Distances count in the mean of the spacings of the two.
 class Places {
  public:
-  Places(const PeriodicSpace& space, double reach);
-  void add(const Vec3& x, int owner);
+  /// `widest`: the largest spacing (m) of any particle.
+  Places(const PeriodicSpace& space, double widest);
+  void add(const Vec3& x, double spacing, int owner);
 
-  /// The nearest point within `distance` (at most the reach) of x whose owner is not `except`; its owner, or -1.
-  int owner_near(const Vec3& x, double distance, int except = -1) const;
+  /// The nearest particle to one at x of this spacing (m) that is nearer than `distance`, in spacings and at most 1,
+  /// and whose owner is not `except`; its owner, or -1.
+  int owner_near(const Vec3& x, double spacing, double distance, int except = -1) const;
 
  private:
   using Cell = std::array<long, 3>;
@@ -36,6 +38,7 @@ class Places {
   };
   struct Point {
     Vec3 x;
+    double spacing;
     int owner;
   };
   Cell cell_of(const Vec3& x) const;

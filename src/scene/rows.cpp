@@ -231,6 +231,7 @@ constexpr Key table[] = {
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
+    {"phases", "spacing", at<&Phase::spacing>("that of the scene"), "m", "Distance between the particles of this phase.", positive},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
      "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
     {"phases", "viscosity", of<&FluidKeys::viscosity, &ColumnKeys::viscosity>(0.0, "0; of a column required"), "m2/s", "Kinematic viscosity.", not_negative},
@@ -304,7 +305,9 @@ constexpr Key table[] = {
     {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},
     {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required; a column has none"), "spacings",
-     "Kernel radius (support).", {.at_most = 8.0, .above = 0.0}},
+     "Kernel radius (support), in spacings of the coarser of the two phases.", {.at_most = 8.0, .above = 0.0}},
+    {"interactions.pair", "radius-in-metres", at<&Interaction::radius_in_metres>("radius says it"), "m",
+     "Kernel radius (support) as a length, in place of radius.", positive},
     {"interactions.pair", "law", at<&Interaction::law>(ContactLaw::kernel), "",
      "Contact of grains: through the kernel, or of spheres that touch (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
     {"interactions.pair", "drag", drag("0; duran with a column"), "",

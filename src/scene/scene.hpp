@@ -86,7 +86,7 @@ struct GrainsKeys {
   static constexpr PhaseKind kind = PhaseKind::grains;
   double restitution{};                 // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
   std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
-  std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of the spacing
+  std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of its spacing
   std::optional<SphereSize> diameter;   // m; empty: particles of one spacing, whose contacts are kernels
   double friction{};                    // Coulomb's coefficient, of spheres
   double rolling_friction{};            // largest rolling torque over normal force and reduced radius, of spheres
@@ -123,6 +123,7 @@ struct ColumnKeys {
 struct Phase {
   std::string name;
   double density{};  // kg/m3, at rest
+  double spacing{};  // m, of its particles
   std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys, ColumnKeys> own;  // in the order of PhaseKind
 
   PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }
@@ -146,8 +147,9 @@ struct Phase {
 
 /// One entry of the matrix: an unordered pair of phases. A pair without an entry does not interact.
 struct Interaction {
-  std::string a, b;  // phase names as written, "air-sand"
-  double radius{};   // kernel radius (support) in spacings, eq. (15)-(17)
+  std::string a, b;                        // phase names as written, "air-sand"
+  double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
+  std::optional<double> radius_in_metres;  // m; empty: `radius` says it
   KernelKind kernel{};
   double drag{};       // fluid-grains: drag coefficient of a grain, 0 switches it off
   DragLaw drag_law{};  // column-grains: drag of a grain
@@ -214,7 +216,7 @@ struct Fill {
   std::string phase;
   Shape shape = TheRestShape{};
   Packing packing{};
-  double perturb{};  // spacings: each coordinate moved by a uniform number in +-perturb
+  double perturb{};  // spacings of its phase: each coordinate moved by a uniform number in +-perturb
   unsigned seed{};
   VectorExpression velocity;              // m/s, formulas in x, y, z
   std::optional<LogProfile> log_profile;  // added to `velocity`, along x
@@ -307,7 +309,7 @@ struct Scene {
   std::string title;
   std::string state;  // pvstate that scripts/run renders; empty: none
   int dimensions{};
-  double spacing{};  // m, dx
+  double spacing{};  // m, dx: of the phases that do not say their own
   Precision precision{};
   Domain domain;
   std::vector<Phase> phases;

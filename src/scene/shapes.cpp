@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "scene/couplings.hpp"
 #include "scene/fitted.hpp"
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
@@ -35,13 +36,13 @@ bool in_polygon(const std::vector<std::array<double, 2>>& corners, double x, dou
 
 /// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other
 /// packings keep half a spacing from sides that are not periodic.
-Region domain_region(const Scene& scene, Packing packing) {
+Region domain_region(const Scene& scene, Packing packing, double dx) {
   Region region;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double dx = scene.spacing, low = scene.domain.origin[axis], size = scene.domain.size[axis];
+    const double low = scene.domain.origin[axis], size = scene.domain.size[axis];
     region.anchor[axis] = low + 0.5 * dx;
     region.lower[axis] = low;
-    region.upper[axis] = packing == Packing::square ? low + cells_along(scene, axis) * dx : low + size;
+    region.upper[axis] = packing == Packing::square ? low + cells_along(scene, axis, dx) * dx : low + size;
     if (packing != Packing::square && !scene.domain.periodic[axis]) {
       region.lower[axis] = low + 0.5 * dx;
       region.upper[axis] = low + size - (0.5 - 1e-6) * dx;
@@ -71,7 +72,8 @@ void bound_round(Region& region, const Vec3& centre, double radius, double spaci
 
 class RegionOf {
  public:
-  RegionOf(const Scene& scene, const Fill& fill) : scene_(scene), region_(domain_region(scene, fill.packing)) {}
+  RegionOf(const Scene& scene, const Fill& fill)
+      : scene_(scene), spacing_(spacing_of(scene, fill)), region_(domain_region(scene, fill.packing, spacing_)) {}
   Region take() { return std::move(region_); }
 
   void operator()(const BoxShape& box) { bound(region_, scene_, box.min, box.max, scene_.dimensions == 3 ? 3 : 2); }
@@ -93,7 +95,7 @@ class RegionOf {
     region_.inside = [formula = std::make_shared<Formula>(shape.inside)](const Vec3& x) { return (*formula)(x) > 0.0; };
   }
   void operator()(const BedShape& bed) {
-    const double bottom = scene_.domain.origin[1], slack = 1e-9 * scene_.spacing;
+    const double bottom = scene_.domain.origin[1], slack = 1e-9 * spacing_;
     if (!bed.dune || bed.dune->form != DuneShape::Form::formula)
       region_.upper[1] = std::min(region_.upper[1], bottom + bed.depth + (bed.dune ? bed.dune->height : 0.0));
     region_.inside = [=, from = bed.from, ground = Ground(bed, scene_.domain)](const Vec3& x) {
@@ -108,8 +110,8 @@ class RegionOf {
  private:
   void round(const Vec3& centre, double inner, double outer, std::size_t axes) {
     if (scene_.dimensions == 2) axes = 2;
-    const double slack = 1e-9 * scene_.spacing;
-    bound_round(region_, centre, outer, scene_.spacing, axes);
+    const double slack = 1e-9 * spacing_;
+    bound_round(region_, centre, outer, spacing_, axes);
     region_.inside = [=](const Vec3& x) {
       Vec3 r = x - centre;
       if (axes == 2) r[2] = 0.0;
@@ -117,6 +119,7 @@ class RegionOf {
     };
   }
   const Scene& scene_;
+  double spacing_;  // m
   Region region_;
 };
 
@@ -131,29 +134,28 @@ std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spac
 }
 
 /// Places of a lattice of the region. That of spheres is widened along periodic axes until whole rows fit.
-std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const Region& region) {
-  const bool spheres = std::any_of(scene.phases.begin(), scene.phases.end(),
-                                   [&](const Phase& phase) { return phase.name == fill.phase && phase.diameter(); });
-  if (!spheres || !hangs_on_origin(fill.shape))
-    return lattice(fill.packing, scene.dimensions, scene.spacing, region.anchor, region.lower, region.upper);
+std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const Region& region, double dx) {
+  const Phase* phase = find_phase(scene, fill.phase);
+  if (!phase || !phase->diameter() || !hangs_on_origin(fill.shape))
+    return lattice(fill.packing, scene.dimensions, dx, region.anchor, region.lower, region.upper);
   Vec3 stretch{1, 1, 1}, anchor = region.anchor, lower = region.lower, upper = region.upper;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const double low = scene.domain.origin[axis], size = scene.domain.size[axis];
-    const double period = period_of(fill.packing, scene.dimensions, axis, scene.spacing);
+    const double period = period_of(fill.packing, scene.dimensions, axis, dx);
     if (scene.domain.periodic[axis] && size > period) {
       stretch[axis] = size / (std::floor(size / period * (1.0 + 1e-9)) * period);
       // Square cells were rounded to whole spacings; the stretched ones fill the domain.
       upper[axis] = std::min(upper[axis], low + size);
     }
     if (!scene.domain.periodic[axis]) {  // whole spheres inside
-      lower[axis] = std::max(lower[axis], low + (0.5 - 1e-6) * scene.spacing);
-      upper[axis] = std::min(upper[axis], low + size - (0.5 - 1e-6) * scene.spacing);
+      lower[axis] = std::max(lower[axis], low + (0.5 - 1e-6) * dx);
+      upper[axis] = std::min(upper[axis], low + size - (0.5 - 1e-6) * dx);
     }
     const auto shrunk = [&](double x) { return low + (x - low) / stretch[axis]; };
     lower[axis] = shrunk(lower[axis]);
     upper[axis] = shrunk(upper[axis]);
   }
-  std::vector<Vec3> places = lattice(fill.packing, scene.dimensions, scene.spacing, anchor, lower, upper);
+  std::vector<Vec3> places = lattice(fill.packing, scene.dimensions, dx, anchor, lower, upper);
   for (Vec3& x : places)
     for (std::size_t axis = 0; axis < 3; ++axis)
       x[axis] = scene.domain.origin[axis] + (x[axis] - scene.domain.origin[axis]) * stretch[axis];
@@ -161,11 +163,11 @@ std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const 
 }
 
 /// Random sequential addition.
-std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed,
+std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, double dx,
                                 const Occupied& occupied) {
   const PeriodicSpace space(scene.domain);
   Random random(seed);
-  Places taken(space, scene.spacing);
+  Places taken(space, dx);
   std::vector<Vec3> places;
   const long trials = static_cast<long>(std::ceil(200.0 * cells));
   for (long trial = 0; trial < trials; ++trial) {
@@ -174,22 +176,22 @@ std::vector<Vec3> random_places(const Scene& scene, const Region& region, double
       x[axis] = random.uniform(region.lower[axis], region.upper[axis]);
     if (!region.inside(x)) continue;
     x = space.wrapped(x);
-    if (taken.owner_near(x, scene.spacing) >= 0 || occupied.inside.owner_near(x, scene.spacing) >= 0) continue;
-    taken.add(x, 0);
+    if (taken.owner_near(x, dx, 1.0) >= 0 || occupied.inside.owner_near(x, dx, 1.0) >= 0) continue;
+    taken.add(x, dx, 0);
     places.push_back(x);
   }
   return places;
 }
 
 /// Lattice places over the ground that keep their distance from what is there.
-void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k, const Occupied& occupied) {
+void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k, double dx, const Occupied& occupied) {
   const bool over_ground = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
                                        [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
   const Ground ground(scene);
-  const double slack = 1e-9 * scene.spacing;
+  const double slack = 1e-9 * dx;
   std::erase_if(places, [&](const Vec3& x) {
     if (over_ground && x[1] - scene.domain.origin[1] < ground.height(x[0], x[2]) - slack) return true;
-    return occupied.inside.owner_near(x, rest_distance * scene.spacing) >= 0;
+    return occupied.inside.owner_near(x, dx, rest_distance) >= 0;
   });
 }
 
@@ -197,42 +199,41 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
 
 std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {
   const Fill& fill = scene.fills[k];
+  const double dx = spacing_of(scene, fill);
   std::vector<Vec3> places;
   if (fill.packing == Packing::fitted) {
     const int below = fitted_bed(scene, k);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape)) {
-      places = fitted_wall(scene, *bed);
+      places = fitted_wall(scene, *bed, dx);
     } else if (below >= 0) {
-      places = fitted_fluid(scene, std::get<BedShape>(scene.fills[static_cast<std::size_t>(below)].shape));
-      std::erase_if(places, [&](const Vec3& x) {
-        return occupied.inside.owner_near(x, rest_distance * scene.spacing, below) >= 0;
-      });
+      places = fitted_fluid(scene, std::get<BedShape>(scene.fills[static_cast<std::size_t>(below)].shape), dx);
+      std::erase_if(places,
+                    [&](const Vec3& x) { return occupied.inside.owner_near(x, dx, rest_distance, below) >= 0; });
     }
   } else if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
     places = points->at;
   } else if (const auto* cube = std::get_if<CubeShape>(&fill.shape)) {
-    places = cube_places(*cube, scene.dimensions, scene.spacing);
+    places = cube_places(*cube, scene.dimensions, dx);
   } else if (const auto* sides = std::get_if<SidesShape>(&fill.shape)) {
-    places = rows_outside(scene, *sides);
-    std::erase_if(places,
-                  [&](const Vec3& x) { return occupied.outside.owner_near(x, overlap_distance * scene.spacing) >= 0; });
+    places = rows_outside(scene, *sides, dx);
+    std::erase_if(places, [&](const Vec3& x) { return occupied.outside.owner_near(x, dx, overlap_distance) >= 0; });
   } else {
     RegionOf region_of(scene, fill);
     std::visit(region_of, fill.shape);
     const Region region = region_of.take();
     double cells = 1.0;
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
-      cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / scene.spacing;
+      cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / dx;
     if (!(cells <= 1e9))
       throw SceneError(scene.file + ": fill." + std::to_string(k) + ": more than 10^9 particles of phase \"" +
                        fill.phase + "\"; expected a larger spacing or a smaller shape");
     if (fill.packing == Packing::random) {
-      places = random_places(scene, region, cells, fill.seed, occupied);
+      places = random_places(scene, region, cells, fill.seed, dx, occupied);
     } else {
-      places = stretched_lattice(scene, fill, region);
+      places = stretched_lattice(scene, fill, region, dx);
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
     }
-    if (std::holds_alternative<TheRestShape>(fill.shape)) keep_the_rest(places, scene, k, occupied);
+    if (std::holds_alternative<TheRestShape>(fill.shape)) keep_the_rest(places, scene, k, dx, occupied);
   }
   const PeriodicSpace space(scene.domain);
   for (Vec3& x : places) x = space.wrapped(x);

@@ -11,11 +11,12 @@ struct Occupied {
   Places inside, outside;
 };
 
-/// Least distance, in spacings, that "the-rest" keeps from earlier particles. Below one, so that the first row over a
-/// bed whose rows do not line up is not lost; a bed of rows lines up with the rest and is exactly one spacing away.
+/// Least distance, in the mean spacing of the two, that "the-rest" keeps from earlier particles. Below one, so that the
+/// first row over a bed whose rows do not line up is not lost; a bed of rows lines up with the rest and is exactly one
+/// spacing away.
 inline constexpr double rest_distance = 0.75;
 
-/// Particles of different fills may not be closer than this, in spacings.
+/// Particles of different fills may not be closer than this, in the mean spacing of the two.
 inline constexpr double overlap_distance = 0.5;
 
 /// Places of the k-th fill, wrapped into the domain along periodic axes, before `perturb`.

@@ -142,7 +142,7 @@ void Watch::make_guards() {
     g.signal_speed = rules.signal_speed;
     g.way = rules.way;
     for (std::size_t d = 0; d < 3; ++d) {
-      const double margin = WatchBounds::outside * plan.spacing;
+      const double margin = WatchBounds::outside * p.spacing;
       g.closed[d] = {-1, -1};
       g.low[d] = plan.bounds.periodic[d] ? -1e300 : plan.bounds.low[d] - margin;
       g.high[d] = plan.bounds.periodic[d] ? 1e300 : plan.bounds.high[d] + margin;
@@ -154,13 +154,14 @@ void Watch::make_guards() {
       if (rules.contacts_limit_speed && e.law == Law::contact) {
         // The largest energy that the contact can store, 1/2 K g(0)^2 with K = m c^2/d^2 (laws/kernel_contact.hpp).
         with_kernel<double>(e.kernel, e.radius, plan.dimensions, [&](const auto& kernel) {
-          const double d = plan.spacing, depth = (kernel.value(0.0) - kernel.value(d)) / std::abs(kernel.derivative(d));
+          const double d = 0.5 * (p.spacing + plan.phases[other].spacing),
+                       depth = (kernel.value(0.0) - kernel.value(d)) / std::abs(kernel.derivative(d));
           g.signal_speed = std::min(g.signal_speed, p.sound_speed * depth / d);
         });
       }
       if (plan.phases[other].moves || see_.particles[other].size() == 0) continue;
       Sides sides;
-      close_sides(sides, see_.particles[other], plan.bounds, plan.spacing);
+      close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
       for (std::size_t d = 0; d < 3; ++d) {
         if (sides.low[d] > -Sides::far) g.closed[d][0] = static_cast<int>(other);
         if (sides.high[d] < Sides::far) g.closed[d][1] = static_cast<int>(other);
@@ -179,13 +180,16 @@ void Watch::make_guards() {
 }
 
 void Watch::make_pairs() {
+  const auto between = [&](std::size_t a, std::size_t b) {
+    return 0.5 * (see_.plan.phases[a].spacing + see_.plan.phases[b].spacing);
+  };
   const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
   for (const auto& e : see_.plan.entries) {
     if ((e.law != Law::contact && e.law != Law::elastic) || e.of_spheres()) continue;  // spheres: Model::trouble
     const bool turned = wall(e.a);
     const bool at_wall = wall(e.a) || wall(e.b);
     pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward, e.law == Law::elastic,
-                      (at_wall ? WatchBounds::wall_depth : WatchBounds::coincidence) * see_.plan.spacing, e.radius});
+                      (at_wall ? WatchBounds::wall_depth : WatchBounds::coincidence) * between(e.a, e.b), e.radius});
   }
 }
 

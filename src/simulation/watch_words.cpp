@@ -66,6 +66,7 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
   const PhaseParticles& p = see_.particles[g.phase];
   const Plan& plan = see_.plan;
   const PhaseRules& rules = plan.phases[g.phase].rules;
+  const double spacing = plan.phases[g.phase].spacing;
   for (const Field f : {Field::acceleration, Field::velocity, Field::position})
     for (int d = 0; d < p.dimensions(); ++d)
       if (!std::isfinite(p.column(f, d)[k]))
@@ -77,8 +78,8 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
     return " is faster (" + brief(speed) + " m/s, with an acceleration of " +
            brief(size_of(p, k, Field::acceleration)) + " m/s2) than " + rules.if_fast(speed, g.signal_speed);
   if (!(speed * dt <= g.way))
-    return " moves " + brief(speed * dt / plan.spacing) + " spacings in one step (" + brief(speed) + " m/s in " +
-           brief(dt) + " s; the bound is " + brief(g.way / plan.spacing) +
+    return " moves " + brief(speed * dt / spacing) + " spacings in one step (" + brief(speed) + " m/s in " + brief(dt) +
+           " s; the bound is " + brief(g.way / spacing) +
            " spacings) and would pass what it meets: " + rules.if_far(speed);
   if (!g.dense) return std::nullopt;
   const double rho = p.column(Field::density)[k];
@@ -155,8 +156,8 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
       any = true;
     }
   }
-  const std::string near =
-      brief(distance / see_.plan.spacing) + " spacings (bound " + brief(pair.distance / see_.plan.spacing) + ")";
+  const double spacing = 0.5 * (see_.plan.phases[pair.a].spacing + see_.plan.phases[pair.b].spacing);
+  const std::string near = brief(distance / spacing) + " spacings (bound " + brief(pair.distance / spacing) + ")";
   const std::string& stiffer = see_.plan.phases[pair.a].rules.stiffness_key;
   if (!see_.plan.phases[pair.b].moves)
     throw BreakdownError(who(pair.a, first, now) + " is deep in the wall \"" + b.name() + "\", " + near +
@@ -173,7 +174,7 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
 /// somebody. A sample decides whether all are counted.
 void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const {
   const PhaseParticles& p = see_.particles[g.phase];
-  const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.spacing, 2);
+  const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.phases[g.phase].spacing, 2);
   const auto n = static_cast<std::int64_t>(p.size());
   const auto share = [&](std::int64_t first, std::int64_t stride) {
     std::int64_t near = 0, seen = 0;

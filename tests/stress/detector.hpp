@@ -52,7 +52,7 @@ class Detector {
   std::string wrong_alone(std::size_t k, std::size_t i) const {
     const PhaseParticles& p = s_.phases()[k];
     const bool fluid = s_.plan().phases[k].kind == "fluid", grains = s_.plan().phases[k].kind == "grains";
-    const double dx = s_.plan().spacing, c = s_.plan().phases[k].sound_speed;
+    const double dx = s_.plan().phases[k].spacing, c = s_.plan().phases[k].sound_speed;
     for (int d = 0; d < p.dimensions(); ++d) {
       const double x = p.column(Field::position, d)[i];
       if (!std::isfinite(x) || !std::isfinite(p.column(Field::velocity, d)[i])) return "not finite";
@@ -85,7 +85,7 @@ class Detector {
       }
       least = std::min(least, r2);
     }
-    return std::sqrt(least) / s_.plan().spacing;
+    return std::sqrt(least) / (0.5 * (s_.plan().phases[a].spacing + s_.plan().phases[b].spacing));
   }
   double least_distance(std::size_t a, std::size_t b) const {
     double least = 1e300;

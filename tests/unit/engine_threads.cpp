@@ -183,7 +183,7 @@ TEST(GroundDistance, HasTheSeedsOfPlainSweeps) {
         PhaseParticles sand("sand", dimensions, grains.size(), 1.0, 0);
         sand.add(Field::position);
         GroundDistance ground(bounds, Sides{}, 1.0, true);
-        const PhaseParticles* phases[] = {&sand};
+        const GroundDistance::Ground phases[] = {{&sand, 1.0}};
         for (int round = 0; round < 2; ++round) {  // the second finds the memory of the first
           for (Vec3& g : grains) g[1] += 0.01 * round;
           for (std::size_t k = 0; k < grains.size(); ++k)

@@ -126,7 +126,7 @@ struct Cast {
       : bounds(b),
         phases(std::move(p)),
         directions(std::move(d)),
-        neighbours(bounds, directions, phases.size(), skin, 1.0, padding) {
+        neighbours(bounds, directions, skin, std::vector(phases.size(), 1.0), padding) {
     neighbours.update(phases, true);
     for (const auto& q : phases)
       motion.emplace_back(q.dimensions() == 2 ? MotionRecord<2>::size : MotionRecord<3>::size);

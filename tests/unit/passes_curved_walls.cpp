@@ -86,7 +86,7 @@ TEST(GroundDistance, IsThatToTheSurfaceOfAFittedWall) {
     for (int d = 0; d < 2; ++d) wall.column(Field::wall_normal, d)[k] = out[static_cast<std::size_t>(d)] / norm(out);
   }
   GroundDistance ground(b, Sides{}, 1.0, true);
-  const PhaseParticles* phases[] = {&wall};
+  const GroundDistance::Ground phases[] = {{&wall, 1.0}};
   ground.refresh(phases);
   Uniform random(7);
   for (const Vec3& x : scattered(b, 3000, random)) {

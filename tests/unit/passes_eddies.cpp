@@ -47,7 +47,7 @@ TEST(GroundDistance, IsThatOfASearchThroughEverything) {
     for (int d = 0; d < 2; ++d)
       sand.column(Field::position, d)[k] = k < grains.size() ? grains[k][static_cast<std::size_t>(d)] : 0.45;
   GroundDistance ground(bounds, sides, dx, true);
-  const PhaseParticles* phases[] = {&sand};
+  const GroundDistance::Ground phases[] = {{&sand, dx}};
   ground.refresh(phases);
   double worst = 0.0;
   for (int k = 0; k < 4000; ++k) {

@@ -43,7 +43,7 @@ TEST(SceneFiles, Counts) {
         particles_of("verification/two_particle_impact.toml", {std::string("interactions.a-b=") + radius});
     EXPECT_EQ(pair.at(0).velocity.at(0)[0], 10.0);
     EXPECT_NEAR(pair.at(1).position.at(0)[0] - pair.at(0).position.at(0)[0], 2.5e-3, 1e-15);
-    const auto cubes = particles_of("impact_cubes.toml", {std::string("interactions.a-b=") + radius});
+    const auto cubes = particles_of("paper/impact_cubes.toml", {std::string("interactions.a-b=") + radius});
     EXPECT_EQ(cubes.at(0).position.size(), 1331u);
     EXPECT_EQ(cubes.at(1).position.size(), 1331u);
   }

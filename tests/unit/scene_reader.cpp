@@ -150,6 +150,7 @@ kind = "grains"
 density = 2650
 restitution = 0.8
 contact-speed = 12
+spacing = 0.05
 [phases.floor]
 kind = "wall"
 law = "repulsive"
@@ -167,7 +168,7 @@ shear-stress = [0.5, 0, -0.25]
 kernel = "wendland-c2"
 water-water = 3
 water-sand = { radius = 2, kernel = "cubic-spline", drag = 0.5 }
-floor-water = { radius = 2.5 }
+floor-water = { radius-in-metres = 0.25 }
 lid-water = 2.5
 water-belt = 2.1
 roof-water = {}
@@ -287,6 +288,8 @@ TEST(SceneReader, TakesEveryKey) {
   const GrainsKeys& sand = scene.phases.at(3).grains();
   EXPECT_EQ(sand.restitution, 0.8);
   EXPECT_EQ(sand.contact_speed, 12);
+  EXPECT_EQ(scene.phases.at(3).spacing, 0.05);
+  EXPECT_EQ(scene.phases.at(2).spacing, 0.1) << "a phase without a spacing has that of the scene";
   const Phase& floor = scene.phases.at(4);
   EXPECT_EQ(floor.wall().law, WallLaw::repulsive);
   const WallKeys& lid = scene.phases.at(5).wall();
@@ -301,6 +304,7 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.interactions.at(1).radius, 2);
   EXPECT_EQ(scene.interactions.at(1).drag, 0.5);
   EXPECT_EQ(scene.interactions.at(2).kernel, KernelKind::wendland_c2);
+  EXPECT_EQ(scene.interactions.at(2).radius, 2.5) << "0.25 m in spacings of 0.1 m";
   EXPECT_EQ(std::get<SidesShape>(scene.fills.at(0).shape).layers, 2);
   EXPECT_EQ(std::get<PointsShape>(scene.fills.at(1).shape).at.at(1), (Vec3{0.5, 0.5, 1}));
   EXPECT_EQ(std::get<CubeShape>(scene.fills.at(2).shape).count, 2);

@@ -68,7 +68,7 @@ class Air : public Model {
   // with eddies
   std::vector<EddyNeighbour> eddy_neighbours_;
   EddyParameters eddies_;
-  std::vector<const PhaseParticles*> ground_phases_;
+  std::vector<GroundDistance::Ground> ground_phases_;
   std::unique_ptr<GroundDistance> ground_;
   double largest_viscosity_ = 0;  // m2/s
   StepLimit viscous_limit_;

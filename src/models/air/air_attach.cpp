@@ -126,7 +126,7 @@ Relief Air::relief() const {
       if (fill.phase != wall || fill.packing != Packing::fitted) continue;
       std::array<int, 2> counts{};
       for (std::size_t c = 0; c < (layout_.dimensions == 3 ? 2 : 1); ++c)
-        counts[c] = static_cast<int>(std::ceil(2.0 * scene_.domain.size[2 * c] / layout_.spacing));
+        counts[c] = static_cast<int>(std::ceil(2.0 * scene_.domain.size[2 * c] / plan_.spacing));
       return {layout_.bounds, counts, fitted_heights(scene_, counts)};
     }
   }
@@ -188,7 +188,7 @@ void Air::attach(Workspace& w) {
     q.void_pressure = -0.2 * phase_.density * speed * speed;
   }
   bind_entries();
-  held_.margin = 0.02 * layout_.spacing;
+  held_.margin = 0.02 * plan_.spacing;
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
@@ -215,7 +215,7 @@ void Air::bind_entries() {
   }
   for (const auto& e : layout_.entries)
     if (e.law == Law::boundary && e.fluid == number_)
-      close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.spacing);
+      close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
 }
 
 /// Its entries again with the friction of each, and the ground under it.
@@ -223,8 +223,8 @@ void Air::bind_eddies() {
   eddies_.model = keys_.turbulence;
   eddies_.density = phase_.density;
   eddies_.viscosity = neighbours_.front().viscosity / phase_.density;
-  eddies_.spacing = layout_.spacing;
-  eddies_.length = keys_.smagorinsky * layout_.spacing;
+  eddies_.spacing = plan_.spacing;
+  eddies_.length = keys_.smagorinsky * plan_.spacing;
   Sides sides;
   bool particles = false;
   for (const auto& n : neighbours_) {
@@ -239,7 +239,9 @@ void Air::bind_eddies() {
     throw SceneError(scene_.file + ": phases." + plan_.name +
                      ".turbulence: a mixing length needs ground, and this fluid touches no wall with friction and no "
                      "grains; expected such an entry in [interactions], or \"smagorinsky\"");
-  ground_ = std::make_unique<GroundDistance>(layout_.bounds, sides, layout_.spacing, particles);
+  double cell = plan_.spacing;
+  for (const auto& phase : ground_phases_) cell = std::max(cell, phase.spacing);
+  ground_ = std::make_unique<GroundDistance>(layout_.bounds, sides, cell, particles);
   w_->when_sorted.push_back([this] { ground_->refresh(ground_phases_); });
 }
 
@@ -263,18 +265,18 @@ void Air::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool&
     const bool drag = std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& entry) {
       return entry.drag > 0 && entry.has(number_) && entry.has(other);
     });
-    e.roughness = eddies_.roughness = drag ? 0.0 : o.grains().roughness.value_or(layout_.spacing / 30.0);
+    e.roughness = eddies_.roughness = drag ? 0.0 : o.grains().roughness.value_or(o.spacing / 30.0);
     eddies_.grain_reach = std::max(eddies_.grain_reach, e.pair.radius);
   }
   if (e.friction != Friction::rough && e.friction != Friction::smooth && e.friction != Friction::grains) return;
-  ground_phases_.push_back(&w_->particles(other));
+  ground_phases_.push_back({&w_->particles(other), o.spacing});
   if (!wall) {
     particles = true;
     return;
   }
-  close_sides(sides, w_->particles(other), layout_.bounds, layout_.spacing);
+  close_sides(sides, w_->particles(other), layout_.bounds, o.spacing);
   for (std::size_t i = 0; i < w_->particles(other).size() && !particles; ++i)
-    particles = !behind_a_side(w_->particles(other), i, layout_.bounds, layout_.spacing);
+    particles = !behind_a_side(w_->particles(other), i, layout_.bounds, o.spacing);
 }
 
 }  // namespace barchan

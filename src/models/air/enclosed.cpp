@@ -9,14 +9,21 @@
 namespace barchan {
 namespace {
 
-/// Cells of about a spacing over the domain, with one more layer outside its closed axes.
+/// The widest spacing (m) of any phase: cells of it have a particle wherever a phase is.
+double coarsest(const Scene& scene) {
+  double widest = 0.0;
+  for (const Phase& phase : scene.phases) widest = std::max(widest, phase.spacing);
+  return widest;
+}
+
+/// Cells of about the widest spacing over the domain, with one more layer outside its closed axes.
 class Cells {
  public:
   using Cell = std::array<long, 3>;
 
   Cells(const Scene& scene) : domain_(scene.domain), dimensions_(static_cast<std::size_t>(scene.dimensions)) {
     for (std::size_t axis = 0; axis < dimensions_; ++axis) {
-      counts_[axis] = std::max(1l, std::lround(domain_.size[axis] / scene.spacing));
+      counts_[axis] = std::max(1l, std::lround(domain_.size[axis] / coarsest(scene)));
       stored_[axis] = counts_[axis] + (domain_.periodic[axis] ? 0 : 2);
     }
     taken_.assign(static_cast<std::size_t>(stored_[0] * stored_[1] * stored_[2]), false);
@@ -96,7 +103,7 @@ std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>
   double room = 1.0, particles = 0.0;
   for (const ParticleBlock& block : blocks) particles += static_cast<double>(block.position.size());
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
-    room *= scene.domain.size[axis] / scene.spacing;
+    room *= scene.domain.size[axis] / coarsest(scene);
   if (room > 27.0 * particles) return "most of the domain";  // more cells than the particles are neighbours of
   Cells all(scene), own(scene);
   for (const ParticleBlock& block : blocks)

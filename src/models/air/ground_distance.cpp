@@ -8,7 +8,7 @@
 namespace barchan {
 
 GroundDistance::GroundDistance(const Bounds& bounds, const Sides& sides, double spacing, bool has_particles)
-    : bounds_(bounds), sides_(sides), spacing_(spacing) {
+    : bounds_(bounds), sides_(sides) {
   std::size_t cells = 1;
   for (std::size_t d = 0; d < static_cast<std::size_t>(bounds.dimensions); ++d) {
     const double size = bounds.high[d] - bounds.low[d];
@@ -74,26 +74,27 @@ void GroundDistance::images(const Place& at, F&& f) const {
         if (x + y + z > 0) f(number({places[0][x], places[1][y], places[2][z]}));
 }
 
-void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
+void GroundDistance::refresh(std::span<const Ground> phases) {
   if (nearest_.empty()) return;
   bounds_.dimensions == 2 ? refresh<2>(phases) : refresh<3>(phases);
 }
 
 template <int Dim>
-void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
+void GroundDistance::refresh(std::span<const Ground> phases) {
   std::fill(nearest_.begin(), nearest_.end(), -1);
   std::fill(crowd_.begin(), crowd_.end(), std::uint8_t{0});
   seeds_.clear();
   surfaces_ = false;
   normals_.clear();
+  half_.clear();
   Place at{};
   const auto each = [&](auto&& f) {
-    for (const PhaseParticles* p : phases)
+    for (const auto& [p, spacing] : phases)
       for (std::size_t k = 0; k < p->size(); ++k) {
         const bool wall = p->has(Field::wall_depth);
-        if (wall && behind_a_side(*p, k, bounds_, spacing_)) continue;
+        if (wall && behind_a_side(*p, k, bounds_, spacing)) continue;
         const double depth = wall ? p->column(Field::wall_depth)[k] : 0.0;
-        if (depth > 0.8 * spacing_) continue;  // the first row has the surface
+        if (depth > 0.8 * spacing) continue;  // the first row has the surface
         Vec3 x{}, normal{};
         for (int d = 0; d < p->dimensions(); ++d) {
           const auto c = static_cast<std::size_t>(d);
@@ -101,15 +102,15 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
           if (depth > 0.0) normal[c] = p->column(Field::wall_normal, d)[k];
           x[c] += depth * normal[c];
         }
-        f(*p, x, normal);
+        f(*p, x, normal, 0.5 * spacing);
       }
   };
-  each([&](const PhaseParticles&, const Vec3& x, const Vec3&) {
+  each([&](const PhaseParticles&, const Vec3& x, const Vec3&, double) {
     auto& n = crowd_[cell_of<Dim>(x, at)];
     n = static_cast<std::uint8_t>(std::min(n + 1, 255));
     images(at, [&](std::size_t image) { crowd_[image] = n; });
   });
-  each([&](const PhaseParticles& p, const Vec3& x, const Vec3& normal) {
+  each([&](const PhaseParticles& p, const Vec3& x, const Vec3& normal, double half) {
     const std::size_t cell = cell_of<Dim>(x, at);
     if (!p.has(Field::wall_depth) && !p.has(Field::stress)) {  // grains: neither walls nor bodies
       int crowd = 0;
@@ -119,8 +120,10 @@ void GroundDistance::refresh(std::span<const PhaseParticles* const> phases) {
     if (nearest_[cell] < 0) give(cell, at, static_cast<std::int32_t>(seeds_.size()));
     seeds_.push_back(x);
     normals_.push_back(normal);
+    half_.push_back(half);
     surfaces_ = surfaces_ || dot(normal, normal) > 0.0;
   });
+  alike_ = half_.empty() || std::all_of(half_.begin(), half_.end(), [&](double h) { return h == half_[0]; });
   propagate<Dim>();
 }
 
@@ -189,6 +192,8 @@ void GroundDistance::archive(Archive& a) {
   a.array("ground: nearest seed", nearest_);
   a.array("ground: seeds", seeds_);
   a.array("ground: normals", normals_);
+  a.array("ground: half spacings", half_);
+  a.number("ground: alike", alike_);
   a.number("ground: surfaces", surfaces_);
 }
 
@@ -202,8 +207,8 @@ double GroundDistance::from_seed(const Vec3& x, std::size_t seed) const {
     if (bounds_.periodic[d]) r[d] -= period * std::round(r[d] / period);
   }
   const double over = dot(normals_[seed], r);
-  if (!(dot(normals_[seed], normals_[seed]) > 0.0)) return norm(r) - 0.5 * spacing_;
-  const double beside = std::max(std::sqrt(std::max(dot(r, r) - over * over, 0.0)) - 0.75 * spacing_, 0.0);
+  if (!(dot(normals_[seed], normals_[seed]) > 0.0)) return norm(r) - half_[seed];
+  const double beside = std::max(std::sqrt(std::max(dot(r, r) - over * over, 0.0)) - 1.5 * half_[seed], 0.0);
   return std::hypot(std::max(over, 0.0), beside);
 }
 
@@ -230,9 +235,12 @@ double GroundDistance::distance(const Vec3& x) const {
     for (const std::ptrdiff_t step : around_) {
       if (nearest[step] == last) continue;  // neighbours often have the same
       last = nearest[step];
-      if (last >= 0) squared_least = std::min(squared_least, squared<Dim>(x, last));
+      if (last < 0) continue;
+      const double squared_here = squared<Dim>(x, last);
+      if (alike_) squared_least = std::min(squared_least, squared_here);
+      else least = std::min(least, std::sqrt(squared_here) - half_[static_cast<std::size_t>(last)]);
     }
-    least = std::min(least, std::sqrt(squared_least) - 0.5 * spacing_);
+    if (alike_) least = std::min(least, std::sqrt(squared_least) - half_[0]);
   }
   return std::max(least, 0.0);
 }

@@ -17,12 +17,18 @@ namespace barchan {
 /// and the adjacent cells only.
 class GroundDistance {
  public:
-  /// `sides`: the planes that count. `spacing`: of the cells and the particles.
+  /// A phase whose particles are ground.
+  struct Ground {
+    const PhaseParticles* particles = nullptr;
+    double spacing = 0.0;  // m
+  };
+
+  /// `sides`: the planes that count. `spacing` (m): of the cells, no smaller than that of any ground.
   GroundDistance(const Bounds& bounds, const Sides& sides, double spacing, bool has_particles);
 
   /// Takes the ground's particles anew: walls within the domain, and grains that at least three others surround (those
   /// in flight are no ground). Allocates only to grow.
-  void refresh(std::span<const PhaseParticles* const> phases);
+  void refresh(std::span<const Ground> phases);
 
   /// Distance to the nearest surface, at least 0 and at most the domain's diagonal.
   double distance(const Vec3& x) const;
@@ -34,7 +40,7 @@ class GroundDistance {
   using Place = std::array<int, 3>;  // of a cell, by axis
 
   template <int Dim>
-  void refresh(std::span<const PhaseParticles* const> phases);
+  void refresh(std::span<const Ground> phases);
   template <int Dim>
   double distance(const Vec3& x) const;
   template <int Dim>
@@ -55,7 +61,7 @@ class GroundDistance {
 
   Bounds bounds_;
   Sides sides_;
-  double spacing_, diagonal_ = 0.0;
+  double diagonal_ = 0.0;
   // Cells stand in an array with a halo one cell wide, which repeats the far side where that is periodic and is empty
   // elsewhere; an axis of a single cell has none.
   std::array<int, 3> count_{1, 1, 1}, halo_{0, 0, 0};
@@ -66,6 +72,8 @@ class GroundDistance {
   std::vector<std::uint8_t> crowd_;     // by cell: particles in it
   std::vector<std::uint8_t> stale_;     // by cell, from margin() on: to be visited by the next sweep
   std::vector<Vec3> seeds_;
+  std::vector<double> half_;  // by seed: half the spacing of its phase, m
+  bool alike_ = true;         // all have the same
   std::vector<Vec3>
       normals_;            // by seed: of the surface that it lies on; zero: of a particle, whose surface is not known
   bool surfaces_ = false;  // some seed has a normal

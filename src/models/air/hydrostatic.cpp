@@ -43,11 +43,12 @@ Column column_of(const Scene& scene, const Layout& layout, const ParticleBlock& 
   column.linear = s.fluid().equation_of_state == EquationOfState::linear;
   const auto highest = std::min_element(block.position.begin(), block.position.end(),
                                         [&](const Vec3& a, const Vec3& b) { return dot(g, a) < dot(g, b); });
-  column.potential = dot(g, *highest) - 0.5 * layout.spacing * norm(g);
+  column.potential = dot(g, *highest) - 0.5 * layout.phases[k].spacing * norm(g);
   for (std::size_t d = 0; d < 3; ++d) {  // disturbed rows: where the lattice has its surface
     if (!perturbed || g[d] == 0 || std::abs(g[d]) < norm(g)) continue;
     const double row = column.potential / g[d] - scene.domain.origin[d];
-    column.potential = g[d] * (scene.domain.origin[d] + layout.spacing * std::round(row / layout.spacing));
+    column.potential =
+        g[d] * (scene.domain.origin[d] + layout.phases[k].spacing * std::round(row / layout.phases[k].spacing));
   }
   return column;
 }

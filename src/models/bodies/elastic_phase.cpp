@@ -48,7 +48,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   p.fields = {position, velocity, density, pressure, acceleration, stress};
   if (phase.elastic().energy) p.fields.push_back(energy);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
-  p.rules = rules_of(p, layout.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
+  p.rules = rules_of(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
 ElasticPhase::ElasticPhase(const Scene& scene, const Layout& layout, std::size_t number)

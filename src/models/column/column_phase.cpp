@@ -57,7 +57,7 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
     if (e.law != Law::column || !e.has(number)) continue;
     const std::size_t grains = e.partner(number);
     const PlanPhase& plan = layout.phases[grains];
-    const double d = plan.diameter > 0.0 ? plan.diameter : layout.spacing;
+    const double d = plan.diameter > 0.0 ? plan.diameter : plan.spacing;
     feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, d, plan.diameter > 0.0, {}});
     diameter_ = std::max(diameter_, d);
     crowded_ = crowded_ || e.drag_law == DragLaw::di_felice;

@@ -7,7 +7,8 @@ namespace barchan {
 namespace {
 
 DragEntry drag_law(const Scene& scene, const Layout& layout, const PlanEntry& e) {
-  const double d = layout.spacing, section = layout.dimensions == 2 ? d : 0.25 * std::numbers::pi * d * d;
+  const double d = layout.phases[e.other].spacing,
+               section = layout.dimensions == 2 ? d : 0.25 * std::numbers::pi * d * d;
   const double density = scene.phases[e.fluid].density, reach = GrainBarrier::reach * d;
   // What flows at a tenth of the sound speed is turned back before it reaches a grain's centre.
   const double speed = 0.1 * layout.phases[e.fluid].sound_speed;

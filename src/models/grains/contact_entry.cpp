@@ -15,7 +15,7 @@ KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEn
   const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
   const auto stiffness_of = [](const PlanPhase& p) { return p.mass * std::pow(p.sound_speed, 2); };
   const PlanPhase& soft = !b.moves || (a.moves && stiffness_of(a) <= stiffness_of(b)) ? a : b;
-  const double d = layout.spacing;
+  const double d = 0.5 * (a.spacing + b.spacing);  // m, of two that touch
   const double reduced = a.moves && b.moves ? a.mass * b.mass / (a.mass + b.mass) : (a.moves ? a.mass : b.mass);
   double restitution = 1.0;
   for (const std::size_t k : {e.a, e.b})
@@ -45,7 +45,7 @@ ContactEntry::ContactEntry(const Scene& scene, const Layout& layout, const PlanE
   // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
   // automatic.
   const PlanPhase& p = layout.phases[entry.fluid];
-  law_.stiffness = p.mass / (layout.spacing * layout.spacing) * p.sound_speed * 0.1 * p.sound_speed;
+  law_.stiffness = p.mass / (p.spacing * p.spacing) * p.sound_speed * 0.1 * p.sound_speed;
   law_.damping = 0.0;
 }
 

@@ -97,7 +97,7 @@ void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std:
   double weight = 0;
   for (std::size_t d = 0; d < 3; ++d) weight += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   p.sound_speed = scene.phases[number].grains().contact_speed.value_or(std::max(std::sqrt(1000.0 * weight), 1.0));
-  p.rules = rules_of(p, layout.spacing, scene.time.fixed_step.has_value());
+  p.rules = rules_of(p, p.spacing, scene.time.fixed_step.has_value());
 }
 
 GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t number)
@@ -117,7 +117,7 @@ void GrainPhase::schedule(Schedule& s) {
 void GrainPhase::limits(std::vector<StepLimit>& limits) const {
   if (plan_.count == 0 || plan_.diameter > 0) return;
   limits.push_back({"contact " + plan_.name,
-                    scene_.time.safety * (StepConstants::contact * layout_.spacing / plan_.sound_speed),
+                    scene_.time.safety * (StepConstants::contact * plan_.spacing / plan_.sound_speed),
                     "0.1 sqrt(m/K): a contact lasts about thirty steps"});
 }
 

@@ -6,7 +6,7 @@
 namespace barchan {
 
 double mean_diameter(const Layout& layout, std::size_t phase) {
-  return layout.phases[phase].diameter > 0.0 ? layout.phases[phase].diameter : layout.spacing;
+  return layout.phases[phase].diameter > 0.0 ? layout.phases[phase].diameter : layout.phases[phase].spacing;
 }
 
 double ground_area(const Scene& scene) {

@@ -37,7 +37,7 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
         inside =
             inside && (layout_.bounds.periodic[d] || (x[d] >= layout_.bounds.low[d] && x[d] <= layout_.bounds.high[d]));
       if (!inside) continue;
-      const double radius = blocks[k].radius.empty() ? 0.5 * layout_.spacing : blocks[k].radius[i];
+      const double radius = blocks[k].radius.empty() ? 0.5 * layout_.phases[k].spacing : blocks[k].radius[i];
       fixed_.insert(fixed_.end(), {x[0], x[1], x[2], radius});
       fixed_kind_.push_back(static_cast<std::uint8_t>(k));
     }

@@ -102,7 +102,7 @@ std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) 
   const auto weight_about_a_lone_particle = [&](const PlanEntry& e) {
     double own = 0.0;
     with_kernel<double>(e.kernel, e.radius, w.layout.dimensions, [&](const auto& kernel) {
-      own = kernel.value(0.0) * std::pow(w.layout.spacing, w.layout.dimensions);
+      own = kernel.value(0.0) * std::pow(w.layout.phases[solid].spacing, w.layout.dimensions);
     });
     return e.consistency.volume_sum - own;
   };
@@ -125,13 +125,15 @@ void share_extended(Workspace& w, std::size_t solid) {
 void face_walls(const Scene& scene, const Layout& layout, State& state) {
   std::vector<PhaseParticles*> walls;
   bool slips = false;
+  double coarsest = 0.0;  // m
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     if (layout.phases[k].moves || layout.phases[k].count == 0) continue;
     walls.push_back(&state.phases[k]);
+    coarsest = std::max(coarsest, layout.phases[k].spacing);
     const WallKeys& s = scene.phases[k].wall();
     slips = slips || s.slip == Slip::free_slip || s.roughness || s.shear_stress;
   }
-  if (slips) find_wall_normals(walls, layout.bounds, layout.spacing);
+  if (slips) find_wall_normals(walls, layout.bounds, coarsest);
 }
 
 }  // namespace barchan
