@@ -2,11 +2,13 @@
 // length.
 //
 //   rho dU/dt = d tau/dy - (what the grains take),   tau = rho (nu + l^2 |U'|) U',   tau = rho u*^2 on the top,
-//   dl/dy = kappa [1 - exp(-sqrt(U l/(7 nu)))]                                  (Duran, Andreotti & Claudin 2012, eq. 7)
+//   dl/dy = kappa [1 - exp(-sqrt(U l/(7 nu)))]                                  (Duran, Andreotti & Claudin 2012, eq.
+//   7)
 //
 // In a bed U vanishes and l with it; over it l grows as over a rough or smooth wall: no surface of the bed is needed.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -56,10 +58,15 @@ class AirColumn {
     std::vector<double> part_, step_;  // of the cells where spreads begin and end; changes of the density between them
   };
 
-  /// One implicit step of the air (s): `stress` on its top (Pa), `taken` (Pa s) by area and cell what the grains took
-  /// already. profile.rate says how much more they take as the air gets faster; what they will take by that in the next
-  /// step is profile.given. Any dt is stable. Updates the mixing length for the next step.
-  void advance(double dt, double stress, const std::vector<double>& taken);
+  /// What drives the air from above: a stress (Pa), or a speed on the top face (m/s).
+  struct Top {
+    double stress = 0.0;
+    std::optional<double> speed;
+  };
+  /// One implicit step of the air (s). `taken` (Pa s) by area and cell: what the grains took already. profile.rate says
+  /// how much more they take as the air gets faster; what they will take by that in the next step is profile.given. Any
+  /// dt is stable. Updates the mixing length for the next step.
+  void advance(double dt, const Top& top, const std::vector<double>& taken);
   void update_mixing_length();
 
   /// Momentum of the air by area, Pa s.

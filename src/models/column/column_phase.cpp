@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "engine/means.hpp"
+#include "laws/kept_drag.hpp"
 #include "output/numbers.hpp"
 #include "scene/log_wind.hpp"
 
@@ -24,7 +25,7 @@ class Diameters {
   double mean_;  // m
 };
 
-constexpr double fine_diameters = 20.0;   // of fine cells above the grains of the start
+constexpr double fine_diameters = 20.0;  // of fine cells above the grains of the start
 constexpr double cells_a_diameter = 4.0;
 constexpr double most_cells = 20000.0;
 constexpr double most_over_friction_velocity = 35.0;  // of a wind: ln(1 m/1 um)/0.4
@@ -134,7 +135,7 @@ void ColumnPhase::find_steady_wind() {
     spread_rates();
     spread_impulses(dt);
     std::fill(p.given.begin(), p.given.end(), 0.0);
-    air_->advance(dt, stress, taken_);
+    air_->advance(dt, {stress, {}}, taken_);
   }
   std::fill(p.given.begin(), p.given.end(), 0.0);
   std::fill(p.rate.begin(), p.rate.end(), 0.0);
@@ -143,8 +144,11 @@ void ColumnPhase::find_steady_wind() {
 
 void ColumnPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::drag, scene_.phases[number_].name, {position, velocity, radius, drag_acceleration},
-         {acceleration, drag_acceleration}, [this] { act(); }});
+  s.add({stage::drag,
+         scene_.phases[number_].name,
+         {position, velocity, radius, drag_acceleration},
+         {acceleration, drag_acceleration},
+         [this] { act(); }});
 }
 
 /// What a step has of the air: an exchange when its time has come, and the drag of the last one.
@@ -180,7 +184,7 @@ void ColumnPhase::exchange() {
   AirProfile& p = profile();
   if (!keys_.held && p.elapsed > 0.0) {
     spread_impulses(0.0);
-    air_->advance(p.elapsed, top_stress(w_->state.time), taken_);
+    air_->advance(p.elapsed, {top_stress(w_->state.time), {}}, taken_);
   }
   p.elapsed = p.kicked = 0.0;
   if (crowded_) find_voidage();
@@ -233,22 +237,15 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
     const double at = y[k] + std::max(ahead, 0.0) * v[1][k];
     const double speed = wind(at, 0.5 * d);
-    std::array<double, dimensions> mean{};  // total acceleration, gravity and drag
-    double rate = 0.0, share = 1.0;
-    for (int pass = 0; pass < 2; ++pass) {
-      double square = 0.0;
-      for (std::size_t c = 0; c < dimensions; ++c) {
-        const double difference = (c == 0 ? speed : 0.0) - v[c][k] - 0.5 * time * mean[c];
-        square += difference * difference;
-      }
-      rate = stokes * excess(std::sqrt(square) * d / keys_.viscosity, at);
-      const double x = rate * time;
-      share = x < 1e-5 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-      for (std::size_t c = 0; c < dimensions; ++c)
-        mean[c] = share * (rate * ((c == 0 ? speed : 0.0) - v[c][k]) + scene_.domain.gravity[c]);
+    std::array<double, dimensions> air{speed}, own{}, gravity{};
+    for (std::size_t c = 0; c < dimensions; ++c) {
+      own[c] = v[c][k];
+      gravity[c] = scene_.domain.gravity[c];
     }
-    for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = mean[c] - scene_.domain.gravity[c];
-    grains.rate[k] = rate;
+    const auto kept = kept_drag<dimensions>(
+        air, own, gravity, stokes, d / keys_.viscosity, [&](double re) { return excess(re, at); }, time);
+    for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = kept.drag[c];
+    grains.rate[k] = kept.rate;
   }
 }
 
