@@ -9,7 +9,7 @@
 
 namespace barchan {
 
-/// What a grain feels: the acceleration by drag (m/s2), and how fast it follows the wind (1/s).
+/// What a grain feels: the mean acceleration by drag (m/s2), and how much more of it as the wind gets faster (1/s).
 template <std::size_t Dim>
 struct KeptDrag {
   std::array<double, Dim> drag{};
@@ -29,9 +29,10 @@ KeptDrag<Dim> kept_drag(const std::array<double, Dim>& wind, const std::array<do
       const double difference = wind[c] - velocity[c] - 0.5 * time * mean[c];
       square += difference * difference;
     }
-    kept.rate = stokes * excess(std::sqrt(square) * reach);
-    const double x = kept.rate * time, share = x < 1e-5 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-    for (std::size_t c = 0; c < Dim; ++c) mean[c] = share * (kept.rate * (wind[c] - velocity[c]) + gravity[c]);
+    const double rate = stokes * excess(std::sqrt(square) * reach);
+    const double x = rate * time, share = x < 1e-5 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+    for (std::size_t c = 0; c < Dim; ++c) mean[c] = share * (rate * (wind[c] - velocity[c]) + gravity[c]);
+    kept.rate = share * rate;
   }
   for (std::size_t c = 0; c < Dim; ++c) kept.drag[c] = mean[c] - gravity[c];
   return kept;

@@ -189,9 +189,9 @@ std::string kind_name(InstrumentKind kind) {
 }
 
 std::string to_text(const Instrument& i) {
-  const char* rows = i.kind == InstrumentKind::wall_shear ? "columns"
+  const char* rows = i.kind == InstrumentKind::wall_shear                                      ? "columns"
                      : i.kind == InstrumentKind::slices || i.kind == InstrumentKind::saltation ? "slices"
-                                                          : "points";
+                                                                                               : "points";
   char text[160];
   std::snprintf(text, sizeof text, "%zu %s, every %g s from %g s", i.rows.size(), rows, i.every, i.start);
   if (i.kind == InstrumentKind::probe) std::snprintf(text, sizeof text, "every %g s", i.every);
@@ -200,9 +200,8 @@ std::string to_text(const Instrument& i) {
 
 std::vector<std::string> not_measured(const std::vector<Instrument>& instruments) {
   std::vector<std::string> words;
-  for (const InstrumentKind kind :
-       {InstrumentKind::probe, InstrumentKind::line, InstrumentKind::grid, InstrumentKind::wall_shear,
-        InstrumentKind::saltation})
+  for (const InstrumentKind kind : {InstrumentKind::probe, InstrumentKind::line, InstrumentKind::grid,
+                                    InstrumentKind::wall_shear, InstrumentKind::saltation})
     if (std::none_of(instruments.begin(), instruments.end(),
                      [&](const Instrument& i) { return kind_name(i.kind) == kind_name(kind); }))
       words.push_back(kind_name(kind));

@@ -54,8 +54,9 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
              "\"" + column.name + "\" is of kind column, which friction-velocity drives; expected another phase");
   const Vec3& g = scene.domain.gravity;
   if (!report.touched("domain.gravity") && (g[0] != 0.0 || g[2] != 0.0 || g[1] > 0.0))
-    report("domain.gravity", "the profile of \"" + column.name +
-                                 "\" is one along y, over the bottom of the domain; expected gravity along -y, or none");
+    report("domain.gravity",
+           "the profile of \"" + column.name +
+               "\" is one along y, over the bottom of the domain; expected gravity along -y, or none");
   if (!column.column().held && !report.touched("domain.periodic") &&
       !(scene.domain.periodic[0] && (scene.dimensions == 2 || scene.domain.periodic[2])))
     report(dotted + ".held", std::string("a wind that feels the grains is their mean along ") +
@@ -76,7 +77,8 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
     }
     for (const char* key : {".radius", ".kernel"})
       if (report.has(entry + key))
-        report(entry + key, "a column of air has no kernel: a grain feels the wind of its height; expected no such key");
+        report(entry + key,
+               "a column of air has no kernel: a grain feels the wind of its height; expected no such key");
     if (!report.is_section(entry)) report(entry, "a column of air has no radius; expected {} or { drag = LAW }");
     if (report.is_section(entry) && report.has(entry + ".drag") && pair.drag != 0.0)
       report(entry + ".drag", "a number; expected the name of a law, as \"duran\"");
@@ -84,7 +86,8 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
       report(entry, "\"" + other->name + "\" feels \"" + air->name + "\" already; expected one kind of air for it");
   }
   if (!felt)
-    report(dotted, "nothing feels this air; expected an entry of [interactions] with \"" + column.name + "\" and grains");
+    report(dotted,
+           "nothing feels this air; expected an entry of [interactions] with \"" + column.name + "\" and grains");
 }
 
 }  // namespace

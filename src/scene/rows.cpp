@@ -16,7 +16,7 @@ constexpr Word word(std::string_view word, Enum meaning) {
 template <>
 constexpr std::array words_of<PhaseKind>{word("fluid", PhaseKind::fluid), word("elastic", PhaseKind::elastic),
                                          word("grains", PhaseKind::grains), word("wall", PhaseKind::wall),
-                                               word("column", PhaseKind::column)};
+                                         word("column", PhaseKind::column)};
 template <>
 constexpr std::array words_of<EquationOfState>{word("linear", EquationOfState::linear),
                                                word("tait", EquationOfState::tait)};
@@ -30,10 +30,9 @@ constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
 template <>
 constexpr std::array words_of<MixingLength>{word("none", MixingLength::none), word("duran", MixingLength::duran)};
 template <>
-constexpr std::array words_of<DragLaw>{word("stokes", DragLaw::stokes),
-                                       word("schiller-naumann", DragLaw::schiller_naumann),
-                                       word("cheng", DragLaw::cheng), word("duran", DragLaw::duran),
-                                       word("di-felice", DragLaw::di_felice)};
+constexpr std::array words_of<DragLaw>{
+    word("stokes", DragLaw::stokes), word("schiller-naumann", DragLaw::schiller_naumann), word("cheng", DragLaw::cheng),
+    word("duran", DragLaw::duran), word("di-felice", DragLaw::di_felice)};
 template <>
 constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
 template <>

@@ -109,10 +109,10 @@ struct WallKeys {
 /// Air as a profile by height, without particles.
 struct ColumnKeys {
   static constexpr PhaseKind kind = PhaseKind::column;
-  double viscosity{};                     // m2/s, kinematic
-  Expression friction_velocity;           // m/s, a function of time: rho u*^2 is the stress on the column's top
-  std::optional<double> height;           // m; empty: the domain's
-  std::optional<double> resolution;       // m, of the cells among the grains; empty: a quarter of a diameter
+  double viscosity{};                // m2/s, kinematic
+  Expression friction_velocity;      // m/s, a function of time: rho u*^2 is the stress on the column's top
+  std::optional<double> height;      // m; empty: the domain's
+  std::optional<double> resolution;  // m, of the cells among the grains; empty: a quarter of a diameter
   MixingLength mixing_length{};
   Slip slip{};                            // on the bottom of the domain
   bool held{};                            // the profile of the start stays: the air does not feel the grains

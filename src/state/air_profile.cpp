@@ -8,8 +8,6 @@ void AirProfile::archive(Archive& a) {
   a.array("air: stress", stress);
   a.array("air: mixing length", length);
   a.array("air: given", given);
-  a.array("air: pull", pull);
-  a.array("air: rate", rate);
   a.number("air: boundary", boundary);
   a.number("air: elapsed", elapsed);
   a.number("air: kicked", kicked);

@@ -15,9 +15,8 @@ struct AirProfile {
   std::vector<double> speed;   // m/s, along x, of the cells
   std::vector<double> stress;  // Pa, shear stress of the air on the faces
   std::vector<double> length;  // m, mixing length on the faces
-  std::vector<double> given;   // Pa s, impulse by area that the grains of a cell will have got before the next step
-  std::vector<double> pull;    // Pa, stress that the grains of a cell take until the next step
-  std::vector<double> rate;    // Pa s/m, stress that the grains of a cell take off by speed of the air
+  std::vector<double> given;   // Pa s, impulse by area that the air has lost to the grains of a cell for the time
+                               // between its last step and its next one
   double boundary = 0.0;       // Pa s, impulse by area through bottom and top so far
   double elapsed = 0.0, kicked = 0.0;  // s, of steps and of kicks since the profile's last step
   double last = 0.0;                   // s, of the last step of the particles

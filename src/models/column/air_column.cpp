@@ -28,7 +28,6 @@ AirProfile AirColumn::grid(double bottom, double fine_top, double top, double re
   const std::size_t n = p.face.size() - 1;
   p.speed.assign(n, 0.0);
   p.given.assign(n, 0.0);
-  p.rate.assign(n, 0.0);
   p.stress.assign(n + 1, 0.0);
   p.length.assign(n + 1, 0.0);
   return p;
@@ -112,7 +111,7 @@ void AirColumn::update_mixing_length() {
 
 /// Newton's step for the stress, which grows with the square of the slope: a step of any length stays stable, and what
 /// one cell loses the next one gets.
-void AirColumn::advance(double dt, const Top& top, const std::vector<double>& taken) {
+void AirColumn::advance(double dt, const Top& top, const Load& load) {
   const std::size_t n = profile_.cells();
   const auto height = [&](std::size_t k) { return profile_.face[k + 1] - profile_.face[k]; };
   const double rho = air_.density;
@@ -130,13 +129,13 @@ void AirColumn::advance(double dt, const Top& top, const std::vector<double>& ta
   for (std::size_t k = 0; k < n; ++k) {
     lower_[k] = k > 0 ? -conductance_[k] : 0.0;
     upper_[k] = k + 1 < n ? -conductance_[k + 1] : 0.0;
-    diagonal_[k] = rho * height(k) / dt + conductance_[k] + conductance_[k + 1] + profile_.rate[k];
-    change_[k] = profile_.stress[k + 1] - profile_.stress[k] - (taken[k] - profile_.given[k]) / dt;
+    diagonal_[k] = rho * height(k) / dt + conductance_[k] + conductance_[k + 1] + load.rate[k];
+    change_[k] = profile_.stress[k + 1] - profile_.stress[k] - load.pull[k] - load.owed[k] / dt;
   }
   solve();
   for (std::size_t k = 0; k < n; ++k) {
     profile_.stress[k] += conductance_[k] * (change_[k] - (k > 0 ? change_[k - 1] : 0.0));
-    profile_.given[k] = profile_.rate[k] * change_[k] * dt;
+    profile_.given[k] = (load.pull[k] + load.rate[k] * change_[k]) * dt;
     profile_.speed[k] += change_[k];
   }
   profile_.stress[n] -= conductance_[n] * change_[n - 1];

@@ -62,11 +62,23 @@ class AirColumn {
   struct Top {
     double stress = 0.0;
     std::optional<double> speed;
+    Top(double pascal) : stress(pascal) {}
+    static Top at_speed(double u) {
+      Top top(0.0);
+      top.speed = u;
+      return top;
+    }
   };
-  /// One implicit step of the air (s). `taken` (Pa s) by area and cell: what the grains took already. profile.rate says
-  /// how much more they take as the air gets faster; what they will take by that in the next step is profile.given. Any
-  /// dt is stable. Updates the mixing length for the next step.
-  void advance(double dt, const Top& top, const std::vector<double>& taken);
+  /// What the grains of each cell do to the air.
+  struct Load {
+    std::vector<double> pull;  // Pa: what they take at the present speed of the air
+    std::vector<double> rate;  // Pa s/m: how much more they take as it gets faster
+    std::vector<double> owed;  // Pa s: what they have got beyond profile.given of the last step
+    explicit Load(std::size_t cells) : pull(cells, 0.0), rate(cells, 0.0), owed(cells, 0.0) {}
+  };
+  /// One step of the air (s), implicit in shear and drag so that any dt is stable, driven from its top. What
+  /// the grains are to get in this time is then profile.given. Updates the mixing length for the next step.
+  void advance(double dt, const Top& top, const Load& load);
   void update_mixing_length();
 
   /// Momentum of the air by area, Pa s.

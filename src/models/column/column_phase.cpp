@@ -59,7 +59,7 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
     const std::size_t grains = e.partner(number);
     const PlanPhase& plan = layout.phases[grains];
     const double d = plan.diameter > 0.0 ? plan.diameter : plan.spacing;
-    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, d, plan.diameter > 0.0, {}});
+    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, d, plan.diameter > 0.0, {}, {}});
     diameter_ = std::max(diameter_, d);
     crowded_ = crowded_ || e.drag_law == DragLaw::di_felice;
   }
@@ -69,7 +69,8 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
 
 void ColumnPhase::attach(Workspace& w) {
   w_ = &w;
-  for (Feeling& grains : feeling_) grains.rate.assign(w.particles(grains.phase).size(), 0.0);
+  for (Feeling& grains : feeling_)
+    for (auto* values : {&grains.rate, &grains.wind}) values->assign(w.particles(grains.phase).size(), 0.0);
   place_ = w.state.air.size();
   w.state.air.emplace_back();
   make_profile();
@@ -113,7 +114,7 @@ void ColumnPhase::make_profile() {
   const AirColumn::Air air{density_, keys_.viscosity, keys_.mixing_length, keys_.slip};
   air_ = std::make_unique<AirColumn>(air, profile());
   spread_ = std::make_unique<AirColumn::Spread>(profile().cells());
-  taken_.assign(profile().cells(), 0.0);
+  load_ = std::make_unique<AirColumn::Load>(profile().cells());
   solid_.assign(profile().cells(), 0.0);
 }
 
@@ -133,12 +134,10 @@ void ColumnPhase::find_steady_wind() {
     air_->integrate_speed();
     feel();
     spread_rates();
-    spread_impulses(dt);
-    std::fill(p.given.begin(), p.given.end(), 0.0);
-    air_->advance(dt, {stress, {}}, taken_);
+    spread_drag(false, load_->pull);
+    air_->advance(dt, stress, *load_);
   }
   std::fill(p.given.begin(), p.given.end(), 0.0);
-  std::fill(p.rate.begin(), p.rate.end(), 0.0);
   p.boundary = 0.0;
 }
 
@@ -180,16 +179,22 @@ void ColumnPhase::act() {
   }
 }
 
+/// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
+/// drag in that.
 void ColumnPhase::exchange() {
   AirProfile& p = profile();
-  if (!keys_.held && p.elapsed > 0.0) {
-    spread_impulses(0.0);
-    air_->advance(p.elapsed, {top_stress(w_->state.time), {}}, taken_);
+  if (!keys_.held) {
+    spread_drag(true, load_->owed);
+    for (std::size_t c = 0; c < p.cells(); ++c) load_->owed[c] -= p.given[c];
   }
   p.elapsed = p.kicked = 0.0;
   if (crowded_) find_voidage();
   feel();
-  if (!keys_.held) spread_rates();
+  if (keys_.held) return;
+  spread_rates();
+  spread_drag(false, load_->pull);
+  air_->advance(hold_, top_stress(w_->state.time), *load_);
+  follow_wind();
 }
 
 /// The wind that a grain feels: the mean over its height; of a logarithmic profile that is held, that at its centre.
@@ -214,6 +219,12 @@ void ColumnPhase::feel() {
   }
 }
 
+/// From a grain's place to that in the middle of the time for which its drag is kept (s). Speeds of the common
+/// integrator are half a step behind places, and so is that time.
+double ColumnPhase::time_ahead(const Feeling& grains) const {
+  return std::max(0.5 * (hold_ - (grains.own_steps ? 0.0 : w_->state.dt)), 0.0);
+}
+
 /// The drag of each grain as a mean over the time for which it is kept: exact for a wind and a rate that do not change,
 /// which are those of the middle of that time.
 template <int Dim, class DragOf>
@@ -228,14 +239,13 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
   }
   const double* y = p.column(Field::position, 1);
   const Diameters diameter(p, grains.diameter);
-  // Speeds of the common integrator are half a step behind their places.
-  const double time = hold_, ahead = 0.5 * (hold_ - (grains.own_steps ? 0.0 : w_->state.dt));
+  const double time = hold_, ahead = time_ahead(grains);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
-    const double at = y[k] + std::max(ahead, 0.0) * v[1][k];
+    const double at = y[k] + ahead * v[1][k];
     const double speed = wind(at, 0.5 * d);
     std::array<double, dimensions> air{speed}, own{}, gravity{};
     for (std::size_t c = 0; c < dimensions; ++c) {
@@ -246,6 +256,24 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
         air, own, gravity, stokes, d / keys_.viscosity, [&](double re) { return excess(re, at); }, time);
     for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = kept.drag[c];
     grains.rate[k] = kept.rate;
+    grains.wind[k] = speed;
+  }
+}
+
+/// The drag in the wind that the air's step has made.
+void ColumnPhase::follow_wind() {
+  for (Feeling& grains : feeling_) {
+    PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
+    const double *y = p.column(Field::position, 1), *vy = p.column(Field::velocity, 1);
+    double* drag = p.column(Field::drag_acceleration, 0);
+    const double ahead = time_ahead(grains);
+    const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      drag[k] += grains.rate[k] * (wind(y[k] + ahead * vy[k], 0.5 * diameter[k]) - grains.wind[k]);
+    }
   }
 }
 
@@ -261,7 +289,7 @@ void ColumnPhase::spread_rates() {
       spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) * grains.rate[k] / area_);
     }
   }
-  spread_->gather(*air_, profile().rate);
+  spread_->gather(*air_, load_->rate);
 }
 
 /// For how long the present drag has acted since the last exchange. Grains of the common integrator are kicked twice a
@@ -270,11 +298,11 @@ double ColumnPhase::impulse_time(const Feeling& grains) const {
   return grains.own_steps ? profile().elapsed : profile().kicked;
 }
 
-/// What the present drag has given the grains of each cell since the last exchange, or gives them in a `wanted` time.
-void ColumnPhase::spread_impulses(double wanted) {
+/// What the present drag gives the grains of each cell, Pa; or what it has given them since the last exchange, Pa s.
+void ColumnPhase::spread_drag(bool so_far, std::vector<double>& sums) {
   spread_->clear();
   for (const Feeling& grains : feeling_) {
-    const double time = wanted > 0.0 ? wanted : impulse_time(grains);
+    const double time = so_far ? impulse_time(grains) : 1.0;
     const PhaseParticles& p = w_->particles(grains.phase);
     const Diameters diameter(p, grains.diameter);
     const double *y = p.column(Field::position, 1), *drag = p.column(Field::drag_acceleration, 0);
@@ -283,7 +311,7 @@ void ColumnPhase::spread_impulses(double wanted) {
       spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) * drag[k] * time / area_);
     }
   }
-  spread_->gather(*air_, taken_);
+  spread_->gather(*air_, sums);
 }
 
 /// The part of each cell that is solid; 2D: of a slab one diameter thick.

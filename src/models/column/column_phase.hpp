@@ -32,10 +32,10 @@ class ColumnPhase : public Model {
   struct Feeling {
     std::size_t phase;
     DragLaw law;
-    double density;            // kg/m3, of the grains
-    double diameter;           // m, mean
-    bool own_steps;            // moved by models/grains/spheres.hpp: a step's drag acts in the whole of the next one
-    std::vector<double> rate;  // 1/s, of each grain: drag by difference of speed
+    double density;   // kg/m3, of the grains
+    double diameter;  // m, mean
+    bool own_steps;   // moved by models/grains/spheres.hpp: a step's drag acts in the whole of the next one
+    std::vector<double> rate, wind;  // of each grain: 1/s, drag by difference of speed; m/s, the air about it
   };
   AirProfile& profile() const { return w_->state.air[place_]; }
   void make_profile();
@@ -45,17 +45,19 @@ class ColumnPhase : public Model {
   void feel();
   template <int Dim, class DragOf>
   void feel(Feeling& grains, const DragOf& excess);
+  void follow_wind();
   void spread_rates();
-  void spread_impulses(double time);
+  void spread_drag(bool so_far, std::vector<double>& sums);
   void find_voidage();
   double wind(double y, double radius) const;
   double top_stress(double time) const;
   double impulse_time(const Feeling& grains) const;
+  double time_ahead(const Feeling& grains) const;
 
   const Scene& scene_;
   const Layout& layout_;
   const ColumnKeys& keys_;
-  std::size_t number_, place_ = 0;  // of the phase; of the profile in the state
+  std::size_t number_, place_ = 0;    // of the phase; of the profile in the state
   double diameter_ = 0.0;             // m, of the largest phase
   double density_, area_, interval_;  // kg/m3; m2 (2D: of a metre of depth); s, between exchanges
   double hold_ = 0.0;                 // s, for which the next drag is kept
@@ -65,7 +67,8 @@ class ColumnPhase : public Model {
   Workspace* w_ = nullptr;
   std::unique_ptr<AirColumn> air_;
   std::unique_ptr<AirColumn::Spread> spread_;
-  std::vector<double> taken_, solid_;  // by cell: Pa s; solid part of the volume
+  std::unique_ptr<AirColumn::Load> load_;
+  std::vector<double> solid_;  // by cell: part of the volume
 };
 
 }  // namespace barchan

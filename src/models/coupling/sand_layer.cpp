@@ -40,14 +40,13 @@ void SandLayer::attach(Workspace& w) {
   for (std::size_t k = 0; k < n; ++k) {
     w.state.air.push_back(one);
     profile(k).phase = fluid_;
-    profile(k).pull.assign(one.cells(), 0.0);
   }
   layers_.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {
     layers_.emplace_back(air, profile(k));
     spreads_.emplace_back(one.cells());
+    loads_.emplace_back(one.cells());
   }
-  taken_.assign(one.cells(), 0.0);
   const std::size_t grains = w.particles(grains_).size();
   near_.reserve(grains);
   flying_.reserve(grains);
@@ -103,12 +102,12 @@ void SandLayer::act() {
   if (!first && clock.step != state.steps) clock.elapsed += state.dt;
   clock.step = state.steps;
   if (first || clock.elapsed >= interval_ * (1.0 - 1e-9)) {
-    const double dt = std::max(state.dt, 1e-300);
-    hold_ = dt * std::max(1.0, std::ceil(interval_ / dt * (1.0 - 1e-9)));
-    if (state.dt <= 0.0) hold_ = interval_;
+    hold_ = state.dt > 0.0 ? state.dt * std::max(1.0, std::ceil(interval_ / state.dt * (1.0 - 1e-9))) : interval_;
     grid_.gather(w_->particles(fluid_));
     if (first) find_steady_wind();
-    exchange();
+    exchange(clock.elapsed, clock.last);
+    clock.elapsed = 0.0;
+    clock.last = hold_;
   }
   for (const std::size_t phase : {fluid_, grains_}) {
     PhaseParticles& p = w_->particles(phase);
@@ -132,13 +131,15 @@ double SandLayer::top_speed(std::size_t column) const {
 
 /// The layers that the grains at their initial speeds let pass: steps that grow until the air rests.
 void SandLayer::find_steady_wind() {
-  double dt = interval_;
-  for (int k = 0; k < 80; ++k, dt = std::min(1.3 * dt, 10.0)) {
-    for (auto& layer : layers_) layer.integrate_speed();
+  const double hold = hold_;
+  for (int k = 0; k < 80; ++k) {
+    for (std::size_t c = 0; c < layers_.size(); ++c) {
+      layers_[c].integrate_speed();
+      std::fill(loads_[c].owed.begin(), loads_[c].owed.end(), 0.0);
+    }
     feel();
     spread();
-    for (std::size_t c = 0; c < layers_.size(); ++c) std::fill(profile(c).given.begin(), profile(c).given.end(), 0.0);
-    blow(dt);
+    blow(hold * std::min(std::pow(1.3, k), 1e6));
   }
   for (std::size_t c = 0; c < layers_.size(); ++c) {
     std::fill(profile(c).given.begin(), profile(c).given.end(), 0.0);
@@ -146,59 +147,80 @@ void SandLayer::find_steady_wind() {
   }
 }
 
-/// The air of the layers goes on by a time (s), in which the grains took what they pull.
+/// The air of the layers goes on by a time (s).
 void SandLayer::blow(double dt) {
-  for (std::size_t c = 0; c < layers_.size(); ++c) {
-    const auto& pull = profile(c).pull;
-    for (std::size_t k = 0; k < pull.size(); ++k) taken_[k] = dt * pull[k];
-    layers_[c].advance(dt, {0.0, top_speed(c)}, taken_);
-  }
+  for (std::size_t c = 0; c < layers_.size(); ++c)
+    layers_[c].advance(dt, AirColumn::Top::at_speed(top_speed(c)), loads_[c]);
 }
 
-void SandLayer::exchange() {
-  AirProfile& clock = profile(0);
-  if (clock.elapsed > 0.0) blow(clock.elapsed);
-  clock.elapsed = 0.0;
+/// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
+/// drag in that. A drag that was kept for another time than was meant gave the grains more or less than the air lost.
+void SandLayer::exchange(double kept, double meant) {
+  for (std::size_t c = 0; c < layers_.size(); ++c)
+    for (std::size_t k = 0; k < loads_[c].owed.size(); ++k)
+      loads_[c].owed[k] = profile(c).given[k] * (meant > 0.0 ? kept / meant - 1.0 : 0.0);
   feel();
   spread();
-  // What the layers do not take, the particles of the air do.
-  const PhaseParticles& p = w_->particles(grains_);
+  blow(hold_);
+  PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
-  const double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  for (const Near& q : near_) {
+    const double more =
+        rate_[q.grain] * (layers_[q.column].mean_speed(q.height - q.radius, q.height + q.radius) - q.wind);
+    ax[q.grain] += more * q.ground.along_x;
+    ay[q.grain] += more * q.ground.along_y;
+  }
+  // What the layers do not take, the particles of the air do; from the bed the ground takes what is across it.
   for (const std::size_t k : flying_) {
     const double m = p.mass_of(k);
     grid_.push({x[k], y[k]}, {-m * ax[k], -m * ay[k]});
   }
-  for (const auto& [k, column] : near_) {
-    const Ground g = ground(x[k]);
-    if (height_over(g, y[k]) < diameter_) continue;  // the ground takes what is across it
-    const double m = p.mass_of(k), across = -m * (ay[k] * g.along_x - ax[k] * g.along_y);
-    grid_.push({x[k], y[k]}, {-across * g.along_y, across * g.along_x});
+  for (const Near& q : near_) {
+    if (q.height < diameter_) continue;
+    const std::size_t k = q.grain;
+    const double across = -p.mass_of(k) * (ay[k] * q.ground.along_x - ax[k] * q.ground.along_y);
+    grid_.push({x[k], y[k]}, {-across * q.ground.along_y, across * q.ground.along_x});
   }
   grid_.give(w_->particles(fluid_));
 }
 
+/// Which grains are in the layers and which over them.
+void SandLayer::find_near() {
+  PhaseParticles& p = w_->particles(grains_);
+  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
+  const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
+  const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+  const double half = 0.5 * hold_;
+  near_.clear();
+  flying_.clear();
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const Ground g = ground(x[k]);
+    const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
+    if (height >= top_) {
+      flying_.push_back(k);
+    } else if (height > -deep * diameter_) {
+      near_.push_back({k, column_at(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, g});
+    } else {
+      p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
+    }
+  }
+}
+
 void SandLayer::feel() {
+  find_near();
   PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
   const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
-  const double solid = scene_.phases[grains_].density, g_y = scene_.domain.gravity[1], half = 0.5 * hold_;
-  near_.clear();
-  flying_.clear();
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    const double height = height_over(ground(x[k]), y[k]);
-    if (height >= top_) flying_.push_back(k);
-    else if (height > -deep * diameter_) near_.push_back({k, column_at(x[k])});
-    else ax[k] = ay[k] = rate_[k] = 0.0;
-  }
+  const double solid = scene_.phases[grains_].density, half = 0.5 * hold_;
+  const std::array<double, 2> gravity{scene_.domain.gravity[0], scene_.domain.gravity[1]};
   with_drag_law(law_, [&](auto law) {
     const auto excess = [](double re) { return decltype(law)::excess(re); };
     const auto of = [&](std::size_t k, const std::array<double, 2>& wind) {
       const double d = own ? 2.0 * own[k] : diameter_, stokes = 18.0 * density_ * viscosity_ / (solid * d * d);
-      const auto kept =
-          kept_drag<2>(wind, {u[k], v[k]}, {scene_.domain.gravity[0], g_y}, stokes, d / viscosity_, excess, hold_);
+      const auto kept = kept_drag<2>(wind, {u[k], v[k]}, gravity, stokes, d / viscosity_, excess, hold_);
       ax[k] = kept.drag[0];
       ay[k] = kept.drag[1];
       rate_[k] = kept.rate;
@@ -211,12 +233,9 @@ void SandLayer::feel() {
     }
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < near; ++i) {
-      const auto& [k, column] = near_[static_cast<std::size_t>(i)];
-      const Ground g = ground(x[k]);
-      const double r = own ? own[k] : 0.5 * diameter_;
-      const double at = height_over(g, y[k]) + half * (v[k] * g.along_x - u[k] * g.along_y);
-      const double speed = layers_[column].mean_speed(at - r, at + r);
-      of(k, {speed * g.along_x, speed * g.along_y});
+      Near& q = near_[static_cast<std::size_t>(i)];
+      q.wind = layers_[q.column].mean_speed(q.height - q.radius, q.height + q.radius);
+      of(q.grain, {q.wind * q.ground.along_x, q.wind * q.ground.along_y});
     }
   });
 }
@@ -224,22 +243,18 @@ void SandLayer::feel() {
 /// What the grains of a layer's cells pull by area, and how much more as the air gets faster.
 void SandLayer::spread() {
   const PhaseParticles& p = w_->particles(grains_);
-  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   const double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
-  const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
   const auto each = [&](auto&& amount_of, auto&& sums_of) {
     for (auto& s : spreads_) s.clear();
-    for (const auto& [k, column] : near_) {
-      const Ground g = ground(x[k]);
-      const double at = height_over(g, y[k]), r = own ? own[k] : 0.5 * diameter_, area = width_ / g.along_x;
-      spreads_[column].add(layers_[column], at - r, at + r, p.mass_of(k) * amount_of(k, g) / area);
-    }
-    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(profile(c)));
+    for (const Near& q : near_)
+      spreads_[q.column].add(layers_[q.column], q.height - q.radius, q.height + q.radius,
+                             p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_);
+    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads_[c]));
   };
-  each([&](std::size_t k, const Ground& g) { return ax[k] * g.along_x + ay[k] * g.along_y; },
-       [](AirProfile& air) -> std::vector<double>& { return air.pull; });
-  each([&](std::size_t k, const Ground&) { return rate_[k]; },
-       [](AirProfile& air) -> std::vector<double>& { return air.rate; });
+  each([&](const Near& q) { return ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y; },
+       [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
+  each([&](const Near& q) { return rate_[q.grain]; },
+       [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
 }
 
 void SandLayer::columns(std::vector<std::string>& names) const {

@@ -40,11 +40,11 @@ class SandLayer : public Model {
   };
   Ground ground(double x) const;
   std::size_t column_at(double x) const;
-  double height_over(const Ground& g, double y) const { return (y - g.height) * g.along_x; }
 
   void act();
-  void exchange();
+  void exchange(double kept, double meant);
   void find_steady_wind();
+  void find_near();
   void feel();
   void spread();
   void blow(double dt);
@@ -64,9 +64,12 @@ class SandLayer : public Model {
   std::vector<double> ground_;  // m, over the bottom of the domain
   std::vector<AirColumn> layers_;
   std::vector<AirColumn::Spread> spreads_;
-  std::vector<double> taken_;
+  std::vector<AirColumn::Load> loads_;
+  /// A grain in a layer, where it will be in the middle of the time to the next exchange.
   struct Near {
     std::size_t grain, column;
+    double height, radius, wind;  // m over the ground, m, m/s
+    Ground ground;
   };
   std::vector<Near> near_;           // grains in the layers
   std::vector<std::size_t> flying_;  // grains over them

@@ -50,8 +50,7 @@ void SaltationHistory::columns(std::vector<std::string>& names) const {
   const std::string& n = layer_.name;
   names.insert(names.end(), {n + "_bed [m]", n + "_flux [kg/m/s]", n + "_in_flight", n + "_flight_mass [kg/m2]",
                              n + "_flight_speed [m/s]", n + "_apex [m]"});
-  if (air_around(w_->layout, w_->state, phase_))
-    names.push_back(n + "_bed_friction_velocity [m/s]");
+  if (air_around(w_->layout, w_->state, phase_)) names.push_back(n + "_bed_friction_velocity [m/s]");
 }
 
 void SaltationHistory::row(std::vector<double>& values) const {
