@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "models/air/air.hpp"
 #include "models/bodies/elastic_phase.hpp"
 #include "models/column/column_phase.hpp"
@@ -53,7 +54,10 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(column, grains)) return Law::column;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
-  return Law::contact;
+  const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
+  if (touches(a) && touches(b)) return Law::contact;
+  throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + kind_of(a).name + ", and \"" + b.name +
+                   "\", of kind " + kind_of(b).name + "; expected no such entry");
 }
 
 }  // namespace

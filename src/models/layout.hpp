@@ -66,6 +66,8 @@ struct PlanEntry {
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
   bool of_spheres() const { return law == Law::contact && contact != ContactLaw::kernel; }
   bool sees_solid() const { return law == Law::boundary || law == Law::coupling; }
+  /// The other phase is part of the neighbourhood in which a fluid sums its rates.
+  bool continues_fluid() const { return law == Law::fluid || sees_solid(); }
 };
 
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.

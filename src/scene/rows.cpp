@@ -17,6 +17,8 @@ template <>
 constexpr std::array words_of<PhaseKind>{word("fluid", PhaseKind::fluid), word("elastic", PhaseKind::elastic),
                                          word("grains", PhaseKind::grains), word("wall", PhaseKind::wall),
                                          word("column", PhaseKind::column)};
+static_assert(words_of<PhaseKind>.size() == std::variant_size_v<decltype(Phase::own)>,
+              "each alternative of Phase::own needs its word here");
 template <>
 constexpr std::array words_of<EquationOfState>{word("linear", EquationOfState::linear),
                                                word("tait", EquationOfState::tait)};
