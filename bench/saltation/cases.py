@@ -152,7 +152,46 @@ def hop(bench):
     return {"hops": rows}
 
 
-CASES = {"settling": settling, "hop": hop}
+# --- the saturated flux of sand ---------------------------------------------------------------------------------------
+
+# Creyssels et al. 2009: u* (m/s), flux (g/m/s); begin and end of the average (s).
+FLUX = [(0.24, 5.25, 1.0, 2.0), (0.40, 21.09, 0.5, 1.2), (0.56, 48.85, 0.5, 1.2)]
+BLOCK = 0.1
+
+
+def flux_of(folder, u, creyssels, begin, end):
+    h = table(folder / "history.csv")
+    rows = [k for k, t in enumerate(h["time"]) if t >= begin]
+    end = min(end, h["time"][-1])
+    blocks = {}
+    for k in rows:
+        blocks.setdefault(int((h["time"][k] - begin) / BLOCK), []).append(1e3 * h["sand_flux"][k])
+    means = [sum(b) / len(b) for b in blocks.values() if len(b) > 10]
+    mean = sum(means) / len(means)
+    error = math.sqrt(sum((m - mean) ** 2 for m in means) / max(len(means) - 1, 1) / len(means))
+    fit = json.loads((folder / "saltation_sand.json").read_text())
+    d, stress = fit["diameter"], 1.2365 * u * u
+    p = table(folder / "saltation_sand.csv")
+    keep = [k for k, y in enumerate(p["height_over_bed"]) if 0 < y < 400 * d]
+    pick = lambda name, scale=1.0: [scale * p[name][k] for k in keep]
+    return {"u": u, "creyssels": creyssels, "flux": mean, "error": error, "from": begin, "to": end,
+            "flux_decay": fit["flux_decay"]["height"] / d, "flux_decay_error": fit["flux_decay"]["standard_error"] / d,
+            "concentration_decay": fit["concentration_decay"]["height"] / d,
+            "bed_u": sum(h["sand_bed_friction_velocity"][k] for k in rows) / len(rows),
+            "t": h["time"][::10], "q": [1e3 * q for q in h["sand_flux"][::10]],
+            "profile": {"height": pick("height_over_bed", 1 / d), "flux": pick("flux"), "wind": pick("air_speed"),
+                        "grain_stress": pick("grain_stress", 1 / stress), "air_stress": pick("air_stress", 1 / stress)}}
+
+
+def flux(bench):
+    runs = []
+    for u, creyssels, begin, end in FLUX:
+        folder = bench.run("saltation", f"flux_{u}", f"phases.air.friction-velocity={u}", f"time.end={end}", f"saltation.0.start={begin}")
+        runs.append(flux_of(folder, u, creyssels, begin, end))
+    return {"block": BLOCK, "runs": runs, "notes": []}
+
+
+CASES = {"settling": settling, "hop": hop, "flux": flux}
 
 
 def main():

@@ -121,7 +121,8 @@ class Maker {
     i.axis = 1;
     i.low = bounds_.low;
     i.high = bounds_.high;
-    i.diameter = layout_.phases[i.phase].diameter > 0 ? layout_.phases[i.phase].diameter : layout_.phases[i.phase].spacing;
+    i.diameter =
+        layout_.phases[i.phase].diameter > 0 ? layout_.phases[i.phase].diameter : layout_.phases[i.phase].spacing;
     i.flight = s.flight * i.diameter;
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)

@@ -68,7 +68,7 @@ class Model {
   /// Its phase; -1: it belongs to an entry.
   virtual int phase() const { return -1; }
   /// Columns of history.csv of its own, and their values: of a moving phase behind those that all have, of an entry at
-  /// the end; a phase that does not move has none. A row may follow the loading of a checkpoint at once, before records
+  /// the end. A row may follow the loading of a checkpoint at once, before records
   /// are filled: it reads the fields and what archive() saves.
   virtual void columns(std::vector<std::string>&) const {}
   virtual void row(std::vector<double>&) const {}

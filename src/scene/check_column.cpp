@@ -28,9 +28,17 @@ void check_wind(const Phase& column, const std::string& dotted, const Report& re
   if (own.held && !own.speed && !own.log_profile && !given(own.friction_velocity) &&
       !report.touched(dotted + ".friction-velocity"))
     report(dotted + ".held", "no wind to hold; expected log-profile, speed (0 of still air) or friction-velocity");
+  if (own.averaging && !own.held && own.slip == Slip::free_slip && report.has(dotted + ".slip"))
+    report(dotted + ".slip", "nothing would hold air without inertia; expected \"no-slip\", or no averaging");
+  if (own.averaging && !own.held && (own.speed || own.log_profile))
+    report(dotted + ".averaging",
+           "air without inertia does not remember the wind of the start; expected no such key, or no "
+           "speed and no log-profile");
+  if (own.averaging && own.held && !own.speed && !own.log_profile)
+    report(dotted + ".averaging", "a wind that is held does not feel the grains; expected no such key");
   if (own.held && (own.speed || own.log_profile)) {
     const std::string why = "a wind that is held at its start needs none; expected no such key";
-    for (const char* key : {".friction-velocity", ".mixing-length", ".slip"})
+    for (const char* key : {".friction-velocity", ".mixing-length", ".slip", ".averaging"})
       if (report.has(dotted + key)) report(dotted + key, why);
     if (own.log_profile && report.has(dotted + ".resolution"))
       report(dotted + ".resolution", "a logarithmic wind that is held has no cells; expected no such key");
@@ -75,7 +83,7 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
                         kind_word(other->kind()) + "; expected no such entry");
       continue;
     }
-    for (const char* key : {".radius", ".kernel"})
+    for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
       if (report.has(entry + key))
         report(entry + key,
                "a column of air has no kernel: a grain feels the wind of its height; expected no such key");

@@ -143,6 +143,13 @@ constexpr Slot fill_pressure(const char* in_words) {
   return slot;
 }
 
+/// Of all kinds of phases that have particles.
+constexpr Slot spacing_of_particles(const char* in_words) {
+  Slot slot = at<&Phase::spacing>(in_words);
+  slot.kinds = kinds_with<PhaseKind::fluid, PhaseKind::elastic, PhaseKind::grains, PhaseKind::wall>;
+  return slot;
+}
+
 /// A number, or the name of a law.
 constexpr Slot drag(const char* in_words) {
   Slot slot = at<&Interaction::drag>(0.0, in_words);
@@ -232,7 +239,7 @@ constexpr Key table[] = {
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
-    {"phases", "spacing", at<&Phase::spacing>("that of the scene"), "m", "Distance between the particles of this phase.", positive},
+    {"phases", "spacing", spacing_of_particles("that of the scene"), "m", "Distance between the particles of this phase.", positive},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
      "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
     {"phases", "viscosity", of<&FluidKeys::viscosity, &ColumnKeys::viscosity>(0.0, "0; of a column required"), "m2/s", "Kinematic viscosity.", not_negative},
@@ -292,6 +299,9 @@ constexpr Key table[] = {
      "Height of the column's cells as far up as grains stand at the start, and 20 diameters more; above they grow by 5 % a cell.", positive},
     {"phases", "mixing-length", of<&ColumnKeys::mixing_length>(MixingLength::duran), "",
      "How the column's turbulence carries momentum down: Duran, Andreotti & Claudin 2012, which needs no bed surface; or not at all."},
+    {"phases", "averaging", of<&ColumnKeys::averaging>("none: the air has inertia"), "s",
+     "The wind is at every moment the steady one for the grains' drag averaged over this time: it follows a storm at once, where air with "
+     "inertia takes a second or more.", positive},
     {"phases", "held", of<&ColumnKeys::held>(false), "", "The wind of the start stays as it is: the air does not feel the grains."},
     {"phases", "speed", of<&ColumnKeys::speed>("that of the steady wind over the grains at rest"), "m/s", "Speed of the air at the start, the same at all heights."},
     {"phases", "log-profile", of<&ColumnKeys::log_profile>("none"), "",

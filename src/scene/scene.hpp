@@ -115,6 +115,7 @@ struct ColumnKeys {
   std::optional<double> resolution;  // m, of the cells among the grains; empty: a quarter of a diameter
   MixingLength mixing_length{};
   Slip slip{};                            // on the bottom of the domain
+  std::optional<double> averaging;        // s, of the grains' drag on air without inertia; empty: it has inertia
   bool held{};                            // the profile of the start stays: the air does not feel the grains
   std::optional<double> speed;            // m/s, the same at all heights at the start
   std::optional<LogProfile> log_profile;  // at the start
@@ -122,8 +123,8 @@ struct ColumnKeys {
 
 struct Phase {
   std::string name;
-  double density{};  // kg/m3, at rest
-  double spacing{};  // m, of its particles
+  double density{};                                                            // kg/m3, at rest
+  double spacing{};                                                            // m, of its particles
   std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys, ColumnKeys> own;  // in the order of PhaseKind
 
   PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }

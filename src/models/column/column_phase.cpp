@@ -193,8 +193,36 @@ void ColumnPhase::exchange() {
   if (keys_.held) return;
   spread_rates();
   spread_drag(false, load_->pull);
-  air_->advance(hold_, top_stress(w_->state.time), *load_);
+  if (keys_.averaging) {
+    const double before = p.boundary;
+    average_load();
+    air_->advance(*keys_.averaging, top_stress(w_->state.time), *load_);
+    p.boundary = before + (p.stress.back() - p.stress.front()) * hold_;
+    std::fill(p.given.begin(), p.given.end(), 0.0);
+  } else {
+    air_->advance(hold_, top_stress(w_->state.time), *load_);
+  }
   follow_wind();
+}
+
+/// Air without inertia: the load becomes its exponential average. The air then goes a step as long as the average, of
+/// which some thousand fit into one: it is as good as steady.
+void ColumnPhase::average_load() {
+  AirProfile& p = profile();
+  const bool first = p.mean_rate.empty();
+  if (first) {
+    p.mean_rate.assign(p.cells(), 0.0);
+    p.mean_push.assign(p.cells(), 0.0);
+  }
+  const double share = first ? 1.0 : -std::expm1(-hold_ / *keys_.averaging);
+  for (std::size_t c = 0; c < p.cells(); ++c) {
+    const double push = load_->rate[c] * p.speed[c] - load_->pull[c];
+    p.mean_rate[c] += share * (load_->rate[c] - p.mean_rate[c]);
+    p.mean_push[c] += share * (push - p.mean_push[c]);
+    load_->rate[c] = p.mean_rate[c];
+    load_->pull[c] = p.mean_rate[c] * p.speed[c] - p.mean_push[c];
+    load_->owed[c] = 0.0;
+  }
 }
 
 /// The wind that a grain feels: the mean over its height; of a logarithmic profile that is held, that at its centre.
@@ -331,9 +359,14 @@ void ColumnPhase::find_voidage() {
   for (std::size_t c = 0; c < solid_.size(); ++c) solid_[c] /= air.face[c + 1] - air.face[c];
 }
 
+/// The profile belongs to the state; what is made of it is made again.
+void ColumnPhase::archive(Archive& a) {
+  if (a.loads()) air_->integrate_speed();
+}
+
 void ColumnPhase::columns(std::vector<std::string>& names) const {
   const std::string& name = scene_.phases[number_].name;
-  names.push_back(name + "_momentum_x [kg m/s]");
+  if (!keys_.averaging) names.push_back(name + "_momentum_x [kg m/s]");
   names.push_back(name + "_boundary_impulse_x [kg m/s]");
 }
 
@@ -341,6 +374,10 @@ void ColumnPhase::columns(std::vector<std::string>& names) const {
 /// exchange.
 void ColumnPhase::row(std::vector<double>& values) const {
   const AirProfile& air = profile();
+  if (keys_.averaging) {
+    values.push_back(area_ * air.boundary);
+    return;
+  }
   double momentum = air_->momentum();
   for (const double given : air.given) momentum += given;
   momentum *= area_;

@@ -26,6 +26,7 @@ class ColumnPhase : public Model {
   int phase() const override { return static_cast<int>(number_); }
   void columns(std::vector<std::string>& names) const override;
   void row(std::vector<double>& values) const override;
+  void archive(Archive& a) override;
 
  private:
   /// A phase of grains that feels the wind.
@@ -45,6 +46,7 @@ class ColumnPhase : public Model {
   void feel();
   template <int Dim, class DragOf>
   void feel(Feeling& grains, const DragOf& excess);
+  void average_load();
   void follow_wind();
   void spread_rates();
   void spread_drag(bool so_far, std::vector<double>& sums);
