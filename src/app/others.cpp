@@ -11,6 +11,7 @@
 #include "output/series.hpp"
 #include "scene/reader.hpp"
 #include "simulation/estimate.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -22,7 +23,7 @@ void use_threads(int wanted, const Plan& plan) {
 
 int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   Plan plan = make_plan(scene, blocks);
   use_threads(threads, plan);
   const Estimate estimate = measure(scene, plan, blocks);
@@ -32,7 +33,7 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
 
 int generate(const std::string& file, const std::string& output, const std::vector<std::string>& overrides) {
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   const Plan plan = make_plan(scene, blocks);
   const bool vtu = std::filesystem::path(output).extension() == ".vtu";
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")

@@ -21,6 +21,7 @@
 #include "output/run_report.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -265,7 +266,7 @@ class Run {
     const auto columns = simulation_.history_columns();
     const auto row = simulation_.history_row();
     for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
-    r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.neighbours().rebuilds());
+    r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation_.searches());
     r.budgets["bytes_per_particle"] = static_cast<double>(simulation_.bytes()) / std::max(plan.particles(), 1.0);
     r.end_reason = reason_;
     r.warnings = simulation_.warnings().texts();
@@ -316,7 +317,7 @@ std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::
 int run(const RunOptions& options) {
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   const Plan plan = make_plan(scene, blocks);
   use_threads(options.threads, plan);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);

@@ -115,6 +115,12 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
+  const bool box_or_bed = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
+  if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !box_or_bed))
+    report(dotted + ".packing",
+           "only spheres settle, in a box or a bed; expected grains with a diameter, and such a shape");
+  if (fill.packing == Packing::settled && fill.perturb > 0.0)
+    report(dotted + ".perturb", "grains at rest stay where they are; expected no such key");
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   if (close && !continuous && placed)
@@ -162,6 +168,9 @@ void check_fills(const Scene& scene, const Report& report) {
     if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
       check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);
+    if (phase && fill.packing == Packing::settled && !(scene.domain.gravity[1] < 0.0) &&
+        !report.touched("domain.gravity"))
+      report(dotted + ".packing", "nothing makes the grains fall; expected domain.gravity with a negative y component");
     if (phase) check_phase_of(fill, *phase, dotted, report);
     if (phase && fill.packing == Packing::fitted) check_fitted(scene, k, *phase, dotted, report);
   }

@@ -168,7 +168,7 @@ std::vector<double> fitted_heights(const Scene& scene, const std::array<int, 2>&
   return heights;
 }
 
-std::vector<ParticleBlock> generate(const Scene& scene) {
+std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const std::string misfit = scene.domain.periodic[axis] ? misfit_of_period(scene, axis) : "";
     if (!misfit.empty()) throw SceneError(scene.file + ": domain.size: " + misfit);
@@ -183,8 +183,17 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     const auto phase =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
-    std::vector<Vec3> places = places_of(scene, k, occupied);
-    perturb(places, fill, scene);
+    std::vector<Vec3> places;
+    SettledGrains settled;
+    if (fill.packing == Packing::settled) {
+      if (!settle) fail(scene, k, "a settled packing cannot be made here");
+      settled = settle(scene, k, blocks);
+      keep_inside(scene, k, settled.position, settled.radius);
+      places = settled.position;
+    } else {
+      places = places_of(scene, k, occupied);
+      perturb(places, fill, scene);
+    }
     check_places(places, k, scene, phase->kind(), occupied);
     if (k + 1 < scene.fills.size())
       for (const Vec3& x : places)
@@ -193,6 +202,7 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);
+    block.radius.insert(block.radius.end(), settled.radius.begin(), settled.radius.end());
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)

@@ -211,7 +211,8 @@ struct BedShape {
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
                            FormulaShape, SidesShape, BedShape, TheRestShape>;
 
-enum class Packing { square, hexagonal, random, fitted };  // rows, staggered rows, without overlap, along the ground
+/// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
+enum class Packing { square, hexagonal, random, fitted, settled };
 
 struct Fill {
   std::string phase;

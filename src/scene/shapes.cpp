@@ -197,6 +197,23 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
 
 }  // namespace
 
+void keep_inside(const Scene& scene, std::size_t k, std::vector<Vec3>& places, std::vector<double>& radii) {
+  RegionOf region_of(scene, scene.fills[k]);
+  std::visit(region_of, scene.fills[k].shape);
+  const Region region = region_of.take();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    bool inside = region.inside(places[i]);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+      inside = inside && places[i][d] >= region.lower[d] - scene.spacing && places[i][d] <= region.upper[d];
+    if (!inside) continue;
+    places[kept] = places[i];
+    radii[kept++] = radii[i];
+  }
+  places.resize(kept);
+  radii.resize(kept);
+}
+
 std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {
   const Fill& fill = scene.fills[k];
   const double dx = spacing_of(scene, fill);

@@ -43,6 +43,8 @@ class Simulation {
 
   /// Directed pairs of an entry in its current lists (those in the skin too).
   std::uint64_t pairs(const PlanEntry& entry) const;
+  /// How often lists were made anew, of all entries.
+  long searches() const;
   /// How often each stage of the schedule was executed, in the order of the step; wall time of each, and processor time
   /// of the calling thread, which a benchmark on a busy machine can trust (s).
   const std::vector<long>& executed() const { return schedule_.executed(); }
