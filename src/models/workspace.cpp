@@ -117,6 +117,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
   }
   eddies.resize(phases);
+  ground_stress.resize(phases);
   for (std::size_t k = 0; k < phases; ++k) {
     motion.emplace_back(read[k] ? size : 0);
     extended.emplace_back(seen[k] ? size : 0);

@@ -20,6 +20,7 @@ std::string to_string(Law law) {
     case Law::repulsive: return "repulsive";
     case Law::coupling: return "coupling";
     case Law::column: return "column";
+    case Law::drag: return "drag";
     case Law::contact: return "contact";
     case Law::elastic: return "elastic";
   }
@@ -56,7 +57,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 
 /// The first direction of an entry, and its opposite. A wall looks for nobody but the fluid that is extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
-  if (e.law == Law::column) return;  // by height: nobody is looked for
+  if (e.law == Law::column || e.law == Law::drag) return;  // by height: nobody is looked for
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
@@ -91,7 +92,7 @@ void add_entries(const Scene& scene, Plan& plan) {
         return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
       };
       e.radius = 0.5 * (across(e.a) + across(e.b));
-    } else if (e.law != Law::column) {
+    } else if (e.law != Law::column && e.law != Law::drag) {
       e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     }
     add_directions(plan, e);

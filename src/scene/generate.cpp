@@ -74,6 +74,16 @@ class InitialVelocity {
   std::array<Formula, 3> components_;
 };
 
+/// Spheres lie in the ground of the air, which has another wall than they have: nothing joins the two.
+bool may_overlap(const Scene& scene, const Fill& a, const Fill& b) {
+  const Phase *p = find_phase(scene, a.phase), *q = find_phase(scene, b.phase);
+  if (!p || !q || entry_between(scene, *p, *q)) return false;
+  const auto ground_and_spheres = [](const Phase& wall, const Phase& grains) {
+    return wall.if_wall() && grains.if_grains() && grains.diameter();
+  };
+  return ground_and_spheres(*p, *q) || ground_and_spheres(*q, *p);
+}
+
 void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind,
                   const Occupied& occupied) {
   const std::string phase = " of phase \"" + scene.fills[k].phase + "\"";
@@ -88,7 +98,7 @@ void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& s
                " m lies outside the domain; expected a shape inside it");
     constexpr double least = (1.0 - 1e-6) * overlap_distance;
     const int other = std::max(occupied.inside.owner_near(x, dx, least), occupied.outside.owner_near(x, dx, least));
-    if (other < 0) continue;
+    if (other < 0 || may_overlap(scene, scene.fills[k], scene.fills[static_cast<std::size_t>(other)])) continue;
     fail(scene, k,
          "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
              " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +

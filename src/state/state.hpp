@@ -3,6 +3,7 @@
 // (simulation/simulation.hpp, archive).
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ struct Retreat {
 
 struct State {
   std::vector<PhaseParticles> phases;
-  std::vector<AirProfile> air;  // of the phases that are air without particles
+  std::deque<AirProfile> air;   // wind by height: of phases that are air without particles, of layers over sand
   double time = 0.0, dt = 0.0;  // s
   long steps = 0;
   double largest_acceleration = 0.0;         // m/s2, of the last kick
