@@ -116,6 +116,27 @@ class Maker {
     return i;
   }
 
+  Instrument saltation(const SaltationLayer& s) const {
+    Instrument i = common(s, InstrumentKind::saltation, "saltation");
+    i.axis = 1;
+    i.low = bounds_.low;
+    i.high = bounds_.high;
+    i.diameter =
+        layout_.phases[i.phase].diameter > 0 ? layout_.phases[i.phase].diameter : layout_.phases[i.phase].spacing;
+    i.flight = s.flight * i.diameter;
+    i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
+    for (const PlanEntry& e : layout_.entries)
+      if (e.law == Law::column && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
+    const double height = i.high[1] - i.low[1];
+    const double slices = s.count > 0 ? s.count : std::max(std::round(height / i.diameter), 1.0);
+    for (double k = 0.5; k < slices; ++k) {
+      Vec3 x = 0.5 * (i.low + i.high);
+      x[1] = i.low[1] + k * height / slices;
+      i.rows.push_back(x);
+    }
+    return i;
+  }
+
  private:
   std::size_t dimensions() const { return static_cast<std::size_t>(scene_.dimensions); }
   std::size_t number(const std::string& name) const {
@@ -140,6 +161,7 @@ std::vector<std::string> Instrument::files() const {
   switch (kind) {
     case InstrumentKind::probe: return {stem + ".csv"};
     case InstrumentKind::grid: return {stem + ".vti"};
+    case InstrumentKind::saltation: return {stem + ".csv", stem + ".vtp", stem + ".json"};
     default: return {stem + ".csv", stem + ".vtp"};
   }
 }
@@ -151,6 +173,7 @@ std::vector<Instrument> make_instruments(const Scene& scene, const Layout& layou
   for (const Profile& p : scene.measuring.profiles) instruments.push_back(maker.profile(p));
   for (const Grid& g : scene.measuring.grids) instruments.push_back(maker.grid(g));
   for (const WallShear& w : scene.measuring.wall_shears) instruments.push_back(maker.wall_shear(w));
+  for (const SaltationLayer& s : scene.measuring.saltation) instruments.push_back(maker.saltation(s));
   return instruments;
 }
 
@@ -161,14 +184,15 @@ std::string kind_name(InstrumentKind kind) {
     case InstrumentKind::slices: return "profile";
     case InstrumentKind::grid: return "grid";
     case InstrumentKind::wall_shear: return "wall-shear";
+    case InstrumentKind::saltation: return "saltation";
   }
   return "";
 }
 
 std::string to_text(const Instrument& i) {
-  const char* rows = i.kind == InstrumentKind::wall_shear ? "columns"
-                     : i.kind == InstrumentKind::slices   ? "slices"
-                                                          : "points";
+  const char* rows = i.kind == InstrumentKind::wall_shear                                      ? "columns"
+                     : i.kind == InstrumentKind::slices || i.kind == InstrumentKind::saltation ? "slices"
+                                                                                               : "points";
   char text[160];
   std::snprintf(text, sizeof text, "%zu %s, every %g s from %g s", i.rows.size(), rows, i.every, i.start);
   if (i.kind == InstrumentKind::probe) std::snprintf(text, sizeof text, "every %g s", i.every);
@@ -177,8 +201,8 @@ std::string to_text(const Instrument& i) {
 
 std::vector<std::string> not_measured(const std::vector<Instrument>& instruments) {
   std::vector<std::string> words;
-  for (const InstrumentKind kind :
-       {InstrumentKind::probe, InstrumentKind::line, InstrumentKind::grid, InstrumentKind::wall_shear})
+  for (const InstrumentKind kind : {InstrumentKind::probe, InstrumentKind::line, InstrumentKind::grid,
+                                    InstrumentKind::wall_shear, InstrumentKind::saltation})
     if (std::none_of(instruments.begin(), instruments.end(),
                      [&](const Instrument& i) { return kind_name(i.kind) == kind_name(kind); }))
       words.push_back(kind_name(kind));

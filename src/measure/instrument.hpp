@@ -10,7 +10,7 @@
 
 namespace barchan {
 
-enum class InstrumentKind { probe, line, slices, grid, wall_shear };
+enum class InstrumentKind { probe, line, slices, grid, wall_shear, saltation };
 
 /// One instrument. It has rows: places for which it keeps averages, one line each in its files.
 ///
@@ -47,9 +47,15 @@ struct Instrument {
   double viscosity = 0;  // Pa s, dynamic; with what artificial viscosity adds
   double density = 0;    // kg/m3, at rest
 
+  // saltation: slices of the domain's height
+  double diameter = 0, flight = 0;  // m, mean; what is higher over the bed is in flight
+  double area = 0;                  // m2, of the ground (2D: of a metre of depth)
+  int air = -1;                     // number of the phase of air without particles around the grains; -1: none
+
   /// Numbers that a sample of a row has: velocity (or shear stress) by component, pressure; slices have the distance
   /// from the row's place before them.
   std::size_t quantities() const {
+    if (kind == InstrumentKind::saltation) return 5;  // measurements_saltation.cpp
     return static_cast<std::size_t>(dimensions) + (kind == InstrumentKind::slices ? 2 : 1);
   }
   std::vector<std::string> files() const;

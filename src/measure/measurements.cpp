@@ -76,7 +76,8 @@ Measurements::Measurements(std::vector<Instrument> instruments, const Bounds& bo
     place.mean += i.rows.size() * q;
     place.comoment += i.rows.size() * q * (q + 1) / 2;
     const auto same = [&](const Searched& s) { return s.phase == i.phase && s.radius == i.radius; };
-    if (i.kind != InstrumentKind::slices && std::none_of(lookups_.begin(), lookups_.end(), same))
+    const bool interpolates = i.kind != InstrumentKind::slices && i.kind != InstrumentKind::saltation;
+    if (interpolates && std::none_of(lookups_.begin(), lookups_.end(), same))
       lookups_.push_back({i.phase, i.radius, Lookup(bounds, i.radius), -1});
   }
   memory_.due.assign(instruments_.size(), 0);
@@ -117,8 +118,8 @@ void Measurements::sample(const State& state) {
     const Instrument& i = instruments_[k];
     const bool averaged = state.time >= i.start * (1.0 - 1e-12);
     if (averaged) ++memory_.moments[k];
-    if (i.kind == InstrumentKind::slices) {
-      take_slices(k, state);
+    if (i.kind == InstrumentKind::slices || i.kind == InstrumentKind::saltation) {
+      i.kind == InstrumentKind::slices ? take_slices(k, state) : take_layers(k, state);
       continue;
     }
     read_points(k, state);
@@ -244,6 +245,7 @@ void Measurements::write_probe(std::size_t k, double time) {
 
 Table Measurements::table(std::size_t k) {
   const Instrument& i = instruments_[k];
+  if (i.kind == InstrumentKind::saltation) return layers(k);
   const bool wall = i.kind == InstrumentKind::wall_shear, slices = i.kind == InstrumentKind::slices;
   const auto dimensions = static_cast<std::size_t>(i.dimensions);
   const std::string vector = wall ? "shear_stress" : "velocity", unit = wall ? "Pa" : "m/s";
@@ -297,6 +299,7 @@ void Measurements::write(const std::filesystem::path& directory, double time) {
     } else {
       write_csv(directory / (i.stem + ".csv"), t);
       write_polyline(directory / (i.stem + ".vtp"), t);
+      if (i.kind == InstrumentKind::saltation) write_decay(k, directory / (i.stem + ".json"), time);
     }
   }
 }

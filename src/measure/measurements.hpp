@@ -51,6 +51,10 @@ class Measurements {
   void read_points(std::size_t instrument, const State& state);
   void take_points(std::size_t instrument);
   void take_slices(std::size_t instrument, const State& state);
+  void take_layers(std::size_t instrument, const State& state);
+  Table layers(std::size_t instrument);
+  double bed_of(std::size_t instrument);
+  void write_decay(std::size_t instrument, const std::filesystem::path& file, double time);
   void write_probe(std::size_t instrument, double time);
 
   std::vector<Instrument> instruments_;
@@ -66,6 +70,7 @@ class Measurements {
     long step;  // for which it was made
   };
   std::vector<Searched> lookups_;  // one a phase and radius
+  std::vector<double> sums_;       // of the saltation at hand, by slice
   std::vector<Reading> readings_;  // of the instrument at hand, by point; then by row
   std::vector<History> probes_;
   double seconds_ = 0;

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "models/air/air.hpp"
 #include "models/bodies/elastic_phase.hpp"
+#include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_phase.hpp"
+#include "models/grains/saltation_layer.hpp"
 #include "models/grains/spheres.hpp"
 #include "models/walls/wall.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -34,6 +38,7 @@ Kind kind_of(const Phase& phase) {
     case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, make<ElasticPhase>};
     case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
     case PhaseKind::wall: return {"wall", false, false, describe_wall, make<Wall>};
+    case PhaseKind::column: return {"column", false, false, describe_column, make<ColumnPhase>};
   }
   return {};
 }
@@ -45,9 +50,13 @@ Law law_of(const Phase& a, const Phase& b) {
   using enum PhaseKind;
   if (is(fluid, fluid)) return Law::fluid;
   if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
+  if (is(column, grains)) return Law::column;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
-  return Law::contact;
+  const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
+  if (touches(a) && touches(b)) return Law::contact;
+  throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + kind_of(a).name + ", and \"" + b.name +
+                   "\", of kind " + kind_of(b).name + "; expected no such entry");
 }
 
 }  // namespace
@@ -62,6 +71,9 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   }
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column))
+      layout.phases[k].fields.push_back(Field::drag_acceleration);
 }
 
 void classify(const Scene& scene, PlanEntry& e) {
@@ -89,6 +101,8 @@ Models make_models(const Scene& scene, const Layout& layout) {
     if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
   }
+  for (const SaltationLayer& layer : scene.measuring.saltation)
+    models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));
   return models;
 }
 

@@ -10,7 +10,7 @@ namespace barchan {
 void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& blocks, Layout& layout,
                      std::vector<std::string>& warnings);
 
-/// The law of an entry, and which of its phases is a fluid.
+/// The law of an entry, and which of its phases is a fluid. Throws SceneError when there is no law for their kinds.
 void classify(const Scene& scene, PlanEntry& entry);
 
 /// The models of a scene, in the order in which they act within a stage of the step.

@@ -19,6 +19,7 @@ enum class Law {
   boundary,   // fluid-wall: pressure and velocity extended into the wall (Adami et al. 2012)
   repulsive,  // fluid-wall: one row of ghosts that push (Halik et al. 2015, section 6; Monaghan 1994)
   coupling,   // fluid-grains, fluid-elastic: the solid is a moving wall and feels the reaction
+  column,     // column-grains: drag in a wind by height
   contact,    // grains with grains, walls or bodies
   elastic,    // elastic-elastic: stress
 };
@@ -56,6 +57,7 @@ struct PlanEntry {
   Consistency consistency;
   bool corrected = false;           // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                  // drag coefficient, 0: none
+  DragLaw drag_law = DragLaw::none;  // of grains in a column
   int forward = -1, backward = -1;  // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
@@ -63,6 +65,8 @@ struct PlanEntry {
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
   bool of_spheres() const { return law == Law::contact && contact != ContactLaw::kernel; }
   bool sees_solid() const { return law == Law::boundary || law == Law::coupling; }
+  /// The other phase is part of the neighbourhood in which a fluid sums its rates.
+  bool continues_fluid() const { return law == Law::fluid || sees_solid(); }
 };
 
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.
@@ -101,6 +105,7 @@ struct PlanPhase {
   bool free_surface = false;             // a fluid that does not fill its space
   bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
   bool enclosed = false;                 // a fluid whose mean density is kept
+  double wind = 0;               // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
   std::vector<Field> fields;
   PhaseRules rules;

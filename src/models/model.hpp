@@ -68,7 +68,9 @@ class Model {
   virtual const StepLimit* moving_limit() { return nullptr; }
   /// Its phase; -1: it belongs to an entry.
   virtual int phase() const { return -1; }
-  /// Columns of history.csv of its own, behind those that every moving phase has, and their values.
+  /// Columns of history.csv of its own, and their values: of a moving phase behind those that all have, of an entry at
+  /// the end. A row may follow the loading of a checkpoint at once, before records
+  /// are filled: it reads the fields and what archive() saves.
   virtual void columns(std::vector<std::string>&) const {}
   virtual void row(std::vector<double>&) const {}
   /// What has gone wrong in what only it sees, with the remedy; empty: nothing.

@@ -109,7 +109,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   const std::size_t phases = layout.phases.size();
   const int size = layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
   const bool mixed = scene.precision == Precision::mixed;
-  // Who reads records in double: every law but the fluid's own in mixed precision, and its energy.
+  // Who reads records in double: every law but the fluid's own in mixed precision, and who asks for it (need_motion).
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
     if (e.sees_solid()) seen[e.other] = true;
@@ -117,12 +117,17 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   }
   eddies.resize(phases);
   for (std::size_t k = 0; k < phases; ++k) {
-    motion.emplace_back(read[k] || (layout.phases[k].flows && state.phases[k].has(Field::energy)) ? size : 0);
+    motion.emplace_back(read[k] ? size : 0);
     extended.emplace_back(seen[k] ? size : 0);
     stress.emplace_back(0);
     compact.push_back(mixed && (layout.phases[k].flows || seen[k]) ? std::make_unique<CompactRecords>(layout.bounds)
                                                                    : nullptr);
   }
+}
+
+void Workspace::need_motion(std::size_t phase) {
+  if (motion[phase].stride() == 0)
+    motion[phase] = RecordArray(layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size);
 }
 
 void Workspace::fit_records() {

@@ -42,6 +42,9 @@ class Workspace {
   const PairList& list(int direction) const { return neighbours.list(static_cast<std::size_t>(direction)); }
   /// Records of particles and images of a phase.
   std::size_t records(std::size_t phase) const { return state.phases[phase].size() + neighbours.grid(phase).images(); }
+  /// In attach: a task will read the motion records of this phase. In mixed precision a fluid has compact ones only,
+  /// unless a law other than its own reads it.
+  void need_motion(std::size_t phase);
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;

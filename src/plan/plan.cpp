@@ -17,6 +17,7 @@ std::string to_string(Law law) {
     case Law::boundary: return "boundary";
     case Law::repulsive: return "repulsive";
     case Law::coupling: return "coupling";
+    case Law::column: return "column";
     case Law::contact: return "contact";
     case Law::elastic: return "elastic";
   }
@@ -53,6 +54,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 
 /// The first direction of an entry, and its opposite. A wall looks for nobody but the fluid that is extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
+  if (e.law == Law::column) return;  // by height: nobody is looked for
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
@@ -80,13 +82,14 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.radius = i.radius * e.spacing;
     e.drag = i.drag;
     e.contact = i.law;
+    e.drag_law = i.drag_law;
     classify(scene, e);
     if (e.of_spheres()) {
       const auto across = [&](std::size_t k) {
         return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
       };
       e.radius = 0.5 * (across(e.a) + across(e.b));
-    } else {
+    } else if (e.law != Law::column) {
       e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     }
     add_directions(plan, e);
@@ -101,6 +104,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (p.smoothing_length == 0)
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
+    if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // nobody is looked for
     if (p.flows) p.rules.way = 2.0 * p.smoothing_length;
   }
 }

@@ -30,6 +30,7 @@ std::string law_of(const PlanEntry& e) {
 
 /// What the kernel sums of an entry mean.
 std::string meaning(const PlanEntry& e) {
+  if (e.law == Law::column) return "no kernel: the wind of the grain's height";
   if (e.corrected) return "corrected to first order by the consistent scheme";
   if (e.of_spheres()) return "spheres: touching decides";
   if (e.law == Law::contact || e.law == Law::repulsive) return "a contact law, not an approximation";

@@ -38,7 +38,7 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
     const PlanPhase& phase = plan.phases[k];
     for (std::size_t w = 0; w < plan.phases.size() && phase.moves; ++w) {
       const PlanPhase& wall = plan.phases[w];
-      if (wall.moves || meet(k, w)) continue;
+      if (wall.moves || wall.count == 0 || meet(k, w)) continue;
       if (phase.flows && !stands_behind_sides(scene, scene.phases[w])) continue;  // it may lie under a bed
       plan.warnings.push_back("interactions: no entry " + phase.name + "-" + wall.name + ": the wall \"" + wall.name +
                               "\" does not hold \"" + phase.name + "\", which passes through it");

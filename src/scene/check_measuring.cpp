@@ -130,6 +130,14 @@ class Checker {
             " in [interactions]");
   }
 
+  void saltation(const SaltationLayer& s, const std::string& dotted) {
+    const Phase* phase = find_phase(scene_, s.phase);
+    if (phase && fine(dotted + ".phase") && !report_.touched("phases." + phase->name + ".kind") &&
+        phase->kind() != PhaseKind::grains)
+      report_(dotted + ".phase",
+              "\"" + phase->name + "\" is of kind " + kind_word(phase->kind()) + "; expected a phase of kind grains");
+  }
+
  private:
   bool fine(const std::string& dotted) const { return report_.has(dotted) && !report_.touched(dotted); }
   std::size_t dimensions() const { return static_cast<std::size_t>(scene_.dimensions); }
@@ -169,6 +177,10 @@ void check_measuring(const Scene& scene, const Report& report) {
   for (std::size_t k = 0; k < m.grids.size(); ++k) {
     checker.common(m.grids, k, place("grid", k), false);
     checker.grid(m.grids[k], place("grid", k));
+  }
+  for (std::size_t k = 0; k < m.saltation.size(); ++k) {
+    checker.common(m.saltation, k, place("saltation", k), true);
+    checker.saltation(m.saltation[k], place("saltation", k));
   }
   for (std::size_t k = 0; k < m.wall_shears.size(); ++k) {
     checker.common(m.wall_shears, k, place("wall-shear", k), false);

@@ -132,10 +132,14 @@ class PhysicsChecker {
       return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };
     using enum PhaseKind;
-    if (report_.has(dotted + ".drag") && !is(fluid, grains))
-      tell(dotted + ".drag", "only a fluid with grains has a drag; expected no such key here");
+    if (report_.has(dotted + ".drag") && !is(fluid, grains) && !is(column, grains))
+      tell(dotted + ".drag", "only a fluid or a column with grains has a drag; expected no such key here");
     const bool touches =
         (a.kind() != fluid && b.kind() != fluid && !is(elastic, elastic)) || repulsive(a) || repulsive(b);
+    if (report_.has(dotted + ".drag") && pair.drag_law != DragLaw::none && is(fluid, grains))
+      tell(dotted + ".drag",
+           "laws of drag by name act in air of kind column; of a fluid with particles expected a number >= 0");
+    if (a.kind() == column || b.kind() == column) return;  // check_column.cpp
     if (report_.has(dotted + ".radius") && report_.has(dotted + ".radius-in-metres"))
       tell(dotted + ".radius-in-metres", "a radius in metres beside one in spacings; expected one of the two");
     if (pair.radius_in_metres && !(pair.radius <= 8.0))

@@ -82,7 +82,7 @@ void check_phases(const Scene& scene, const Report& report) {
     }
     const bool filled =
         std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
-    if (!filled && !report.touched("fill"))
+    if (!filled && phase.kind() != PhaseKind::column && !report.touched("fill"))
       report(dotted, "no particle; expected a [[fill]] with phase = \"" + phase.name + "\"");
   }
 }
@@ -208,6 +208,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_domain(scene, report);
   check_forcings(scene, report);
   check_physics(scene, report);
+  check_columns(scene, report);
   check_walls(scene, report);
   check_measuring(scene, report);
 }

@@ -38,6 +38,7 @@ void check_measuring(const Scene& scene, const Report& report);
 void check_physics(const Scene& scene, const Report& report);
 
 /// The same of walls: keys that their law does not read, and velocities that would carry them away.
+void check_columns(const Scene& scene, const Report& report);
 void check_walls(const Scene& scene, const Report& report);
 
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.

@@ -36,16 +36,18 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
   Interaction pair;
   pair.a = a;
   pair.b = b;
-  bool fluid = false, repulsive = false, bodies = true;
+  bool fluid = false, repulsive = false, bodies = true, column = false;
   for (const Phase& phase : phases) {
     if (phase.name != a && phase.name != b) continue;
     fluid = fluid || phase.kind() == PhaseKind::fluid;
+    column = column || phase.kind() == PhaseKind::column;
     repulsive = repulsive || (phase.kind() == PhaseKind::wall && phase.wall().law == WallLaw::repulsive);
     bodies = bodies && phase.kind() == PhaseKind::elastic;
   }
   pair.kernel = fluid ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
   if (fluid) pair.radius = repulsive ? 0.0 : 2.1;
-  else pair.radius = bodies ? 0.0 : 1.1;
+  else pair.radius = bodies || column ? 0.0 : 1.1;
+  if (column) pair.drag_law = DragLaw::duran;
   return pair;
 }
 

@@ -10,6 +10,7 @@
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
+#include "scene/log_wind.hpp"
 #include "scene/places.hpp"
 #include "scene/random.hpp"
 #include "scene/shapes.hpp"
@@ -48,11 +49,6 @@ void perturb(std::vector<Vec3>& places, const Fill& fill, const Scene& scene) {
       x[axis] += random.uniform(-most, most);
     x = space.wrapped(x);
   }
-}
-
-/// eq. (18) of Halik et al. 2015 in SI units: u = (u*/kappa) ln(y/y0) over the ground.
-double log_wind(const LogProfile& log, double height) {
-  return height > log.roughness ? log.friction_velocity / log.kappa * std::log(height / log.roughness) : 0.0;
 }
 
 /// Initial velocities of a fill; formulas are evaluated at t = 0. Nothing else knows the wind profile.

@@ -15,7 +15,10 @@ constexpr Word word(std::string_view word, Enum meaning) {
 }
 template <>
 constexpr std::array words_of<PhaseKind>{word("fluid", PhaseKind::fluid), word("elastic", PhaseKind::elastic),
-                                         word("grains", PhaseKind::grains), word("wall", PhaseKind::wall)};
+                                         word("grains", PhaseKind::grains), word("wall", PhaseKind::wall),
+                                         word("column", PhaseKind::column)};
+static_assert(words_of<PhaseKind>.size() == std::variant_size_v<decltype(Phase::own)>,
+              "each alternative of Phase::own needs its word here");
 template <>
 constexpr std::array words_of<EquationOfState>{word("linear", EquationOfState::linear),
                                                word("tait", EquationOfState::tait)};
@@ -26,6 +29,12 @@ template <>
 constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
                                           word("mixing-length", Turbulence::mixing_length),
                                           word("smagorinsky", Turbulence::smagorinsky)};
+template <>
+constexpr std::array words_of<MixingLength>{word("none", MixingLength::none), word("duran", MixingLength::duran)};
+template <>
+constexpr std::array words_of<DragLaw>{
+    word("stokes", DragLaw::stokes), word("schiller-naumann", DragLaw::schiller_naumann), word("cheng", DragLaw::cheng),
+    word("duran", DragLaw::duran), word("di-felice", DragLaw::di_felice)};
 template <>
 constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
 template <>
@@ -60,6 +69,7 @@ constexpr Slot kind_of_phase() {
           case PhaseKind::elastic: own.emplace<ElasticKeys>(); break;
           case PhaseKind::grains: own.emplace<GrainsKeys>(); break;
           case PhaseKind::wall: own.emplace<WallKeys>(); break;
+          case PhaseKind::column: own.emplace<ColumnKeys>(); break;
         }
       }};
 }
@@ -134,6 +144,22 @@ constexpr Slot fill_pressure(const char* in_words) {
   return slot;
 }
 
+/// Of all kinds of phases that have particles.
+constexpr Slot spacing_of_particles(const char* in_words) {
+  Slot slot = at<&Phase::spacing>(in_words);
+  slot.kinds = kinds_with<PhaseKind::fluid, PhaseKind::elastic, PhaseKind::grains, PhaseKind::wall>;
+  return slot;
+}
+
+/// A number, or the name of a law.
+constexpr Slot drag(const char* in_words) {
+  Slot slot = at<&Interaction::drag>(0.0, in_words);
+  slot.accepts |= as_word;
+  slot.words = words_of<DragLaw>;
+  slot.choose = [](void* pair, int law) { static_cast<Interaction*>(pair)->drag_law = static_cast<DragLaw>(law); };
+  return slot;
+}
+
 constexpr Slot sides() {
   Slot slot = in_shape<&SidesShape::sides>();
   slot.words = sides_of_domain;
@@ -203,6 +229,7 @@ constexpr Key table[] = {
     {"", "profile", measured<&Measuring::profiles>("none"), "", "Averages over time along a line."},
     {"", "grid", measured<&Measuring::grids>("none"), "", "Averages over time on a regular grid."},
     {"", "wall-shear", measured<&Measuring::wall_shears>("none"), "", "Shear stress and pressure along a no-slip wall, averaged over time."},
+    {"", "saltation", measured<&Measuring::saltation>("none"), "", "Sand in flight by height over its bed: concentration, flux, stress, and the wind of a column."},
     {"", "time", at<&Scene::time>(required), "", "How long, and in which steps."},
     {"", "output", at<&Scene::output>("first and last frame"), "", "What is written, and how often."},
 
@@ -213,10 +240,10 @@ constexpr Key table[] = {
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
-    {"phases", "spacing", at<&Phase::spacing>("that of the scene"), "m", "Distance between the particles of this phase.", positive},
+    {"phases", "spacing", spacing_of_particles("that of the scene"), "m", "Distance between the particles of this phase.", positive},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
      "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
-    {"phases", "viscosity", of<&FluidKeys::viscosity>(0.0), "m2/s", "Kinematic viscosity.", not_negative},
+    {"phases", "viscosity", of<&FluidKeys::viscosity, &ColumnKeys::viscosity>(0.0, "0; of a column required"), "m2/s", "Kinematic viscosity.", not_negative},
     {"phases", "sound-speed", of<&FluidKeys::sound_speed>("10 times the largest speed"), "m/s",
      "Numerical speed of sound; ten times the largest speed keeps the density within a percent.", positive},
     {"phases", "equation-of-state", of<&FluidKeys::equation_of_state>(EquationOfState::linear), "",
@@ -258,13 +285,30 @@ constexpr Key table[] = {
      {.at_most = 0.2, .above = 0.0}},
     {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
      "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
-    {"phases", "slip", of<&WallKeys::slip>(Slip::no_slip), "", "Whether the fluid sticks to the wall; only with law = \"adami\"."},
+    {"phases", "slip", of<&WallKeys::slip, &ColumnKeys::slip>(Slip::no_slip), "",
+     "Whether the fluid sticks to the wall (only with law = \"adami\"), or a column's air to the bottom of the domain."},
     {"phases", "velocity", of<&WallKeys::velocity>("zero"), "m/s",
      "Velocity at which the surface of a no-slip wall slides along itself, a function of time. Only fluids feel it; the wall stays where it is.", {}, "t"},
     {"phases", "roughness", of<&WallKeys::roughness, &GrainsKeys::roughness>("smooth; of grains in turbulent air: a thirtieth of the spacing"), "m",
      "Roughness length z0: the wall's shear stress is that of the logarithmic law at the particles next to it.", positive},
     {"phases", "shear-stress", of<&WallKeys::shear_stress>("none"), "Pa",
      "Force by area of the wall on the fluid, instead of no slip; its part along the wall counts."},
+    {"phases", "friction-velocity", of<&ColumnKeys::friction_velocity>("0"), "m/s",
+     "u* of the wind, a number or a function of time: the stress on the top of the column is density times u*^2.", not_negative, "t"},
+    {"phases", "height", of<&ColumnKeys::height>("the domain's"), "m", "Height of the column over the bottom of the domain; the air above is as that on its top.", positive},
+    {"phases", "resolution", of<&ColumnKeys::resolution>("a quarter of the grains' diameter"), "m",
+     "Height of the column's cells as far up as grains stand at the start, and 20 diameters more; above they grow by 5 % a cell.", positive},
+    {"phases", "mixing-length", of<&ColumnKeys::mixing_length>(MixingLength::duran), "",
+     "How the column's turbulence carries momentum down: Duran, Andreotti & Claudin 2012, which needs no bed surface; or not at all."},
+    {"phases", "averaging", of<&ColumnKeys::averaging>("none: the air has inertia"), "s",
+     "The wind is at every moment the steady one for the grains' drag averaged over this time: it follows a storm at once, where air with "
+     "inertia takes a second or more.", positive},
+    {"phases", "held", of<&ColumnKeys::held>(false), "", "The wind of the start stays as it is: the air does not feel the grains."},
+    {"phases", "speed", of<&ColumnKeys::speed>("that of the steady wind over the grains at rest"), "m/s", "Speed of the air at the start, the same at all heights."},
+    {"phases", "log-profile", of<&ColumnKeys::log_profile>("none"), "",
+     "Wind at the start: Halik et al. 2015 eq. (18), from the bottom of the domain."},
+    {"phases.log-profile", "friction-velocity", at<&LogProfile::friction_velocity>(required), "m/s", "Friction velocity u*.", not_negative},
+    {"phases.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},
 
     {"phases.diameter", "mean", at<&SphereSize::mean>(required), "m", "Mean diameter.", positive},
     {"phases.diameter", "spread", at<&SphereSize::spread>(0.0), "",
@@ -272,14 +316,15 @@ constexpr Key table[] = {
 
     {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},
-    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required"), "spacings",
+    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required; a column has none"), "spacings",
      "Kernel radius (support), in spacings of the coarser of the two phases.", {.at_most = 8.0, .above = 0.0}},
     {"interactions.pair", "radius-in-metres", at<&Interaction::radius_in_metres>("radius says it"), "m",
      "Kernel radius (support) as a length, in place of radius.", positive},
     {"interactions.pair", "law", at<&Interaction::law>(ContactLaw::kernel), "",
      "Contact of grains: through the kernel, or of spheres that touch (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
-    {"interactions.pair", "drag", at<&Interaction::drag>(0.0), "",
-     "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve.", not_negative},
+    {"interactions.pair", "drag", drag("0; duran with a column"), "",
+     "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
+     "grain's drag by name (docs/method.md).", not_negative},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
 
     {"fill", "phase", at<&Fill::phase>(required), "", "Phase of the particles."},
@@ -374,6 +419,13 @@ constexpr Key table[] = {
     {"wall-shear", "count", at<&WallShear::count>("one a spacing"), "", "Number of columns along x.", {.at_least = 1, .at_most = 1000000}},
     {"wall-shear", "every", at<&WallShear::every, WallShear>("that of history.csv"), "s", "Time between samples.", positive},
     {"wall-shear", "start", at<&WallShear::start, WallShear>(0.0), "s", "Time of the first sample.", not_negative},
+
+    {"saltation", "name", at<&SaltationLayer::name, SaltationLayer>(required), "", "Letters, digits and underscores: it is written to saltation_NAME.csv, .vtp and .json."},
+    {"saltation", "phase", at<&SaltationLayer::phase, SaltationLayer>(required), "", "Grains that are measured."},
+    {"saltation", "flight", at<&SaltationLayer::flight>(5.0), "diameters", "Height over the bed above which a grain is in flight.", positive},
+    {"saltation", "count", at<&SaltationLayer::count>("one a diameter"), "", "Number of slices of the domain's height.", {.at_least = 1, .at_most = 100000}},
+    {"saltation", "every", at<&SaltationLayer::every, SaltationLayer>("that of history.csv"), "s", "Time between samples.", positive},
+    {"saltation", "start", at<&SaltationLayer::start, SaltationLayer>(0.0), "s", "Time from which averages are taken.", not_negative},
 
     {"time", "end", at<&TimeControl::end>(required), "s", "Time at which the run ends.", positive},
     {"time", "step", at<&TimeControl::fixed_step>("from the stability limits"), "s", "Fixed time step.", positive},

@@ -27,12 +27,24 @@ using VectorExpression = std::array<Expression, 3>;
 
 // ---- phases ---------------------------------------------------------------------------------------------------------
 
-enum class PhaseKind { fluid, elastic, grains, wall };
+enum class PhaseKind { fluid, elastic, grains, wall, column };
 enum class EquationOfState { linear, tait };
 enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
 enum class Slip { no_slip, free_slip };
 enum class FluidScheme { plain, consistent };  // docs/method.md
 enum class Turbulence { none, mixing_length, smagorinsky };
+enum class MixingLength { none, duran };  // of a column of air; Duran, Andreotti & Claudin 2012
+/// Drag of a grain by name (laws/drag_coefficients.hpp); none: the number of the entry.
+enum class DragLaw { none, stokes, schiller_naumann, cheng, duran, di_felice };
+
+/// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
+struct LogProfile {
+  double friction_velocity{};  // m/s
+  double roughness{};          // m
+  double kappa = 0.4;
+  bool over_ground{};  // height counted from the ground under the point (bed and dune)
+};
+
 enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; laws/sphere_contact.hpp
 
 /// Sizes of the spheres of a phase: diameters spread evenly over mean (1 - spread) .. mean (1 + spread).
@@ -94,11 +106,26 @@ struct WallKeys {
   std::optional<SphereSize> diameter;  // m, of its particles as grains feel them; empty: one spacing
 };
 
+/// Air as a profile by height, without particles.
+struct ColumnKeys {
+  static constexpr PhaseKind kind = PhaseKind::column;
+  double viscosity{};                // m2/s, kinematic
+  Expression friction_velocity;      // m/s, a function of time: rho u*^2 is the stress on the column's top
+  std::optional<double> height;      // m; empty: the domain's
+  std::optional<double> resolution;  // m, of the cells among the grains; empty: a quarter of a diameter
+  MixingLength mixing_length{};
+  Slip slip{};                            // on the bottom of the domain
+  std::optional<double> averaging;        // s, of the grains' drag on air without inertia; empty: it has inertia
+  bool held{};                            // the profile of the start stays: the air does not feel the grains
+  std::optional<double> speed;            // m/s, the same at all heights at the start
+  std::optional<LogProfile> log_profile;  // at the start
+};
+
 struct Phase {
   std::string name;
-  double density{};                                                // kg/m3, at rest
-  double spacing{};                                                // m, of its particles
-  std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys> own;  // in the order of PhaseKind
+  double density{};                                                            // kg/m3, at rest
+  double spacing{};                                                            // m, of its particles
+  std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys, ColumnKeys> own;  // in the order of PhaseKind
 
   PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }
   // The keys of its kind; std::bad_variant_access when it is of another kind.
@@ -106,6 +133,7 @@ struct Phase {
   const ElasticKeys& elastic() const { return std::get<ElasticKeys>(own); }
   const GrainsKeys& grains() const { return std::get<GrainsKeys>(own); }
   const WallKeys& wall() const { return std::get<WallKeys>(own); }
+  const ColumnKeys& column() const { return std::get<ColumnKeys>(own); }
   const WallKeys* if_wall() const { return std::get_if<WallKeys>(&own); }  ///< null of another kind
   const GrainsKeys* if_grains() const { return std::get_if<GrainsKeys>(&own); }
   /// The sizes of its spheres, if it says them.
@@ -124,8 +152,9 @@ struct Interaction {
   double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
   std::optional<double> radius_in_metres;  // m; empty: `radius` says it
   KernelKind kernel{};
-  double drag{};     // fluid-grains: drag coefficient of a grain, 0 switches it off
-  ContactLaw law{};  // of grains with grains, walls and bodies
+  double drag{};       // fluid-grains: drag coefficient of a grain, 0 switches it off
+  DragLaw drag_law{};  // column-grains: drag of a grain
+  ContactLaw law{};    // of grains with grains, walls and bodies
 };
 
 // ---- fills: what is where at the beginning
@@ -185,14 +214,6 @@ using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonS
 /// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
 enum class Packing { square, hexagonal, random, fitted, settled };
 
-/// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
-struct LogProfile {
-  double friction_velocity{};  // m/s
-  double roughness{};          // m
-  double kappa = 0.4;
-  bool over_ground{};  // height counted from the ground under the point (bed and dune)
-};
-
 struct Fill {
   std::string phase;
   Shape shape = TheRestShape{};
@@ -249,11 +270,16 @@ struct WallShear : Measured {
   bool top{};        // the upper side of the domain
   int count{};       // columns along x; 0: one a spacing
 };
+struct SaltationLayer : Measured {
+  double flight{};  // of the mean diameter, over the bed: what is higher is in flight
+  int count{};      // slices of the domain's height; 0: one a diameter
+};
 struct Measuring {
   std::vector<Probe> probes;
   std::vector<Profile> profiles;
   std::vector<Grid> grids;
   std::vector<WallShear> wall_shears;
+  std::vector<SaltationLayer> saltation;
 };
 
 struct TimeControl {

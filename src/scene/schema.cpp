@@ -123,6 +123,7 @@ std::string scene_tables() {
       {"", "Top of the file"},
       {"domain", "`[domain]`"},
       {"phases", "`[phases.NAME]`"},
+      {"phases.log-profile", "`log-profile = { ... }` of a column"},
       {"phases.diameter", "`diameter = { ... }` of grains and walls"},
       {"interactions", "`[interactions]`"},
       {"interactions.pair", "`[interactions]` `a-b = { ... }`"},
@@ -142,6 +143,7 @@ std::string scene_tables() {
       {"profile.box", "`box = { ... }` of a profile"},
       {"grid", "`[[grid]]`"},
       {"wall-shear", "`[[wall-shear]]`"},
+      {"saltation", "`[[saltation]]`"},
       {"time", "`[time]`"},
       {"output", "`[output]`"}};
   std::string text;

@@ -100,11 +100,12 @@ std::vector<std::string> Simulation::history_columns() const {
                              "largest_density_error"};
   for (const auto& model : models_) {
     if (model->phase() < 0) continue;
-    const PlanPhase& p = plan_.phases[static_cast<std::size_t>(model->phase())];
-    if (!p.moves) continue;
-    c.push_back(p.name + "_kinetic_energy [J]");
-    c.push_back(p.name + "_largest_speed [m/s]");
-    c.push_back(p.name + "_mean_vx [m/s]");
+    if (plan_.phases[static_cast<std::size_t>(model->phase())].moves) {
+      const std::string& name = plan_.phases[static_cast<std::size_t>(model->phase())].name;
+      c.push_back(name + "_kinetic_energy [J]");
+      c.push_back(name + "_largest_speed [m/s]");
+      c.push_back(name + "_mean_vx [m/s]");
+    }
     model->columns(c);
   }
   for (const auto& model : models_)
@@ -117,7 +118,10 @@ std::vector<double> Simulation::history_row() const {
   for (const auto& model : models_) {
     if (model->phase() < 0) continue;
     const auto k = static_cast<std::size_t>(model->phase());
-    if (!plan_.phases[k].moves) continue;
+    if (!plan_.phases[k].moves) {
+      model->row(row);
+      continue;
+    }
     const auto& p = state_.phases[k];
     const std::size_t n = p.size();
     std::array<const double*, 3> v{};

@@ -127,6 +127,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   }
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
+  for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
 }
 
 /// The bounds of each phase that moves.
@@ -158,7 +159,7 @@ void Watch::make_guards() {
           g.signal_speed = std::min(g.signal_speed, p.sound_speed * depth / d);
         });
       }
-      if (plan.phases[other].moves) continue;
+      if (plan.phases[other].moves || see_.particles[other].size() == 0) continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
       for (std::size_t d = 0; d < 3; ++d) {

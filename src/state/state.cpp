@@ -17,6 +17,7 @@ void State::archive(Archive& a) {
   for (auto& [name, count] : limit_counts) a.number("steps by " + name, count);
   outputs.archive(a);
   for (auto& p : phases) p.archive(a);
+  for (auto& profile : air) profile.archive(a);
 }
 
 }  // namespace barchan

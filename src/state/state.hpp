@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "state/air_profile.hpp"
 #include "state/archive.hpp"
 #include "state/particles.hpp"
 
@@ -22,6 +23,7 @@ struct OutputClock {
 
 struct State {
   std::vector<PhaseParticles> phases;
+  std::vector<AirProfile> air;  // of the phases that are air without particles
   double time = 0.0, dt = 0.0;  // s
   long steps = 0;
   double largest_acceleration = 0.0;         // m/s2, of the last kick

@@ -77,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(
                     small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
                     small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
                     small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
-                    small::Named{"Grains", &small::grains}, small::Named{"Spheres", &small::spheres},
+                    small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
+                    small::Named{"Spheres", &small::spheres},
                     small::Named{"HertzianSpheres", &small::hertzian_spheres}),
     [](const auto& s) { return std::string(s.param.name); });
 

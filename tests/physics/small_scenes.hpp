@@ -261,6 +261,16 @@ velocity = ["0.2*sin(2*pi*x/0.04)", "-0.3*y/0.02"]
 end = 10
 )toml";
 
+/// The same grains in air without particles, which they slow down.
+inline const std::string blown_grains = [] {
+  std::string text = grains;
+  text.replace(text.find("[0.5, -9.81]"), 12, "[0, -9.81]");
+  text.insert(text.find("[phases.floor]"),
+              "[phases.air]\nkind = \"column\"\ndensity = 1.2\nviscosity = 1.5e-5\nfriction-velocity = 1\n");
+  text.insert(text.find("sand-sand"), "air-sand = {}\n");
+  return text;
+}();
+
 /// Spheres of two phases and many sizes, with friction and rolling resistance, that are shaken over a side of the
 /// domain and fixed spheres.
 inline const std::string spheres = R"toml(

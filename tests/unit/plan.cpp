@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
 #include "scene/reader.hpp"
@@ -259,6 +260,19 @@ TEST(Plan, FreeSurfacesAreOfFluidsThatEnd) {
     EXPECT_TRUE(surface("", scheme, half));
     EXPECT_FALSE(surface(", \"y\"", scheme, "\"the-rest\""));
   }
+}
+
+// In mixed precision a fluid has compact records only, unless somebody asks for others: here its neighbour.
+TEST(Plan, TheEnergyOfOneFluidReadsTheRecordsOfTheOther) {
+  const std::string plain = "scheme = \"plain\"\n";
+  const Scene s = scene(air + plain + "energy = true\n" + "[phases.water]\nkind = \"fluid\"\ndensity = 2\n" + plain,
+                        "air-air = 2.1\nair-water = 2.1\nwater-water = 2.1\n", {"air", "water"});
+  const auto blocks = generate(s);
+  Simulation run(s, make_plan(s, blocks), blocks);
+  for (int k = 0; k < 3; ++k) run.step(1.0);
+  const PhaseParticles& fluid = run.phases()[0];
+  for (std::size_t k = 0; k < fluid.size(); ++k) EXPECT_TRUE(std::isfinite(fluid.column(Field::energy)[k]));
+  EXPECT_FALSE(run.phases()[1].has(Field::energy));
 }
 
 TEST(Plan, RefusesWhatNoLawCanDo) {

@@ -412,8 +412,7 @@ TEST(SceneReader, TheTestsAboveNameEveryKeyOfTheTable) {
     if (key.section.starts_with("fill.shape")) continue;
     const std::string name(key.name);
     if (name == "step") continue;  // not beside safety; OverridesReplaceAddAndMake has it
-    const bool named =
-        all.find(name + " =") != std::string::npos || all.find("[" + name) != std::string::npos;
+    const bool named = all.find(name + " =") != std::string::npos || all.find("[" + name) != std::string::npos;
     EXPECT_TRUE(named) << key.section << "." << name;
   }
 }

@@ -197,9 +197,10 @@ void Air::attach(Workspace& w) {
 
 void Air::bind_entries() {
   for (const auto& e : layout_.entries) {
-    if (!e.has(number_) || e.law == Law::repulsive) continue;
+    if (!e.has(number_) || !e.continues_fluid()) continue;
     const std::size_t other = e.partner(number_);
     const bool solid = !layout_.phases[other].flows;
+    if (keys_.energy && !solid) w_->need_motion(other);
     FluidNeighbour n{
         &w_->list(e.direction(number_)),
         solid ? &w_->extended[other] : &w_->motion[other],

@@ -127,7 +127,7 @@ void face_walls(const Scene& scene, const Layout& layout, State& state) {
   bool slips = false;
   double coarsest = 0.0;  // m
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
-    if (layout.phases[k].moves) continue;
+    if (!scene.phases[k].if_wall()) continue;
     walls.push_back(&state.phases[k]);
     coarsest = std::max(coarsest, layout.phases[k].spacing);
     const WallKeys& s = scene.phases[k].wall();

@@ -1,0 +1,215 @@
+#!/usr/bin/python3
+"""Saltation against what is known: settling, hops, flux, profiles, thresholds, splash.
+
+    bench/saltation/cases.py settling hop            run these (no name: all), write results/NAME.json
+    bench/saltation/cases.py --barchan build/barchan --out /tmp/saltation flux
+
+bench/saltation/page.py makes docs/saltation.md and its plots from results/*.json.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RESULTS = pathlib.Path(__file__).resolve().parent / "results"
+
+
+class Bench:
+    def __init__(self, program, out, threads):
+        self.program, self.out, self.threads = program, pathlib.Path(out), threads
+
+    def run(self, scene, name, *overrides):
+        """Runs a scene of the repository; returns its folder."""
+        folder = self.out / name
+        command = [self.program, "run", str(ROOT / "scenes" / f"{scene}.toml"), "--out", str(folder), "--quiet",
+                   "--threads", str(self.threads)]
+        for o in overrides:
+            command += ["--set", o]
+        subprocess.run(command, check=True)
+        return folder
+
+
+def table(file):
+    """Columns of a csv file by their names without units."""
+    rows = [r for r in csv.reader(line for line in open(file) if not line.startswith("#"))]
+    names = [n.split(" [")[0] for n in rows[0]]
+    return {n: [float(r[k]) for r in rows[1:]] for k, n in enumerate(names)}
+
+
+def at(columns, time, name):
+    """Value at a time that the table has."""
+    k = min(range(len(columns["time"])), key=lambda i: abs(columns["time"][i] - time))
+    assert abs(columns["time"][k] - time) < 1e-9 + 1e-6 * time, f"no row at {time} s"
+    return columns[name][k]
+
+
+# --- a grain in still air ---------------------------------------------------------------------------------------------
+
+RHO, RHO_P, MU, G = 1.225, 2650.0, 1.81e-5, 9.81
+
+
+def drag_coefficient(law, re):
+    if law == "stokes":
+        return 24 / re
+    if law == "schiller-naumann":
+        return 24 / re * (1 + 0.15 * re ** 0.687) if re < 1000 else 0.44
+    if law == "cheng":
+        return ((32 / re) ** (2 / 3) + 1) ** 1.5
+    if law == "duran":
+        return (math.sqrt(0.5) + math.sqrt(24 / re)) ** 2
+    if law == "di-felice":
+        return (0.63 + 4.8 / math.sqrt(re)) ** 2
+    raise ValueError(law)
+
+
+def terminal_speed(law, d):
+    """Of m g = 1/8 C_D pi d^2 rho v^2, by bisection."""
+    low, high = 1e-6, 1e3
+    for _ in range(200):
+        v = 0.5 * (low + high)
+        drag = drag_coefficient(law, RHO * v * d / MU) * math.pi / 8 * d * d * RHO * v * v
+        low, high = (v, high) if drag < RHO_P * math.pi / 6 * d ** 3 * G else (low, v)
+    return v
+
+
+# Fall from rest, d = 0.25 mm, Schiller & Naumann: time, speed, way (an integration with a fine step).
+TRANSIENT = [(0.05, 0.456619, 0.011721), (0.1, 0.832036, 0.044293), (0.2, 1.344636, 0.155544), (0.5, 1.832938, 0.655712),
+             (1.0, 1.896376, 1.596073)]
+# Terminal speeds of Schiller & Naumann and of Cheng by diameter (mm), tabulated apart from terminal_speed().
+TERMINAL = {0.1: 0.57694, 0.15: 1.02542, 0.2: 1.46987, 0.25: 1.89803, 0.5: 3.81355, 1.0: 7.02329}
+
+
+def settling(bench):
+    rows, fall = [], []
+    for law in ("schiller-naumann", "cheng", "duran", "di-felice"):
+        for d in (0.1, 0.15, 0.2, 0.25, 0.5, 1.0):
+            v = terminal_speed(law, d * 1e-3)
+            # thrown at 0.9 of that speed: what is left of the difference after 3 s is less than 1e-3 of it
+            folder = bench.run("verification/settling", f"settling_{law}_{d}", f"spacing={d}e-3", f"interactions.air-sand.drag={law}",
+                               "time.end=3", "time.step=2e-5", "fill.0.shape.points=[[0.005, 29.9]]", "domain.size=[0.01, 30]",
+                               f"fill.0.velocity=[0, {-0.9 * v}]", "output.every=3", "output.history-every=0.5")
+            measured = table(folder / "history.csv")["sand_largest_speed"][-1]
+            rows.append({"law": law, "d": d, "measured": measured, "exact": v, "reference": TERMINAL[d] if law == "schiller-naumann" else None})
+    folder = bench.run("verification/settling", "settling_transient")
+    h = table(folder / "history.csv")
+    for t, v, way in TRANSIENT:
+        fall.append({"t": t, "measured": at(h, t, "sand_largest_speed"), "reference": v})
+    return {"terminal": rows, "transient": fall}
+
+
+# --- a hop in the logarithmic wind ------------------------------------------------------------------------------------
+
+# u*, v0, angle: time, length, apex over the start, impact speed, impact angle.
+HOPS = [(0.0, 1.0, 50, .14319, .07221, .02510, .7535, 58.75), (0.3, 1.0, 50, .13330, .31423, .02192, 3.4961, 9.63),
+        (0.4, 0.5, 50, .07106, .12132, .00621, 2.7621, 6.74), (0.4, 1.0, 50, .13033, .41745, .02101, 4.7712, 6.85),
+        (0.4, 1.5, 40, .15856, .62933, .03119, 5.5682, 7.02)]
+
+
+def hop_of(bench, name, u, v, degrees, duration):
+    """The last rows before the grain comes down: followed to its start's height along a parabola through three rows."""
+    a = math.radians(degrees)
+    every = 1e-3
+    end = math.floor((duration - 2e-4) / every) * every
+    folder = bench.run("verification/hop", name, f"phases.air.log-profile.friction-velocity={u}", f"time.end={end:.4f}",
+                       f"fill.0.velocity=[{v * math.cos(a)}, {v * math.sin(a)}]", f"output.every={every}", f"output.history-every={every}")
+    import meshio  # noqa: F401  (only to say early that it is missing)
+    from vtk import vtkXMLPolyDataReader
+    from vtk.util.numpy_support import vtk_to_numpy
+    places = []
+    for file in sorted(folder.glob("hop_*.vtp")):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(file))
+        reader.Update()
+        data = reader.GetOutput()
+        places.append((*vtk_to_numpy(data.GetPoints().GetData())[0], *vtk_to_numpy(data.GetPointData().GetArray("velocity"))[0]))
+    start = places[0]
+    times = [k * every for k in range(len(places))]
+    apex = max(p[1] for p in places) - start[1]
+    # between rows: the largest of the parabola
+    k = max(range(1, len(places) - 1), key=lambda i: places[i][1])
+    y0, y1, y2 = places[k - 1][1], places[k][1], places[k + 1][1]
+    apex = y1 - (y2 - y0) ** 2 / (8 * (y0 - 2 * y1 + y2)) - start[1]
+    # from the last row on with its velocity and acceleration
+    p, q = places[-1], places[-2]
+    ax, ay = (p[3] - q[3]) / every, (p[4] - q[4]) / every
+    below = p[1] - start[1]
+    t = (-p[4] - math.sqrt(p[4] ** 2 - 2 * ay * below)) / ay
+    vx, vy = p[3] + ax * t, p[4] + ay * t
+    length = p[0] - start[0] + p[3] * t + 0.5 * ax * t * t
+    return {"time": times[-1] + t, "length": length, "apex": apex, "speed": math.hypot(vx, vy), "angle": math.degrees(math.atan2(-vy, vx))}
+
+
+def hop(bench):
+    rows = []
+    for u, v, degrees, *reference in HOPS:
+        measured = hop_of(bench, f"hop_{u}_{v}", u, v, degrees, reference[0])
+        rows.append({"u": u, "v": v, "degrees": degrees, "measured": measured,
+                     "reference": dict(zip(("time", "length", "apex", "speed", "angle"), reference))})
+    return {"hops": rows}
+
+
+# --- the saturated flux of sand ---------------------------------------------------------------------------------------
+
+# Creyssels et al. 2009: u* (m/s), flux (g/m/s); begin and end of the average (s).
+FLUX = [(0.24, 5.25, 1.0, 2.0), (0.40, 21.09, 0.5, 1.2), (0.56, 48.85, 0.5, 1.2)]
+BLOCK = 0.1
+
+
+def flux_of(folder, u, creyssels, begin, end):
+    h = table(folder / "history.csv")
+    rows = [k for k, t in enumerate(h["time"]) if t >= begin]
+    end = min(end, h["time"][-1])
+    blocks = {}
+    for k in rows:
+        blocks.setdefault(int((h["time"][k] - begin) / BLOCK), []).append(1e3 * h["sand_flux"][k])
+    means = [sum(b) / len(b) for b in blocks.values() if len(b) > 10]
+    mean = sum(means) / len(means)
+    error = math.sqrt(sum((m - mean) ** 2 for m in means) / max(len(means) - 1, 1) / len(means))
+    fit = json.loads((folder / "saltation_sand.json").read_text())
+    d, stress = fit["diameter"], 1.2365 * u * u
+    p = table(folder / "saltation_sand.csv")
+    keep = [k for k, y in enumerate(p["height_over_bed"]) if 0 < y < 400 * d]
+    pick = lambda name, scale=1.0: [scale * p[name][k] for k in keep]
+    return {"u": u, "creyssels": creyssels, "flux": mean, "error": error, "from": begin, "to": end,
+            "flux_decay": fit["flux_decay"]["height"] / d, "flux_decay_error": fit["flux_decay"]["standard_error"] / d,
+            "concentration_decay": fit["concentration_decay"]["height"] / d,
+            "bed_u": sum(h["sand_bed_friction_velocity"][k] for k in rows) / len(rows),
+            "t": h["time"][::10], "q": [1e3 * q for q in h["sand_flux"][::10]],
+            "profile": {"height": pick("height_over_bed", 1 / d), "flux": pick("flux"), "wind": pick("air_speed"),
+                        "grain_stress": pick("grain_stress", 1 / stress), "air_stress": pick("air_stress", 1 / stress)}}
+
+
+def flux(bench):
+    runs = []
+    for u, creyssels, begin, end in FLUX:
+        folder = bench.run("saltation", f"flux_{u}", f"phases.air.friction-velocity={u}", f"time.end={end}", f"saltation.0.start={begin}")
+        runs.append(flux_of(folder, u, creyssels, begin, end))
+    return {"block": BLOCK, "runs": runs, "notes": []}
+
+
+CASES = {"settling": settling, "hop": hop, "flux": flux}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="*", help=", ".join(CASES))
+    parser.add_argument("--barchan", default=str(ROOT / "build" / "barchan"))
+    parser.add_argument("--out", default="/tmp/barchan_saltation")
+    parser.add_argument("--threads", type=int, default=1)
+    options = parser.parse_args()
+    RESULTS.mkdir(exist_ok=True)
+    bench = Bench(options.barchan, options.out, options.threads)
+    for name in options.cases or CASES:
+        if name not in CASES:
+            sys.exit(f"no case {name}; expected {', '.join(CASES)}")
+        result = CASES[name](bench)
+        (RESULTS / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
+        print(json.dumps(result, indent=1))
+
+
+if __name__ == "__main__":
+    main()

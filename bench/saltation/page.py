@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""Makes docs/saltation.md and docs/figures of it from results/*.json of cases.py."""
+import json
+import pathlib
+
+HERE = pathlib.Path(__file__).resolve().parent
+DOCS = HERE.parents[1] / "docs"
+
+
+def load(name):
+    file = HERE / "results" / f"{name}.json"
+    return json.loads(file.read_text()) if file.exists() else None
+
+
+def percent(measured, reference):
+    return f"{100 * (measured / reference - 1):+.2f} %"
+
+
+def settling(r):
+    lines = ["## A grain in still air", "",
+             "`scenes/verification/settling.toml`; 2650 kg/m3 in air of 1.225 kg/m3 and 1.81e-5 Pa s. Exact: m g = 1/8 C_D pi d^2 rho v^2, by bisection.", "",
+             "| drag | d mm | v m/s | exact | error |", "| --- | --- | --- | --- | --- |"]
+    for row in r["terminal"]:
+        lines.append(f"| {row['law']} | {row['d']} | {row['measured']:.5f} | {row['exact']:.5f} | {percent(row['measured'], row['exact'])} |")
+    lines += ["", "Fall of 0.25 mm from rest, Schiller & Naumann; reference: an integration with a fine step.", "",
+              "| t s | v m/s | reference | error |", "| --- | --- | --- | --- |"]
+    for row in r["transient"]:
+        lines.append(f"| {row['t']} | {row['measured']:.5f} | {row['reference']:.5f} | {percent(row['measured'], row['reference'])} |")
+    return lines
+
+
+def hop(r):
+    lines = ["## A hop in a logarithmic wind", "",
+             "`scenes/verification/hop.toml`: 0.25 mm, start at d/2, roughness d/30, Schiller & Naumann, no lift. In brackets the reference.", "",
+             "| u* | start | time s | length m | height mm | speed m/s | angle |", "| --- | --- | --- | --- | --- | --- | --- |"]
+    for row in r["hops"]:
+        m, e = row["measured"], row["reference"]
+        lines.append(f"| {row['u']} | {row['v']} m/s, {row['degrees']} deg | {m['time']:.5f} ({e['time']}) | {m['length']:.5f} ({e['length']}) | "
+                     f"{1e3 * m['apex']:.2f} ({1e3 * e['apex']:.2f}) | {m['speed']:.4f} ({e['speed']}) | {m['angle']:.2f} ({e['angle']}) |")
+    return lines
+
+
+def flux(r):
+    lines = ["## Saturated flux", "",
+             "`scenes/saltation.toml` at three winds, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %). The error is that of the mean of blocks of "
+             f"{r['block']} s, one run each.", "",
+             "| u* m/s | flux g/m/s | measured by Creyssels | difference | decay of flux, d | of concentration, d | air at the bed, m/s | averaged s |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for row in r["runs"]:
+        lines.append(f"| {row['u']} | {row['flux']:.2f} +- {row['error']:.2f} | {row['creyssels']} | {percent(row['flux'], row['creyssels'])} | "
+                     f"{row['flux_decay']:.1f} +- {row['flux_decay_error']:.1f} | {row['concentration_decay']:.1f} | {row['bed_u']:.3f} | "
+                     f"{row['from']} to {row['to']} |")
+    lines += ["", "![Flux, profiles of flux, wind and stress](saltation.png)", ""]
+    plot(r)
+    return lines + r["notes"]
+
+
+def plot(r):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    figure, axes = plt.subplots(2, 2, figsize=(10, 8))
+    colours = ["#0072b2", "#d55e00", "#009e73"]
+    for row, colour in zip(r["runs"], colours):
+        label = f"u* = {row['u']} m/s"
+        axes[0, 0].plot(row["t"], row["q"], color=colour, lw=0.8, label=label)
+        axes[0, 0].axhline(row["creyssels"], color=colour, ls="--", lw=0.8)
+        p = row["profile"]
+        axes[0, 1].semilogy(p["height"], p["flux"], color=colour, label=label)
+        axes[1, 0].semilogy(p["wind"], [max(h, 1e-2) for h in p["height"]], color=colour, label=label)
+        axes[1, 1].plot(p["grain_stress"], p["height"], color=colour, label=label)
+        axes[1, 1].plot(p["air_stress"], p["height"], color=colour, ls=":")
+        axes[1, 1].plot([a + b for a, b in zip(p["air_stress"], p["grain_stress"])], p["height"], color=colour, lw=0.6, ls="--")
+    axes[0, 0].set(xlabel="time [s]", ylabel="flux [g/m/s]", title="dashed: Creyssels et al. 2009")
+    axes[0, 1].set(xlabel="height over the bed [d]", ylabel="flux [kg/m2/s]", xlim=(0, 200))
+    axes[1, 0].set(xlabel="wind [m/s]", ylabel="height over the bed [d]", ylim=(0.3, 400))
+    axes[1, 1].set(xlabel="stress over rho u*^2: grains (full), air (dotted), sum (dashed)", ylabel="height over the bed [d]", ylim=(0, 60), xlim=(0, 1.3))
+    axes[0, 0].legend()
+    figure.tight_layout()
+    figure.savefig(DOCS / "saltation.png", dpi=90)
+
+
+def main():
+    lines = ["# Saltation against what is known", "", "Made by `bench/saltation/page.py` from the results of `bench/saltation/cases.py`. How the wind, the drag and the "
+             "exchange of momentum are computed: [method.md](method.md), Air without particles.", ""]
+    for name, part in (("settling", settling), ("hop", hop), ("flux", flux)):
+        r = load(name)
+        if r:
+            lines += part(r) + [""]
+    (DOCS / "saltation.md").write_text("\n".join(lines).rstrip() + "\n")
+
+
+if __name__ == "__main__":
+    main()

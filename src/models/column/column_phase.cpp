@@ -1,0 +1,400 @@
+#include "models/column/column_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "engine/means.hpp"
+#include "output/numbers.hpp"
+#include "scene/log_wind.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// Diameters of the grains of a phase, each its own or all the same.
+class Diameters {
+ public:
+  Diameters(const PhaseParticles& grains, double mean)
+      : radius_(grains.has(Field::radius) ? grains.column(Field::radius) : nullptr), mean_(mean) {}
+  double operator[](std::size_t k) const { return radius_ ? 2.0 * radius_[k] : mean_; }
+
+ private:
+  const double* radius_;
+  double mean_;  // m
+};
+
+constexpr double fine_diameters = 20.0;  // of fine cells above the grains of the start
+constexpr double cells_a_diameter = 4.0;
+constexpr double most_cells = 20000.0;
+constexpr double most_over_friction_velocity = 35.0;  // of a wind: ln(1 m/1 um)/0.4
+/// Of sqrt(d/g), the time in which a grain falls half its diameter: 20 us for 0.25 mm.
+constexpr double interval_share = 0.004;
+
+}  // namespace
+
+void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
+                     std::vector<std::string>&) {
+  const ColumnKeys& keys = scene.phases[number].column();
+  const Formula friction_velocity(keys.friction_velocity);
+  constexpr int moments = 64;
+  double& wind = layout.phases[number].wind;
+  for (int k = 0; k <= moments; ++k)
+    wind = std::max(wind, most_over_friction_velocity * friction_velocity({}, scene.time.end * k / moments));
+  if (keys.speed) wind = std::max(wind, std::abs(*keys.speed));
+  if (keys.log_profile) wind = std::max(wind, log_wind(*keys.log_profile, scene.domain.size[1]));
+}
+
+ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      keys_(scene.phases[number].column()),
+      number_(number),
+      density_(scene.phases[number].density),
+      area_(scene.domain.size[0] * (layout.dimensions == 3 ? scene.domain.size[2] : 1.0)),
+      friction_velocity_(keys_.friction_velocity) {
+  for (const PlanEntry& e : layout.entries) {
+    if (e.law != Law::column || !e.has(number)) continue;
+    const std::size_t grains = e.partner(number);
+    const PlanPhase& plan = layout.phases[grains];
+    const double d = plan.diameter > 0.0 ? plan.diameter : plan.spacing;
+    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, d, plan.diameter > 0.0, {}, {}});
+    diameter_ = std::max(diameter_, d);
+    crowded_ = crowded_ || e.drag_law == DragLaw::di_felice;
+  }
+  const double g = std::abs(scene.domain.gravity[1]);
+  interval_ = interval_share * std::sqrt(diameter_ / (g > 0.0 ? g : 9.81));
+}
+
+void ColumnPhase::attach(Workspace& w) {
+  w_ = &w;
+  for (Feeling& grains : feeling_)
+    for (auto* values : {&grains.rate, &grains.wind}) values->assign(w.particles(grains.phase).size(), 0.0);
+  place_ = w.state.air.size();
+  w.state.air.emplace_back();
+  make_profile();
+  if (keys_.log_profile) {
+    AirProfile& p = profile();
+    for (std::size_t k = 0; k < p.cells(); ++k)
+      p.speed[k] = log_wind(*keys_.log_profile, 0.5 * (p.face[k] + p.face[k + 1]) - p.face.front());
+  } else if (keys_.speed) {
+    std::fill(profile().speed.begin(), profile().speed.end(), *keys_.speed);
+  } else {
+    find_steady_wind();
+  }
+  air_->update_mixing_length();
+  air_->integrate_speed();
+}
+
+/// The grid: fine where nearly all grains of the start are.
+void ColumnPhase::make_profile() {
+  std::vector<double> heights;
+  for (const Feeling& grains : feeling_) {
+    const PhaseParticles& p = w_->particles(grains.phase);
+    heights.insert(heights.end(), p.column(Field::position, 1), p.column(Field::position, 1) + p.size());
+  }
+  const double bottom = scene_.domain.origin[1], d = diameter_;
+  double highest = bottom;
+  if (!heights.empty()) {
+    const auto most = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size() - 1));
+    std::nth_element(heights.begin(), most, heights.end());
+    highest = *most;
+  }
+  const double top = bottom + keys_.height.value_or(scene_.domain.size[1]);
+  const bool known = keys_.held && (keys_.speed || keys_.log_profile);  // nothing has to be resolved
+  const double resolution = known ? top - bottom : keys_.resolution.value_or(d / cells_a_diameter);
+  const double fine_top = std::min(highest + fine_diameters * d, top), cells = (fine_top - bottom) / resolution;
+  if (cells > most_cells)
+    throw SceneError(scene_.file + ": phases." + scene_.phases[number_].name + ".resolution: " + brief(resolution) +
+                     " m makes " + brief(cells) + " cells up to the grains, " + brief(fine_top - bottom) +
+                     " m over the bottom; expected at most " + brief(most_cells));
+  profile() = AirColumn::grid(bottom, fine_top, top, resolution);
+  profile().phase = number_;
+  const AirColumn::Air air{density_, keys_.viscosity, keys_.mixing_length, keys_.slip};
+  air_ = std::make_unique<AirColumn>(air, profile());
+  spread_ = std::make_unique<AirColumn::Spread>(profile().cells());
+  load_ = std::make_unique<AirColumn::Load>(profile().cells());
+  solid_.assign(profile().cells(), 0.0);
+}
+
+double ColumnPhase::top_stress(double time) const {
+  const double u = friction_velocity_({}, time);
+  return density_ * u * std::abs(u);
+}
+
+/// The wind that the grains at their initial speeds let pass: steps of the air that grow until it rests.
+void ColumnPhase::find_steady_wind() {
+  AirProfile& p = profile();
+  const double stress = top_stress(0.0);
+  if (stress == 0.0) return;
+  hold_ = interval_;
+  double dt = interval_;
+  for (int k = 0; k < 120; ++k, dt = std::min(1.25 * dt, 100.0)) {
+    air_->integrate_speed();
+    feel();
+    spread_rates();
+    spread_drag(false, load_->pull);
+    air_->advance(dt, stress, *load_);
+  }
+  std::fill(p.given.begin(), p.given.end(), 0.0);
+  p.boundary = 0.0;
+}
+
+void ColumnPhase::schedule(Schedule& s) {
+  using enum Field;
+  s.add({stage::drag,
+         scene_.phases[number_].name,
+         {position, velocity, radius, drag_acceleration},
+         {acceleration, drag_acceleration},
+         [this] { act(); }});
+}
+
+/// What a step has of the air: an exchange when its time has come, and the drag of the last one.
+void ColumnPhase::act() {
+  AirProfile& p = profile();
+  const State& state = w_->state;
+  const bool first = p.step < 0;
+  if (first) {
+    p.last = 0.0;
+  } else if (p.step != state.steps) {
+    p.elapsed += state.dt;
+    p.kicked += 0.5 * (p.last + state.dt);
+    p.last = state.dt;
+  }
+  p.step = state.steps;
+  if (first || p.elapsed >= interval_ * (1.0 - 1e-9)) {
+    hold_ = state.dt * std::max(1.0, std::ceil(interval_ / state.dt * (1.0 - 1e-9)));
+    exchange();
+  }
+  for (const Feeling& grains : feeling_) {
+    PhaseParticles& q = w_->particles(grains.phase);
+    const auto n = static_cast<std::int64_t>(q.size());
+    for (int d = 0; d < layout_.dimensions; ++d) {
+      double* a = q.column(Field::acceleration, d);
+      const double* drag = q.column(Field::drag_acceleration, d);
+#pragma omp parallel for simd schedule(static)
+      for (std::int64_t k = 0; k < n; ++k) a[k] += drag[k];
+    }
+  }
+}
+
+/// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
+/// drag in that.
+void ColumnPhase::exchange() {
+  AirProfile& p = profile();
+  if (!keys_.held) {
+    spread_drag(true, load_->owed);
+    for (std::size_t c = 0; c < p.cells(); ++c) load_->owed[c] -= p.given[c];
+  }
+  p.elapsed = p.kicked = 0.0;
+  if (crowded_) find_voidage();
+  feel();
+  if (keys_.held) return;
+  spread_rates();
+  spread_drag(false, load_->pull);
+  if (keys_.averaging) {
+    const double before = p.boundary;
+    average_load();
+    air_->advance(*keys_.averaging, top_stress(w_->state.time), *load_);
+    p.boundary = before + (p.stress.back() - p.stress.front()) * hold_;
+    std::fill(p.given.begin(), p.given.end(), 0.0);
+  } else {
+    air_->advance(hold_, top_stress(w_->state.time), *load_);
+  }
+  follow_wind();
+}
+
+/// Air without inertia: the load becomes its exponential average. The air then goes a step as long as the average, of
+/// which some thousand fit into one: it is as good as steady.
+void ColumnPhase::average_load() {
+  AirProfile& p = profile();
+  const bool first = p.mean_rate.empty();
+  if (first) {
+    p.mean_rate.assign(p.cells(), 0.0);
+    p.mean_push.assign(p.cells(), 0.0);
+  }
+  const double share = first ? 1.0 : -std::expm1(-hold_ / *keys_.averaging);
+  for (std::size_t c = 0; c < p.cells(); ++c) {
+    const double push = load_->rate[c] * p.speed[c] - load_->pull[c];
+    p.mean_rate[c] += share * (load_->rate[c] - p.mean_rate[c]);
+    p.mean_push[c] += share * (push - p.mean_push[c]);
+    load_->rate[c] = p.mean_rate[c];
+    load_->pull[c] = p.mean_rate[c] * p.speed[c] - p.mean_push[c];
+    load_->owed[c] = 0.0;
+  }
+}
+
+/// The wind that a grain feels: the mean over its height; of a logarithmic profile that is held, that at its centre.
+double ColumnPhase::wind(double y, double radius) const {
+  if (keys_.held && keys_.log_profile) return log_wind(*keys_.log_profile, y - profile().face.front());
+  return air_->mean_speed(y - radius, y + radius);
+}
+
+void ColumnPhase::feel() {
+  for (Feeling& grains : feeling_) {
+    if (grains.law == DragLaw::di_felice) {
+      const auto excess = [this](double re, double y) {
+        return DiFeliceDrag::excess_in_crowd(re, std::max(1.0 - solid_[air_->cell_at(y)], 0.3));
+      };
+      layout_.dimensions == 2 ? feel<2>(grains, excess) : feel<3>(grains, excess);
+    } else {
+      with_drag_law(grains.law, [&](auto law) {
+        const auto excess = [](double re, double) { return decltype(law)::excess(re); };
+        layout_.dimensions == 2 ? feel<2>(grains, excess) : feel<3>(grains, excess);
+      });
+    }
+  }
+}
+
+/// From a grain's place to that in the middle of the time for which its drag is kept (s). Speeds of the common
+/// integrator are half a step behind places, and so is that time.
+double ColumnPhase::time_ahead(const Feeling& grains) const {
+  return std::max(0.5 * (hold_ - (grains.own_steps ? 0.0 : w_->state.dt)), 0.0);
+}
+
+/// The drag of each grain as a mean over the time for which it is kept: exact for a wind and a rate that do not change,
+/// which are those of the middle of that time.
+template <int Dim, class DragOf>
+void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
+  PhaseParticles& p = w_->particles(grains.phase);
+  constexpr auto dimensions = static_cast<std::size_t>(Dim);
+  std::array<const double*, dimensions> v{};
+  std::array<double*, dimensions> drag{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    v[d] = p.column(Field::velocity, static_cast<int>(d));
+    drag[d] = p.column(Field::drag_acceleration, static_cast<int>(d));
+  }
+  const double* y = p.column(Field::position, 1);
+  const Diameters diameter(p, grains.diameter);
+  const double time = hold_, ahead = time_ahead(grains);
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
+    const double at = y[k] + ahead * v[1][k];
+    const double speed = wind(at, 0.5 * d);
+    std::array<double, dimensions> mean{};  // total acceleration, gravity and drag
+    double rate = 0.0, share = 1.0;
+    for (int pass = 0; pass < 2; ++pass) {
+      double square = 0.0;
+      for (std::size_t c = 0; c < dimensions; ++c) {
+        const double difference = (c == 0 ? speed : 0.0) - v[c][k] - 0.5 * time * mean[c];
+        square += difference * difference;
+      }
+      rate = stokes * excess(std::sqrt(square) * d / keys_.viscosity, at);
+      const double x = rate * time;
+      share = x < 1e-5 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+      for (std::size_t c = 0; c < dimensions; ++c)
+        mean[c] = share * (rate * ((c == 0 ? speed : 0.0) - v[c][k]) + scene_.domain.gravity[c]);
+    }
+    for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = mean[c] - scene_.domain.gravity[c];
+    grains.rate[k] = share * rate;
+    grains.wind[k] = speed;
+  }
+}
+
+/// The drag in the wind that the air's step has made.
+void ColumnPhase::follow_wind() {
+  for (Feeling& grains : feeling_) {
+    PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
+    const double *y = p.column(Field::position, 1), *vy = p.column(Field::velocity, 1);
+    double* drag = p.column(Field::drag_acceleration, 0);
+    const double ahead = time_ahead(grains);
+    const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      drag[k] += grains.rate[k] * (wind(y[k] + ahead * vy[k], 0.5 * diameter[k]) - grains.wind[k]);
+    }
+  }
+}
+
+/// How much more the grains of each cell take off as the air gets faster.
+void ColumnPhase::spread_rates() {
+  spread_->clear();
+  for (const Feeling& grains : feeling_) {
+    const PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
+    const double* y = p.column(Field::position, 1);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double r = 0.5 * diameter[k];
+      spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) * grains.rate[k] / area_);
+    }
+  }
+  spread_->gather(*air_, load_->rate);
+}
+
+/// For how long the present drag has acted since the last exchange. Grains of the common integrator are kicked twice a
+/// step: by the drag of the step before at its beginning, and by that of its end.
+double ColumnPhase::impulse_time(const Feeling& grains) const {
+  return grains.own_steps ? profile().elapsed : profile().kicked;
+}
+
+/// What the present drag gives the grains of each cell, Pa; or what it has given them since the last exchange, Pa s.
+void ColumnPhase::spread_drag(bool so_far, std::vector<double>& sums) {
+  spread_->clear();
+  for (const Feeling& grains : feeling_) {
+    const double time = so_far ? impulse_time(grains) : 1.0;
+    const PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
+    const double *y = p.column(Field::position, 1), *drag = p.column(Field::drag_acceleration, 0);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double r = 0.5 * diameter[k];
+      spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) * drag[k] * time / area_);
+    }
+  }
+  spread_->gather(*air_, sums);
+}
+
+/// The part of each cell that is solid; 2D: of a slab one diameter thick.
+void ColumnPhase::find_voidage() {
+  spread_->clear();
+  for (const Feeling& grains : feeling_) {
+    const PhaseParticles& p = w_->particles(grains.phase);
+    const Diameters diameter(p, grains.diameter);
+    const double* y = p.column(Field::position, 1);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double r = 0.5 * diameter[k];
+      spread_->add(*air_, y[k] - r, y[k] + r, p.mass_of(k) / (grains.density * area_));
+    }
+  }
+  spread_->gather(*air_, solid_);
+  const AirProfile& air = profile();
+  for (std::size_t c = 0; c < solid_.size(); ++c) solid_[c] /= air.face[c + 1] - air.face[c];
+}
+
+/// The profile belongs to the state; what is made of it is made again.
+void ColumnPhase::archive(Archive& a) {
+  if (a.loads()) air_->integrate_speed();
+}
+
+void ColumnPhase::columns(std::vector<std::string>& names) const {
+  const std::string& name = scene_.phases[number_].name;
+  if (!keys_.averaging) names.push_back(name + "_momentum_x [kg m/s]");
+  names.push_back(name + "_boundary_impulse_x [kg m/s]");
+}
+
+/// The air's momentum is counted at the same moment as that of the grains: less what they have got since the last
+/// exchange.
+void ColumnPhase::row(std::vector<double>& values) const {
+  const AirProfile& air = profile();
+  if (keys_.averaging) {
+    values.push_back(area_ * air.boundary);
+    return;
+  }
+  double momentum = air_->momentum();
+  for (const double given : air.given) momentum += given;
+  momentum *= area_;
+  for (const Feeling& grains : feeling_) {
+    const PhaseParticles& p = w_->particles(grains.phase);
+    const double* drag = p.column(Field::drag_acceleration, 0);
+    const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
+    momentum -= time * ordered_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
+  }
+  values.push_back(momentum);
+  values.push_back(area_ * air.boundary);
+}
+
+}  // namespace barchan
