@@ -15,6 +15,7 @@ struct RunOptions {
   int threads = 0;                     // 0: all
   std::string restart;                 // empty, "latest" or a checkpoint
   std::string instructions;            // empty: the best that the machine has
+  int retreats = 10;                   // how often a run may go back after a failed step
   bool quiet = false;
 };
 

@@ -2,8 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -11,7 +15,9 @@
 #include "app/commands.hpp"
 #include "app/guard.hpp"
 #include "base/denormals.hpp"
+#include "base/errors.hpp"
 #include "base/version.hpp"
+#include "output/numbers.hpp"
 #include "scene/nearest.hpp"
 
 namespace {
@@ -42,16 +48,34 @@ std::string not_a_command(const CLI::App& app, const std::string& word) {
          '\n' + list;
 }
 
+/// The status of a command whose answer is what it prints: it has failed when that could not be written.
+int all_was_said(int status) {
+  errno = 0;
+  if (std::cout.flush() && std::fflush(stdout) == 0) return status;
+  throw barchan::OutputError("cannot write to standard output" +
+                             (errno ? ": " + std::string(std::strerror(errno)) : std::string()));
+}
+
+std::string version_text(bool verbose) {
+  std::string text = "barchan " + barchan::version() + " (" + barchan::commit() +
+                     ")\ncompiler: " + barchan::compiler() + "\ninstruction set: " + barchan::instruction_set();
+  if (!verbose) return text + "\nVTK: " + barchan::vtk_version();
+  for (const auto& [name, version] : barchan::packages()) text += "\n" + name + ": " + version;
+  return text;
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
-  app.set_version_flag("--version", [] {
-    return "barchan " + barchan::version() + " (" + barchan::commit() + ")\ncompiler: " + barchan::compiler() +
-           "\ninstruction set: " + barchan::instruction_set() + "\nVTK: " + barchan::vtk_version();
-  });
+  const std::vector<std::string> words(argv, argv + argc);  // --version answers before the options behind it are read
+  bool verbose = std::find(words.begin(), words.end(), "--verbose") != words.end();
+  app.set_version_flag(
+      "--version", [&] { return version_text(verbose); }, "version, compiler and instruction set");
+  app.add_flag("--verbose", verbose, "with --version: the versions of all packages too");
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done, 1 compare: different, 2 wrong scene or command, 3 the run broke down,\n"
-      "4 input/output failed or out of memory, 5 a mistake in Barchan itself, 130 or 143 stopped by a signal.\n"
+      "4 input/output failed, no threads or out of memory, 5 a mistake in Barchan itself, 128 + n stopped by signal "
+      "n.\n"
       "A file named TERMINATE in the output folder ends a run well.");
 
   int status = 0;
@@ -69,6 +93,8 @@ int dispatch(int argc, char** argv) {
       ->type_name("FILE|latest");
   c_run->add_option("--instructions", run.instructions, "avx2 or avx512 (default: the best that the machine has)")
       ->type_name("NAME");
+  c_run->add_option("--retreats", run.retreats, "how often to go back after a failed step and take smaller ones (10)")
+      ->check(CLI::Range(0, 1000));
   c_run->add_flag("--quiet", run.quiet, "print errors only");
   add_set(c_run);
   c_run->callback([&] {
@@ -98,7 +124,11 @@ int dispatch(int argc, char** argv) {
   c_compare->add_option("a", file_a, ".vtp, .vtu or .pvd")->required();
   c_compare->add_option("b", file_b, ".vtp, .vtu or .pvd")->required();
   c_compare->add_option("--tolerance", tolerance, "relative difference that still counts as the same (default 0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) {
+        const auto number = barchan::parse_number(text);
+        return number && *number >= 0 && std::isfinite(*number) ? ""
+                                                                : "expected a number >= 0, found " + text.substr(0, 40);
+      });
   c_compare->add_flag("--json", json, "as JSON");
   c_compare->callback([&] { status = barchan::compare(file_a, file_b, tolerance, json); });
 
@@ -112,9 +142,9 @@ int dispatch(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);
-    return code == 0 ? 0 : 2;
+    return code == 0 ? all_was_said(0) : 2;
   }
-  return status;
+  return c_run->parsed() ? status : all_was_said(status);
 }
 
 }  // namespace

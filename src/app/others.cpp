@@ -1,42 +1,48 @@
 // barchan plan, generate, compare, schema.
-#include <omp.h>
-
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "base/denormals.hpp"
 #include "base/errors.hpp"
 #include "output/compare.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
 #include "simulation/estimate.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
 
-void use_threads(int wanted, const Plan& plan) {
-  const int useful = 1 + static_cast<int>(plan.particles() / 2000.0);
-  omp_set_num_threads(wanted > 0 ? wanted : std::min(omp_get_max_threads(), useful));
-}
-
 int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   Plan plan = make_plan(scene, blocks);
   use_threads(threads, plan);
-  const Estimate estimate = measure(scene, plan, blocks);
-  std::cout << (json ? to_json(plan, scene, estimate) : to_text(plan, scene) + to_text(estimate));
+  const MemoryNeed memory = memory_need(scene, plan, !scene.time.fixed_step);
+  if (!json) std::cout << to_text(plan, scene) << to_text(memory) << std::flush;  // before anything is allocated
+  Estimate estimate;
+  try {
+    check_memory(scene, memory);
+    estimate = measure(scene, plan, blocks);
+  } catch (const SceneError& error) {
+    if (json) throw;
+    std::cout << "not measured\n";
+    throw;
+  }
+  std::cout << (json ? to_json(plan, scene, memory, estimate) : to_text(estimate));
+  if (!estimate.failure.empty()) throw BreakdownError("the run breaks down in its first steps: " + estimate.failure);
   return 0;
 }
 
 int generate(const std::string& file, const std::string& output, const std::vector<std::string>& overrides) {
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   const Plan plan = make_plan(scene, blocks);
   const bool vtu = std::filesystem::path(output).extension() == ".vtu";
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
+  use_threads(0, plan);
   write_frame(output, Simulation(scene, plan, blocks).frame(0), vtu ? FrameFormat::vtu : FrameFormat::vtp,
               scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";
@@ -44,6 +50,7 @@ int generate(const std::string& file, const std::string& output, const std::vect
 }
 
 int compare(const std::string& a, const std::string& b, double tolerance, bool json) {
+  keep_denormals();
   const auto differences = compare_files(a, b, tolerance);
   std::cout << (json ? to_json(differences) : to_text(differences)) << '\n';
   for (const auto& d : differences)

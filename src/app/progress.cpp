@@ -51,7 +51,7 @@ void Progress::step(const Simulation& s) {
     std::printf("%5.1f %%  t = %.6g s  step %ld  dt %.2e s (%s)  %.2f M particle-steps/s  %s left\n", 100 * done,
                 s.time(), s.steps(), s.last_step(), s.ruling_limit().c_str(), rate, clock_text(left).c_str());
   }
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0) quiet_ = true;  // nobody reads it any more: the run goes on
 }
 
 void Progress::end(const std::string& reason) {

@@ -13,6 +13,9 @@ class Progress {
   Progress(double end, double particles, bool quiet);
   void step(const Simulation& simulation);  ///< after every step; prints ten times a second at most
   void end(const std::string& reason);
+  void back(const Simulation& simulation) {
+    last_steps_ = simulation.steps();
+  }                        ///< the run went back to an earlier step
   double seconds() const;  ///< s since the beginning
 
  private:

@@ -16,4 +16,12 @@ inline void flush_denormals() {
 #endif
 }
 
+/// For comparisons bit for bit: the smallest numbers count.
+inline void keep_denormals() {
+#if defined(__SSE2__)
+  constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
+  _mm_setcsr(_mm_getcsr() & ~(flush_to_zero | denormals_are_zero));
+#endif
+}
+
 }  // namespace barchan

@@ -21,4 +21,9 @@ struct OutputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A text of a user for a message: not more of it than helps to find it.
+inline std::string shortened(const std::string& text, std::size_t most = 200) {
+  return text.size() <= most ? text : text.substr(0, most) + "... (" + std::to_string(text.size()) + " characters)";
+}
+
 }  // namespace barchan

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace barchan {
 
@@ -11,5 +13,7 @@ std::string compiler();  ///< name and version
 std::string
 instruction_set();  ///< "AVX-512 (of avx2, avx512)": the one in use, and those that program and machine have
 std::string vtk_version();
+/// Name and version of every package that this build was made with (packages.cpp).
+std::vector<std::pair<std::string, std::string>> packages();
 
 }  // namespace barchan

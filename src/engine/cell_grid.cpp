@@ -8,18 +8,29 @@
 
 namespace barchan {
 
-CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks)
-    : dimensions_(static_cast<std::size_t>(bounds.dimensions)), bounds_(bounds) {
+/// Divides the domain and its halo into cells of about this size; returns how many they are, also where they are more
+/// than can be numbered.
+double CellGrid::divide(double cell, double reach, const Blocks& blocks) {
+  double cells = 1.0;
   for (std::size_t d = 0; d < dimensions_; ++d) {
-    const double size = bounds.high[d] - bounds.low[d];
-    period_[d] = bounds.periodic[d] ? size : 0.0;
+    const double size = bounds_.high[d] - bounds_.low[d];
+    period_[d] = bounds_.periodic[d] ? size : 0.0;
     const double n = static_cast<double>(blocks.count[d]) * std::max(std::floor(blocks.side[d] / cell), 1.0);
     const double side = size / n;
     inverse_cell_[d] = static_cast<float>(1.0 / side);
     side_[d] = static_cast<float>(side);
-    halo_[d] = bounds.periodic[d] ? static_cast<int>(std::ceil(reach / side)) + 1 : 1;
-    count_[d] = static_cast<std::size_t>(n) + 2 * static_cast<std::size_t>(halo_[d]);
+    halo_[d] = bounds_.periodic[d] ? static_cast<int>(std::ceil(reach / side)) + 1 : 1;
+    count_[d] = static_cast<std::size_t>(std::min(n, 1e15)) + 2 * static_cast<std::size_t>(halo_[d]);
+    cells *= static_cast<double>(count_[d]);
   }
+  return cells;
+}
+
+CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks, std::size_t most)
+    : dimensions_(static_cast<std::size_t>(bounds.dimensions)), bounds_(bounds) {
+  double widest = 0.0;  // a cell as wide as a block cannot grow
+  for (std::size_t d = 0; d < dimensions_; ++d) widest = std::max(widest, blocks.side[d]);
+  while (divide(cell, reach, blocks) > static_cast<double>(std::min(most, most_cells)) && cell < widest) cell *= 1.25;
   const std::size_t cells = count_[0] * count_[1] * count_[2];
   begin_.assign(cells, 0);
   end_.assign(cells, 0);

@@ -45,11 +45,13 @@ struct BlockRun {
 
 class CellGrid {
  public:
-  static constexpr int strip = 16;  // cells
+  static constexpr int strip = 16;                        // cells
+  static constexpr std::size_t most_cells = 0xffff0000u;  // cells are numbered in 32 bits
 
   /// `reach` (m): the largest search radius over this phase's particles, skin included. `cell` (m): the least cell
-  /// size, unless a block is smaller.
-  CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks);
+  /// size, unless a block is smaller. `most`: cells become larger than that until they are no more than this, so that
+  /// an empty domain costs no memory.
+  CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks, std::size_t most = most_cells);
 
   /// Wraps positions into the periodic domain, sorts the phase by cell and makes the images. Positions outside the
   /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm.
@@ -141,6 +143,7 @@ class CellGrid {
     const float side = side_[axis], begin = static_cast<float>(cell - halo_[axis]) * side;
     return std::max(std::max(begin - high, low - (begin + side)) - 1.0e-3f * side, 0.0f);
   }
+  double divide(double cell, double reach, const Blocks& blocks);
   void order_interior(const Blocks& blocks);
   void find_halo();
   void find_cells(PhaseParticles& particles);

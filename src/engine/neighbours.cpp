@@ -9,7 +9,7 @@
 namespace barchan {
 
 Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, double skin,
-                       const std::vector<double>& spacings, std::size_t padding)
+                       const std::vector<double>& spacings, std::size_t padding, std::size_t particles)
     : bounds_(bounds),
       directions_(std::move(directions)),
       grids_(spacings.size()),
@@ -19,10 +19,15 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
       skin_(skin),
       widest_skin_(skin) {
   for (const auto& d : directions_) widest_ = std::max(widest_, d.radius * (1.0 + skin_));
-  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions) && widest_ > 0.0; ++d) {
-    const double size = bounds_.high[d] - bounds_.low[d];
-    blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / (block_width * widest_)), 1.0, 4096.0));
-    blocks_.side[d] = size / static_cast<double>(blocks_.count[d]);
+  const std::size_t few = std::min(particles, CellGrid::most_cells);
+  const std::size_t most_blocks = std::max(blocks_a_particle * few, least_blocks);
+  for (double width = block_width * widest_; widest_ > 0.0; width *= 1.25) {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
+      const double size = bounds_.high[d] - bounds_.low[d];
+      blocks_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / width), 1.0, 4096.0));
+      blocks_.side[d] = size / static_cast<double>(blocks_.count[d]);
+    }
+    if (blocks_.size() <= most_blocks) break;
   }
   for (std::size_t p = 0; p < spacings.size(); ++p) {
     double longest = 0.0;
@@ -31,7 +36,8 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
     if (longest == 0.0) continue;
     // Half a search a cell: a ball's cells then cover little more than the ball. Cells emptier than that are no gain.
     const double cell = std::max(0.5 * longest * (1.0 + skin_), 1.2 * spacings[p]);
-    grids_[p] = std::make_unique<CellGrid>(bounds_, cell, longest * (1.0 + skin_) * 1.001, blocks_);
+    grids_[p] = std::make_unique<CellGrid>(bounds_, cell, longest * (1.0 + skin_) * 1.001, blocks_,
+                                           std::max(cells_a_particle * few, least_cells));
     ranges_[p].resize(blocks_.size());
   }
 }

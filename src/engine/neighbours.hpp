@@ -19,10 +19,16 @@ struct Direction {
 
 class Neighbours {
  public:
+  /// So many cells and blocks a particle, and no fewer than so many in all: more than any domain has that is a
+  /// twentieth full.
+  static constexpr std::size_t cells_a_particle = 16, least_cells = std::size_t{1} << 22;
+  static constexpr std::size_t blocks_a_particle = 4, least_blocks = std::size_t{1} << 16;
+
   /// `spacings` (m): of the particles, by phase. `padding`: of the rows of all lists. `skin`: lists reach this fraction
-  /// beyond an entry's radius, so that they stay valid while particles move.
+  /// beyond an entry's radius, so that they stay valid while particles move. `particles`: of all phases; an empty
+  /// domain has cells and blocks for so many and not for its size.
   Neighbours(const Bounds& bounds, std::vector<Direction> directions, double skin, const std::vector<double>& spacings,
-             std::size_t padding = simd::width_in_use<double>());
+             std::size_t padding = simd::width_in_use<double>(), std::size_t particles = CellGrid::most_cells);
 
   /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most
   /// as wide as given. It depends on positions alone, like everything here.

@@ -10,6 +10,9 @@
 //   Hertz:  k = 4/3 E* sqrt(R* delta),  c = sqrt(5) zeta sqrt(m* k), k_t = 3 (1 - nu)/(2 - nu) k   (Mindlin 1949)
 //   c_t = c/2
 //
+// Velocities of a step are half a step behind its positions. A dashpot takes them at the time of the positions: with
+// what the force itself adds, v + F dt/(2 m*), which gives F = (k delta - c v)/(1 + c dt/(2 m*)).
+//
 // Grains do not stick: the force is clipped to repulsion, and the contact ends where the clipped force does (Schwager
 // and Poeschel 2007). Then a head-on impact keeps the share
 //   e = exp(-2 zeta acos(zeta)/sqrt(1 - zeta^2))   of its speed, above zeta = 1 with acosh and sqrt(zeta^2 - 1).
@@ -120,10 +123,11 @@ BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::ar
                                            const std::array<V, N>& velocity, V stiffness, V old_stiffness, V dashpot,
                                            V limit, V inverse_mass, V dt, V& lost, V& stored) {
   std::array<V, N> force;
+  const V centred = V(1.0) / fma(dashpot * inverse_mass, V(0.5) * dt, V(1.0));
   V f2(1e-200), was(0.0), now(0.0), work(0.0);
   for (std::size_t k = 0; k < N; ++k) {
     slip[k] = fma(velocity[k], dt, slip[k]);
-    force[k] = -fma(stiffness, slip[k], dashpot * velocity[k]);
+    force[k] = -fma(stiffness, slip[k], dashpot * velocity[k]) * centred;
     f2 = fma(force[k], force[k], f2);
   }
   const auto slides = f2 > limit * limit;
@@ -159,8 +163,8 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
   const V k = Hertz ? c.stiffness * simd::sqrt(s.reduced_radius * s.overlap) : c.stiffness;
   const V dashpot = c.dashpot * simd::sqrt(s.reduced_mass * k);
   const V elastic = k * s.overlap;
-  const V normal = simd::max(fnma(dashpot, v_n, elastic), V(0.0));
   const V inverse_mass = V(1.0) / s.reduced_mass;
+  const V normal = simd::max(fnma(dashpot, v_n, elastic), V(0.0)) / fma(dashpot * inverse_mass, c.half_dt, V(1.0));
   out.lost = (elastic - normal) * fma(normal * inverse_mass, c.half_dt, v_n) * c.dt;
   out.stored = V(Hertz ? 0.4 : 0.5) * elastic * s.overlap;
   for (std::size_t d = 0; d < Dim; ++d) out.force[d] = normal * s.normal[d];

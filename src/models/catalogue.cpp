@@ -7,6 +7,7 @@
 #include "models/bodies/elastic_phase.hpp"
 #include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
+#include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_phase.hpp"
@@ -72,13 +73,15 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
-    if (scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column))
+    if ((scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column)) ||
+        drags_by_law(scene, scene.phases[k]))
       layout.phases[k].fields.push_back(Field::drag_acceleration);
 }
 
 void classify(const Scene& scene, PlanEntry& e) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
   e.law = law_of(a, b);
+  if (e.law == Law::coupling && e.drag_law != DragLaw::none) e.law = Law::drag;
   e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
   e.other = e.partner(e.fluid);
   e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
@@ -97,6 +100,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
   if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.diameter > 0; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {
+    if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
     if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
     if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(std::make_unique<ContactEntry>(scene, layout, e));

@@ -20,6 +20,7 @@ enum class Law {
   repulsive,  // fluid-wall: one row of ghosts that push (Halik et al. 2015, section 6; Monaghan 1994)
   coupling,   // fluid-grains, fluid-elastic: the solid is a moving wall and feels the reaction
   column,     // column-grains: drag in a wind by height
+  drag,       // fluid-spheres: wind over sand, in layers near the ground (models/coupling/sand_layer.hpp)
   contact,    // grains with grains, walls or bodies
   elastic,    // elastic-elastic: stress
 };
@@ -55,10 +56,10 @@ struct PlanEntry {
   double radius = 0;   // m; of spheres the distance at which the largest touch
   double spacing = 0;  // m, of its coarser phase
   Consistency consistency;
-  bool corrected = false;           // the consistent scheme divides by these sums: exact to first order all the same
-  double drag = 0;                  // drag coefficient, 0: none
+  bool corrected = false;            // the consistent scheme divides by these sums: exact to first order all the same
+  double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
-  int forward = -1, backward = -1;  // directions: a looks for b, b looks for a; -1: not needed
+  int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
@@ -105,7 +106,7 @@ struct PlanPhase {
   bool free_surface = false;             // a fluid that does not fill its space
   bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
   bool enclosed = false;                 // a fluid whose mean density is kept
-  double wind = 0;               // m/s, what a column of air can reach: a bound for the watch
+  double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
   std::vector<Field> fields;
   PhaseRules rules;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,6 +75,9 @@ class Model {
   virtual void row(std::vector<double>&) const {}
   /// What has gone wrong in what only it sees, with the remedy; empty: nothing.
   virtual std::optional<std::string> trouble() const { return std::nullopt; }
+  /// Directed pairs in its own lists of an entry, and how often it has searched them: for models that have such.
+  virtual std::uint64_t pairs(const PlanEntry&) const { return 0; }
+  virtual long searches() const { return 0; }
   /// Its numbers that a step starts from.
   virtual void archive(Archive&) {}
 };

@@ -103,7 +103,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
       layout(layout_),
       state(state_),
       neighbours(layout_.bounds, layout_.directions, layout_.skin, spacings(layout_),
-                 scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>()),
+                 scene_.precision == Precision::mixed ? simd::width_in_use<float>() : simd::width_in_use<double>(),
+                 static_cast<std::size_t>(layout_.particles())),
       packing(layout_.phases.size()) {
   neighbours.adapt_skin();
   const std::size_t phases = layout.phases.size();
@@ -116,6 +117,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
   }
   eddies.resize(phases);
+  ground_stress.resize(phases);
   for (std::size_t k = 0; k < phases; ++k) {
     motion.emplace_back(read[k] ? size : 0);
     extended.emplace_back(seen[k] ? size : 0);

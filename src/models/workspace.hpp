@@ -26,6 +26,7 @@ class Workspace {
   std::vector<RecordArray> motion, extended, stress;     // by phase; extended: a solid as the fluid sees it
   std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/air reads
   std::vector<EddyRecords> eddies;                       // by phase
+  std::vector<AlignedVector<double>> ground_stress;      // Pa, by fluid and particle; empty: walls say it themselves
 
   /// How the motion records of a phase are filled.
   struct Packing {

@@ -7,8 +7,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <set>
-#include <sstream>
 
 #include "base/errors.hpp"
 #include "output/whole_file.hpp"
@@ -18,7 +16,7 @@ namespace barchan {
 
 namespace {
 
-constexpr std::string_view magic = "barchan checkpoint 1\n";
+constexpr std::string_view magic = "barchan checkpoint 2\n";
 
 /// What stands between the magic words and the items.
 struct Head {
@@ -40,64 +38,88 @@ void items(Archive& a, Checkpoint& c) {
   a.array("state", c.state);
 }
 
+std::vector<char> bytes_of(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw SceneError("there is no such file; expected a checkpoint, or \"latest\"");
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> all{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.good() && !stream.eof())
+    throw SceneError(std::string("cannot be read: ") + std::strerror(errno ? errno : EIO));
+  return all;
+}
+
+/// Gives the file of the last checkpoint the name of the older one. A link, so that at no moment there is none; a file
+/// system without links has none for a moment.
+void keep_as_older(const std::filesystem::path& file) {
+  const std::filesystem::path older = older_checkpoint(file);
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) return;
+  std::filesystem::remove(older, failed);
+  std::filesystem::create_hard_link(file, older, failed);
+  if (failed) std::filesystem::rename(file, older, failed);
+}
+
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint) {
   Archive archive;
-  Checkpoint copy = checkpoint;
-  items(archive, copy);
+  items(archive, checkpoint);
   const auto& bytes = archive.bytes();
   const Head head{bytes.size(), checksum(bytes.data(), bytes.size()), 0};
   WholeFile out(file);
   out.write(magic);
   out.write({reinterpret_cast<const char*>(&head), sizeof head});
   out.write({bytes.data(), bytes.size()});
+  keep_as_older(file);
   out.publish();
+}
+
+std::filesystem::path older_checkpoint(const std::filesystem::path& file) { return file.string() + ".older"; }
+
+void remove_checkpoints(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::filesystem::remove(older_checkpoint(file), ignored);
+  std::filesystem::remove(file, ignored);
+}
+
+std::pair<Checkpoint, std::string> read_newest_checkpoint(const std::filesystem::path& file) {
+  std::string damage;
+  try {
+    return {read_checkpoint(file), ""};
+  } catch (const SceneError& e) { damage = e.what(); }
+  try {
+    return {read_checkpoint(older_checkpoint(file)), damage};
+  } catch (const SceneError& e) {
+    if (!std::filesystem::exists(older_checkpoint(file))) throw SceneError(damage);
+    throw SceneError(damage + "\n" + e.what());
+  }
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& what) -> SceneError {
     return SceneError("--restart " + file.string() + ": " + what);
   };
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw fail("there is no such file; expected a checkpoint, or \"latest\"");
-  std::ifstream stream(file, std::ios::binary);
-  const std::vector<char> all{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream.good() && !stream.eof()) throw fail(std::string("cannot be read: ") + std::strerror(errno ? errno : EIO));
+  try {
+    return parse_checkpoint(bytes_of(file));
+  } catch (const SceneError& e) { throw fail(e.what()); }
+}
+
+Checkpoint parse_checkpoint(const std::vector<char>& all) {
   Head head;
   if (all.size() < magic.size() + sizeof head || std::string_view(all.data(), magic.size()) != magic)
-    throw fail("is no checkpoint of this version; expected a file that begins with \"barchan checkpoint 1\"");
+    throw SceneError("is no checkpoint of this version; expected a file that begins with \"barchan checkpoint 2\"");
   std::memcpy(&head, all.data() + magic.size(), sizeof head);
   const char* begin = all.data() + magic.size() + sizeof head;
   const std::size_t size = all.size() - magic.size() - sizeof head;
   if (head.size != size)
-    throw fail("is damaged: it holds " + std::to_string(size) + " bytes; expected " + std::to_string(head.size));
-  if (head.unused != 0 || checksum(begin, size) != head.sum) throw fail("is damaged: its checksum is wrong");
+    throw SceneError("is damaged: it holds " + std::to_string(size) + " bytes; expected " + std::to_string(head.size));
+  if (head.unused != 0 || checksum(begin, size) != head.sum) throw SceneError("is damaged: its checksum is wrong");
   Archive archive(std::vector<char>(begin, begin + size));
   Checkpoint checkpoint;
   items(archive, checkpoint);
   archive.finish();
   return checkpoint;
-}
-
-std::string difference(const std::string& then, const std::string& now) {
-  const auto lines = [](const std::string& text) {
-    std::vector<std::string> all;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) all.push_back(line);
-    return all;
-  };
-  const auto old_lines = lines(then), new_lines = lines(now);
-  const std::multiset<std::string> before(old_lines.begin(), old_lines.end()),
-      after(new_lines.begin(), new_lines.end());
-  std::string text;
-  for (const auto& line : old_lines)
-    if (!after.contains(line)) text += "  - " + line + "\n";
-  for (const auto& line : new_lines)
-    if (!before.contains(line)) text += "  + " + line + "\n";
-  if (text.empty() && then != now) text = "  the order of its parts\n";
-  return text;
 }
 
 }  // namespace barchan

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace barchan {
@@ -16,14 +17,23 @@ struct Checkpoint {
   std::vector<char> state;  // Archive::bytes()
 };
 
-/// Replaces the file by rename when all of it is on the disk. Throws OutputError.
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+/// Replaces the file by rename when all of it is on the disk; the one before stays as older_checkpoint(). Throws
+/// OutputError.
+void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint);
 
 /// Throws SceneError when there is no such file, or it is no checkpoint, of another format, cut off or damaged (the
 /// CRC-32 of zlib over all that follows the head).
 Checkpoint read_checkpoint(const std::filesystem::path& file);
 
-/// Lines of two scenes' identities that differ, as "- of the checkpoint" and "+ of the scene"; empty when none do.
-std::string difference(const std::string& then, const std::string& now);
+/// The same of the bytes of a file.
+Checkpoint parse_checkpoint(const std::vector<char>& bytes);
+
+/// Of a file's ring of two: the one before the newest.
+std::filesystem::path older_checkpoint(const std::filesystem::path& file);
+void remove_checkpoints(const std::filesystem::path& file);  ///< Both.
+
+/// The newest of the ring that is whole, and what is wrong with the newer one if that had to be left out. Throws
+/// SceneError with the reasons when neither can be read.
+std::pair<Checkpoint, std::string> read_newest_checkpoint(const std::filesystem::path& file);
 
 }  // namespace barchan

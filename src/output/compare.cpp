@@ -76,7 +76,8 @@ FieldDifference difference(const std::string& name, std::span<const double> a, s
     double most = 0, most_a = 0, most_b = 0;
     for (std::size_t c = 0; c < components; ++c) {
       const double value_a = a[m.a * components + c], value_b = b[m.b * components + c];
-      const double relative = distance(value_a, value_b) / unit;
+      const double apart = distance(value_a, value_b);
+      const double relative = apart > 0 ? std::max(apart / unit, std::numeric_limits<double>::denorm_min()) : 0.0;
       sum += relative;
       squares += relative * relative;
       if (relative > most) most = relative, most_a = value_a, most_b = value_b;
@@ -119,6 +120,14 @@ std::vector<FrameDifference> compare_series(const std::filesystem::path& a, cons
     const Frame frame_a = read_frame(a.parent_path() / entries_a[k].file);
     const Frame frame_b = read_frame(b.parent_path() / entries_b[k].file);
     differences.push_back(compare(frame_a, frame_b, tolerance));
+    const auto check_entry = [&](const SeriesWriter::Entry& entry, const Frame& frame, const char* which) {
+      if (distance(entry.time, frame.time) == 0) return;
+      differences.back().same = false;
+      differences.back().remarks.push_back("the series " + std::string(which) + " lists the frame at " +
+                                           exact(entry.time) + " s, the frame says " + exact(frame.time) + " s");
+    };
+    check_entry(entries_a[k], frame_a, "A");
+    check_entry(entries_b[k], frame_b, "B");
   }
   if (entries_a.size() != entries_b.size()) {
     FrameDifference rest;
@@ -167,7 +176,8 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
   result.time_a = a.time;
   result.time_b = b.time;
   auto& remarks = result.remarks;
-  if (distance(a.time, b.time) > tolerance * std::max(std::abs(a.time), std::abs(b.time)))
+  const double times = distance(a.time, b.time);
+  if (times > 0 && !(std::isfinite(times) && times <= tolerance * std::max(std::abs(a.time), std::abs(b.time))))
     remarks.push_back("the times differ: " + exact(a.time) + " s against " + exact(b.time) + " s");
   if (a.phase_names != b.phase_names) remarks.emplace_back("the phases have different names or another order");
 

@@ -1,4 +1,5 @@
-// One frame to a file and back through VTK's XML writers and readers.
+// One frame to a file through VTK's XML writers, and back: frame_read.cpp reads what is written here, VTK's readers
+// what other programs write into the XML itself.
 //
 // .vtp and .vtu hold the same arrays and one vertex cell a particle, which is what ParaView draws without a filter.
 // They differ in two ways, both for meshio's sake, which reads .vtu but neither LZ4 nor arrays of strings:
@@ -39,6 +40,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "output/frame_read.hpp"
 #include "output/series.hpp"
 #include "output/whole_file.hpp"
 
@@ -260,9 +262,14 @@ std::string unit_of(const std::string& field, const Lines& units) {
 Frame frame_of(vtkPointSet* data) {
   Frame frame;
   vtkFieldData* about = data->GetFieldData();
-  if (auto* time = about->GetArray("TimeValue")) frame.time = time->GetComponent(0, 0);
-  if (auto* step = about->GetArray("step")) frame.step = values_of<std::int64_t>(step).at(0);
-  if (auto* index = about->GetArray("frame")) frame.index = values_of<int>(index).at(0);
+  const auto one = [&](const char* name) {
+    vtkDataArray* array = about->GetArray(name);
+    if (array && array->GetNumberOfValues() != 1) throw OutputError("array '" + std::string(name) + "' is incomplete");
+    return array;
+  };
+  if (auto* time = one("TimeValue")) frame.time = time->GetComponent(0, 0);
+  if (auto* step = one("step")) frame.step = values_of<std::int64_t>(step).at(0);
+  if (auto* index = one("frame")) frame.index = values_of<int>(index).at(0);
   if (auto* domain = about->GetArray("domain"); domain && domain->GetNumberOfValues() == 6)
     std::ranges::copy(values_of<double>(domain), frame.domain.begin());
   frame.phase_names = lines_of(about, "phase_names");
@@ -332,6 +339,7 @@ Frame read_frame(const std::filesystem::path& file) {
   if (suffix != ".vtp" && suffix != ".vtu") fail("a frame's name ends in .vtp or .vtu");
   if (!has_its_end(file)) fail("the file is incomplete");
   try {
+    if (auto frame = read_appended(read_text(file), suffix)) return std::move(*frame);
     return suffix == ".vtp" ? read_with<vtkXMLPolyDataReader>(file) : read_with<vtkXMLUnstructuredGridReader>(file);
   } catch (const OutputError& e) { fail(e.what()); }
   return {};

@@ -1,5 +1,6 @@
 #include "output/run_report.hpp"
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "output/whole_file.hpp"
@@ -20,6 +21,8 @@ std::string to_json(const RunReport& r) {
       {"scene",
        {{"title", r.scene_title}, {"file", r.scene_file}, {"state", r.scene_state}, {"spacing", r.scene_spacing}}},
       {"end_reason", r.end_reason},
+      {"process", r.process},
+      {"host", r.host},
       {"warnings", Json(r.warnings)},
       {"steps", r.steps},
       {"simulated_time", r.simulated_time},
@@ -38,11 +41,46 @@ std::string to_json(const RunReport& r) {
   for (const auto& m : r.measured)
     json["measured"].push_back({{"kind", m.kind}, {"name", m.name}, {"files", m.files}, {"samples", m.samples}});
   // A title that is not UTF-8 must not lose the report of a whole run.
+  json["retreats"]["count"] = r.retreat_count;
+  for (const auto& back : r.retreats)
+    json["retreats"]["list"].push_back({{"step", back.step},
+                                        {"time", back.time},
+                                        {"back_to", back.back_to},
+                                        {"share_of_step", back.share},
+                                        {"reason", back.reason}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void write_run_report(const std::filesystem::path& file, const RunReport& report) {
   write_whole_file(file, to_json(report));
+}
+
+bool overwrite_run_report(const std::filesystem::path& file, const RunReport& report) {
+  std::error_code failed;
+  const auto size = std::filesystem::file_size(file, failed);
+  if (failed) return false;
+  const nlohmann::ordered_json json{{"version", report.version}, {"end_reason", report.end_reason},
+                                    {"process", report.process}, {"host", report.host},
+                                    {"steps", report.steps},     {"simulated_time", report.simulated_time}};
+  std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (text.size() > size) return false;  // it must not grow: there is no room
+  text.append(size - text.size(), ' ');
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  stream << text << std::flush;
+  return stream.good();
+}
+
+std::vector<std::string> measured_files(const std::filesystem::path& file) {
+  std::vector<std::string> files;
+  std::ifstream stream(file, std::ios::binary);
+  const auto json = nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("measured") || !json["measured"].is_array()) return files;
+  for (const auto& measured : json["measured"]) {
+    if (!measured.is_object() || !measured.contains("files") || !measured["files"].is_array()) continue;
+    for (const auto& name : measured["files"])  // a name in the same folder, nothing else
+      if (name.is_string() && name.get<std::string>().find('/') == std::string::npos) files.push_back(name);
+  }
+  return files;
 }
 
 }  // namespace barchan

@@ -38,7 +38,17 @@ struct RunReport {
   };
   std::vector<Measured> measured;
   std::vector<std::string> warnings;  // what a user should know before the results are used
-  std::string end_reason;             // "end", "breakdown: ...", "SIGINT", ...
+  struct Retreat {
+    double time = 0, back_to = 0;  // s
+    long step = 0;                 // that failed
+    double share = 1;              // of the step from then on
+    std::string reason;
+  };
+  long retreat_count = 0;         // with those before the last restart
+  std::vector<Retreat> retreats;  // of this process
+  std::string end_reason;         // "running", "end", "breakdown: ...", "output failed: ...", "SIGINT", ...
+  long process = 0;               // that runs it or ran it,
+  std::string host;               // and where
 };
 
 /// The document that write_run_report writes. What is not finite becomes null.
@@ -46,5 +56,12 @@ std::string to_json(const RunReport& report);
 
 /// Replaces `file` by rename. Throws OutputError.
 void write_run_report(const std::filesystem::path& file, const RunReport& report);
+
+/// For a disk without room for another file: writes the few words that matter most into the place of the report that is
+/// there. Returns whether it could.
+bool overwrite_run_report(const std::filesystem::path& file, const RunReport& report);
+
+/// The files of instruments that the report of an earlier run names; none when there is no such report.
+std::vector<std::string> measured_files(const std::filesystem::path& file);
 
 }  // namespace barchan

@@ -53,6 +53,14 @@ bool is_frame_of(const std::string& name, std::string file) {
 
 }  // namespace
 
+void make_directory(const std::filesystem::path& directory) {
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw OutputError("cannot create the directory '" + directory.string() + "': " + failed.message());
+  if (!std::filesystem::is_directory(directory, failed))
+    throw OutputError("cannot write into '" + directory.string() + "': it is not a directory");
+}
+
 struct SeriesWriter::Work {
   std::filesystem::path directory;
   std::string name;
@@ -78,11 +86,8 @@ struct SeriesWriter::Work {
 
 /// The directory exists and can be written, and holds no frame of an earlier run but those that are kept.
 void SeriesWriter::Work::prepare() {
+  make_directory(directory);
   std::error_code failed;
-  std::filesystem::create_directories(directory, failed);
-  if (failed) throw OutputError("cannot create the directory '" + directory.string() + "': " + failed.message());
-  if (!std::filesystem::is_directory(directory, failed))
-    throw OutputError("cannot write into '" + directory.string() + "': it is not a directory");
   { const WholeFile trial(pvd()); }  // says now, not at the first frame, that nothing can be written here
 
   // First the list, then the files that it no longer names: at no moment does it name one that is gone.

@@ -41,6 +41,9 @@ class SeriesWriter {
   std::unique_ptr<Work> work_;
 };
 
+/// Makes the folder of a run where there is none. Throws OutputError.
+void make_directory(const std::filesystem::path& directory);
+
 /// The entries of a .pvd, in file order. Throws OutputError when it cannot be read.
 std::vector<SeriesWriter::Entry> read_pvd(const std::filesystem::path& pvd);
 

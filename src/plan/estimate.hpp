@@ -1,11 +1,13 @@
 // What a run will take, as simulation/estimate.hpp measures it.
 #pragma once
 
-#include "plan/plan.hpp"
+#include "plan/memory.hpp"
 
 namespace barchan {
 
 struct Estimate {
+  std::string failure;  // why nothing could be measured, or not to the end; empty: all is well
+  bool measured = false;
   double steps = 0;              // steps to the end at the first step's length
   double processor_seconds = 0;  // s of one thread, output aside
   int threads = 1;
@@ -16,6 +18,6 @@ struct Estimate {
 };
 
 std::string to_text(const Estimate& estimate);
-std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estimate);
+std::string to_json(const Plan& plan, const Scene& scene, const MemoryNeed& memory, const Estimate& estimate);
 
 }  // namespace barchan

@@ -6,8 +6,10 @@
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
+#include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -18,6 +20,7 @@ std::string to_string(Law law) {
     case Law::repulsive: return "repulsive";
     case Law::coupling: return "coupling";
     case Law::column: return "column";
+    case Law::drag: return "drag";
     case Law::contact: return "contact";
     case Law::elastic: return "elastic";
   }
@@ -54,7 +57,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 
 /// The first direction of an entry, and its opposite. A wall looks for nobody but the fluid that is extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
-  if (e.law == Law::column) return;  // by height: nobody is looked for
+  if (e.law == Law::column || e.law == Law::drag) return;  // by height: nobody is looked for
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
@@ -69,7 +72,7 @@ void add_entries(const Scene& scene, Plan& plan) {
   const auto number = [&](const std::string& name) {
     for (std::size_t k = 0; k < scene.phases.size(); ++k)
       if (scene.phases[k].name == name) return k;
-    throw SceneError("interactions: no phase \"" + name + "\"");
+    throw SceneError(located(scene, "interactions") + ": no phase \"" + name + "\"");
   };
   for (const auto& i : scene.interactions) {
     PlanEntry e;
@@ -89,7 +92,7 @@ void add_entries(const Scene& scene, Plan& plan) {
         return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
       };
       e.radius = 0.5 * (across(e.a) + across(e.b));
-    } else if (e.law != Law::column) {
+    } else if (e.law != Law::column && e.law != Law::drag) {
       e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     }
     add_directions(plan, e);
@@ -114,6 +117,19 @@ void add_passes(Plan& plan, const Models& models) {
   const Schedule schedule = make_schedule(models);
   for (std::size_t k = 0; k < schedule.stages(); ++k)
     (schedule.has(k) || k == stage::watch ? plan.passes : plan.skipped).push_back(schedule.name(k));
+}
+
+/// A time to which a step adds nothing stands still: the end is never reached.
+void check_steps(const Scene& scene, Plan& plan) {
+  const double steps = scene.time.end / plan.step();
+  constexpr double most = 1e12;  // 4500 roundings of the time a step are left
+  constexpr double remarkable = 1e9;
+  const std::string number =
+      brief(scene.time.end) + " s are " + brief(steps) + " steps of " + brief(plan.step()) + " s";
+  if (!(steps <= most))
+    throw SceneError(located(scene, "time.end") + ": " + number +
+                     "; expected at most 10^12 steps, beyond which the time stands still in its last digits");
+  if (steps > remarkable) plan.warnings.push_back("time.end: " + number + ", which will take long");
 }
 
 }  // namespace
@@ -153,7 +169,8 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.instruments = make_instruments(scene, plan);
   for (const auto& model : models) model->limits(plan.limits);
   if (plan.limits.empty() && plan.fixed_step == 0)
-    throw SceneError(scene.file + ": time.step: missing: nothing limits the step; expected a number > 0 (s)");
+    throw SceneError(located(scene, "time.step") + ": missing: nothing limits the step; expected a number > 0 (s)");
+  check_steps(scene, plan);
   add_warnings(scene, plan);
   return plan;
 }

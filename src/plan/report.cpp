@@ -30,6 +30,7 @@ std::string law_of(const PlanEntry& e) {
 
 /// What the kernel sums of an entry mean.
 std::string meaning(const PlanEntry& e) {
+  if (e.law == Law::drag) return "no kernel: the mean wind about the grain, in layers near the ground";
   if (e.law == Law::column) return "no kernel: the wind of the grain's height";
   if (e.corrected) return "corrected to first order by the consistent scheme";
   if (e.of_spheres()) return "spheres: touching decides";
@@ -76,10 +77,11 @@ std::string to_text(const Plan& plan, const Scene& scene) {
 }
 
 std::string to_text(const Estimate& e) {
-  std::string t = "pairs  ";
+  if (!e.measured) return "not measured: " + e.failure + "\n";
+  std::string t = e.failure.empty() ? "pairs  " : "measured as far as it goes: " + e.failure + "\npairs  ";
   for (const auto& [name, count] : e.pairs)
     t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
-  t += line("\nmemory  %.1f MB\n", e.bytes * 1e-6);
+  t += line("\narrays  %.1f MB of the memory, measured\n", e.bytes * 1e-6);
   t +=
       line("run     about %.0f steps, %.3g s of processor time at %.2f M particle-steps/s (medians of the first steps)",
            e.steps, e.processor_seconds, e.particle_steps_per_second * 1e-6);
@@ -87,7 +89,7 @@ std::string to_text(const Estimate& e) {
   return t;
 }
 
-std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estimate) {
+std::string to_json(const Plan& plan, const Scene& scene, const MemoryNeed& memory, const Estimate& estimate) {
   nlohmann::ordered_json j;
   j["title"] = scene.title;
   j["dimensions"] = plan.dimensions;
@@ -138,6 +140,9 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   j["warnings"] = plan.warnings;
   j["step"] = plan.step();
   for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
+  j["memory"]["bytes"] = memory.bytes();
+  for (const auto& [name, bytes] : memory.parts) j["memory"]["parts"][name] = bytes;
+  if (!estimate.failure.empty()) j["failure"] = estimate.failure;
   j["estimate"] = {{"steps", estimate.steps},
                    {"threads", estimate.threads},
                    {"seconds", estimate.seconds},

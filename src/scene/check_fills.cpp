@@ -83,6 +83,21 @@ void check_sides(const SidesShape& sides, const Phase* phase, const std::string&
     report(dotted, "only walls lie outside the domain; expected a phase of kind wall");
 }
 
+/// A bed that the domain cuts off would be another one than the scene says.
+void check_bed(const BedShape& bed, const std::string& shape, const Scene& scene, const Report& report) {
+  if (report.touched(shape) || report.touched("domain")) return;
+  const double height = scene.domain.size[1];
+  const bool rises = bed.dune && bed.dune->form != DuneShape::Form::formula;
+  const double top = bed.depth + (rises ? bed.dune->height : 0.0);
+  if (bed.depth > height * (1.0 + 1e-9))
+    report(shape + ".bed", number_text(bed.depth) + " m is more than the height of the domain; expected at most " +
+                               number_text(height) + " m");
+  else if (top > height * (1.0 + 1e-9))
+    report(shape + ".dune.height", "the crest is " + number_text(top) +
+                                       " m over the bottom of the domain; expected at most its height, " +
+                                       number_text(height) + " m");
+}
+
 void check_sizes(const Fill& fill, const std::string& shape, const Scene& scene, const Report& report) {
   if (const auto* box = std::get_if<BoxShape>(&fill.shape); box && !report.touched(shape))
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
@@ -115,6 +130,12 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
+  const bool box_or_bed = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
+  if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !box_or_bed))
+    report(dotted + ".packing",
+           "only spheres settle, in a box or a bed; expected grains with a diameter, and such a shape");
+  if (fill.packing == Packing::settled && fill.perturb > 0.0)
+    report(dotted + ".perturb", "grains at rest stay where they are; expected no such key");
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   if (close && !continuous && placed)
@@ -159,9 +180,14 @@ void check_fills(const Scene& scene, const Report& report) {
     if (report.is_section(shape)) check_shape_keys(shape, fill.packing == Packing::fitted, report);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && bed->dune)
       check_dune(*bed->dune, shape + ".dune", scene, report);
+    if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing != Packing::fitted)
+      check_bed(*bed, shape, scene, report);
     if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
       check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);
+    if (phase && fill.packing == Packing::settled && !(scene.domain.gravity[1] < 0.0) &&
+        !report.touched("domain.gravity"))
+      report(dotted + ".packing", "nothing makes the grains fall; expected domain.gravity with a negative y component");
     if (phase) check_phase_of(fill, *phase, dotted, report);
     if (phase && fill.packing == Packing::fitted) check_fitted(scene, k, *phase, dotted, report);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/errors.hpp"
 #include "scene/couplings.hpp"
 #include "scene/keys.hpp"
 #include "scene/lattice.hpp"
@@ -60,8 +61,8 @@ std::string number_text(double value) {
 
 std::string unknown_phase(const std::string& name, const Scene& scene) {
   const std::vector<std::string> names = phase_names(scene);
-  return "there is no phase \"" + name + "\"; expected " + (names.empty() ? "a phase of [phases]" : one_of(names)) +
-         did_you_mean(nearest(name, names));
+  return "there is no phase \"" + shortened(name) + "\"; expected " +
+         (names.empty() ? "a phase of [phases]" : one_of(names)) + did_you_mean(nearest(name, names));
 }
 
 namespace {

@@ -38,6 +38,14 @@ bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law) {
   });
 }
 
+bool drags_by_law(const Scene& scene, const Phase& phase) {
+  return std::any_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
+    const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
+    if (!a || !b || pair.drag_law == DragLaw::none || (a->name != phase.name && b->name != phase.name)) return false;
+    return a->kind() == PhaseKind::fluid || b->kind() == PhaseKind::fluid;
+  });
+}
+
 bool has_eddies(const Scene& scene, const Phase& fluid) {
   if (fluid.kind() != PhaseKind::fluid) return false;
   return fluid.fluid().turbulence != Turbulence::none ||

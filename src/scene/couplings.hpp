@@ -26,6 +26,9 @@ inline bool of_spheres(const Interaction& pair) { return pair.law != ContactLaw:
 /// Whether the phase has an entry with this law of contact.
 bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law);
 
+/// Whether the phase has an entry of a fluid and grains with a law of drag by name.
+bool drags_by_law(const Scene& scene, const Phase& phase);
+
 /// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
 /// `roughness` or `shear-stress`.
 bool has_eddies(const Scene& scene, const Phase& fluid);

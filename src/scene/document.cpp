@@ -28,7 +28,7 @@ void Problems::add(const toml::source_region& source, const std::string& dotted,
   const bool from_override = is_override(source);
   const std::string place =
       from_override ? *source.path : file_ + ":" + std::to_string(line) + ":" + std::to_string(column);
-  list_.push_back({place, from_override, line, column, dotted, what});
+  list_.push_back({shortened(place, 1000), from_override, line, column, shortened(dotted), shortened(what, 4000)});
 }
 
 bool Problems::touch(const std::string& dotted) const {
@@ -46,7 +46,13 @@ void Problems::throw_if_any() const {
     return std::tie(a.line, a.column) < std::tie(b.line, b.column);
   });
   std::string message;
-  for (const Problem& problem : sorted) {
+  constexpr std::size_t most = 50;  // problems; who mends those finds the others then
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const Problem& problem = sorted[k];
+    if (k == most) {
+      message += "\nand " + std::to_string(sorted.size() - most) + " more";
+      break;
+    }
     if (!message.empty()) message += '\n';
     message += on_one_line(problem.place + ": " + (problem.dotted.empty() ? "" : problem.dotted + ": ") + problem.what);
   }

@@ -25,7 +25,7 @@ void define_constants(mu::Parser& parser) {
 /// muParser ends some of its messages with a full stop; the reader goes on with a semicolon.
 std::string without_full_stop(std::string text) {
   while (!text.empty() && (text.back() == '.' || text.back() == ' ' || text.back() == '\n')) text.pop_back();
-  return text;
+  return shortened(text, 400);
 }
 
 /// muParser would let a formula assign to its variables; `=` is only meant in ==, !=, <= and >=.
@@ -60,7 +60,8 @@ Formula::Formula(const Expression& expression) : value_(expression.value) {
     parser_->parser.SetExpr(expression.formula);
     parser_->parser.Eval();  // compiles, so that later calls only evaluate
   } catch (const mu::Parser::exception_type& error) {
-    throw SceneError("the formula \"" + expression.formula + "\" is malformed: " + without_full_stop(error.GetMsg()));
+    throw SceneError("the formula \"" + shortened(expression.formula) +
+                     "\" is malformed: " + without_full_stop(error.GetMsg()));
   }
 }
 
@@ -83,7 +84,7 @@ double Formula::constant() const { return value_; }
 
 std::string formula_problem(const std::string& formula, std::string_view variables) {
   if (formula.empty()) return "the formula is empty";
-  if (assigns(formula)) return "the formula \"" + formula + "\" assigns a value";
+  if (assigns(formula)) return "the formula \"" + shortened(formula) + "\" assigns a value";
   mu::Parser parser;
   double somewhere = 0.37;
   try {
@@ -92,9 +93,9 @@ std::string formula_problem(const std::string& formula, std::string_view variabl
       if (name != ' ') parser.DefineVar(std::string(1, name), &somewhere);
     parser.SetExpr(formula);
     parser.Eval();
-    if (parser.GetNumResults() != 1) return "\"" + formula + "\" is several formulas";
+    if (parser.GetNumResults() != 1) return "\"" + shortened(formula) + "\" is several formulas";
   } catch (const mu::Parser::exception_type& error) {
-    return "the formula \"" + formula + "\" is malformed: " + without_full_stop(error.GetMsg());
+    return "the formula \"" + shortened(formula) + "\" is malformed: " + without_full_stop(error.GetMsg());
   }
   return "";
 }

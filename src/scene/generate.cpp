@@ -10,6 +10,7 @@
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
+#include "scene/located.hpp"
 #include "scene/log_wind.hpp"
 #include "scene/places.hpp"
 #include "scene/random.hpp"
@@ -18,9 +19,9 @@
 namespace barchan {
 namespace {
 
-/// `FILE: fill.1: ... `: the mistakes that only show when the particles are there have no place in the file.
-[[noreturn]] void fail(const Scene& scene, std::size_t fill, const std::string& what) {
-  throw SceneError(scene.file + ": fill." + std::to_string(fill) + ": " + what);
+/// A mistake that only shows when the particles are there. `key`: of the fill, "" for all of it.
+[[noreturn]] void fail(const Scene& scene, std::size_t fill, const std::string& what, const std::string& key = "") {
+  throw SceneError(located(scene, "fill." + std::to_string(fill) + key) + ": " + what);
 }
 
 std::string point_text(const Vec3& x, int dimensions) {
@@ -73,6 +74,16 @@ class InitialVelocity {
   std::array<Formula, 3> components_;
 };
 
+/// Spheres lie in the ground of the air, which has another wall than they have: nothing joins the two.
+bool may_overlap(const Scene& scene, const Fill& a, const Fill& b) {
+  const Phase *p = find_phase(scene, a.phase), *q = find_phase(scene, b.phase);
+  if (!p || !q || entry_between(scene, *p, *q)) return false;
+  const auto ground_and_spheres = [](const Phase& wall, const Phase& grains) {
+    return wall.if_wall() && grains.if_grains() && grains.diameter();
+  };
+  return ground_and_spheres(*p, *q) || ground_and_spheres(*q, *p);
+}
+
 void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind,
                   const Occupied& occupied) {
   const std::string phase = " of phase \"" + scene.fills[k].phase + "\"";
@@ -87,7 +98,7 @@ void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& s
                " m lies outside the domain; expected a shape inside it");
     constexpr double least = (1.0 - 1e-6) * overlap_distance;
     const int other = std::max(occupied.inside.owner_near(x, dx, least), occupied.outside.owner_near(x, dx, least));
-    if (other < 0) continue;
+    if (other < 0 || may_overlap(scene, scene.fills[k], scene.fills[static_cast<std::size_t>(other)])) continue;
     fail(scene, k,
          "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
              " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +
@@ -95,15 +106,41 @@ void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& s
   }
 }
 
-void check_values(const ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene) {
-  for (std::size_t i = first; i < block.position.size(); ++i) {
-    const Vec3& v = block.velocity[i];
-    const bool finite = std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]) &&
-                        (block.pressure.size() <= i || std::isfinite(block.pressure[i]));
-    if (!finite)
+/// Two single particles of one fill that stand too near each other.
+void check_points(const std::vector<Vec3>& places, std::size_t k, const Scene& scene) {
+  const double dx = spacing_of(scene, scene.fills[k]);
+  Places others(PeriodicSpace(scene.domain), dx);
+  constexpr double least = (1.0 - 1e-6) * overlap_distance;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (const int other = others.owner_near(places[i], dx, least); other >= 0)
       fail(scene, k,
-           "a formula gives a velocity or pressure that is not a finite number at " +
-               point_text(block.position[i], scene.dimensions) + " m");
+           "the points " + std::to_string(other) + " and " + std::to_string(i) + ", at " +
+               point_text(places[i], scene.dimensions) +
+               " m, are nearer than half a spacing; expected at least half a spacing between particles",
+           ".shape.points");
+    others.add(places[i], dx, static_cast<int>(i));
+  }
+}
+
+/// Names the formula behind a velocity or pressure that is not finite.
+void check_values(const ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene) {
+  const Fill& fill = scene.fills[k];
+  for (std::size_t i = first; i < block.position.size(); ++i) {
+    const auto check = [&](double value, const Expression& expression, const char* key) {
+      if (std::isfinite(value)) return;
+      const std::string cause = expression.is_formula() ? "the formula \"" + shortened(expression.formula) + "\" gives "
+                                                        : std::string("the wind and the number give ");
+      fail(scene, k,
+           cause +
+               (std::isnan(value) ? "nan"
+                : value > 0       ? "inf"
+                                  : "-inf") +
+               " at " + point_text(block.position[i], scene.dimensions) +
+               " m; expected a finite number at every particle",
+           key);
+    };
+    for (std::size_t d = 0; d < 3; ++d) check(block.velocity[i][d], fill.velocity[d], ".velocity");
+    if (block.pressure.size() > i) check(block.pressure[i], fill.pressure, ".pressure");
   }
 }
 
@@ -158,10 +195,10 @@ std::vector<double> fitted_heights(const Scene& scene, const std::array<int, 2>&
   return heights;
 }
 
-std::vector<ParticleBlock> generate(const Scene& scene) {
+std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const std::string misfit = scene.domain.periodic[axis] ? misfit_of_period(scene, axis) : "";
-    if (!misfit.empty()) throw SceneError(scene.file + ": domain.size: " + misfit);
+    if (!misfit.empty()) throw SceneError(located(scene, "domain.size") + ": " + misfit);
   }
   const PeriodicSpace space(scene.domain);
   double widest = 0.0;
@@ -173,9 +210,19 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     const auto phase =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
-    std::vector<Vec3> places = places_of(scene, k, occupied);
-    perturb(places, fill, scene);
+    std::vector<Vec3> places;
+    SettledGrains settled;
+    if (fill.packing == Packing::settled) {
+      if (!settle) fail(scene, k, "a settled packing cannot be made here");
+      settled = settle(scene, k, blocks);
+      keep_inside(scene, k, settled.position, settled.radius);
+      places = settled.position;
+    } else {
+      places = places_of(scene, k, occupied);
+      perturb(places, fill, scene);
+    }
     check_places(places, k, scene, phase->kind(), occupied);
+    if (std::holds_alternative<PointsShape>(fill.shape)) check_points(places, k, scene);
     if (k + 1 < scene.fills.size())
       for (const Vec3& x : places)
         (inside_domain(scene, x, phase->spacing) ? occupied.inside : occupied.outside)
@@ -183,6 +230,7 @@ std::vector<ParticleBlock> generate(const Scene& scene) {
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
     append(block, places, fill, scene);
+    block.radius.insert(block.radius.end(), settled.radius.begin(), settled.radius.end());
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)

@@ -1,6 +1,7 @@
 // Scene -> initial particles. One block a phase, in the order of scene.phases.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -21,7 +22,15 @@ struct ParticleBlock {
 /// counted through the blocks in order; the same scene gives the same particles bit for bit.
 /// Throws SceneError when a periodic bed's rows do not fit the domain (and names the nearest size that does), when a
 /// fill makes no particle, or when particles of different fills overlap (closer than 0.5 spacings).
-std::vector<ParticleBlock> generate(const Scene& scene);
+/// Fills with packing = "settled" take their places from `settle`, which gets the number of the fill and what is there;
+/// without one they are refused (simulation/settle.hpp).
+struct SettledGrains {
+  std::vector<Vec3> position;  // m; those outside the fill's shape are left out
+  std::vector<double> radius;  // m
+};
+using Settle =
+    std::function<SettledGrains(const Scene& scene, std::size_t fill, const std::vector<ParticleBlock>& before)>;
+std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle = {});
 
 /// Distance of the places of a phase's fills: of spheres the largest diameter, else the scene's spacing.
 double spacing_of(const Scene& scene, const Phase& phase);

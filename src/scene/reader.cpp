@@ -1,28 +1,23 @@
 #include "scene/reader.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "base/errors.hpp"
 #include "scene/checks.hpp"
+#include "scene/identity.hpp"
+#include "scene/located.hpp"
 #include "scene/read.hpp"
 #include "scene/validate.hpp"
 
 namespace barchan {
+
 namespace {
 
-/// The document less what a run that goes on may change.
-std::string identity_of(toml::table document) {
-  for (const char* key : {"title", "state"}) document.erase(key);
-  if (toml::table* output = document["output"].as_table()) output->erase("checkpoint-every");
-  if (toml::table* time = document["time"].as_table()) time->erase("end");
-  std::ostringstream text;
-  text << document;
-  return text.str();
-}
+constexpr std::size_t most_of_a_scene = std::size_t{16} << 20;  // bytes; a person writes some thousand
 
 }  // namespace
 
@@ -31,6 +26,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   const toml::table document = parse_document(text, file, overrides, problems);
   validate(document, problems);
   Scene scene = read_document(document, file);
+  scene.places = places_of_keys(document, file);
   scene.identity = identity_of(document);
   check(document, scene, problems);
   problems.throw_if_any();
@@ -42,12 +38,17 @@ Scene read_scene(const std::string& file, const std::vector<std::string>& overri
   if (std::filesystem::is_directory(file, ignored))
     throw SceneError(file + ": is a directory; expected a scene file (.toml)");
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream)
+  std::string text;
+  if (stream) text.resize(most_of_a_scene + 1);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  if (text.size() > most_of_a_scene)
+    throw SceneError(file + ": is larger than " + std::to_string(most_of_a_scene >> 20) +
+                     " MB; expected a scene file (.toml)");
+  if (!stream && !stream.eof())
     throw SceneError(file + ": cannot be read: " + std::strerror(errno ? errno : EIO) +
                      "; expected a scene file (.toml)");
-  return parse_scene(text.str(), file, overrides);
+  return parse_scene(text, file, overrides);
 }
 
 }  // namespace barchan

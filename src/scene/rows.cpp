@@ -47,7 +47,8 @@ constexpr std::array words_of<KernelKind>{word("cubic-spline", KernelKind::cubic
                                           word("wendland-c2", KernelKind::wendland_c2)};
 template <>
 constexpr std::array words_of<Packing>{word("rows", Packing::square), word("staggered", Packing::hexagonal),
-                                       word("random", Packing::random), word("fitted", Packing::fitted)};
+                                       word("random", Packing::random), word("fitted", Packing::fitted),
+                                       word("settled", Packing::settled)};
 template <>
 constexpr std::array words_of<DuneShape::Form>{
     word("cosine", DuneShape::Form::cosine), word("gaussian", DuneShape::Form::gaussian),
@@ -330,7 +331,7 @@ constexpr Key table[] = {
     {"fill", "shape", fill_shape(), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
     {"fill", "packing", at<&Fill::packing>(Packing::square), "",
      "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
-     "follow the ground: a bed of a wall, and the fluid above it. Fluids and elastic bodies take rows or fitted."},
+     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell and came to rest before the run. Fluids and elastic bodies take rows or fitted."},
     {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
      "Every coordinate is moved by a random number of at most this size.", {.at_least = 0.0, .at_most = 0.5}},
     {"fill", "seed", at<&Fill::seed>(1), "",

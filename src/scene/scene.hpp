@@ -211,7 +211,8 @@ struct BedShape {
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
                            FormulaShape, SidesShape, BedShape, TheRestShape>;
 
-enum class Packing { square, hexagonal, random, fitted };  // rows, staggered rows, without overlap, along the ground
+/// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
+enum class Packing { square, hexagonal, random, fitted, settled };
 
 struct Fill {
   std::string phase;
@@ -303,10 +304,11 @@ struct OutputControl {
 enum class Precision { double_precision, mixed };
 
 struct Scene {
-  std::string file;      // as given, for messages
-  std::string name;      // file name without directory and suffix
-  std::string identity;  // its document with the overrides, less what a run that goes on may change: title, state,
-                         // time.end and output.checkpoint-every
+  std::string file;  // as given, for messages
+  std::string name;  // file name without directory and suffix
+  std::string
+      identity;  // its document with the overrides, less what a run that goes on may change (scene/identity.hpp)
+  std::map<std::string, std::string> places;  // dotted key -> FILE:LINE:COLUMN, for messages (scene/located.hpp)
   std::string title;
   std::string state;  // pvstate that scripts/run renders; empty: none
   int dimensions{};

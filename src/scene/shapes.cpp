@@ -6,11 +6,13 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "scene/couplings.hpp"
 #include "scene/fitted.hpp"
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
+#include "scene/located.hpp"
 #include "scene/random.hpp"
 
 namespace barchan {
@@ -197,6 +199,23 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
 
 }  // namespace
 
+void keep_inside(const Scene& scene, std::size_t k, std::vector<Vec3>& places, std::vector<double>& radii) {
+  RegionOf region_of(scene, scene.fills[k]);
+  std::visit(region_of, scene.fills[k].shape);
+  const Region region = region_of.take();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    bool inside = region.inside(places[i]);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+      inside = inside && places[i][d] >= region.lower[d] - scene.spacing && places[i][d] <= region.upper[d];
+    if (!inside) continue;
+    places[kept] = places[i];
+    radii[kept++] = radii[i];
+  }
+  places.resize(kept);
+  radii.resize(kept);
+}
+
 std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {
   const Fill& fill = scene.fills[k];
   const double dx = spacing_of(scene, fill);
@@ -225,8 +244,13 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / dx;
     if (!(cells <= 1e9))
-      throw SceneError(scene.file + ": fill." + std::to_string(k) + ": more than 10^9 particles of phase \"" +
+      throw SceneError(located(scene, "fill." + std::to_string(k)) + ": more than 10^9 particles of phase \"" +
                        fill.phase + "\"; expected a larger spacing or a smaller shape");
+    if (const AvailableMemory there = available_memory(); cells * sizeof(Vec3) > there.bytes)
+      throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
+                       std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
+                       memory_text(cells * sizeof(Vec3)) + " at least, " + there.of + " leaves " +
+                       memory_text(there.bytes) + "; expected a larger spacing or a smaller shape");
     if (fill.packing == Packing::random) {
       places = random_places(scene, region, cells, fill.seed, dx, occupied);
     } else {

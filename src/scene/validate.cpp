@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/errors.hpp"
 #include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
@@ -20,7 +21,7 @@ std::string number_text(double value) {
 
 /// What a person sees in the file, shortened: for "found ...".
 std::string shown(const toml::node& node) {
-  if (const auto* text = node.as_string()) return '"' + text->get() + '"';
+  if (const auto* text = node.as_string()) return '"' + shortened(text->get()) + '"';
   if (const auto number = node.as_integer()) return std::to_string(number->get());
   if (const auto number = node.as_floating_point()) return number_text(number->get());
   if (const auto truth = node.as_boolean()) return truth->get() ? "true" : "false";
@@ -174,7 +175,7 @@ class Validator {
 
   void unknown_word(const Key& key, const toml::value<std::string>& text, const std::string& here) {
     problems_.add(text.source(), here,
-                  "\"" + text.get() + "\" is not known; expected " + expected(key, dimensions_) +
+                  "\"" + shortened(text.get()) + "\" is not known; expected " + expected(key, dimensions_) +
                       did_you_mean(nearest(text.get(), choices(key))));
   }
 
@@ -186,7 +187,7 @@ class Validator {
         problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
       else if (!word_fits(key, text->get())) unknown_word(key, *text, here);
       else if (std::find(seen.begin(), seen.end(), text->get()) != seen.end())
-        problems_.add(node.source(), here, "\"" + text->get() + "\" is given twice");
+        problems_.add(node.source(), here, "\"" + shortened(text->get()) + "\" is given twice");
       else seen.push_back(text->get());
     }
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "base/errors.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -26,6 +27,7 @@ Estimate measure(const Scene& scene, const Plan& plan, const std::vector<Particl
   // One thread does the work: several that wait for each other on a busy machine would count their waiting.
   omp_set_num_threads(1);
   Simulation simulation(scene, plan, blocks);
+  simulation.check_start();
   constexpr int batch = 10;
   constexpr long most_steps = 300;
   constexpr double most_seconds = 2.0;
@@ -40,18 +42,24 @@ Estimate measure(const Scene& scene, const Plan& plan, const std::vector<Particl
   while (simulation.steps() < most_steps && processor() - start < most_seconds && goes_on()) {
     const double before = processor(), time = simulation.time();
     int steps = 0;
-    for (; steps < batch && processor() - start < most_seconds && goes_on(); ++steps)
-      simulation.step(scene.time.end - simulation.time());
+    try {
+      for (; steps < batch && processor() - start < most_seconds && goes_on(); ++steps)
+        simulation.step(scene.time.end - simulation.time());
+    } catch (const BreakdownError& error) { e.failure = error.what(); }
+    if (!e.failure.empty() && steps == 0) break;
     seconds.push_back((processor() - before) / steps);
     lengths.push_back((simulation.time() - time) / steps);
+    if (!e.failure.empty()) break;
   }
   omp_set_num_threads(e.threads);
+  e.bytes = static_cast<double>(simulation.bytes());
+  for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
+  if (lengths.empty()) return e;
+  e.measured = true;
   e.steps = scene.time.end / median(lengths);
   e.processor_seconds = e.steps * median(seconds);
   e.seconds = e.processor_seconds / e.threads;
   e.particle_steps_per_second = plan.particles() / median(seconds);
-  e.bytes = static_cast<double>(simulation.bytes());
-  for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
   return e;
 }
 

@@ -11,6 +11,13 @@ std::uint64_t Simulation::pairs(const PlanEntry& e) const {
   std::uint64_t n = 0;
   for (const int direction : {e.forward, e.backward})
     if (direction >= 0) n += work_->list(direction).entries();
+  for (const auto& model : models_) n += model->pairs(e);
+  return n;
+}
+
+long Simulation::searches() const {
+  long n = work_->neighbours.rebuilds();
+  for (const auto& model : models_) n += model->searches();
   return n;
 }
 
@@ -164,6 +171,7 @@ Frame Simulation::good_frame(int index) {
 Warnings Simulation::warnings() const {
   Warnings all;
   watch_->report(all);
+  budget_->report(state_, all);
   return all;
 }
 

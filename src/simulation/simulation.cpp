@@ -7,6 +7,7 @@
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -16,7 +17,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   work_ = std::make_unique<Workspace>(scene_, plan_, state_);
   for (const auto& model : models_) model->attach(*work_);
   for (const auto& l : plan_.limits) state_.limit_counts[l.name] = 0;
-  for (const char* name : {"force", "output", "fixed"}) state_.limit_counts[name] = 0;
+  for (const char* name : {"force", "output", "fixed", "retreat"}) state_.limit_counts[name] = 0;
   state_.dt = plan_.step();
   schedule_.run(stage::walls, stage::hold);
   work_->must_search = true;
@@ -25,6 +26,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
     if (const StepLimit* l = model->moving_limit()) state_.limit_counts[l->name] = 0;
   watch_ = std::make_unique<Watch>(
       Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, work_->motion, work_->stress});
+  budget_.emplace(scene_, plan_, state_);
   FieldSet all;
   for (const auto& p : plan_.phases)
     for (const Field f : p.fields) all = all | FieldSet{f};
@@ -100,6 +102,10 @@ double Simulation::stable_step() {
 
 void Simulation::choose_step(double largest) {
   double dt = stable_step();
+  if (state_.retreat.share < 1.0 && state_.time < state_.retreat.until) {
+    dt *= state_.retreat.share;
+    state_.ruling_limit = "retreat";
+  }
   // The last steps before an output share what is left, so that none is tiny.
   const double left = std::ceil(largest / dt * (1.0 - 1e-9));
   if (left * dt > largest) {
@@ -122,7 +128,7 @@ void Simulation::check_start() {
                            " m/s: lower the [[forcing]] or the pressure of the fills, or raise the sound speed or the "
                            "contact-speed");
   } catch (const BreakdownError& e) {
-    throw SceneError(scene_.file + ": the scene is wrong at its start: " + e.what());
+    throw SceneError(located(scene_, "fill") + ": the scene is wrong at its start: " + e.what());
   }
 }
 
@@ -138,6 +144,7 @@ void Simulation::archive(Archive& a) {
   work_->archive(a);
   for (const auto& model : models_) model->archive(a);
   watch_->archive(a);
+  budget_->archive(a);
 }
 
 }  // namespace barchan

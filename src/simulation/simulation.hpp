@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "models/workspace.hpp"
 #include "output/frame.hpp"
 #include "plan/plan.hpp"
+#include "simulation/budget.hpp"
 #include "simulation/watch.hpp"
 
 namespace barchan {
@@ -36,6 +38,7 @@ class Simulation {
   std::vector<PhaseParticles>& phases() { return state_.phases; }
   const State& state() const { return state_; }
   OutputClock& outputs() { return state_.outputs; }
+  Retreat& retreat() { return state_.retreat; }
   const Plan& plan() const { return plan_; }
   const Scene& scene() const { return scene_; }
   const Neighbours& neighbours() const { return work_->neighbours; }
@@ -43,6 +46,8 @@ class Simulation {
 
   /// Directed pairs of an entry in its current lists (those in the skin too).
   std::uint64_t pairs(const PlanEntry& entry) const;
+  /// How often lists were made anew, of all entries.
+  long searches() const;
   /// How often each stage of the schedule was executed, in the order of the step; wall time of each, and processor time
   /// of the calling thread, which a benchmark on a busy machine can trust (s).
   const std::vector<long>& executed() const { return schedule_.executed(); }
@@ -64,6 +69,8 @@ class Simulation {
   long good_step() const { return watch_->good().step(); }
   double good_time() const { return watch_->good().time(); }
   Frame good_frame(int index);
+  /// What should have been kept since the beginning.
+  const Budget& budget() const { return *budget_; }
   /// What is remarkable so far.
   Warnings warnings() const;
 
@@ -85,6 +92,7 @@ class Simulation {
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
   std::unique_ptr<Watch> watch_;
+  std::optional<Budget> budget_;
 };
 
 }  // namespace barchan

@@ -100,8 +100,9 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   for (const auto& f : see_.scene.forcings)
     for (const auto& g : guards_)
       if (see_.plan.phases[g.phase].name == f.phase)
-        forces_.push_back(
-            {g.phase, {Formula(f.acceleration[0]), Formula(f.acceleration[1]), Formula(f.acceleration[2])}});
+        forces_.push_back({g.phase,
+                           static_cast<std::size_t>(&f - see_.scene.forcings.data()),
+                           {Formula(f.acceleration[0]), Formula(f.acceleration[1]), Formula(f.acceleration[2])}});
   double face = 1.0, shortest = 1e300, pull = 0.0;
   for (std::size_t d = 0; d < static_cast<std::size_t>(see_.plan.dimensions); ++d) {
     face *= see_.scene.domain.size[d];

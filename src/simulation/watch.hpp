@@ -104,7 +104,7 @@ class Watch {
     double squares = 0.0, fastest = 0.0, lightest = 1e300, densest = -1e300, wrong = 0.0;
   };
   struct Force {
-    std::size_t phase;
+    std::size_t phase, number;  // number: of the [[forcing]]
     std::array<Formula, 3> acceleration;
   };
   /// The largest density error of the run so far.
@@ -135,6 +135,7 @@ class Watch {
   std::optional<std::string> wrong_with(const Guard& g, std::size_t k, double dt) const;
   std::optional<std::string> wrong_place(const Guard& g, std::size_t k) const;
   std::string who(std::size_t phase, std::size_t k, const Moment& now) const;
+  std::optional<std::string> formula_to_blame(const Moment& now) const;
   std::string step_key() const;
   [[noreturn]] void tell_worst(const Moment& now) const;
   [[noreturn]] void tell_pair(const Apart& pair, const Moment& now) const;

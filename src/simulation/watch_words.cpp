@@ -111,7 +111,27 @@ std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) con
   return std::nullopt;
 }
 
+/// A [[forcing]] whose formula is not finite at a particle: it is to blame, not the step. Nothing: there is none.
+std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
+  for (const Force& f : forces_) {
+    const PhaseParticles& p = see_.particles[f.phase];
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const Vec3 x = place_of(p, k);
+      for (std::size_t d = 0; d < static_cast<std::size_t>(p.dimensions()); ++d) {
+        const double value =
+            f.acceleration[d].is_constant() ? f.acceleration[d].constant() : f.acceleration[d](x, now.time);
+        if (std::isfinite(value) || !std::isfinite(x[0] + x[1] + x[2])) continue;
+        return "forcing." + std::to_string(f.number) + ".acceleration: the formula \"" +
+               shortened(see_.scene.forcings[f.number].acceleration[d].formula) + "\" gives " + brief(value) + " for " +
+               who(f.phase, k, now) + "; expected a finite number at every place and time";
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 void Watch::tell_worst(const Moment& now) const {
+  if (const auto formula = formula_to_blame(now)) throw BreakdownError(*formula);
   std::int64_t lowest = -1;
   long wrong = 0;
   std::string what, whom;

@@ -19,6 +19,18 @@ class Archive {
   /// Loads what an archive saved.
   explicit Archive(std::vector<char> bytes) : bytes_(std::move(bytes)), loads_(true) {}
 
+  /// Saves anew, into the memory that is there.
+  void save_again() {
+    bytes_.clear();
+    at_ = 0;
+    loads_ = false;
+  }
+  /// Loads what was saved, any number of times.
+  void load_again() {
+    at_ = 0;
+    loads_ = true;
+  }
+
   bool loads() const { return loads_; }
   const std::vector<char>& bytes() const { return bytes_; }
 

@@ -8,6 +8,12 @@ void OutputClock::archive(Archive& a) {
   a.number("last frame time", last_frame_time);
 }
 
+void Retreat::archive(Archive& a) {
+  a.number("retreats", count);
+  a.number("share of the step", share);
+  a.number("shorter until", until);
+}
+
 void State::archive(Archive& a) {
   a.number("time", time);
   a.number("dt", dt);
@@ -16,6 +22,7 @@ void State::archive(Archive& a) {
   a.text("ruling limit", ruling_limit);
   for (auto& [name, count] : limit_counts) a.number("steps by " + name, count);
   outputs.archive(a);
+  retreat.archive(a);
   for (auto& p : phases) p.archive(a);
   for (auto& profile : air) profile.archive(a);
 }

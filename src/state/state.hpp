@@ -3,6 +3,7 @@
 // (simulation/simulation.hpp, archive).
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,15 +22,24 @@ struct OutputClock {
   void archive(Archive& a);
 };
 
+/// Smaller steps for a while, after a step that failed (app/run.cpp).
+struct Retreat {
+  long count = 0;      // how often the run went back
+  double share = 1.0;  // of the step that the limits allow
+  double until = 0.0;  // s, from then on all of it
+  void archive(Archive& a);
+};
+
 struct State {
   std::vector<PhaseParticles> phases;
-  std::vector<AirProfile> air;  // of the phases that are air without particles
+  std::deque<AirProfile> air;   // wind by height: of phases that are air without particles, of layers over sand
   double time = 0.0, dt = 0.0;  // s
   long steps = 0;
   double largest_acceleration = 0.0;         // m/s2, of the last kick
   std::string ruling_limit;                  // of the last step
   std::map<std::string, long> limit_counts;  // steps by the limit that ruled
   OutputClock outputs;
+  Retreat retreat;
 
   /// Particles of the same phases and counts must be there: loading overwrites their values.
   void archive(Archive& a);

@@ -24,7 +24,7 @@ def command(out, *options, scene=SCENE):
 
 def files(folder):
     """Of a run, but those that hold times of the clock."""
-    return {f.name: f.read_bytes() for f in folder.iterdir() if f.name != "run.json" and f.suffix != ".checkpoint"}
+    return {f.name: f.read_bytes() for f in folder.iterdir() if f.name != "run.json" and ".checkpoint" not in f.name}
 
 
 class Restart(unittest.TestCase):

@@ -11,6 +11,7 @@
 #include "plan/plan.hpp"
 #include "scene/generate.hpp"
 #include "scene/reader.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan::testing {
@@ -23,7 +24,7 @@ class Drive {
  public:
   explicit Drive(const std::string& name, const std::vector<std::string>& overrides = {})
       : scene_(read_scene(scene_file(name), overrides)) {
-    const auto blocks = generate(scene_);
+    const auto blocks = make_particles(scene_);
     simulation_ = std::make_unique<Simulation>(scene_, make_plan(scene_, blocks), blocks);
   }
 

@@ -12,6 +12,7 @@
 
 #include "output/series.hpp"
 #include "physics/drive.hpp"
+#include "simulation/settle.hpp"
 
 namespace barchan {
 namespace {
@@ -34,7 +35,7 @@ std::vector<std::string> all_scenes() {
 std::string ending_after(const std::string& scene, double steps) {
   const Scene s = read_scene(testing::scene_file(scene));
   char text[64];
-  std::snprintf(text, sizeof text, "time.end=%.9g", steps * make_plan(s, generate(s)).step());
+  std::snprintf(text, sizeof text, "time.end=%.9g", steps * make_plan(s, make_particles(s)).step());
   return text;
 }
 
@@ -126,7 +127,7 @@ TEST_P(EveryScene, RunsInTheProgram) {
   EXPECT_TRUE(report["warnings"].empty()) << report["warnings"];
   // What was executed is what the plan promised.
   const Scene scene = read_scene(testing::scene_file(GetParam()));
-  EXPECT_EQ(report["passes"].get<std::vector<std::string>>(), make_plan(scene, generate(scene)).passes);
+  EXPECT_EQ(report["passes"].get<std::vector<std::string>>(), make_plan(scene, make_particles(scene)).passes);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, ::testing::ValuesIn(all_scenes()), [](const auto& test) {

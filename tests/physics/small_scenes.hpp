@@ -7,6 +7,7 @@
 
 #include "scene/generate.hpp"
 #include "scene/reader.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan::small {
@@ -270,6 +271,95 @@ inline const std::string blown_grains = [] {
   return text;
 }();
 
+/// Spheres of two phases and many sizes, with friction and rolling resistance, that are shaken over a side of the
+/// domain and fixed spheres.
+inline const std::string spheres = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.04, 0.06]
+periodic = ["x"]
+gravity = [0.5, -9.81]
+[phases.stones]
+kind = "grains"
+density = 2000
+diameter = 2e-3
+friction = 0.3
+rolling-friction = 0.05
+[phases.base]
+kind = "wall"
+diameter = { mean = 1e-3, spread = 0.2 }
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.2 }
+friction = 0.5
+rolling-friction = 0.1
+[phases.floor]
+kind = "wall"
+[interactions]
+stones-stones = { law = "linear" }
+stones-sand = { law = "linear" }
+stones-floor = { law = "linear" }
+sand-sand = { law = "linear" }
+sand-floor = { law = "linear" }
+sand-base = { law = "linear" }
+base-stones = { law = "linear" }
+[[fill]]
+phase = "base"
+shape = { box = { min = [0.01, 0.0], max = [0.02, 0.003] } }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"], layers = 1 }
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0.0, 0.004], max = [0.04, 0.03] } }
+packing = "staggered"
+velocity = ["0.5*sin(2*pi*x/0.04)", "-0.8*y/0.02"]
+seed = 3
+[[fill]]
+phase = "stones"
+shape = { box = { min = [0.0, 0.034], max = [0.04, 0.04] } }
+velocity = ["1", "-1"]
+[[forcing]]
+phase = "sand"
+acceleration = ["3*sin(400*t)", "2*cos(300*t)"]
+[time]
+end = 10
+largest-speed = 2
+)toml";
+
+/// Hertzian spheres that move about in a periodic box with a floor.
+inline const std::string hertzian_spheres = R"toml(
+dimensions = 3
+spacing = 1e-3
+[domain]
+size = [0.012, 0.02, 0.011]
+periodic = ["x", "z"]
+gravity = [0.5, -9.81, 0]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.1 }
+friction = 0.5
+young = 1e8
+poisson = 0.3
+[phases.floor]
+kind = "wall"
+[interactions]
+sand-sand = { law = "hertz" }
+sand-floor = { law = "hertz" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"], layers = 1 }
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0, 0, 0], max = [0.012, 0.012, 0.011] } }
+velocity = ["0.5*sin(600*x)", "-0.8*y/0.02", "0.4*cos(700*x)*sin(600*z)"]
+[time]
+end = 10
+largest-speed = 2
+)toml";
+
 /// A scene as the parameter of a test.
 struct Named {
   const char* name;
@@ -279,7 +369,7 @@ inline void PrintTo(const Named& scene, std::ostream* out) { *out << scene.name;
 
 inline std::unique_ptr<Simulation> simulation(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const Scene scene = parse_scene(text, "test.toml", overrides);
-  const auto blocks = generate(scene);
+  const auto blocks = make_particles(scene);
   return std::make_unique<Simulation>(scene, make_plan(scene, blocks), blocks);
 }
 

@@ -27,7 +27,7 @@ State state_after(const std::string& text, int threads, int steps) {
   omp_set_num_threads(before);
   State s;
   s.time = run->time();
-  s.rebuilds = run->neighbours().rebuilds();
+  s.rebuilds = run->searches();
   for (const auto& p : run->phases()) {
     s.ids.insert(s.ids.end(), p.id().begin(), p.id().end());
     for (const auto& about : field_table)
@@ -82,8 +82,9 @@ INSTANTIATE_TEST_SUITE_P(
                     small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
                     small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
                     small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
-                    small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains}, small::Named{"MixedDune", &mixed_dune},
-                    small::Named{"MixedChannel", &mixed_channel}),
+                    small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
+                    small::Named{"Spheres", &small::spheres}, small::Named{"HertzianSpheres", &small::hertzian_spheres},
+                    small::Named{"MixedDune", &mixed_dune}, small::Named{"MixedChannel", &mixed_channel}),
     [](const auto& s) { return std::string(s.param.name); });
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/errors.hpp"
+#include "scene/identity.hpp"
 
 namespace barchan {
 namespace {
@@ -66,9 +67,40 @@ TEST_F(CheckpointFile, IsRefusedCutOffOrTooLong) {
   EXPECT_THROW(read_checkpoint(file_), SceneError);
 }
 
-TEST(CheckpointScenes, DifferencesAreNamedByLine) {
-  EXPECT_EQ(difference("a = 1\nb = 2\n", "a = 1\nb = 2\n"), "");
-  EXPECT_EQ(difference("a = 1\nb = 2\n", "a = 1\nb = 3\n"), "  - b = 2\n  + b = 3\n");
+TEST_F(CheckpointFile, OlderOneIsTakenWhenTheNewerIsDamaged) {
+  EXPECT_EQ(read_newest_checkpoint(file_).second, "");
+  Checkpoint next = whole_;
+  next.step = 18;
+  write_checkpoint(file_, next);
+  EXPECT_EQ(read_newest_checkpoint(file_).first.step, 18);
+  EXPECT_EQ(read_checkpoint(older_checkpoint(file_)).step, 17);
+  std::string bad = bytes();
+  bad[bad.size() / 2] ^= 4;
+  put(bad);
+  const auto [older, damage] = read_newest_checkpoint(file_);
+  EXPECT_EQ(older.step, 17);
+  EXPECT_NE(damage.find("x.checkpoint: is damaged"), std::string::npos) << damage;
+  fs::remove(file_);
+  EXPECT_EQ(read_newest_checkpoint(file_).first.step, 17);
+  std::ofstream(older_checkpoint(file_)) << "nothing";
+  EXPECT_THROW(read_newest_checkpoint(file_), SceneError);
+  remove_checkpoints(file_);
+  EXPECT_FALSE(fs::exists(older_checkpoint(file_)));
+}
+
+TEST(CheckpointScenes, DifferencesAreNamedByKey) {
+  EXPECT_EQ(difference("a = 1\nb = 2\n", "b = 2\na = 1\n"), "");
+  EXPECT_EQ(difference("a = 1\n[c]\nb = 2\n", "a = 1\n[c]\nb = 3\n"), "  c.b: 2 then, 3 now\n");
+  EXPECT_EQ(difference("[[fill]]\nx = [1, 2]", "[[fill]]\ny = 'q'"),
+            "  fill.0.x: [ 1, 2 ] then, not there now\n  fill.0.y: not there then, 'q' now\n");
+}
+
+TEST(CheckpointScenes, HarmlessKeysAreLeftOut) {
+  const auto of = [](const char* text) { return identity_of(toml::parse(text)); };
+  EXPECT_EQ(of("title = 'a'\nspacing = 1\n[time]\nend = 1\n[output]\nevery = 1\n"),
+            of("title = 'b'\nspacing = 1\n[time]\nend = 2\n[output]\nfields = ['stress']\n"));
+  EXPECT_NE(of("[output]\nformat = 'vtu'\n"), of("[output]\nformat = 'vtp'\n"));
+  EXPECT_NE(of("[time]\nsafety = 1\n"), of("[time]\nsafety = 2\n"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "scene/generate.hpp"
 #include "scene/reader.hpp"
+#include "simulation/settle.hpp"
 
 namespace barchan {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 const std::filesystem::path scenes = std::filesystem::path(BARCHAN_SOURCE_DIR) / "scenes";
 
 std::vector<ParticleBlock> particles_of(const char* file, const std::vector<std::string>& overrides = {}) {
-  return generate(read_scene((scenes / file).string(), overrides));
+  return make_particles(read_scene((scenes / file).string(), overrides));
 }
 
 TEST(SceneFiles, AllReadAndMakeParticles) {
@@ -24,7 +25,7 @@ TEST(SceneFiles, AllReadAndMakeParticles) {
     try {
       const Scene scene = read_scene(entry.path().string());
       EXPECT_FALSE(scene.title.empty()) << entry.path();
-      for (const ParticleBlock& block : generate(scene)) EXPECT_FALSE(block.position.empty()) << entry.path();
+      for (const ParticleBlock& block : make_particles(scene)) EXPECT_FALSE(block.position.empty()) << entry.path();
     } catch (const SceneError& error) { ADD_FAILURE() << error.what(); }
   }
   EXPECT_GE(count, 7);

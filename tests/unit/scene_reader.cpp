@@ -351,13 +351,68 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_FALSE(scene.output.walls);
 }
 
-TEST(SceneReader, TheTestAboveNamesEveryKeyOfTheTable) {
+const std::string sphere_keys = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.1, 0.1]
+gravity = [0, -10]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.2 }
+friction = 0.5
+rolling-friction = 0.1
+stiffness = 300
+[phases.stones]
+kind = "grains"
+density = 2500
+diameter = 2e-3
+largest-overlap = 0.03
+[phases.ground]
+kind = "wall"
+diameter = { mean = 3e-3, spread = 0.1 }
+[interactions]
+sand-sand = { law = "linear" }
+sand-ground = { law = "linear" }
+stones-stones = { law = "hertz" }
+[[fill]]
+phase = "ground"
+shape = { box = { min = [0, 0], max = [0.1, 0.004] } }
+[[fill]]
+phase = "sand"
+shape = { bed = 0.01, from = 0.004 }
+packing = "settled"
+[[fill]]
+phase = "stones"
+shape = { points = [[0.05, 0.05]] }
+[time]
+end = 1
+)toml";
+
+TEST(SceneReader, ReadsTheKeysOfSpheres) {
+  const Scene scene = parse_scene(sphere_keys, "s.toml");
+  const GrainsKeys &sand = scene.phases.at(0).grains(), &stones = scene.phases.at(1).grains();
+  EXPECT_EQ(sand.diameter->mean, 1e-3);
+  EXPECT_EQ(sand.diameter->spread, 0.2);
+  EXPECT_EQ(sand.friction, 0.5);
+  EXPECT_EQ(sand.rolling_friction, 0.1);
+  EXPECT_EQ(sand.stiffness, 300);
+  EXPECT_EQ(stones.diameter->mean, 2e-3);
+  EXPECT_EQ(stones.diameter->spread, 0.0);
+  EXPECT_EQ(stones.largest_overlap, 0.03);
+  EXPECT_EQ(scene.phases.at(2).wall().diameter->mean, 3e-3);
+  EXPECT_EQ(scene.interactions.at(0).law, ContactLaw::linear);
+  EXPECT_EQ(scene.interactions.at(2).law, ContactLaw::hertz);
+  EXPECT_EQ(scene.fills.at(1).packing, Packing::settled);
+}
+
+TEST(SceneReader, TheTestsAboveNameEveryKeyOfTheTable) {
+  const std::string all = every_key + sphere_keys;
   for (const Key& key : all_keys()) {
     if (key.section.starts_with("fill.shape")) continue;
     const std::string name(key.name);
     if (name == "step") continue;  // not beside safety; OverridesReplaceAddAndMake has it
-    const bool named =
-        every_key.find(name + " =") != std::string::npos || every_key.find("[" + name) != std::string::npos;
+    const bool named = all.find(name + " =") != std::string::npos || all.find("[" + name) != std::string::npos;
     EXPECT_TRUE(named) << key.section << "." << name;
   }
 }

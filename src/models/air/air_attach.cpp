@@ -259,6 +259,7 @@ void Air::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool&
     e.wall = &w_->particles(other);
     e.stress = wall->shear_stress.value_or(Vec3{});
     e.roughness = wall->roughness.value_or(0.0);
+    if (e.friction == Friction::rough && drags_by_law(scene_, phase_)) e.given = &w_->ground_stress[number_];
   }
   if (e.friction == Friction::grains) {
     // A form drag is the whole friction of the grains. The logarithmic law of rough ground beside it would take the

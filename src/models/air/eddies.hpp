@@ -25,12 +25,13 @@ struct EddyRecords {
 struct EddyNeighbour {
   FluidNeighbour pair;
   Friction friction = Friction::fluid;
-  const EddyRecords* eddies = nullptr;   // friction fluid: the neighbour's, null: `root` is all of them's
-  double root = 0.0;                     // sqrt(Pa s), of a fluid without eddies
-  double roughness = 0.0;                // m
-  const PhaseParticles* wall = nullptr;  // moves with the velocity
-  Vec3 wall_velocity{};                  // m/s
-  Vec3 stress{};                         // Pa, on the fluid
+  const EddyRecords* eddies = nullptr;           // friction fluid: the neighbour's, null: `root` is all of them's
+  double root = 0.0;                             // sqrt(Pa s), of a fluid without eddies
+  double roughness = 0.0;                        // m
+  const PhaseParticles* wall = nullptr;          // moves with the velocity
+  Vec3 wall_velocity{};                          // m/s
+  Vec3 stress{};                                 // Pa, on the fluid
+  const AlignedVector<double>* given = nullptr;  // Pa, by particle, against its motion along the wall
 };
 
 struct EddyParameters {

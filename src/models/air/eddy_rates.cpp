@@ -46,6 +46,11 @@ std::array<Four, Dim> wall_stress(const EddyNeighbour& e, const std::array<Four,
   }
   for (std::size_t d = 0; d < Dim; ++d) tau[d] -= along * normal[d];
   if (e.friction == Friction::driven) return tau;
+  if (e.given) {
+    const Four speed = length_of<Dim, Four>(tau), stress = load_four(e.given->data(), at.first, at.count);
+    for (auto& t : tau) t *= simd::select(speed > Four(0.0), stress / speed, Four(0.0));
+    return tau;
+  }
   alignas(32) std::array<double, 4> law{};
   for (std::size_t lane = 0; lane < at.count; ++lane)
     law[lane] = p.density * log_law_friction(columns.distance[at.first + lane], e.roughness, p.spacing);

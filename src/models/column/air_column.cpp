@@ -101,7 +101,7 @@ void AirColumn::update_mixing_length() {
   double root = 0.0;
   for (std::size_t k = 0; k < profile_.cells(); ++k) {
     const double height = profile_.face[k + 1] - profile_.face[k];
-    const double along = std::sqrt(std::max(profile_.speed[k], 0.0) / (critical * air_.viscosity));
+    const double along = std::sqrt(std::abs(profile_.speed[k]) / (critical * air_.viscosity));
     const double slope = 0.5 * kappa * along;
     const double middle = root + 0.5 * height * slope * faded(root * along);
     root += height * slope * faded(middle * along);
@@ -111,24 +111,21 @@ void AirColumn::update_mixing_length() {
 
 /// Newton's step for the stress, which grows with the square of the slope: a step of any length stays stable, and what
 /// one cell loses the next one gets.
-void AirColumn::advance(double dt, double stress, const Load& load) {
+void AirColumn::advance(double dt, const Top& top, const Load& load) {
   const std::size_t n = profile_.cells();
   const auto height = [&](std::size_t k) { return profile_.face[k + 1] - profile_.face[k]; };
   const double rho = air_.density;
-  for (std::size_t k = 0; k < n; ++k) {  // of face k; the top is given
-    const bool bottom = k == 0;
-    if (bottom && air_.slip == Slip::free_slip) {
-      profile_.stress[0] = conductance_[0] = 0.0;
-      continue;
-    }
-    const double apart = bottom ? 0.5 * height(0) : 0.5 * (height(k) + height(k - 1));
-    const double slope = (profile_.speed[k] - (bottom ? 0.0 : profile_.speed[k - 1])) / apart;
-    const double eddy = profile_.length[k] * profile_.length[k] * std::abs(slope);
+  const auto face = [&](std::size_t k, double apart, double difference) {
+    const double slope = difference / apart, eddy = profile_.length[k] * profile_.length[k] * std::abs(slope);
     profile_.stress[k] = rho * (air_.viscosity + eddy) * slope;
     conductance_[k] = rho * (air_.viscosity + 2.0 * eddy) / apart;
-  }
-  profile_.stress[n] = stress;
-  conductance_[n] = 0.0;
+  };
+  for (std::size_t k = 1; k < n; ++k)
+    face(k, 0.5 * (height(k) + height(k - 1)), profile_.speed[k] - profile_.speed[k - 1]);
+  profile_.stress[0] = conductance_[0] = conductance_[n] = 0.0;
+  profile_.stress[n] = top.stress;
+  if (air_.slip != Slip::free_slip) face(0, 0.5 * height(0), profile_.speed[0]);
+  if (top.speed) face(n, 0.5 * height(n - 1), *top.speed - profile_.speed[n - 1]);
   for (std::size_t k = 0; k < n; ++k) {
     lower_[k] = k > 0 ? -conductance_[k] : 0.0;
     upper_[k] = k + 1 < n ? -conductance_[k + 1] : 0.0;
@@ -141,6 +138,7 @@ void AirColumn::advance(double dt, double stress, const Load& load) {
     profile_.given[k] = (load.pull[k] + load.rate[k] * change_[k]) * dt;
     profile_.speed[k] += change_[k];
   }
+  profile_.stress[n] -= conductance_[n] * change_[n - 1];
   profile_.boundary += (profile_.stress[n] - profile_.stress[0]) * dt;
   update_mixing_length();
   integrate_speed();

@@ -8,6 +8,7 @@
 // In a bed U vanishes and l with it; over it l grows as over a rough or smooth wall: no surface of the bed is needed.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -57,6 +58,17 @@ class AirColumn {
     std::vector<double> part_, step_;  // of the cells where spreads begin and end; changes of the density between them
   };
 
+  /// What drives the air from above: a stress (Pa), or a speed on the top face (m/s).
+  struct Top {
+    double stress = 0.0;
+    std::optional<double> speed;
+    Top(double pascal) : stress(pascal) {}
+    static Top at_speed(double u) {
+      Top top(0.0);
+      top.speed = u;
+      return top;
+    }
+  };
   /// What the grains of each cell do to the air.
   struct Load {
     std::vector<double> pull;  // Pa: what they take at the present speed of the air
@@ -64,9 +76,9 @@ class AirColumn {
     std::vector<double> owed;  // Pa s: what they have got beyond profile.given of the last step
     explicit Load(std::size_t cells) : pull(cells, 0.0), rate(cells, 0.0), owed(cells, 0.0) {}
   };
-  /// One step of the air (s), implicit in shear and drag so that any dt is stable, with a stress on its top (Pa). What
+  /// One step of the air (s), implicit in shear and drag so that any dt is stable, driven from its top. What
   /// the grains are to get in this time is then profile.given. Updates the mixing length for the next step.
-  void advance(double dt, double stress, const Load& load);
+  void advance(double dt, const Top& top, const Load& load);
   void update_mixing_length();
 
   /// Momentum of the air by area, Pa s.

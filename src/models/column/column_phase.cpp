@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "engine/means.hpp"
+#include "laws/kept_drag.hpp"
 #include "output/numbers.hpp"
 #include "scene/log_wind.hpp"
 
@@ -274,22 +275,15 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
     const double at = y[k] + ahead * v[1][k];
     const double speed = wind(at, 0.5 * d);
-    std::array<double, dimensions> mean{};  // total acceleration, gravity and drag
-    double rate = 0.0, share = 1.0;
-    for (int pass = 0; pass < 2; ++pass) {
-      double square = 0.0;
-      for (std::size_t c = 0; c < dimensions; ++c) {
-        const double difference = (c == 0 ? speed : 0.0) - v[c][k] - 0.5 * time * mean[c];
-        square += difference * difference;
-      }
-      rate = stokes * excess(std::sqrt(square) * d / keys_.viscosity, at);
-      const double x = rate * time;
-      share = x < 1e-5 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-      for (std::size_t c = 0; c < dimensions; ++c)
-        mean[c] = share * (rate * ((c == 0 ? speed : 0.0) - v[c][k]) + scene_.domain.gravity[c]);
+    std::array<double, dimensions> air{speed}, own{}, gravity{};
+    for (std::size_t c = 0; c < dimensions; ++c) {
+      own[c] = v[c][k];
+      gravity[c] = scene_.domain.gravity[c];
     }
-    for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = mean[c] - scene_.domain.gravity[c];
-    grains.rate[k] = share * rate;
+    const auto kept = kept_drag<dimensions>(
+        air, own, gravity, stokes, d / keys_.viscosity, [&](double re) { return excess(re, at); }, time);
+    for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = kept.drag[c];
+    grains.rate[k] = kept.rate;
     grains.wind[k] = speed;
   }
 }

@@ -38,16 +38,31 @@ void SphereSearch::prepare(const Bounds& bounds, double reach, std::size_t kinds
   laws_ = std::move(laws);
   sides_ = std::move(sides);
   numbers_ = numbers_of_a_pair;
-  for (std::size_t d = 0; d < 3; ++d) period_[d] = bounds.periodic[d] ? bounds.high[d] - bounds.low[d] : 0.0;
+  cells_.low = bounds.low;
+  cells_.kinds = kinds;
+  cells_.laws = laws_.data();
+  for (std::size_t d = 0; d < 3; ++d) cells_.period[d] = bounds.periodic[d] ? bounds.high[d] - bounds.low[d] : 0.0;
   found_.resize(static_cast<std::size_t>(std::max(omp_get_max_threads(), omp_get_num_procs())));
 }
 
-std::size_t SphereSearch::coordinate(double x, std::size_t axis) const {
-  x -= bounds_.low[axis];
-  if (period_[axis] > 0.0) x -= period_[axis] * std::floor(x / period_[axis]);
-  const double c = x * inverse_cell_[axis];
-  if (!(c > 0.0)) return 0;  // NaN too
-  return std::min(static_cast<std::size_t>(std::min(c, 1e9)), count_[axis] - 1);
+void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks) {
+  constexpr std::size_t batch = SphereChunk::batch;
+  const std::size_t pairs = bounds_.dimensions == 2 ? 6 : 11;  // of a sphere, of two in different chunks both
+  for (SphereChunk& chunk : chunks) {
+    const std::size_t spheres = chunk.end - chunk.begin, room = pairs * spheres + 64;
+    chunk.a.reserve(room);
+    chunk.b.reserve(room);
+    chunk.memory.reserve(room * numbers_);
+    chunk.touches.reserve(room / batch);
+    chunk.groups.reserve(2 * kinds_ * kinds_ + 2);
+    if (!sides_.empty()) chunk.sides.reserve(spheres);
+  }
+  for (auto& sorted : sorted_) sorted.reserve(all + SphereCells::padding);
+  for (auto& found : found_) found.reserve(pairs * SphereChunk::most + 64);
+  kept_.reserve(pairs * all / 2 + 64);
+  begin_.reserve(8 * all + 65536 + 1);
+  cell_of_.reserve(all);
+  order_.reserve(all);
 }
 
 /// Sorts all spheres into cells as wide as a search.
@@ -59,9 +74,9 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
     cells = 1;
     for (std::size_t d = 0; d < dimensions; ++d) {
       const double size = bounds_.high[d] - bounds_.low[d];
-      count_[d] = static_cast<std::size_t>(std::clamp(std::floor(size / cell), 1.0, 1e6));
-      inverse_cell_[d] = static_cast<double>(count_[d]) / size;
-      cells *= count_[d];
+      cells_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / cell), 1.0, 1e6));
+      cells_.inverse_cell[d] = static_cast<double>(cells_.count[d]) / size;
+      cells *= cells_.count[d];
     }
     if (cells <= 8 * s.all + 4096) break;
   }
@@ -69,14 +84,15 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
   fit(cell_of_, s.all);
   fit(order_, s.all);
   fit(begin_, cells + 1);
-  fit(sorted_, 4 * s.all);
+  for (auto& sorted : sorted_) fit(sorted, s.all + SphereCells::padding);
   std::fill(begin_.begin(), begin_.end(), 0u);
   const auto n = static_cast<std::int64_t>(s.all);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     std::size_t c = 0;
-    for (std::size_t d = dimensions; d-- > 0;) c = c * count_[d] + coordinate(s.records[k * stride + d], d);
+    for (std::size_t d = dimensions; d-- > 0;)
+      c = c * cells_.count[d] + cells_.coordinate(s.records[k * stride + d], d);
     cell_of_[k] = static_cast<std::uint32_t>(c);
   }
   for (std::size_t k = 0; k < s.all; ++k) ++begin_[cell_of_[k] + 1];
@@ -85,11 +101,14 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
     const std::size_t at = begin_[cell_of_[k]]++;
     order_[at] = static_cast<std::uint32_t>(k);
     const double* r = s.records + k * stride;
-    for (std::size_t d = 0; d < 3; ++d) sorted_[4 * at + d] = d < dimensions ? r[d] : 0.0;
-    sorted_[4 * at + 3] = r[radius];
+    for (std::size_t d = 0; d < dimensions; ++d) sorted_[d][at] = r[d];
+    sorted_[3][at] = r[radius];
   }
   for (std::size_t c = cells; c > 0; --c) begin_[c] = begin_[c - 1];
   begin_[0] = 0;
+  cells_.begin = begin_.data();
+  cells_.order = order_.data();
+  for (std::size_t d = 0; d < 4; ++d) cells_.sorted[d] = sorted_[d].data();
 }
 
 /// The memory of all pairs that touch, by the number of the first.
@@ -130,62 +149,12 @@ const double* SphereSearch::memory_of(std::uint32_t number, std::uint32_t with) 
   return nullptr;
 }
 
-/// The pairs of a chunk, in the order in which its spheres meet them.
-void SphereSearch::fill(const SphereSet& s, double slack, SphereChunk& chunk, std::vector<Found>& found) const {
-  const std::size_t stride = stride_of(s), radius = radius_of(s);
-  const bool flat = s.dimensions == 2;
-  found.clear();
-  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
-    const double* r = s.records + k * stride;
-    const std::array<double, 3> x{r[0], r[1], flat ? 0.0 : r[2]};
-    const double own = r[radius] + slack;
-    const std::uint32_t number = s.numbers[k];
-    const auto look = [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t q = begin; q < end; ++q) {
-        double r2 = 0.0;
-        for (std::size_t d = 0; d < 3; ++d) {
-          double apart = x[d] - sorted_[4 * q + d];
-          if (period_[d] > 0.0) apart -= period_[d] * std::round(apart / period_[d]);
-          r2 += apart * apart;
-        }
-        const double reach = own + sorted_[4 * q + 3];
-        if (r2 >= reach * reach) continue;
-        const std::uint32_t j = order_[q];
-        const std::uint32_t law = laws_[s.kinds[k] * kinds_ + s.kinds[j]];
-        const bool inside = j >= chunk.begin && j < chunk.end;
-        if (law == none || j == k || (inside && s.numbers[j] < number)) continue;
-        const bool first = number < s.numbers[j], fixed = j >= s.moving, near = r2 < (reach - slack) * (reach - slack);
-        const auto k32 = static_cast<std::uint32_t>(k);
-        found.push_back({first ? k32 : j, first ? j : k32, law * 4 + (inside || fixed ? 0u : 2u) + (near ? 0u : 1u)});
-      }
-    };
-    std::array<std::size_t, 3> low{0, 0, 0}, many{1, 1, 1};
-    for (std::size_t d = 0; d < (flat ? 2u : 3u); ++d) {
-      const std::size_t c = coordinate(x[d], d), n = count_[d];
-      if (period_[d] > 0.0) {
-        many[d] = std::min<std::size_t>(3, n);
-        low[d] = n < 3 ? 0 : (c + n - 1) % n;
-      } else {
-        low[d] = c > 0 ? c - 1 : 0;
-        many[d] = std::min(c + 2, n) - low[d];
-      }
-    }
-    for (std::size_t dz = 0; dz < many[2]; ++dz)
-      for (std::size_t dy = 0; dy < many[1]; ++dy) {
-        const std::size_t row = ((low[2] + dz) % count_[2] * count_[1] + (low[1] + dy) % count_[1]) * count_[0];
-        const std::size_t end = low[0] + many[0], inside = std::min(end, count_[0]);
-        look(begin_[row + low[0]], begin_[row + inside]);
-        if (end > inside) look(begin_[row], begin_[row + end - inside]);
-      }
-  }
-}
-
 /// Orders the pairs by law, those of the chunk alone before those of two, those that touch before others, and gives
 /// them their memory.
-void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vector<Found>& found) const {
+void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vector<FoundPair>& found) const {
   constexpr std::size_t batch = SphereChunk::batch;
   std::array<std::uint32_t, most_keys> count{}, next{};
-  for (const Found& f : found) ++count[f.key];
+  for (const FoundPair& f : found) ++count[f.key];
   // A batch belongs to one law and one weight: pairs of the keys 2k and 2k + 1 stand together.
   chunk.groups.clear();
   std::uint32_t at = 0;
@@ -209,7 +178,7 @@ void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vect
   std::fill(chunk.b.begin(), chunk.b.end(), far + 1);
   std::fill(chunk.touches.begin(), chunk.touches.end(), std::uint8_t{0});
   std::fill(chunk.memory.begin(), chunk.memory.end(), 0.0);
-  for (const Found& f : found) {
+  for (const FoundPair& f : found) {
     const std::uint32_t to = next[f.key]++;
     chunk.a[to] = f.a;
     chunk.b[to] = f.b;
@@ -251,8 +220,8 @@ void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChun
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::int64_t c = 0; c < n; ++c) {
     SphereChunk& chunk = chunks[static_cast<std::size_t>(c)];
-    std::vector<Found>& found = found_[static_cast<std::size_t>(omp_get_thread_num())];
-    fill(s, slack, chunk, found);
+    std::vector<FoundPair>& found = found_[static_cast<std::size_t>(omp_get_thread_num())];
+    find_sphere_pairs(cells_, s, slack, chunk, found);
     place(s, chunk, found);
     place_sides(s, slack, chunk);
   }
@@ -270,9 +239,9 @@ void SphereSearch::order(const std::array<const double*, 3>& x, std::size_t coun
     cells = 1;
     for (std::size_t d = 0; d < dimensions; ++d) {
       const double size = bounds_.high[d] - bounds_.low[d];
-      count_[d] = static_cast<std::size_t>(std::clamp(std::floor(size / cell), 1.0, 1e6));
-      inverse_cell_[d] = static_cast<double>(count_[d]) / size;
-      blocks[d] = (count_[d] + side - 1) / side;
+      cells_.count[d] = static_cast<std::size_t>(std::clamp(std::floor(size / cell), 1.0, 1e6));
+      cells_.inverse_cell[d] = static_cast<double>(cells_.count[d]) / size;
+      blocks[d] = (cells_.count[d] + side - 1) / side;
       cells *= blocks[d] * side;
     }
     if (cells <= 8 * count + 65536) break;
@@ -284,7 +253,7 @@ void SphereSearch::order(const std::array<const double*, 3>& x, std::size_t coun
   for (std::size_t k = 0; k < count; ++k) {
     std::size_t block = 0, within = 0;
     for (std::size_t d = dimensions; d-- > 0;) {
-      const std::size_t c = coordinate(x[d][k], d);
+      const std::size_t c = cells_.coordinate(x[d][k], d);
       block = block * blocks[d] + c / side;
       within = within * side + c % side;
     }

@@ -5,22 +5,13 @@
 #include <span>
 
 #include "engine/cell_grid.hpp"
-#include "models/grains/sphere_work.hpp"
+#include "models/grains/sphere_pairs.hpp"
 
 namespace barchan {
 
-/// The spheres that are searched.
-struct SphereSet {
-  int dimensions = 2;
-  const double* records = nullptr;         // SphereRecord
-  std::size_t moving = 0, all = 0;         // the moving come first; two far away follow after all
-  const std::uint32_t* numbers = nullptr;  // lasting, in the order of ids
-  const std::uint8_t* kinds = nullptr;     // row and column in the table of laws
-};
-
 class SphereSearch {
  public:
-  static constexpr std::uint32_t none = 0xffffffffu;
+  static constexpr std::uint32_t none = SphereCells::none;
 
   /// A side of the domain that holds spheres: of which kind the wall is.
   struct Side {
@@ -33,6 +24,8 @@ class SphereSearch {
   /// `reach` (m): the largest sum of radii; `laws`: by kind and kind, `none` where two do not touch.
   void prepare(const Bounds& bounds, double reach, std::size_t kinds, std::vector<std::uint32_t> laws,
                std::vector<Side> sides, std::size_t numbers_of_a_pair);
+  /// Room for what packings of `all` spheres need, so that later searches seldom allocate.
+  void reserve(std::size_t all, std::vector<SphereChunk>& chunks);
 
   /// Fills the chunks with the pairs nearer than `slack` (m), with the memory that they had. `before`: numbers of the
   /// spheres when the chunks were filled last. Allocates only to grow.
@@ -46,17 +39,11 @@ class SphereSearch {
     std::uint32_t number, with;  // of both
     double memory[6];
   };
-  struct Found {
-    std::uint32_t a, b, key;
-  };
-
   void sort(const SphereSet& spheres, double slack);
   void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before);
-  void fill(const SphereSet& spheres, double slack, SphereChunk& chunk, std::vector<Found>& found) const;
-  void place(const SphereSet& spheres, SphereChunk& chunk, const std::vector<Found>& found) const;
+  void place(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place_sides(const SphereSet& spheres, double slack, SphereChunk& chunk) const;
   const double* memory_of(std::uint32_t number, std::uint32_t with) const;
-  std::size_t coordinate(double x, std::size_t axis) const;
 
   Bounds bounds_;
   double reach_ = 0.0;
@@ -64,13 +51,12 @@ class SphereSearch {
   std::vector<std::uint32_t> laws_;
   std::vector<Side> sides_;
 
-  std::array<std::size_t, 3> count_{1, 1, 1};
-  std::array<double, 3> inverse_cell_{}, period_{};
+  SphereCells cells_;
   std::vector<std::uint32_t> cell_of_, begin_, order_;
-  AlignedVector<double> sorted_;  // x y z r, in the order of cells
+  AlignedVector<double> sorted_[4];  // x y z r, in the order of cells
   std::vector<std::uint32_t> kept_begin_;
   std::vector<Kept> kept_;
-  std::vector<std::vector<Found>> found_;  // by thread
+  std::vector<std::vector<FoundPair>> found_;  // by thread
 };
 
 }  // namespace barchan

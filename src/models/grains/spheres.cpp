@@ -91,6 +91,7 @@ void Spheres::attach(Workspace& w) {
   step_.inverse_densities = laws_.inverse_densities().data();
   step_.columns = columns_.data();
   search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), std::move(sides), step_.numbers);
+  search_.reserve(all, chunks_);
   for (std::size_t d = 0; d < 3; ++d)
     step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
 }
@@ -317,6 +318,22 @@ std::optional<std::string> Spheres::trouble() const {
          " %): contacts are too soft for what presses them, or fills overlap; raise stiffness, young or "
          "time.largest-speed, or lower "
          "largest-overlap";
+}
+
+std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
+  if (!entry.of_spheres()) return 0;
+  const std::uint32_t law = laws_.table()[entry.a * layout_.phases.size() + entry.b];
+  const auto far = static_cast<std::uint32_t>(moving_ + fixed_kind_.size());
+  std::uint64_t n = 0;
+  for (const SphereChunk& chunk : chunks_) {
+    for (const auto& group : chunk.groups)
+      for (std::size_t k = group.first * SphereChunk::batch; group.law == law && k < group.end * SphereChunk::batch;
+           ++k)
+        n += chunk.a[k] == far ? 0u : group.weight == 1.0 && chunk.b[k] < moving_ ? 2u : 1u;
+    n += static_cast<std::uint64_t>(
+        std::count_if(chunk.sides.begin(), chunk.sides.end(), [&](const auto& at) { return at.law == law; }));
+  }
+  return n;
 }
 
 void Spheres::archive(Archive& a) {

@@ -51,6 +51,8 @@ class Spheres : public Model {
   void columns(std::vector<std::string>& names) const override;
   void row(std::vector<double>& values) const override;
   std::optional<std::string> trouble() const override;
+  std::uint64_t pairs(const PlanEntry& entry) const override;
+  long searches() const override { return searches_; }
   void archive(Archive& a) override;
 
  private:

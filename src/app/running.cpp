@@ -1,0 +1,258 @@
+#include "app/running.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "app/report.hpp"
+#include "app/signals.hpp"
+#include "base/errors.hpp"
+#include "base/instructions.hpp"
+#include "base/version.hpp"
+#include "output/checkpoint.hpp"
+#include "output/numbers.hpp"
+
+namespace barchan {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Of all phases at rest, kg/m3.
+std::vector<double> densities(const Scene& scene) {
+  std::vector<double> all;
+  for (const auto& p : scene.phases) all.push_back(p.density);
+  return all;
+}
+
+/// The frames of an earlier run that a state counts.
+std::vector<SeriesWriter::Entry> kept_frames(const fs::path& directory, const Scene& scene, const OutputClock& clock) {
+  if (clock.frames <= 0) return {};
+  const fs::path series = directory / (scene.name + ".pvd");
+  const auto refuse = [&](const std::string& what) { throw SceneError("--restart: " + series.string() + what); };
+  auto frames = read_pvd(series);
+  if (frames.size() < static_cast<std::size_t>(clock.frames))
+    refuse(" lists " + std::to_string(frames.size()) + " frames; the checkpoint was written after " +
+           std::to_string(clock.frames));
+  frames.resize(static_cast<std::size_t>(clock.frames));
+  if (frames.back().time != clock.last_frame_time)
+    refuse(" is the series of another run: frame " + std::to_string(clock.frames - 1) + " is at " +
+           brief(frames.back().time) + " s; expected " + brief(clock.last_frame_time) + " s");
+  std::error_code ignored;
+  for (const auto& frame : frames)
+    if (!fs::is_regular_file(directory / frame.file, ignored))
+      refuse(" lists " + frame.file + ", which is not there; expected all frames of the run");
+  return frames;
+}
+
+}  // namespace
+
+fs::path checkpoint_file(const fs::path& directory, const Scene& scene) {
+  return directory / (scene.name + ".checkpoint");
+}
+
+fs::path bad_file(const fs::path& directory, const Scene& scene) {
+  return directory / (scene.name + (scene.output.format == FrameFormat::vtp ? "_bad.vtp" : "_bad.vtu"));
+}
+
+void Past::keep(Simulation& simulation, Measurements* measurements) {
+  State& state = states_[states_[0].step <= states_[1].step ? 0 : 1];
+  state.archive.save_again();
+  simulation.archive(state.archive);
+  if (measurements) measurements->archive(state.archive);
+  state.step = simulation.steps();
+  if (trusted_ < 0) trusted_ = state.step;
+}
+
+bool Past::go_back(Simulation& simulation, Measurements* measurements, long failed) {
+  State* best = nullptr;
+  for (State& state : states_)
+    if (state.step >= 0 && (state.step == trusted_ || state.step <= failed - distance) &&
+        (!best || state.step > best->step))
+      best = &state;
+  if (!best) return false;
+  for (State& state : states_)
+    if (state.step > best->step) state.step = -1;
+  best->archive.load_again();
+  simulation.archive(best->archive);
+  if (measurements) measurements->archive(best->archive);
+  best->archive.finish();
+  trusted_ = best->step;
+  return true;
+}
+
+Run::Run(Course& course, bool continued)
+    : course_(course),
+      scene_(course.scene),
+      simulation_(course.simulation),
+      directory_(course.directory),
+      continued_(continued) {
+  const Plan& plan = simulation_.plan();
+  if (!plan.instruments.empty()) measurements_.emplace(plan.instruments, plan.bounds, densities(scene_));
+}
+
+void Run::open() {
+  series_.emplace(directory_, scene_.name, scene_.output.format, scene_.output.compress,
+                  kept_frames(directory_, scene_, clock()));
+  history_.emplace(directory_ / "history.csv", simulation_.history_columns(), continued_, simulation_.time());
+  if (measurements_) measurements_->open(directory_, continued_, simulation_.time());
+  write_run_report(directory_ / "run.json", report("running"));
+}
+
+int Run::go(Past* past) {
+  const int status = loop(past);
+  if (clock().last_frame_step != simulation_.steps()) {
+    simulation_.check();
+    write_frame();
+  }
+  if (reason_ == "end") bring_checkpoint_up_to_date();
+  finish(reason_);
+  return status;
+}
+
+int Run::loop(Past* past) {
+  const double end = scene_.time.end;
+  const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
+  const double row_every = scene_.output.history_every > 0 ? scene_.output.history_every : end / 100.0;
+  const auto due = [&](double next) { return simulation_.time() * (1.0 + 1e-12) >= next; };
+  const auto next_number = [&](double every) {
+    long k = std::max(1L, static_cast<long>(simulation_.time() / every));
+    while (due(static_cast<double>(k) * every)) ++k;
+    return k;
+  };
+  long frames_due = next_number(frame_every), rows_due = next_number(row_every);
+  if (!continued_) {
+    if (measurements_) measurements_->sample(simulation_.state());
+    write_frame();
+    write_row();
+  }
+  while (simulation_.time() < end * (1.0 - 1e-12)) {
+    if (past && past->due(simulation_.steps())) past->keep(simulation_, measurements());
+    const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
+    const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
+    simulation_.step(std::min(next_frame, next_row) - simulation_.time());
+    if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
+    if (measurements_) measurements_->sample(simulation_.state());
+    if (due(next_row)) {
+      write_row();
+      ++rows_due;
+    }
+    if (due(next_frame)) {
+      write_frame();
+      ++frames_due;
+    }
+    if (checkpoint_due()) write_checkpoint();
+    course_.progress.step(simulation_);
+    if (int status = 0; asked_to_stop(status)) return status;
+  }
+  reason_ = "end";
+  return 0;
+}
+
+/// Looks for signals after every step, for the file TERMINATE after every sixteenth.
+bool Run::asked_to_stop(int& status) {
+  if (const int signal = stop_signal(); signal != 0) {
+    status = stop(signal_name(signal), 128 + signal);
+    return true;
+  }
+  std::error_code unseen;  // a folder that cannot be looked into is no reason to stop; writing to it will tell
+  if (simulation_.steps() % 16 != 0 || !fs::exists(directory_ / "TERMINATE", unseen) || unseen) return false;
+  status = stop("TERMINATE", 0);
+  return true;
+}
+
+int Run::stop(const std::string& why, int status) {
+  reason_ = why;
+  bring_checkpoint_up_to_date();
+  std::cerr << "barchan: stopped by " << why << " at t = " << simulation_.time() << " s after " << simulation_.steps()
+            << " steps; the last frame and a checkpoint are written, --restart latest goes on\n";
+  return status;
+}
+
+bool Run::checkpoint_due() const {
+  if (checkpoint_was_asked_for()) return true;
+  return scene_.output.checkpoint_every > 0 &&
+         course_.progress.seconds() - course_.last_checkpoint >= scene_.output.checkpoint_every;
+}
+
+void Run::write_checkpoint() {
+  simulation_.check();
+  series_->finish();
+  Archive archive;
+  simulation_.archive(archive);
+  if (measurements_) measurements_->archive(archive);
+  barchan::write_checkpoint(checkpoint_file(directory_, scene_),
+                            {version() + " (" + commit() + ")", name_of(instructions()), scene_.identity,
+                             simulation_.time(), simulation_.steps(), archive.bytes()});
+  course_.last_checkpoint = course_.progress.seconds();
+  course_.checkpoint_step = simulation_.steps();
+  course_.checkpoint_frames = clock().frames;
+}
+
+void Run::bring_checkpoint_up_to_date() {
+  if (course_.checkpoint_step != simulation_.steps() || course_.checkpoint_frames != clock().frames) write_checkpoint();
+}
+
+void Run::checkpoint_of_retreat() {
+  const fs::path file = checkpoint_file(directory_, scene_);
+  if (!fs::exists(file)) return;
+  write_checkpoint();
+  std::error_code ignored;
+  fs::remove(older_checkpoint(file), ignored);
+}
+
+std::string Run::break_down(const std::string& what) {
+  const long good = simulation_.good_step();
+  if (good > clock().last_frame_step) {
+    series_->write(simulation_.good_frame(static_cast<int>(clock().frames++)));
+    if (measurements_) measurements_->write(directory_, simulation_.good_time());
+    clock().last_frame_step = good;
+    clock().last_frame_time = simulation_.good_time();
+  }
+  series_->finish();
+  const fs::path bad = bad_file(directory_, scene_);
+  barchan::write_frame(bad, simulation_.frame(static_cast<int>(clock().frames)), scene_.output.format,
+                       scene_.output.compress);
+  const std::string message =
+      what + "; last good state: " + series_->last_file() + " (t = " + brief(clock().last_frame_time) + " s, step " +
+      std::to_string(clock().last_frame_step) + "), first bad state: " + bad.filename().string() +
+      " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";
+  finish("breakdown: " + message);
+  return message;
+}
+
+void Run::write_frame() {
+  series_->write(simulation_.frame(static_cast<int>(clock().frames++)));
+  if (measurements_) measurements_->write(directory_, simulation_.time());
+  clock().last_frame_step = simulation_.steps();
+  clock().last_frame_time = simulation_.time();
+}
+
+RunReport Run::report(const std::string& reason) const {
+  RunReport r = make_report(simulation_, *series_, measurements_ ? &*measurements_ : nullptr, course_.progress);
+  r.end_reason = reason;
+  r.retreats = course_.retreats;
+  r.retreat_count = simulation_.state().retreat.count;
+  if (r.retreat_count > 0)
+    r.warnings.push_back("the run went back to an earlier step " + std::to_string(r.retreat_count) +
+                         (r.retreat_count == 1 ? " time" : " times") + " and took smaller ones" +
+                         (r.retreats.empty() ? "" : "; the first failure: " + r.retreats.front().reason) +
+                         "; lower time.safety, or see docs/output.md for what the message means");
+  return r;
+}
+
+/// The report, when the series is whole.
+void Run::finish(const std::string& reason) {
+  series_->finish();
+  const RunReport r = report(reason);
+  for (const auto& w : r.warnings) std::cerr << "barchan: warning: " << w << '\n';
+  write_run_report(directory_ / "run.json", r);
+  course_.progress.end(reason);
+}
+
+void Run::fail(const std::string& reason) {
+  if (series_) try_to_write(directory_ / "run.json", report(reason));
+  course_.progress.end(reason);
+}
+
+}  // namespace barchan

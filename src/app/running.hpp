@@ -1,0 +1,101 @@
+// A run in its folder: steps, and what is written when.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/progress.hpp"
+#include "measure/measurements.hpp"
+#include "output/history.hpp"
+#include "output/run_report.hpp"
+#include "output/series.hpp"
+#include "simulation/simulation.hpp"
+
+namespace barchan {
+
+/// What a run has that lasts when it goes back to an earlier step.
+struct Course {
+  const Scene& scene;
+  Simulation& simulation;
+  std::filesystem::path directory;
+  Progress progress;
+  double last_checkpoint = 0.0;                       // s of the run's wall time
+  long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
+  std::vector<RunReport::Retreat> retreats{};
+};
+
+std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);
+/// Where the first bad state of a run goes; not listed in the series.
+std::filesystem::path bad_file(const std::filesystem::path& directory, const Scene& scene);
+
+/// States of the past that a run can go back to, in memory: two, so that one is old enough.
+class Past {
+ public:
+  static constexpr long every = 256;  // steps
+  /// A particle that is wrong is found within 20 steps of it; states that are not this much older are not trusted.
+  static constexpr long distance = 64;  // steps
+
+  bool due(long step) const { return newest().step < 0 || step >= newest().step + every; }
+  void keep(Simulation& simulation, Measurements* measurements);
+  /// Loads the newest state that is old enough; false when there is none.
+  bool go_back(Simulation& simulation, Measurements* measurements, long failed);
+
+ private:
+  struct State {
+    long step = -1;
+    Archive archive;
+  };
+  const State& newest() const { return states_[0].step >= states_[1].step ? states_[0] : states_[1]; }
+  std::array<State, 2> states_;
+  long trusted_ = -1;  // step of the first that was kept, or that the run went back to: it was looked at closely
+};
+
+class Run {
+ public:
+  /// The simulation stands at its beginning, or `continued`: at a state of a run in this folder.
+  Run(Course& course, bool continued);
+
+  Measurements* measurements() { return measurements_ ? &*measurements_ : nullptr; }
+  /// Makes the files; begins those of a continued run where its state says. Throws OutputError, SceneError.
+  void open();
+  /// Steps to the end, or until it is asked to stop. Returns the exit status. Throws BreakdownError for a step that
+  /// failed. `past`: where states to go back to are kept; null: none.
+  int go(Past* past);
+  /// The state as it is now, in place of the last checkpoint. Frames that it counts are on the disk.
+  void write_checkpoint();
+  /// The same after going back, when those on the disk may be of steps that are given up.
+  void checkpoint_of_retreat();
+  /// For a run that ends with a failed step: the last good state joins the series, the first bad one stands beside it.
+  /// Returns what to tell.
+  std::string break_down(const std::string& what);
+  /// For a run that ends for another reason: run.json says so if anything can be written.
+  void fail(const std::string& reason);
+
+ private:
+  OutputClock& clock() { return simulation_.outputs(); }
+  int loop(Past* past);
+  int stop(const std::string& why, int status);
+  bool asked_to_stop(int& status);
+  bool checkpoint_due() const;
+  /// A checkpoint, unless the last one says the same.
+  void bring_checkpoint_up_to_date();
+  void write_frame();
+  void write_row() { history_->row(simulation_.history_row()); }
+  RunReport report(const std::string& reason) const;
+  void finish(const std::string& reason);
+
+  Course& course_;
+  const Scene& scene_;
+  Simulation& simulation_;
+  const std::filesystem::path& directory_;
+  bool continued_;
+  std::optional<SeriesWriter> series_;
+  std::optional<History> history_;
+  std::optional<Measurements> measurements_;  // empty: the scene measures nothing
+  std::string reason_;
+};
+
+}  // namespace barchan

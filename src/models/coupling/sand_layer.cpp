@@ -1,0 +1,277 @@
+#include "models/coupling/sand_layer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "laws/drag_coefficients.hpp"
+#include "laws/kept_drag.hpp"
+
+namespace barchan {
+
+SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& entry)
+    : scene_(scene),
+      layout_(layout),
+      fluid_(entry.fluid),
+      grains_(entry.other),
+      law_(entry.drag_law),
+      name_(entry.name),
+      density_(scene.phases[fluid_].density),
+      viscosity_(scene.phases[fluid_].fluid().viscosity),
+      diameter_(layout.phases[grains_].diameter),
+      top_(reach * layout.phases[fluid_].spacing),
+      interval_(interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
+      grid_(layout.bounds, layout.phases[fluid_].spacing) {}
+
+void SandLayer::attach(Workspace& w) {
+  w_ = &w;
+  const double size = layout_.bounds.high[0] - layout_.bounds.low[0];
+  const auto n = static_cast<std::size_t>(std::max(1.0, std::round(size / layout_.phases[fluid_].spacing)));
+  width_ = size / static_cast<double>(n);
+  ground_ = fitted_heights(scene_, {static_cast<int>(n * heights), 0});
+  if (ground_.empty())
+    throw SceneError(scene_.file + ": interactions." + name_ +
+                     ".drag: no ground under the air; expected a wall with "
+                     "roughness and shape = { bed = ... }, packing = \"fitted\" that the fluid feels");
+  place_ = w.state.air.size();
+  const AirProfile one =
+      AirColumn::grid(-(deep + 2.0) * diameter_, std::min(fine * diameter_, top_), top_, diameter_ / cells);
+  const AirColumn::Air air{density_, viscosity_, MixingLength::duran, Slip::no_slip};
+  for (std::size_t k = 0; k < n; ++k) {
+    w.state.air.push_back(one);
+    profile(k).phase = fluid_;
+  }
+  layers_.reserve(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    layers_.emplace_back(air, profile(k));
+    spreads_.emplace_back(one.cells());
+    loads_.emplace_back(one.cells());
+  }
+  const std::size_t grains = w.particles(grains_).size();
+  near_.reserve(grains);
+  flying_.reserve(grains);
+  rate_.assign(grains, 0.0);
+  w.ground_stress[fluid_].assign(w.particles(fluid_).size(), 0.0);
+}
+
+SandLayer::Ground SandLayer::ground(double x) const {
+  const double step = width_ / static_cast<double>(heights), low = layout_.bounds.low[0];
+  const auto n = static_cast<long>(ground_.size()) - 1;
+  const double s = (x - low) / step;
+  const long k = ((static_cast<long>(std::floor(s)) % n) + n) % n;
+  const double share = s - std::floor(s), a = ground_[static_cast<std::size_t>(k)],
+               b = ground_[static_cast<std::size_t>(k) + 1];
+  const double slope = (b - a) / step, length = std::sqrt(1.0 + slope * slope);
+  return {a + share * (b - a), 1.0 / length, slope / length};
+}
+
+std::size_t SandLayer::column_at(double x) const {
+  const auto n = static_cast<long>(layers_.size());
+  const long k = static_cast<long>(std::floor((x - layout_.bounds.low[0]) / width_));
+  return static_cast<std::size_t>(((k % n) + n) % n);
+}
+
+void SandLayer::schedule(Schedule& s) {
+  using enum Field;
+  s.add({stage::eddies, name_, {position}, {}, [this] { give_stress(); }});
+  s.add(
+      {stage::drag, name_, {position, velocity, radius, drag_acceleration}, {acceleration, drag_acceleration}, [this] {
+         act();
+       }});
+}
+
+/// The stress on the top of the layers, for each particle of the air that may rub on the ground.
+void SandLayer::give_stress() {
+  auto& stress = w_->ground_stress[fluid_];
+  const PhaseParticles& air = w_->particles(fluid_);
+  const double* x = air.column(Field::position, 0);
+  const std::size_t n = layers_.size();
+  for (std::size_t k = 0; k < air.size(); ++k) {
+    const double s = (x[k] - layout_.bounds.low[0]) / width_ - 0.5, cell = std::floor(s), share = s - cell;
+    const long left = static_cast<long>(cell), all = static_cast<long>(n);
+    const AirProfile &a = profile(static_cast<std::size_t>(((left % all) + all) % all)),
+                     &b = profile(static_cast<std::size_t>((((left + 1) % all) + all) % all));
+    stress[k] = (1.0 - share) * std::abs(a.stress.back()) + share * std::abs(b.stress.back());
+  }
+}
+
+void SandLayer::act() {
+  AirProfile& clock = profile(0);
+  const State& state = w_->state;
+  const bool first = clock.step < 0;
+  if (!first && clock.step != state.steps) clock.elapsed += state.dt;
+  clock.step = state.steps;
+  if (first || clock.elapsed >= interval_ * (1.0 - 1e-9)) {
+    hold_ = state.dt > 0.0 ? state.dt * std::max(1.0, std::ceil(interval_ / state.dt * (1.0 - 1e-9))) : interval_;
+    grid_.gather(w_->particles(fluid_));
+    if (first) find_steady_wind();
+    exchange(clock.elapsed, clock.last);
+    clock.elapsed = 0.0;
+    clock.last = hold_;
+  }
+  for (const std::size_t phase : {fluid_, grains_}) {
+    PhaseParticles& p = w_->particles(phase);
+    const auto n = static_cast<std::int64_t>(p.size());
+    for (int d = 0; d < 2; ++d) {
+      double* a = p.column(Field::acceleration, d);
+      const double* drag = p.column(Field::drag_acceleration, d);
+#pragma omp parallel for simd schedule(static)
+      for (std::int64_t k = 0; k < n; ++k) a[k] += drag[k];
+    }
+  }
+}
+
+/// The speed of the air's particles along the ground, where the layer ends.
+double SandLayer::top_speed(std::size_t column) const {
+  const double x = layout_.bounds.low[0] + (static_cast<double>(column) + 0.5) * width_;
+  const Ground g = ground(x);
+  const auto u = grid_.velocity({x - top_ * g.along_y, g.height + top_ * g.along_x});
+  return u[0] * g.along_x + u[1] * g.along_y;
+}
+
+/// The layers that the grains at their initial speeds let pass: steps that grow until the air rests.
+void SandLayer::find_steady_wind() {
+  const double hold = hold_;
+  for (int k = 0; k < 80; ++k) {
+    for (std::size_t c = 0; c < layers_.size(); ++c) {
+      layers_[c].integrate_speed();
+      std::fill(loads_[c].owed.begin(), loads_[c].owed.end(), 0.0);
+    }
+    feel();
+    spread();
+    blow(hold * std::min(std::pow(1.3, k), 1e6));
+  }
+  for (std::size_t c = 0; c < layers_.size(); ++c) {
+    std::fill(profile(c).given.begin(), profile(c).given.end(), 0.0);
+    profile(c).boundary = 0.0;
+  }
+}
+
+/// The air of the layers goes on by a time (s).
+void SandLayer::blow(double dt) {
+  for (std::size_t c = 0; c < layers_.size(); ++c)
+    layers_[c].advance(dt, AirColumn::Top::at_speed(top_speed(c)), loads_[c]);
+}
+
+/// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
+/// drag in that. A drag that was kept for another time than was meant gave the grains more or less than the air lost.
+void SandLayer::exchange(double kept, double meant) {
+  for (std::size_t c = 0; c < layers_.size(); ++c)
+    for (std::size_t k = 0; k < loads_[c].owed.size(); ++k)
+      loads_[c].owed[k] = profile(c).given[k] * (meant > 0.0 ? kept / meant - 1.0 : 0.0);
+  feel();
+  spread();
+  blow(hold_);
+  PhaseParticles& p = w_->particles(grains_);
+  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
+  double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  for (const Near& q : near_) {
+    const double more =
+        rate_[q.grain] * (layers_[q.column].mean_speed(q.height - q.radius, q.height + q.radius) - q.wind);
+    ax[q.grain] += more * q.ground.along_x;
+    ay[q.grain] += more * q.ground.along_y;
+  }
+  // What the layers do not take, the particles of the air do; from the bed the ground takes what is across it.
+  for (const std::size_t k : flying_) {
+    const double m = p.mass_of(k);
+    grid_.push({x[k], y[k]}, {-m * ax[k], -m * ay[k]});
+  }
+  for (const Near& q : near_) {
+    if (q.height < diameter_) continue;
+    const std::size_t k = q.grain;
+    const double across = -p.mass_of(k) * (ay[k] * q.ground.along_x - ax[k] * q.ground.along_y);
+    grid_.push({x[k], y[k]}, {-across * q.ground.along_y, across * q.ground.along_x});
+  }
+  grid_.give(w_->particles(fluid_));
+}
+
+/// Which grains are in the layers and which over them.
+void SandLayer::find_near() {
+  PhaseParticles& p = w_->particles(grains_);
+  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
+  const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
+  const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+  const double half = 0.5 * hold_;
+  near_.clear();
+  flying_.clear();
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const Ground g = ground(x[k]);
+    const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
+    if (height >= top_) {
+      flying_.push_back(k);
+    } else if (height > -deep * diameter_) {
+      near_.push_back({k, column_at(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, g});
+    } else {
+      p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
+    }
+  }
+}
+
+void SandLayer::feel() {
+  find_near();
+  PhaseParticles& p = w_->particles(grains_);
+  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
+  const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
+  const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+  double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  const double solid = scene_.phases[grains_].density, half = 0.5 * hold_;
+  const std::array<double, 2> gravity{scene_.domain.gravity[0], scene_.domain.gravity[1]};
+  with_drag_law(law_, [&](auto law) {
+    const auto excess = [](double re) { return decltype(law)::excess(re); };
+    const auto of = [&](std::size_t k, const std::array<double, 2>& wind) {
+      const double d = own ? 2.0 * own[k] : diameter_, stokes = 18.0 * density_ * viscosity_ / (solid * d * d);
+      const auto kept = kept_drag<2>(wind, {u[k], v[k]}, gravity, stokes, d / viscosity_, excess, hold_);
+      ax[k] = kept.drag[0];
+      ay[k] = kept.drag[1];
+      rate_[k] = kept.rate;
+    };
+    const auto flying = static_cast<std::int64_t>(flying_.size()), near = static_cast<std::int64_t>(near_.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < flying; ++i) {
+      const std::size_t k = flying_[static_cast<std::size_t>(i)];
+      of(k, grid_.velocity({x[k] + half * u[k], y[k] + half * v[k]}));
+    }
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < near; ++i) {
+      Near& q = near_[static_cast<std::size_t>(i)];
+      q.wind = layers_[q.column].mean_speed(q.height - q.radius, q.height + q.radius);
+      of(q.grain, {q.wind * q.ground.along_x, q.wind * q.ground.along_y});
+    }
+  });
+}
+
+/// What the grains of a layer's cells pull by area, and how much more as the air gets faster.
+void SandLayer::spread() {
+  const PhaseParticles& p = w_->particles(grains_);
+  const double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  const auto each = [&](auto&& amount_of, auto&& sums_of) {
+    for (auto& s : spreads_) s.clear();
+    for (const Near& q : near_)
+      spreads_[q.column].add(layers_[q.column], q.height - q.radius, q.height + q.radius,
+                             p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_);
+    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads_[c]));
+  };
+  each([&](const Near& q) { return ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y; },
+       [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
+  each([&](const Near& q) { return rate_[q.grain]; },
+       [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
+}
+
+void SandLayer::columns(std::vector<std::string>& names) const {
+  names.push_back(name_ + "_ground_stress [Pa]");
+  names.push_back(name_ + "_bed_stress [Pa]");
+}
+
+/// Means over the ground: of the stress on top of the layers, and at the height of the bed.
+void SandLayer::row(std::vector<double>& values) const {
+  double top = 0.0, bed = 0.0;
+  for (std::size_t c = 0; c < layers_.size(); ++c) {
+    const AirProfile& p = profile(c);
+    top += p.stress.back();
+    bed += p.stress[layers_[c].cell_at(0.5 * diameter_)];
+  }
+  values.push_back(top / static_cast<double>(layers_.size()));
+  values.push_back(bed / static_cast<double>(layers_.size()));
+}
+
+}  // namespace barchan

@@ -1,0 +1,76 @@
+#include "output/folder_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "base/errors.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// What the file says of its owner, on one line; at most so much of it.
+std::string content(int descriptor) {
+  std::array<char, 300> text{};
+  const ssize_t size = ::pread(descriptor, text.data(), text.size(), 0);
+  std::string line(text.data(), static_cast<std::size_t>(size > 0 ? size : 0));
+  line = line.substr(0, line.find('\n'));
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return line;
+}
+
+}  // namespace
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+FolderLock::FolderLock(const std::filesystem::path& directory) : file_(directory / name) {
+  const auto fail = [&](int error) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw OutputError("cannot write '" + file_.string() + "': " + std::strerror(error));
+  };
+  while (true) {
+    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail(errno);
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      // A file system without locks cannot tell two runs apart; one run is worth more than none.
+      if (error == ENOLCK || error == EOPNOTSUPP || error == EINVAL) break;
+      if (error != EWOULDBLOCK) fail(error);
+      const std::string owner = content(descriptor_);
+      ::close(descriptor_);
+      descriptor_ = -1;
+      throw SceneError("the folder '" + directory.string() + "' belongs to a run that is going on (" +
+                       (owner.empty() ? "it has just begun" : owner) +
+                       "); expected another --out, or wait for its end");
+    }
+    // Between opening and locking the owner may have ended and removed the file: then this is no longer the one.
+    struct stat mine {
+    }, there{};
+    if (::fstat(descriptor_, &mine) == 0 && ::stat(file_.c_str(), &there) == 0 && mine.st_ino == there.st_ino &&
+        mine.st_dev == there.st_dev)
+      break;
+    ::close(descriptor_);
+  }
+  left_by_ = content(descriptor_);
+  const std::string owner = "process " + std::to_string(::getpid()) + " on host " + host_name() + "\n";
+  // A disk without room for a line is told by what comes next; the lock holds without its text.
+  if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, owner.data(), owner.size(), 0) < 0) return;
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ < 0) return;
+  ::unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+}  // namespace barchan

@@ -1,0 +1,16 @@
+// Frames whose arrays are appended as raw bytes. Internal to src/output.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "output/frame.hpp"
+
+namespace barchan {
+
+/// The frame in the text of a .vtp or .vtu file (`suffix`). Nothing when the file appends no data: its arrays stand in
+/// the XML itself. Throws OutputError when it is damaged; takes no more memory than the file can be the reason for.
+std::optional<Frame> read_appended(std::string_view text, const std::string& suffix);
+
+}  // namespace barchan

@@ -1,0 +1,74 @@
+#include "scene/identity.hpp"
+
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace barchan {
+
+namespace {
+
+using Values = std::map<std::string, std::string>;
+
+/// Every value of the document by its dotted key.
+void flatten(const toml::node& node, const std::string& dotted, Values& values) {
+  const auto inner = [&](const std::string& name) { return dotted.empty() ? name : dotted + "." + name; };
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, entry] : *table) flatten(entry, inner(std::string(name.str())), values);
+    return;
+  }
+  if (const toml::array* array = node.as_array(); array && !array->empty() && array->get(0)->is_table()) {
+    std::size_t k = 0;
+    for (const toml::node& entry : *array) flatten(entry, inner(std::to_string(k++)), values);
+    return;
+  }
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  values[dotted] = text.str();
+}
+
+Values values_of(const std::string& text) {
+  Values values;
+  try {
+    flatten(toml::parse(text), "", values);
+  } catch (const toml::parse_error&) { values["the document"] = "another one"; }
+  return values;
+}
+
+}  // namespace
+
+std::string identity_of(toml::table document) {
+  for (const char* key : {"title", "state"}) document.erase(key);
+  if (toml::table* time = document["time"].as_table()) time->erase("end");
+  if (toml::table* output = document["output"].as_table()) {
+    const auto format = (*output)["format"].value<std::string>();
+    output->clear();
+    if (format) output->insert("format", *format);
+    else document.erase("output");
+  }
+  std::ostringstream text;
+  text << document;
+  return text.str();
+}
+
+std::string difference(const std::string& then, const std::string& now) {
+  const Values before = values_of(then), after = values_of(now);
+  std::set<std::string> keys;
+  for (const auto* values : {&before, &after})
+    for (const auto& [key, value] : *values) keys.insert(key);
+  const auto shown = [](const Values& values, const std::string& key) {
+    const auto found = values.find(key);
+    if (found == values.end()) return std::string("not there");
+    return found->second.size() <= 120 ? found->second : found->second.substr(0, 120) + " ...";
+  };
+  std::string text;
+  for (const auto& key : keys) {
+    const auto a = before.find(key), b = after.find(key);
+    if (a != before.end() && b != after.end() && a->second == b->second) continue;
+    text += "  " + key + ": " + shown(before, key) + " then, " + shown(after, key) + " now\n";
+  }
+  if (text.empty() && then != now && before.empty() != after.empty()) text = "  the whole document\n";
+  return text;
+}
+
+}  // namespace barchan

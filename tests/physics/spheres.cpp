@@ -1,0 +1,312 @@
+// Spheres against what two of them, or one on a plane, do exactly.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::report;
+
+double value(const Simulation& run, const std::string& column) {
+  const auto names = run.history_columns();
+  const auto at = std::find(names.begin(), names.end(), column);
+  return at == names.end() ? NAN : run.history_row()[static_cast<std::size_t>(at - names.begin())];
+}
+
+const std::string pair_of = R"toml(
+dimensions = 3
+spacing = 1e-2
+[domain]
+size = [1, 1, 1]
+[phases.balls]
+kind = "grains"
+density = 7870
+diameter = 1e-2
+[interactions]
+balls-balls = {}
+[[fill]]
+phase = "balls"
+shape = { points = [[0.49495, 0.5, 0.5]] }
+velocity = [0.5, 0, 0]
+[[fill]]
+phase = "balls"
+shape = { points = [[0.50505, 0.5, 0.5]] }
+velocity = [-0.5, 0, 0]
+[time]
+end = 1
+largest-speed = 1
+)toml";
+
+class Restitution : public ::testing::TestWithParam<std::tuple<std::string, double>> {};
+INSTANTIATE_TEST_SUITE_P(Laws, Restitution,
+                         ::testing::Combine(::testing::Values("linear", "hertz"),
+                                            ::testing::Values(0.1, 0.3, 0.5, 0.7, 0.9, 1.0)));
+
+TEST_P(Restitution, IsTheWrittenOneAtAnySpeed) {
+  const auto& [law, e] = GetParam();
+  for (const std::string speed : {"0.5", "0.05"}) {
+    const auto run = small::simulation(
+        pair_of,
+        {"interactions.balls-balls.law=" + law, "phases.balls.restitution=" + std::to_string(e),
+         "fill.0.velocity=[" + speed + ", 0, 0]", "fill.1.velocity=[-" + speed + ", 0, 0]", "time.safety=0.03"});
+    for (int k = 0; k < 100000 && run->phases()[0].column(Field::position)[0] >= 0.0; ++k) {
+      run->step(1.0);
+      if (value(*run, "contacts") == 0.0 && value(*run, "contacts_deepest") > 0.0) break;
+    }
+    const double after = value(*run, "balls_largest_speed [m/s]") / std::stod(speed);
+    report(law + ", e = " + std::to_string(e) + ", 2 x " + speed + " m/s", std::abs(after / e - 1.0), 5e-3);
+    EXPECT_NEAR(after, e, 5e-3 * e);
+    const double lost = value(*run, "contacts_lost_energy [J]"), kinetic = value(*run, "balls_kinetic_energy [J]");
+    const double start = kinetic / (after * after);
+    EXPECT_NEAR(kinetic + lost, start, 3e-3 * start) << "the budget of a head-on collision";
+  }
+}
+
+struct HertzCase {
+  const char* name;
+  double diameter, density, young, poisson, overlap, duration;  // m, kg/m3, Pa, 1, m, s
+};
+
+// Overlap and duration of two equal spheres that meet with 1 m/s: Hertz's theory, delta = (15 m* v^2/(16 E* sqrt
+// R*))^(2/5), t = 2.943275 delta/v (Landau & Lifshitz, Theory of elasticity, section 9).
+TEST(HertzianSpheres, LastAndOverlapAsInTheory) {
+  for (const HertzCase& c : {HertzCase{"steel", 1e-2, 7870, 206e9, 0.3, 10.310e-6, 30.345e-6},
+                             HertzCase{"quartz", 2.5e-4, 2650, 70e9, 0.17, 0.26358e-6, 0.77577e-6},
+                             HertzCase{"E = 1e8", 2.5e-4, 2650, 1e8, 0.3, 3.5290e-6, 10.387e-6},
+                             HertzCase{"E = 1e7", 2.5e-4, 2650, 1e7, 0.3, 8.8645e-6, 26.091e-6}}) {
+    const auto text = [](double x) {
+      char t[32];
+      std::snprintf(t, sizeof t, "%.17g", x);
+      return std::string(t);
+    };
+    const double gap = 0.3 * c.overlap;
+    const auto run = small::simulation(
+        pair_of, {"interactions.balls-balls.law=hertz", "phases.balls.restitution=1",
+                  "phases.balls.diameter=" + text(c.diameter), "phases.balls.density=" + text(c.density),
+                  "phases.balls.young=" + text(c.young), "phases.balls.poisson=" + text(c.poisson),
+                  "time.step=" + text(c.duration / 2000),
+                  "fill.0.shape={ points = [[" + text(0.5 - 0.5 * (c.diameter + gap)) + ", 0.5, 0.5]] }",
+                  "fill.1.shape={ points = [[" + text(0.5 + 0.5 * (c.diameter + gap)) + ", 0.5, 0.5]] }"});
+    double first = 0.0, last = 0.0;
+    for (int k = 0; k < 4000; ++k) {
+      run->step(1.0);
+      if (value(*run, "contacts") == 0.0) continue;
+      if (first == 0.0) first = run->time();
+      last = run->time();
+    }
+    const double overlap = value(*run, "contacts_deepest") * c.diameter, duration = last - first + c.duration / 2000;
+    report(std::string(c.name) + ", overlap", std::abs(overlap / c.overlap - 1.0), 5e-3);
+    report(std::string(c.name) + ", duration", std::abs(duration / c.duration - 1.0), 5e-3);
+    EXPECT_NEAR(overlap, c.overlap, 5e-3 * c.overlap);
+    EXPECT_NEAR(duration, c.duration, 5e-3 * c.duration);
+  }
+}
+
+/// One ball on a floor; gravity leans by the formula of the test.
+std::string on_a_floor(int dimensions, const std::string& law) {
+  const bool flat = dimensions == 2;
+  return std::string("dimensions = ") + (flat ? "2" : "3") + R"toml(
+spacing = 1e-2
+[domain]
+size = )toml" +
+         (flat ? "[2, 0.1]" : "[2, 0.1, 0.1]") + R"toml(
+periodic = )toml" +
+         (flat ? R"(["x"])" : R"(["x", "z"])") + R"toml(
+gravity = )toml" +
+         (flat ? "[0, -10]" : "[0, -10, 0]") + R"toml(
+[phases.ball]
+kind = "grains"
+density = 2500
+diameter = 1e-2
+restitution = 0.3
+friction = 0.4
+[phases.floor]
+kind = "wall"
+[interactions]
+ball-floor = { law = ")toml" +
+         law + R"toml(" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"], layers = 1 }
+[[fill]]
+phase = "ball"
+shape = { points = [)toml" +
+         (flat ? "[0.5, 0.005]" : "[0.5, 0.005, 0.05]") + R"toml(] }
+velocity = )toml" +
+         (flat ? "[1, 0]" : "[0.6, 0, 0.8]") + R"toml(
+[time]
+end = 10
+largest-speed = 1
+)toml";
+}
+
+class OnAFloor : public ::testing::TestWithParam<std::tuple<int, std::string>> {};
+INSTANTIATE_TEST_SUITE_P(All, OnAFloor,
+                         ::testing::Combine(::testing::Values(2, 3), ::testing::Values("linear", "hertz")));
+
+double speed_along(const Simulation& run) {
+  const auto& p = run.phases()[0];
+  const double u = p.column(Field::velocity, 0)[0], w = p.dimensions() == 3 ? p.column(Field::velocity, 2)[0] : 0.0;
+  return std::hypot(u, w);
+}
+
+TEST_P(OnAFloor, SlidesUntilItRollsWithFiveSevenths) {
+  const auto& [dimensions, law] = GetParam();
+  const auto run = small::simulation(on_a_floor(dimensions, law));
+  // It slides with v - mu g t until 2 v/(7 mu g) = 0.0714 s.
+  while (run->time() < 0.04) run->step(0.04 - run->time());
+  report("speed while it slides", std::abs(speed_along(*run) / 0.84 - 1.0), 0.01);
+  EXPECT_NEAR(speed_along(*run), 0.84, 0.0084);
+  while (run->time() < 0.12) run->step(0.12 - run->time());
+  report("speed when it rolls", std::abs(speed_along(*run) * 1.4 - 1.0), 0.01);
+  EXPECT_NEAR(speed_along(*run), 5.0 / 7.0, 0.01 * 5.0 / 7.0);
+  const auto& p = run->phases()[0];
+  double spin = 0.0;
+  for (int d = 0; d < p.components(Field::angular_velocity); ++d)
+    spin = std::hypot(spin, p.column(Field::angular_velocity, d)[0]);
+  EXPECT_NEAR(spin * 5e-3, 5.0 / 7.0, 0.01) << "it rolls without slip";
+  EXPECT_LT(p.column(Field::angular_velocity, dimensions == 2 ? 0 : 2)[0], 0.0) << "to the right: clockwise about z";
+}
+
+TEST_P(OnAFloor, RollsSlidesOrStaysOnASlope) {
+  const auto& [dimensions, law] = GetParam();
+  const double g = 10.0;
+  const auto after = [&, dim = dimensions, name = law](double degrees, const std::string& extra) {
+    const double t = degrees * std::numbers::pi / 180.0;
+    const std::string x = std::to_string(g * std::sin(t)), y = std::to_string(-g * std::cos(t));
+    const auto run = small::simulation(on_a_floor(dim, name),
+                                       {"domain.gravity=[" + x + ", " + y + (dim == 3 ? ", 0]" : "]"),
+                                        std::string("fill.1.velocity=") + (dim == 3 ? "[0, 0, 0]" : "[0, 0]"), extra});
+    while (run->time() < 0.2) run->step(0.2 - run->time());
+    return run->phases()[0].column(Field::velocity, 0)[0] / 0.2;
+  };
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180.0; };
+  const double rolls = 5.0 / 7.0 * g * std::sin(radians(20.0));
+  EXPECT_NEAR(after(20.0, "title=rolls"), rolls, 0.01 * rolls);
+  // Above tan a = 7/2 mu it slides.
+  const double slides = g * (std::sin(radians(65.0)) - 0.4 * std::cos(radians(65.0)));
+  EXPECT_NEAR(after(65.0, "title=slides"), slides, 0.01 * slides);
+  // Rolling resistance of 0.2 holds it up to atan 0.2 = 11.3 degrees, and takes 5/7 of its share beyond.
+  EXPECT_NEAR(after(10.0, "phases.ball.rolling-friction=0.2"), 0.0, 2e-3);
+  const double held = 5.0 / 7.0 * g * (std::sin(radians(20.0)) - 0.2 * std::cos(radians(20.0)));
+  EXPECT_NEAR(after(20.0, "phases.ball.rolling-friction=0.2"), held, 0.015 * held);
+}
+
+TEST(ObliqueImpact, OfGrossSlidingIsThatOfCoulomb) {
+  // A ball meets a floor at 10 degrees from it... it slides throughout where tan(angle of incidence) > 7/2 mu (1 + e):
+  // then dv_t = -mu (1 + e) v_n and the spin is 5/2 mu (1 + e) v_n/r (Walton 1993).
+  for (const std::string law : {"linear", "hertz"}) {
+    const auto run = small::simulation(on_a_floor(3, law),
+                                       {"domain.gravity=[0, 0, 0]", "fill.1.velocity=[2, -0.3, 0]", "time.safety=0.05",
+                                        "phases.ball.restitution=0.6", "time.largest-speed=2"});
+    for (int k = 0; k < 100000; ++k) {
+      run->step(1.0);
+      if (value(*run, "contacts_deepest") > 0.0 && value(*run, "contacts") == 0.0) break;
+    }
+    const double push = 0.4 * 1.6 * 0.3;
+    const auto& p = run->phases()[0];
+    EXPECT_NEAR(p.column(Field::velocity, 1)[0], 0.18, 0.01 * 0.18);
+    EXPECT_NEAR(2.0 - p.column(Field::velocity, 0)[0], push, 0.01 * push);
+    EXPECT_NEAR(p.column(Field::angular_velocity, 2)[0], -2.5 * push / 5e-3, 0.01 * 2.5 * push / 5e-3);
+  }
+}
+
+TEST(Spheres, KeepMomentumAndAngularMomentum) {
+  // A cloud of rough spheres that collide in free space.
+  for (const std::string law : {"linear", "hertz"}) {
+    const auto run = small::simulation(R"toml(
+dimensions = 3
+spacing = 1e-3
+[domain]
+size = [0.1, 0.1, 0.1]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.3 }
+friction = 0.5
+[interactions]
+sand-sand = { law = ")toml" + law + R"toml(" }
+[[fill]]
+phase = "sand"
+shape = { sphere = { centre = [0.05, 0.05, 0.05], radius = 0.008 } }
+velocity = ["-80*(x - 0.05) + 100*(y - 0.05)", "-80*(y - 0.05) - 90*(z - 0.05)", "-80*(z - 0.05)"]
+[time]
+end = 1
+largest-speed = 2
+)toml");
+    const auto momenta = [&] {
+      std::array<double, 6> sum{};
+      const auto& p = run->phases()[0];
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        const double m = p.mass_of(k), r = p.column(Field::radius)[k];
+        for (int d = 0; d < 3; ++d) {
+          const int e = (d + 1) % 3, f = (d + 2) % 3;
+          const auto x = [&](int c) { return p.column(Field::position, c)[k] - 0.05; };
+          const auto v = [&](int c) { return p.column(Field::velocity, c)[k]; };
+          sum[static_cast<std::size_t>(d)] += m * v(d);
+          sum[static_cast<std::size_t>(3 + d)] +=
+              m * (x(e) * v(f) - x(f) * v(e)) + 0.4 * m * r * r * p.column(Field::angular_velocity, d)[k];
+        }
+      }
+      return sum;
+    };
+    const auto start = momenta();
+    const double energy = value(*run, "sand_kinetic_energy [J]");
+    while (run->time() < 0.008) run->step(0.008 - run->time());
+    const auto end = momenta();
+    const double left = value(*run, "sand_kinetic_energy [J]") + value(*run, "rotation_energy [J]");
+    EXPECT_GT(value(*run, "contacts_lost_energy [J]"), 0.2 * energy);
+    report(
+        "budget of rough spheres, " + law,
+        std::abs((left + value(*run, "contacts_lost_energy [J]") + value(*run, "contacts_stored_energy [J]")) / energy -
+                 1.0),
+        0.01);
+    EXPECT_NEAR(left + value(*run, "contacts_lost_energy [J]") + value(*run, "contacts_stored_energy [J]"), energy,
+                0.01 * energy);
+    const double scale = std::sqrt(2.0 * energy * 2650.0 * 2e-6);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(end[k], start[k], 1e-10 * scale);
+    for (std::size_t k = 3; k < 6; ++k) EXPECT_NEAR(end[k], start[k], 1e-10 * scale * 0.008);
+  }
+}
+
+TEST(Spheres, KeepTheirEnergyWithoutFrictionAndLoss) {
+  // A periodic gas in which every sphere collides many times. The long run, 10^4 spheres and 10^5 steps, is that of
+  // bench/grains.
+  for (const std::string law : {"linear", "hertz"}) {
+    const auto run = small::simulation(R"toml(
+dimensions = 3
+spacing = 1e-3
+[domain]
+size = [0.01, 0.01, 0.01]
+periodic = ["x", "y", "z"]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = 1e-3
+restitution = 1
+[interactions]
+sand-sand = { law = ")toml" + law + R"toml(" }
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0, 0, 0], max = [0.01, 0.01, 0.007] } }
+velocity = ["sin(2000*x + 1500*y)", "cos(1700*y + 2300*z)", "sin(1900*z + 1300*x)"]
+[time]
+end = 1
+safety = 0.25      # t_c/48: a linear spring sets in at once, and long steps gain energy at that kink
+largest-speed = 2
+)toml");
+    const double energy = value(*run, "sand_kinetic_energy [J]");
+    for (int k = 0; k < 400; ++k) run->step(1.0);
+    const double now = value(*run, "sand_kinetic_energy [J]") + value(*run, "contacts_stored_energy [J]");
+    report("energy of smooth spheres, " + law, std::abs(now / energy - 1.0), 1e-3);
+    EXPECT_NEAR(now, energy, 1e-3 * energy);
+    EXPECT_EQ(run->phases()[0].has(Field::angular_velocity), false);
+  }
+}
+
+}  // namespace
+}  // namespace barchan
