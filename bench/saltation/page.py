@@ -42,7 +42,7 @@ def hop(r):
 
 def flux(r):
     lines = ["## Saturated flux", "",
-             "`scenes/saltation.toml` at three winds, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %). The error is that of the mean of blocks of "
+             "`scenes/saltation.toml`, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %). The error is that of the mean of blocks of "
              f"{r['block']} s, one run each.", "",
              "| u* m/s | flux g/m/s | measured by Creyssels | difference | decay of flux, d | of concentration, d | air at the bed, m/s | averaged s |",
              "| --- | --- | --- | --- | --- | --- | --- | --- |"]
