@@ -25,7 +25,11 @@ TEST(SceneFiles, AllReadAndMakeParticles) {
     try {
       const Scene scene = read_scene(entry.path().string());
       EXPECT_FALSE(scene.title.empty()) << entry.path();
-      for (const ParticleBlock& block : make_particles(scene)) EXPECT_FALSE(block.position.empty()) << entry.path();
+      const auto blocks = make_particles(scene);
+      for (std::size_t k = 0; k < blocks.size(); ++k) {
+        const bool column = scene.phases[k].kind() == PhaseKind::column;
+        EXPECT_EQ(blocks[k].position.empty(), column) << entry.path() << ": " << scene.phases[k].name;
+      }
     } catch (const SceneError& error) { ADD_FAILURE() << error.what(); }
   }
   EXPECT_GE(count, 7);

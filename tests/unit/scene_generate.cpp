@@ -123,17 +123,18 @@ TEST(Generate, APeriodThatStaggeredRowsDoNotFitIsRefusedWithTheNearestThatDo) {
               scene.domain.periodic[1] = true;
               return scene;
             }()),
-            "s.toml: domain.size: 1 m along the periodic axis y is not a whole number of staggered double rows "
+            "s.toml:3:8: domain.size: 1 m along the periodic axis y is not a whole number of staggered double rows "
             "(0.173205080756888 m); expected "
             "0.866025403784439 or 1.03923048454133 m");
-  EXPECT_EQ(problem_of([&] {
-              Scene scene = parse_scene(square_text, "s.toml");
-              scene.domain.size[0] = 1.03;
-              scene.domain.periodic[0] = true;
-              return scene;
-            }()),
-            "s.toml: domain.size: 1.03 m along the periodic axis x is not a whole number of spacings (0.1 m); expected "
-            "1 or 1.1 m");
+  EXPECT_EQ(
+      problem_of([&] {
+        Scene scene = parse_scene(square_text, "s.toml");
+        scene.domain.size[0] = 1.03;
+        scene.domain.periodic[0] = true;
+        return scene;
+      }()),
+      "s.toml:3:8: domain.size: 1.03 m along the periodic axis x is not a whole number of spacings (0.1 m); expected "
+      "1 or 1.1 m");
 }
 
 TEST(Generate, RandomGrainsDoNotTouchAndAreTheSameEveryTime) {
@@ -243,7 +244,9 @@ TEST(Generate, WindIsLogarithmicOverTheGround) {
   // u at 1, 5, 10, 50 and 100 mm for u* = 0.4 m/s and y0 = d/30 = 8.333e-6 m, kappa = 0.4 (u = ln(y/y0)).
   const double height[] = {1e-3, 5e-3, 10e-3, 50e-3, 100e-3}, wind[] = {4.788, 6.397, 7.090, 8.700, 9.393};
   std::string points, text = with(square_text, "size = [1, 1]", "size = [4, 4]");
-  for (const double y : height) points += (points.empty() ? "[1, " : ", [1, ") + std::to_string(0.5 + y) + "]";
+  for (std::size_t k = 0; k < 5; ++k)  // side by side: points of a fill are half a spacing apart
+    points += (k == 0 ? "[" : ", [") + std::to_string(1.0 + 0.3 * static_cast<double>(k)) + ", " +
+              std::to_string(0.5 + height[k]) + "]";
   text = with(
       text, "[[fill]]",
       "[phases.ground]\nkind = \"grains\"\ndensity = 1\n[[fill]]\nphase = \"ground\"\nshape = { bed = 0.5 }\n[[fill]]");
@@ -278,8 +281,10 @@ TEST(Generate, FormulasGiveVelocityAndPressure) {
     EXPECT_DOUBLE_EQ(block.pressure[i], x[0] + x[1]);
   }
   EXPECT_TRUE(generate(parse_scene(square_text, "s.toml", {"fill.0.pressure=hydrostatic"}))[0].pressure.empty());
-  EXPECT_EQ(problem_of(parse_scene(square_text, "s.toml", {"fill.0.velocity=[\"1/(x-0.05)\", 0]"})),
-            "s.toml: fill.0: a formula gives a velocity or pressure that is not a finite number at (0.05, 0.05) m");
+  EXPECT_EQ(
+      problem_of(parse_scene(square_text, "s.toml", {"fill.0.velocity=[\"1/(x-0.05)\", 0]"})),
+      "--set fill.0.velocity=[\"1/(x-0.05)\", 0]: fill.0.velocity: the formula \"1/(x-0.05)\" gives inf at (0.05, "
+      "0.05) m; expected a finite number at every particle");
 }
 
 /// A unit square of fluid with walls on the given sides.
@@ -370,15 +375,17 @@ TEST(Generate, ADomainThatIsNoWholeNumberOfSpacingsKeepsItsLastRowInside) {
 
 TEST(Generate, TellsOfOverlapsEmptyFillsAndParticlesOutside) {
   const std::string second = "[[fill]]\nphase = \"air\"\nshape = { points = [[0.47, 0.45]] }\n";
-  EXPECT_EQ(problem_of(parse_scene(square_text + second, "s.toml")),
-            "s.toml: fill.1: a particle of phase \"air\" at (0.47, 0.45) m overlaps fill.0 of phase \"air\"; expected "
-            "at least half a spacing "
-            "between particles of different fills");
-  EXPECT_EQ(problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ formula = \"-1\" }"), "s.toml")),
-            "s.toml: fill.0: no particle of phase \"air\"; expected a larger shape, a smaller spacing, or an earlier "
-            "place in the file");
+  EXPECT_EQ(
+      problem_of(parse_scene(square_text + second, "s.toml")),
+      "s.toml:15:1: fill.1: a particle of phase \"air\" at (0.47, 0.45) m overlaps fill.0 of phase \"air\"; expected "
+      "at least half a spacing "
+      "between particles of different fills");
+  EXPECT_EQ(
+      problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ formula = \"-1\" }"), "s.toml")),
+      "s.toml:9:1: fill.0: no particle of phase \"air\"; expected a larger shape, a smaller spacing, or an earlier "
+      "place in the file");
   EXPECT_EQ(problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ points = [[0.5, 1.5]] }"), "s.toml")),
-            "s.toml: fill.0: a particle of phase \"air\" at (0.5, 1.5) m lies outside the domain; expected a shape "
+            "s.toml:9:1: fill.0: a particle of phase \"air\" at (0.5, 1.5) m lies outside the domain; expected a shape "
             "inside it");
   const std::string periodic = with(square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\"]");
   const std::string across = with(periodic, "\"the-rest\"", "{ points = [[0.01, 0.5]] }") +

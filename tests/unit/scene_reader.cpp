@@ -406,8 +406,85 @@ TEST(SceneReader, ReadsTheKeysOfSpheres) {
   EXPECT_EQ(scene.fills.at(1).packing, Packing::settled);
 }
 
+/// The keys that only a column of air and what measures sand in flight have.
+const std::string column_keys = R"toml(
+spacing = 0.1
+[domain]
+size = [1, 1]
+periodic = ["x"]
+gravity = [0, -9.81]
+[phases.air]
+kind = "column"
+density = 1.2
+viscosity = 1.5e-5
+friction-velocity = "0.4*t"
+height = 0.5
+resolution = 0.01
+mixing-length = "none"
+averaging = 0.02
+[phases.calm]
+kind = "column"
+density = 1.2
+viscosity = 1.5e-5
+speed = 2
+slip = "free-slip"
+[phases.still]
+kind = "column"
+density = 1.2
+viscosity = 1.5e-5
+speed = 0
+held = true
+[phases.silt]
+kind = "grains"
+density = 2650
+[phases.sand]
+kind = "grains"
+density = 2650
+[phases.dust]
+kind = "grains"
+density = 2650
+[interactions]
+air-sand = { drag = "cheng" }
+calm-dust = {}
+still-silt = {}
+[[fill]]
+phase = "sand"
+shape = { points = [[0.5, 0.5]] }
+[[fill]]
+phase = "dust"
+shape = { points = [[0.5, 0.8]] }
+[[fill]]
+phase = "silt"
+shape = { points = [[0.5, 0.2]] }
+[[saltation]]
+name = "layer"
+phase = "sand"
+flight = 4
+count = 20
+[time]
+end = 1
+)toml";
+
+TEST(SceneReader, ReadsTheKeysOfColumns) {
+  const Scene scene = parse_scene(column_keys, "s.toml");
+  const ColumnKeys &air = scene.phases.at(0).column(), &calm = scene.phases.at(1).column();
+  EXPECT_EQ(air.friction_velocity.formula, "0.4*t");
+  EXPECT_EQ(air.height, 0.5);
+  EXPECT_EQ(air.resolution, 0.01);
+  EXPECT_EQ(air.mixing_length, MixingLength::none);
+  EXPECT_EQ(calm.slip, Slip::free_slip);
+  EXPECT_EQ(air.averaging, 0.02);
+  EXPECT_FALSE(air.held);
+  EXPECT_EQ(calm.speed, 2.0);
+  EXPECT_TRUE(scene.phases.at(2).column().held);
+  EXPECT_EQ(scene.interactions.at(0).drag_law, DragLaw::cheng);
+  EXPECT_EQ(scene.interactions.at(1).drag_law, DragLaw::duran);
+  EXPECT_EQ(scene.measuring.saltation.at(0).flight, 4);
+  EXPECT_EQ(scene.measuring.saltation.at(0).count, 20);
+}
+
 TEST(SceneReader, TheTestsAboveNameEveryKeyOfTheTable) {
-  const std::string all = every_key + sphere_keys;
+  const std::string all = every_key + sphere_keys + column_keys;
   for (const Key& key : all_keys()) {
     if (key.section.starts_with("fill.shape")) continue;
     const std::string name(key.name);
@@ -515,7 +592,7 @@ TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
   EXPECT_NE(schema["properties"]["spacing"]["description"].get<std::string>().find("Unit: m."), std::string::npos);
   EXPECT_EQ(schema["required"], (nlohmann::json{"spacing", "domain", "phases", "interactions", "fill", "time"}));
   const auto& phase = schema["properties"]["phases"]["additionalProperties"];
-  EXPECT_EQ(phase["properties"]["kind"]["enum"], (nlohmann::json{"fluid", "elastic", "grains", "wall"}));
+  EXPECT_EQ(phase["properties"]["kind"]["enum"], (nlohmann::json{"fluid", "elastic", "grains", "wall", "column"}));
   EXPECT_EQ(phase["additionalProperties"], false);
   for (const Key& key : all_keys()) {
     EXPECT_FALSE(key.meaning.empty()) << key.name;

@@ -1,0 +1,72 @@
+// What a place gives the air's particles, they get: models/coupling/air_grid.hpp.
+#include "models/coupling/air_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/particle_sets.hpp"
+
+namespace barchan {
+namespace {
+
+Bounds box() {
+  Bounds bounds;
+  bounds.dimensions = 2;
+  bounds.low = {0.0, 0.0, 0.0};
+  bounds.high = {8.0, 6.0, 0.0};
+  bounds.periodic = {true, false, false};
+  return bounds;
+}
+
+/// A disturbed square lattice of air whose velocity is (2 + y, 0).
+PhaseParticles air() {
+  PhaseParticles p("air", 2, 48, 0.7, 0);
+  for (const Field f : {Field::position, Field::velocity, Field::drag_acceleration}) p.add(f);
+  sets::Uniform random(5);
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double x = static_cast<double>(k % 8) + 0.5 + random(-0.15, 0.15);
+    const double y = static_cast<double>(k / 8) + 0.5 + random(-0.15, 0.15);
+    p.column(Field::position, 0)[k] = x;
+    p.column(Field::position, 1)[k] = y;
+    p.column(Field::velocity, 0)[k] = 2.0 + y;
+  }
+  return p;
+}
+
+TEST(AirGrid, GivesTheParticlesWhatItGot) {
+  PhaseParticles p = air();
+  AirGrid grid(box(), 1.0);
+  grid.gather(p);
+  grid.push({7.9, 3.3}, {1.5, -0.25});  // about the periodic side
+  grid.push({2.2, 0.1}, {-4.0, 0.5});   // beside a closed one
+  grid.give(p);
+  double fx = 0.0, fy = 0.0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    fx += p.mass() * p.column(Field::drag_acceleration, 0)[k];
+    fy += p.mass() * p.column(Field::drag_acceleration, 1)[k];
+  }
+  EXPECT_NEAR(fx, -2.5, 1e-13);
+  EXPECT_NEAR(fy, 0.25, 1e-13);
+  EXPECT_EQ(grid.lost()[0], 0.0);
+  grid.gather(p);
+  grid.give(p);
+  EXPECT_EQ(p.column(Field::drag_acceleration, 0)[5], 0.0) << "forces are those since the last gathering";
+}
+
+TEST(AirGrid, FindsTheMeanWindAboutAPlace) {
+  PhaseParticles p = air();
+  AirGrid grid(box(), 1.0);
+  grid.gather(p);
+  for (const double y : {1.4, 3.0, 4.7}) EXPECT_NEAR(grid.velocity({3.7, y})[0], 2.0 + y, 0.15) << y;
+  EXPECT_NEAR(grid.velocity({7.99, 3.0})[0], grid.velocity({-0.01, 3.0})[0], 1e-12) << "periodic";
+  PhaseParticles none("air", 2, 0, 0.7, 0);
+  for (const Field f : {Field::position, Field::velocity, Field::drag_acceleration}) none.add(f);
+  grid.gather(none);
+  EXPECT_EQ(grid.velocity({3.7, 3.0})[0], 0.0);
+  grid.push({3.7, 3.0}, {1.0, 2.0});
+  EXPECT_EQ(grid.lost()[1], 2.0) << "no air is there to take it";
+}
+
+}  // namespace
+}  // namespace barchan
