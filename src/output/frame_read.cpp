@@ -42,7 +42,7 @@ struct Head {
   std::vector<Array> arrays;
 };
 
-[[noreturn]] void refuse(const std::string& what) { throw OutputError(what); }
+[[noreturn]] void refuse_file(const std::string& what) { throw OutputError(what); }
 
 std::uint64_t whole_number(const XmlTags::Tag& tag, std::string_view name, std::uint64_t otherwise,
                            std::uint64_t most) {
@@ -53,15 +53,15 @@ std::uint64_t whole_number(const XmlTags::Tag& tag, std::string_view name, std::
   std::uint64_t value = 0;
   const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failed != std::errc() || end != text.data() + text.size() || value > most)
-    refuse(std::string(name) + "=\"" + std::string(text.substr(0, 40)) + "\" is no whole number from 0 to " +
-           std::to_string(most));
+    refuse_file(std::string(name) + "=\"" + std::string(text.substr(0, 40)) + "\" is no whole number from 0 to " +
+                std::to_string(most));
   return value;
 }
 
 std::string word(const XmlTags::Tag& tag, std::string_view name, const std::string& otherwise) {
   const auto found = tag.attributes.find(name);
   if (found == tag.attributes.end()) return otherwise;
-  if (found->second.size() > longest_name) refuse("the attribute " + std::string(name) + " is too long");
+  if (found->second.size() > longest_name) refuse_file("the attribute " + std::string(name) + " is too long");
   return found->second;
 }
 
@@ -69,13 +69,13 @@ void read_file_tag(const XmlTags::Tag& tag, Head& head, const std::string& suffi
   const std::string type = word(tag, "type", ""), order = word(tag, "byte_order", ""),
                     numbers = word(tag, "header_type", "UInt32"), compressor = word(tag, "compressor", "");
   if (type != (suffix == ".vtp" ? "PolyData" : "UnstructuredGrid"))
-    refuse("its type \"" + type + "\" is not that of " + suffix);
-  if (order != "LittleEndian") refuse("its byte order \"" + order + "\" is not LittleEndian");
-  if (numbers != "UInt32" && numbers != "UInt64") refuse("its header_type \"" + numbers + "\" is not known");
+    refuse_file("its type \"" + type + "\" is not that of " + suffix);
+  if (order != "LittleEndian") refuse_file("its byte order \"" + order + "\" is not LittleEndian");
+  if (numbers != "UInt32" && numbers != "UInt64") refuse_file("its header_type \"" + numbers + "\" is not known");
   head.width = numbers == "UInt64" ? 8 : 4;
   if (compressor == "vtkLZ4DataCompressor") head.compressor = Compressor::lz4;
   else if (compressor == "vtkZLibDataCompressor") head.compressor = Compressor::zlib;
-  else if (!compressor.empty()) refuse("its compressor \"" + compressor + "\" is not known");
+  else if (!compressor.empty()) refuse_file("its compressor \"" + compressor + "\" is not known");
 }
 
 bool is_known(const XmlTags::Tag& tag) {
@@ -109,7 +109,7 @@ Array read_array(const XmlTags::Tag& tag, const std::string& section, std::uint6
   array.name = word(tag, "Name", "");
   array.type = word(tag, "type", "");
   if (const std::string format = word(tag, "format", ""); format != "appended")
-    refuse("the array \"" + array.name + "\" has the format \"" + format + "\"; expected \"appended\"");
+    refuse_file("the array \"" + array.name + "\" has the format \"" + format + "\"; expected \"appended\"");
   array.components = whole_number(tag, "NumberOfComponents", 1, most);
   array.has_tuples = tag.attributes.contains("NumberOfTuples");
   array.tuples = whole_number(tag, "NumberOfTuples", 0, most);
@@ -122,14 +122,14 @@ void read_piece(const XmlTags::Tag& tag, Head& head, const std::string& suffix, 
   head.points = whole_number(tag, "NumberOfPoints", 0, most);
   head.cells = whole_number(tag, suffix == ".vtp" ? "NumberOfVerts" : "NumberOfCells", 0, most);
   for (const char* other : {"NumberOfLines", "NumberOfStrips", "NumberOfPolys"})
-    if (whole_number(tag, other, 0, most) != 0) refuse("it holds other cells than vertices");
+    if (whole_number(tag, other, 0, most) != 0) refuse_file("it holds other cells than vertices");
 }
 
 /// The text before the data. `most`: no count in it can be larger.
 Head parse_head(std::string_view text, const std::string& suffix, std::uint64_t most) {
   for (const char c : text)
     if (const auto u = static_cast<unsigned char>(c); u >= 0x7f || (u < 0x20 && c != '\n' && c != '\t' && c != '\r'))
-      refuse("its head holds bytes that are no text");
+      refuse_file("its head holds bytes that are no text");
   Head head;
   XmlTags tags(text);
   XmlTags::Tag tag;
@@ -138,19 +138,19 @@ Head parse_head(std::string_view text, const std::string& suffix, std::uint64_t 
     const std::string name(tag.name);
     if (name.starts_with("/")) {
       if (open.empty() || open.back() != name.substr(1))
-        refuse("the tag \"" + name.substr(0, 40) + "\" closes another");
+        refuse_file("the tag \"" + name.substr(0, 40) + "\" closes another");
       open.pop_back();
       continue;
     }
-    if (!is_known(tag)) refuse("the tag \"" + name.substr(0, 40) + "\" or an attribute of it is not known");
+    if (!is_known(tag)) refuse_file("the tag \"" + name.substr(0, 40) + "\" or an attribute of it is not known");
     if (name == "VTKFile") read_file_tag(tag, head, suffix);
     else if (name == "Piece") read_piece(tag, head, suffix, most);
     else if (name == "DataArray" || name == "Array")
       head.arrays.push_back(read_array(tag, open.empty() ? "" : open.back(), most));
     if (!tag.alone) open.push_back(name);
   }
-  if (open != std::vector<std::string>{"VTKFile"}) refuse("its tags do not close");  // AppendedData comes
-  if (head.pieces != 1) refuse("it has " + std::to_string(head.pieces) + " pieces; expected 1");
+  if (open != std::vector<std::string>{"VTKFile"}) refuse_file("its tags do not close");  // AppendedData comes
+  if (head.pieces != 1) refuse_file("it has " + std::to_string(head.pieces) + " pieces; expected 1");
   return head;
 }
 
@@ -159,7 +159,7 @@ std::size_t width_of(const std::string& type) {
                                                          {"Int32", 4},   {"UInt32", 4},  {"Int64", 8}, {"UInt64", 8},
                                                          {"Float32", 4}, {"Float64", 8}, {"String", 1}};
   const auto found = widths.find(type);
-  if (found == widths.end()) refuse("the type \"" + type + "\" is not known");
+  if (found == widths.end()) refuse_file("the type \"" + type + "\" is not known");
   return found->second;
 }
 
@@ -175,7 +175,7 @@ class Appended {
   }
 
  private:
-  [[noreturn]] void fail() const { refuse("array '" + name_ + "' is incomplete"); }
+  [[noreturn]] void fail() const { refuse_file("array '" + name_ + "' is incomplete"); }
 
   std::uint64_t number() const {
     if (at_ > data_.size() || data_.size() - at_ < head_.width) fail();
@@ -244,7 +244,7 @@ void convert(const std::vector<char>& bytes, std::vector<To>& values) {
     std::memcpy(&value, bytes.data() + k * sizeof(From), sizeof(From));
     if constexpr (std::is_integral_v<To> && std::is_floating_point_v<From>) {
       constexpr double least = -9007199254740992.0;  // 2^53: what a double tells apart
-      if (!(value >= From(least) && value <= From(-least))) refuse("a whole number is expected");
+      if (!(value >= From(least) && value <= From(-least))) refuse_file("a whole number is expected");
     }
     values[k] = static_cast<To>(value);
   }
@@ -275,9 +275,10 @@ std::vector<std::string> lines_of(const Array& array, const std::vector<char>& b
     if (c == end) lines.emplace_back();
     else lines.back() += c;
   if (end == '\n' && array.has_tuples && array.tuples != bytes.size())
-    refuse("array '" + array.name + "' is incomplete");
+    refuse_file("array '" + array.name + "' is incomplete");
   if (end == '\0' && !lines.empty()) {  // each string has its end
-    if (!lines.back().empty() || lines.size() - 1 != array.tuples) refuse("array '" + array.name + "' is incomplete");
+    if (!lines.back().empty() || lines.size() - 1 != array.tuples)
+      refuse_file("array '" + array.name + "' is incomplete");
     lines.pop_back();
   }
   return lines;
@@ -301,12 +302,12 @@ class FrameReader {
       else if (array.section == "Points") frame_.points = take<double>(array, head_.points, 3);
       else if (array.section == "Verts" || array.section == "Cells") vertices(array);
       else if (array.section != "FieldData" && !data_.bytes(array).empty())
-        refuse("it holds other cells than vertices");
+        refuse_file("it holds other cells than vertices");
     }
-    if (frame_.points.size() != 3 * head_.points) refuse("it has no points");
-    if (head_.points > 0 && !has_id_) refuse("no array 'id'");
-    if (head_.points > 0 && !has_phase_) refuse("no array 'phase'");
-    if (head_.cells != head_.points) refuse("it has another number of vertices than of points");
+    if (frame_.points.size() != 3 * head_.points) refuse_file("it has no points");
+    if (head_.points > 0 && !has_id_) refuse_file("no array 'id'");
+    if (head_.points > 0 && !has_phase_) refuse_file("no array 'phase'");
+    if (head_.cells != head_.points) refuse_file("it has another number of vertices than of points");
     return std::move(frame_);
   }
 
@@ -314,11 +315,11 @@ class FrameReader {
   template <class To>
   std::vector<To> take(const Array& array, std::uint64_t tuples, std::uint64_t components) {
     if (array.components != components || array.type == "String" || (array.has_tuples && array.tuples != tuples))
-      refuse("array '" + array.name + "' has another shape");
+      refuse_file("array '" + array.name + "' has another shape");
     const std::vector<char> bytes = data_.bytes(array);
     const std::size_t width = width_of(array.type);
     if (components == 0 || bytes.size() / width / components != tuples || bytes.size() != tuples * components * width)
-      refuse("array '" + array.name + "' is incomplete");
+      refuse_file("array '" + array.name + "' is incomplete");
     return values_of<To>(array.type, bytes);
   }
 
@@ -333,7 +334,7 @@ class FrameReader {
   }
 
   void field(const Array& array) {
-    if (array.name.empty()) refuse("an array has no name");
+    if (array.name.empty()) refuse_file("an array has no name");
     if (array.name == "id") frame_.id = take<std::int64_t>(array, head_.points, 1), has_id_ = true;
     else if (array.name == "phase") frame_.phase = take<std::int32_t>(array, head_.points, 1), has_phase_ = true;
     else
@@ -347,7 +348,7 @@ class FrameReader {
     const std::int64_t first = array.name == "offsets" ? 1 : 0;
     for (std::size_t k = 0; k < values.size(); ++k)
       if (values[k] != (array.name == "types" ? 1 : static_cast<std::int64_t>(k) + first))
-        refuse("its cells are not one vertex a particle");
+        refuse_file("its cells are not one vertex a particle");
   }
 
   const Head& head_;
@@ -365,7 +366,7 @@ std::optional<Frame> read_appended(std::string_view text, const std::string& suf
   const std::size_t close = text.find('>', tag), begin = text.find('_', tag);
   if (close == std::string_view::npos || begin == std::string_view::npos || begin < close || begin - close > 64 ||
       text.substr(tag, close - tag).find("encoding=\"raw\"") == std::string_view::npos)
-    refuse("its appended data are not raw");
+    refuse_file("its appended data are not raw");
   const std::string_view data = text.substr(begin + 1);
   const Head head = parse_head(text.substr(0, tag), suffix, most_compression * text.size());
   const Appended appended(data, head);

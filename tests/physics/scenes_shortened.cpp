@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -108,7 +109,9 @@ TEST_P(EveryScene, RunsInTheProgram) {
   for (const auto& e : entries) listed.insert(e.file);
   for (const auto& e : fs::directory_iterator(out)) {
     const std::string file = e.path().filename().string();
-    if (file.starts_with(name + "_") && (file.ends_with(".vtp") || file.ends_with(".vtu"))) there.insert(file);
+    const bool numbered =
+        file.starts_with(name + "_") && std::isdigit(static_cast<unsigned char>(file[name.size() + 1]));
+    if (numbered && (file.ends_with(".vtp") || file.ends_with(".vtu"))) there.insert(file);
   }
   EXPECT_EQ(listed, there);
   EXPECT_EQ(entries.size(), 3u);  // first, half-way, last

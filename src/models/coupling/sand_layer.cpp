@@ -257,6 +257,12 @@ void SandLayer::spread() {
        [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
 }
 
+/// The profiles are in the state; their integrals are made again.
+void SandLayer::archive(Archive& a) {
+  if (!a.loads()) return;
+  for (auto& layer : layers_) layer.integrate_speed();
+}
+
 void SandLayer::columns(std::vector<std::string>& names) const {
   names.push_back(name_ + "_ground_stress [Pa]");
   names.push_back(name_ + "_bed_stress [Pa]");

@@ -25,6 +25,7 @@ class SandLayer : public Model {
   void schedule(Schedule& s) override;
   void columns(std::vector<std::string>& names) const override;
   void row(std::vector<double>& values) const override;
+  void archive(Archive& a) override;
 
  private:
   static constexpr double reach = 1.5;       // spacings of the air
