@@ -28,14 +28,14 @@ Part look_at_block(const PhaseParticles& p, const Guard& g, double fastest2, std
 #pragma omp simd reduction(+ : squares, wrong) reduction(max : fastest, densest) reduction(min : lightest)
   for (std::size_t k = begin; k < end; ++k) {
     double v2 = 0.0;
-    bool good = true;
+    int good = 1;  // a number, so that & does not ask in turn
     for (std::size_t d = 0; d < Dim; ++d) {
       v2 += v[d][k] * v[d][k];
-      good = good & (x[d][k] >= g.low[d]) & (x[d][k] <= g.high[d]);
+      good &= static_cast<int>(x[d][k] >= g.low[d]) & static_cast<int>(x[d][k] <= g.high[d]);
     }
-    good = good & (v2 <= fastest2);
+    good &= static_cast<int>(v2 <= fastest2);
     if constexpr (Dense) {
-      good = good & (rho[k] >= g.least_density) & (rho[k] <= g.most_density);
+      good &= static_cast<int>(rho[k] >= g.least_density) & static_cast<int>(rho[k] <= g.most_density);
       lightest = rho[k] < lightest ? rho[k] : lightest;
       densest = rho[k] > densest ? rho[k] : densest;
     }
