@@ -94,7 +94,7 @@ TEST_P(Extension, EqualsTheNaiveSums) {
     Vec3 sum_v{}, sloped{};
     for (std::size_t b : {1u, 2u})
       for_all_pairs(cast.bounds, wall, k, cast.phases[b], false, cast.directions[b - 1].radius,
-                    [&](std::size_t j, const Vec3& r, const std::array<int, 3>&) {
+                    [&, dimensions = dimensions](std::size_t j, const Vec3& r, const std::array<int, 3>&) {
                       const PhaseParticles& fluid = cast.phases[b];
                       const KernelKind kernel = b == 1 ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
                       const double w = naive::volume(fluid, j) *
