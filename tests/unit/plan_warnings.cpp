@@ -163,5 +163,13 @@ TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {
   EXPECT_TRUE(warns(make_plan(scene, generate(scene)), "nothing holds the body \"air\" together"));
 }
 
+TEST(PlanWarns, OfWhatTheAtlasFoundUnstable) {
+  const std::string atlas = "the stability atlas";
+  EXPECT_FALSE(warns(box(), atlas));
+  EXPECT_TRUE(warns(box("end = 1", "end = 1\nsafety = 9"), "time.safety: 9 is outside what " + atlas));
+  EXPECT_FALSE(warns(box("end = 1", "end = 1\nstep = 1e-4"), atlas));
+  EXPECT_TRUE(warns(box("end = 1", "end = 1\nstep = 1e-2"), "time.step: ")) << "a fixed step beside the limit";
+}
+
 }  // namespace
 }  // namespace barchan
