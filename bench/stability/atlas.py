@@ -16,7 +16,7 @@ seeds of the disorder, without retreats, and gets one word:
     SILENT    status 0, no warning, and the checks find something; or any other status
 
 The checks read the frames and history.csv and use nothing of the program's watch: numbers that are not finite; more than 5 % of a fluid's
-particles nearer than 0.3 spacings to another; a density error above 0.3; mechanical energy grown by 5 % of the motion's and by a thousandth of the
+particles nearer than 0.3 spacings to another; a density error above 0.3; mechanical energy grown by 5 % of the motion's and by a hundredth of the
 weight's, where nothing drives the scene; particles more than a spacing outside the domain. Exits with 1 when a run is SILENT.
 """
 
@@ -262,7 +262,7 @@ def trouble(out, name, scene, family):
             density = numpy.array([scene["phases"][n].get("density", 0) for n in frame.names])[frame["phase"][keep]]
             weight.append(-float((volume * density * (frame.x[keep, :dims] @ gravity)).sum()))
         grown, most = kinetic[-1] + weight[1] - kinetic[0] - weight[0], max(kinetic.max(), 1e-300)
-        if kinetic[-1] > 1e-6 * max(abs(weight[0]), most) and grown > .05 * most and grown > 1e-3 * abs(weight[0]):
+        if kinetic[-1] > 1e-6 * max(abs(weight[0]), most) and grown > .05 * most and grown > 1e-2 * abs(weight[0]):
             return f"energy grew by {grown / most:.2g} of the motion's"
     return ""
 
