@@ -99,7 +99,7 @@ def long_run(program, scratch, steps):
     spheres = scratch / "spheres.toml"
     spheres.write_text(SPHERES)
     for name, scene, sets, step in (
-            ("Taylor-Green vortices, 100 particles, no viscosity", "verification/taylor_green.toml", ["spacing=0.1", "phases.fluid.viscosity=0", "fill.0.perturb=0.05"], 1e-3),
+            ("Taylor-Green vortices, 400 particles, no viscosity", "verification/taylor_green.toml", ["spacing=0.05", "phases.fluid.viscosity=0"], 1e-3),
             ("30 spheres in a periodic box, restitution 1, no friction", spheres, [], 2e-6)):
         peak = []
         for part in (steps // 10, steps):
