@@ -24,7 +24,19 @@ enum class Law {
   contact,    // grains with grains, walls or bodies
   elastic,    // elastic-elastic: stress
 };
-std::string to_string(Law law);
+inline std::string to_string(Law law) {
+  switch (law) {
+    case Law::fluid: return "fluid";
+    case Law::boundary: return "boundary";
+    case Law::repulsive: return "repulsive";
+    case Law::coupling: return "coupling";
+    case Law::column: return "column";
+    case Law::drag: return "drag";
+    case Law::contact: return "contact";
+    case Law::elastic: return "elastic";
+  }
+  return "";
+}
 
 /// How a turbulent fluid rubs on the other side of an entry (models/air/eddies.hpp).
 enum class Friction {

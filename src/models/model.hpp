@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/schedule.hpp"
+#include "models/history_row.hpp"
 #include "models/layout.hpp"
 #include "models/step_limits.hpp"
 #include "scene/generate.hpp"
@@ -68,11 +69,10 @@ class Model {
   virtual const StepLimit* moving_limit() { return nullptr; }
   /// Its phase; -1: it belongs to an entry.
   virtual int phase() const { return -1; }
-  /// Columns of history.csv of its own, and their values: of a moving phase behind those that all have, of an entry at
-  /// the end. A row may follow the loading of a checkpoint at once, before records
-  /// are filled: it reads the fields and what archive() saves.
-  virtual void columns(std::vector<std::string>&) const {}
-  virtual void row(std::vector<double>&) const {}
+  /// Adds its columns of history.csv with their values: of a moving phase behind those that all have, of an entry at
+  /// the end. The columns are the same in every row of a run. A row may follow the loading of a checkpoint at once,
+  /// before records are filled: it reads the fields and what archive() saves.
+  virtual void history(HistoryRow&) const {}
   /// What has gone wrong in what only it sees, with the remedy; empty: nothing.
   virtual std::optional<std::string> trouble() const { return std::nullopt; }
   /// Directed pairs in its own lists of an entry, and how often it has searched them: for models that have such.

@@ -13,20 +13,6 @@
 
 namespace barchan {
 
-std::string to_string(Law law) {
-  switch (law) {
-    case Law::fluid: return "fluid";
-    case Law::boundary: return "boundary";
-    case Law::repulsive: return "repulsive";
-    case Law::coupling: return "coupling";
-    case Law::column: return "column";
-    case Law::drag: return "drag";
-    case Law::contact: return "contact";
-    case Law::elastic: return "elastic";
-  }
-  return "";
-}
-
 double Plan::step() const {
   if (fixed_step > 0) return fixed_step;
   double dt = 1e300;

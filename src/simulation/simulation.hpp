@@ -57,9 +57,10 @@ class Simulation {
 
   /// A copy of the state for the writer.
   Frame frame(int index) const;
-  /// Names and values of one row of history.csv.
-  std::vector<std::string> history_columns() const;
-  std::vector<double> history_row() const;
+  /// One row of history.csv: names and values.
+  HistoryRow history() const;
+  std::vector<std::string> history_columns() const { return history().names; }
+  std::vector<double> history_row() const { return history().values; }
   /// Throws BreakdownError if the present state is wrong (simulation/watch.hpp); the watch of step() looks now and then
   /// only.
   void check() { watch_->look_closely(moment()); }
@@ -83,6 +84,8 @@ class Simulation {
   void choose_step(double largest);
   Moment moment() const { return {state_.time, state_.dt, state_.steps}; }
   void make_state(const std::vector<ParticleBlock>& blocks);
+  /// What all phases that move have in a row of history.csv.
+  void add_phase(std::size_t number, HistoryRow& row) const;
   void rule(const std::string& name, double value, double& dt);
 
   Scene scene_;
