@@ -100,9 +100,9 @@ Models make_models(const Scene& scene, const Layout& layout) {
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {
     if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
-    if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
+    if (e.drag > 0) models.push_back(make_drag_entry(scene, layout, e));
     if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
-      models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
+      models.push_back(make_contact_entry(scene, layout, e));
   }
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));

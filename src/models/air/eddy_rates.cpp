@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/shares.hpp"
+#include "engine/pair_pass.hpp"
 #include "laws/eddy_fluid.hpp"
+#include "laws/eddy_friction.hpp"
 #include "models/air/eddies.hpp"
 #include "models/air/fluid_rows.hpp"
 
@@ -193,40 +194,20 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
 }
 
 template <int Dim>
-void reaction(PhaseParticles& solid, const RecordArray& own_records, const FluidNeighbour& e, const EddyRecords& eddies,
+void reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& e, const EddyRecords& eddies,
               double molecular) {
   using R = MotionRecord<Dim>;
-  const double inverse_mass = 1.0 / solid.mass();
-  const double* data = e.records->data();
-  const ReadyKernel ready(e.kernel, e.radius, Dim);
-  const auto n = static_cast<std::int64_t>(solid.size());
-  Shares shares(n, 256);
-#pragma omp parallel
-  for (const std::int64_t i : shares) {
-    const auto k = static_cast<std::size_t>(i);
-    const auto row = e.list->row(k);
-    const double* record = own_records[k];
-    std::array<Lanes, Dim> x, v, sum{};
-    for (std::size_t d = 0; d < Dim; ++d) {
-      x[d] = Lanes(record[R::position + d]);
-      v[d] = Lanes(record[R::velocity + d]);
-    }
-    double factor = 0.0;
-    ready([&](const auto& kernel) __attribute__((always_inline)) {
-      factor = kernel.slope_factor();
-      for (const std::uint32_t* q = row.begin; q != row.end; q += Lanes::width) {
-        Lanes b[R::size];
-        simd::load_transposed<R::size>(data, R::size / PairList::stride, q, b);
-        std::array<Lanes, Dim> r;
-        const Lanes f = kernel.slope(separation<Dim>(x, b + R::position, r)) * b[R::volume] *
-                        (gather_of<Lanes::width>(eddies.touch.data(), q) - Lanes(molecular));
-        for (std::size_t d = 0; d < Dim; ++d) sum[d] = simd::fma(f, v[d] - b[R::velocity + d], sum[d]);
-      }
-    });
-    for (std::size_t d = 0; d < Dim; ++d)
-      solid.column(Field::acceleration, static_cast<int>(d))[k] +=
-          2.0 * factor * record[R::volume] * inverse_mass * simd::sum(sum[d]);
-  }
+  const PairEntry<EddyFriction> entry{
+      e.list, e.records, e.kernel, e.radius, EddyFriction{{}, molecular}, eddies.touch.data()};
+  std::array<double*, Dim> acceleration{};
+  for (std::size_t d = 0; d < Dim; ++d) acceleration[d] = solid.column(Field::acceleration, static_cast<int>(d));
+  const double inverse_mass = 1.0 / solid.mass(), factor = ReadyKernel(e.kernel, e.radius, Dim).slope_factor();
+  pair_pass<Dim, EddyFriction>(
+      solid.size(), 256, own, {&entry, 1}, [](std::size_t, auto&) {},
+      [&](std::size_t k, const auto& sums, bool) {
+        for (std::size_t d = 0; d < Dim; ++d)
+          acceleration[d][k] += 2.0 * factor * own[k][R::volume] * inverse_mass * simd::sum(sums.drawn[d]);
+      });
 }
 
 }  // namespace
