@@ -61,32 +61,34 @@ Frame Simulation::frame(int index) const {
       f.phase.push_back(static_cast<std::int32_t>(k));
     }
   }
-  const std::vector<Field> fields = frame_fields(scene_);
-  for (const Field field : fields) {
-    const FieldInfo& about = info(field);
-    FrameField out;
-    out.name = about.name;
-    out.unit = about.unit;
-    const int width = components(about.rank, plan_.dimensions);
-    out.components = about.rank == Rank::scalar      ? 1
-                     : about.rank == Rank::vector    ? 3
-                     : about.rank == Rank::symmetric ? 6
-                                                     : width;
-    out.values.reserve(n * static_cast<std::size_t>(out.components));
-    for (const std::size_t k : written) {
-      const auto& p = state_.phases[k];
-      for (std::size_t i = 0; i < p.size(); ++i)
-        for (int c = 0; c < out.components; ++c) {
-          double value = 0.0;
-          if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
-          else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
-          else if (p.has(field) && c < width) value = p.column(field, c)[i];
-          out.values.push_back(value);
-        }
-    }
-    f.fields.push_back(std::move(out));
-  }
+  for (const Field field : frame_fields(scene_)) f.fields.push_back(values_of(field, written, n));
   return f;
+}
+
+/// The values of a field of the phases that a frame has, `n` particles.
+FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const {
+  const FieldInfo& about = info(field);
+  FrameField out;
+  out.name = about.name;
+  out.unit = about.unit;
+  const int width = components(about.rank, plan_.dimensions);
+  out.components = about.rank == Rank::scalar      ? 1
+                   : about.rank == Rank::vector    ? 3
+                   : about.rank == Rank::symmetric ? 6
+                                                   : width;
+  out.values.reserve(n * static_cast<std::size_t>(out.components));
+  for (const std::size_t k : written) {
+    const auto& p = state_.phases[k];
+    for (std::size_t i = 0; i < p.size(); ++i)
+      for (int c = 0; c < out.components; ++c) {
+        double value = 0.0;
+        if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
+        else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
+        else if (p.has(field) && c < width) value = p.column(field, c)[i];
+        out.values.push_back(value);
+      }
+  }
+  return out;
 }
 
 void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
