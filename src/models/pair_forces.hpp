@@ -15,7 +15,11 @@
 namespace barchan {
 
 /// The laws whose sums are a force [N] on the first particle.
-#define BARCHAN_FORCE_LAWS(row) row(DragAndBarrier) row(KernelContacts)
+// clang-format off
+#define BARCHAN_FORCE_LAWS(row) \
+  row(DragAndBarrier) \
+  row(KernelContacts)
+// clang-format on
 
 #define BARCHAN_FORCES_OF(Law) void pair_forces(PhaseParticles& a, const RecordArray& own, const PairEntry<Law>& entry);
 

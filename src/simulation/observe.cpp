@@ -1,4 +1,4 @@
-// What a Simulation tells: frames, rows of history.csv, warnings.
+// The results of a Simulation: frames, rows of history.csv, warnings.
 #include <algorithm>
 #include <cmath>
 

@@ -70,9 +70,9 @@ class Simulation {
   long good_step() const { return watch_->good().step(); }
   double good_time() const { return watch_->good().time(); }
   Frame good_frame(int index);
-  /// What should have been kept since the beginning.
+  /// Momentum and energy, which the run should conserve, against the beginning.
   const Budget& budget() const { return *budget_; }
-  /// What is remarkable so far.
+  /// The warnings of the run so far.
   Warnings warnings() const;
 
   /// Saves everything that the next step starts from, or loads it into a simulation of the same scene: the run then

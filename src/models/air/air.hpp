@@ -1,4 +1,4 @@
-// A fluid phase: its tasks in a step, and all that it remembers.
+// A fluid phase: its tasks in a step, and the numbers that it keeps from step to step.
 #pragma once
 
 #include <array>

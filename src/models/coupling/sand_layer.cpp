@@ -240,7 +240,7 @@ void SandLayer::feel() {
   });
 }
 
-/// What the grains of a layer's cells pull by area, and how much more as the air gets faster.
+/// The drag of the grains in a layer's cells by area, and its derivative by the speed of the air.
 void SandLayer::spread() {
   const PhaseParticles& p = w_->particles(grains_);
   const double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
