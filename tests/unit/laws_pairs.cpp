@@ -1,6 +1,7 @@
 // Laws of pairs on two particles, against numbers that were worked out by hand.
 #include <gtest/gtest.h>
 
+#include "laws/eddy_fluid.hpp"
 #include "laws/eddy_friction.hpp"
 #include "laws/extension.hpp"
 #include "laws/plain_energy.hpp"
@@ -94,6 +95,56 @@ TEST(PairLaws, ExtensionClosesAsTheWallSays) {
   // Along the wall the fluid slips with u = 2: u.H.u = 0.25 * 4 = 1, times the lever 1.5 over 0.75.
   const double bend = 0.25;
   EXPECT_DOUBLE_EQ(s.turning_pressure(&bend, 1.5), 2.0);
+}
+
+/// B = (0, -2): n = (0, 1) where the kernel's constant is positive. M n = (xy, yy) = (3, 5), C.n = 7, tau = (2, 0).
+TEST(EddyWalls, AStressRubsAlongTheNormal) {
+  using Law = EddyFluid<2>;
+  ConsistentFluid<2>::Sums<One> raw{};
+  raw.concentration = {One(0.0), One(-2.0)};
+  raw.moment = {One(1.0), One(3.0), One(5.0)};
+  raw.weighted = {One(4.0), One(7.0)};
+  const auto normal = Law::normal_of<One>(raw, 0.5);
+  EXPECT_EQ(normal[0][0], 0.0);
+  EXPECT_EQ(normal[1][0], 1.0);
+  EXPECT_EQ(Law::normal_of<One>(raw, -0.5)[1][0], -1.0);
+  EXPECT_EQ(Law::normal_of<One>(ConsistentFluid<2>::Sums<One>{}, 0.5)[1][0], 0.0) << "no neighbour, no normal";
+  const auto s = Law::with_stress<One>(raw, normal, {One(2.0), One(0.0)});
+  EXPECT_EQ(s.viscous[0][0], 14.0);
+  EXPECT_EQ(s.viscous[1][0], 0.0);
+  EXPECT_EQ(s.flux[0][0], 6.0);
+  EXPECT_EQ(s.flux[1][0], 10.0);
+  EXPECT_EQ(s.flux[2][0], 0.0);
+}
+
+TEST(EddyWalls, AViscosityScalesTheSumsOfTheVelocity) {
+  ConsistentFluid<2>::Sums<One> raw{};
+  raw.viscous = {One(2.0), One(3.0)};
+  raw.velocity = {One(1.0), One(2.0), One(3.0), One(4.0)};
+  const auto s = EddyFluid<2>::with_viscosity<One>(raw, One(0.5));
+  EXPECT_EQ(s.viscous[1][0], 1.5);
+  EXPECT_EQ(s.flux[2][0], 1.5);
+}
+
+/// M^-1 = 1, T' = (0 4; 0 0), C = (0, 1), L_v = (10, 0): friction (6, 0). |T + T^T|^2/2 = 16; grad v = (0 2; 0 0): 4.
+TEST(EddyWalls, FrictionIsWhatALinearFieldDoesNotMake) {
+  EddyFluid<2>::Sums<One> s{};
+  s.viscous = {One(10.0), One(0.0)};
+  s.flux = {One(0.0), One(4.0), One(0.0), One(0.0)};
+  s.weighted = {One(0.0), One(1.0)};
+  EddyFluid<2>::Stress<One> stress{s};
+  const std::array<One, 4> one{One(1.0), One(0.0), One(0.0), One(1.0)};
+  const std::array<std::array<One, 2>, 2> grad_v{{{One(0.0), One(2.0)}, {One(0.0), One(0.0)}}};
+  const auto friction = stress(one, grad_v);
+  EXPECT_EQ(friction[0][0], 6.0);
+  EXPECT_EQ(friction[1][0], 0.0);
+  EXPECT_EQ(stress.phi2[0], 16.0);
+  EXPECT_EQ(stress.shear2[0], 4.0);
+}
+
+/// mu = rho (kappa/ln 10)^2 u (d + dx/2) = 1.2 * 0.0301779 * 3 * 0.025.
+TEST(EddyWalls, RoughViscosityGivesTheStressOfTheLogarithmicLaw) {
+  EXPECT_NEAR(rough_viscosity(1.2, 0.02, 0.002, 0.01, 3.0), 2.716008e-3, 1e-9);
 }
 
 }  // namespace
