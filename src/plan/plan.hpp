@@ -1,4 +1,4 @@
-// Scene -> Plan: the only place that decides what is needed. Everything after it obeys.
+// Scene -> Plan: decides fields, lists, limits and tasks of a run. All later parts take them from the plan.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A fluid phase before its first step: what the plan learns of it, and what it binds.
+// A fluid phase before its first step: its description for the plan, and the records and lists of its tasks.
 #include <algorithm>
 #include <cmath>
 
