@@ -33,12 +33,16 @@ enum class Field : int {
   angular_velocity,
   contact_acceleration,
   angular_acceleration,
+  von_mises_stress,
+  principal_stress,
+  strain,
   count
 };
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
-/// deviator: symmetric, traceless (2 or 6 numbers); axial: about an axis (1 number in 2D, about z, or 3).
-enum class Rank { scalar, vector, deviator, symmetric, matrix, axial };
+/// deviator: symmetric, traceless (2 or 6 numbers); axial: about an axis (1 number in 2D, about z, or 3);
+/// principal: three values.
+enum class Rank { scalar, vector, deviator, symmetric, matrix, axial, principal };
 
 struct FieldInfo {
   Field id;
@@ -89,6 +93,12 @@ inline constexpr std::array<FieldInfo, field_count> field_table{{
      "of a sphere: what its contacts gave in their last step; acceleration holds all the rest"},
     {Field::angular_acceleration, "angular_acceleration", "dw/dt", "1/s2", Rank::axial, true,
      "of a sphere that rubs, in the last step of its contacts"},
+    {Field::von_mises_stress, "von_mises_stress", "s_v", "Pa", Rank::scalar, false,
+     "of a body: the stress in one direction that distorts as much (von Mises)"},
+    {Field::principal_stress, "principal_stress", "s_1 s_2 s_3", "Pa", Rank::principal, false,
+     "of a body: principal values of Cauchy's stress, the largest first; positive pulls"},
+    {Field::strain, "strain", "E", "1", Rank::symmetric, false,
+     "of a total Lagrangian body: strain of Green and Lagrange, xx yy zz xy yz xz"},
 }};
 
 constexpr const FieldInfo& info(Field f) { return field_table[static_cast<std::size_t>(f)]; }
@@ -101,6 +111,7 @@ constexpr int components(Rank rank, int dimensions) {
     case Rank::symmetric: return 6;
     case Rank::matrix: return dimensions * dimensions;
     case Rank::axial: return dimensions == 2 ? 1 : 3;
+    case Rank::principal: return 3;
   }
   return 0;
 }

@@ -5,6 +5,7 @@
 #include "base/errors.hpp"
 #include "models/air/air.hpp"
 #include "models/bodies/elastic_phase.hpp"
+#include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
 #include "models/coupling/sand_layer.hpp"
@@ -33,10 +34,14 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
   return std::make_unique<M>(scene, layout, number);
 }
 
+bool is_total(const Phase& phase) {
+  return phase.kind() == PhaseKind::elastic && phase.elastic().formulation == Formulation::total_lagrangian;
+}
+
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
     case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
-    case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, make<ElasticPhase>};
+    case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
     case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
     case PhaseKind::wall: return {"wall", false, false, describe_wall, make<Wall>};
     case PhaseKind::column: return {"column", false, false, describe_column, make<ColumnPhase>};
@@ -53,7 +58,7 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
   if (is(column, grains)) return Law::column;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
-  if (is(elastic, elastic)) return Law::elastic;
+  if (is(elastic, elastic) && (a.name == b.name || (!is_total(a) && !is_total(b)))) return Law::elastic;
   const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
   if (touches(a) && touches(b)) return Law::contact;
   throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + kind_of(a).name + ", and \"" + b.name +

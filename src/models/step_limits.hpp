@@ -12,6 +12,7 @@ struct StepConstants {
   static constexpr double viscous = 0.125;  // h^2/nu (Morris et al. 1997)
   static constexpr double force = 0.25;     // sqrt(h/|a|) (Monaghan 1992)
   static constexpr double elastic = 0.25;   // h/c_P, h the smallest of the body's entries
+  static constexpr double total = 0.8;      // of the bound of the leapfrog on the stiffest vibration
   static constexpr double contact = 0.10;   // sqrt(m/K), about a thirtieth of a contact's duration
 };
 

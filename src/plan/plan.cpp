@@ -62,6 +62,7 @@ void add_directions(Plan& plan, PlanEntry& e) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
+  if (e.law == Law::elastic && plan.phases[e.a].fixed_neighbours) return;
   if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
   const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.law == Law::boundary; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);

@@ -30,6 +30,12 @@ constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
                                           word("mixing-length", Turbulence::mixing_length),
                                           word("smagorinsky", Turbulence::smagorinsky)};
 template <>
+constexpr std::array words_of<Formulation>{word("total-lagrangian", Formulation::total_lagrangian),
+                                           word("updated-lagrangian", Formulation::updated_lagrangian)};
+template <>
+constexpr std::array words_of<Elasticity>{word("neo-hookean", Elasticity::neo_hookean),
+                                          word("saint-venant-kirchhoff", Elasticity::saint_venant_kirchhoff)};
+template <>
 constexpr std::array words_of<MixingLength>{word("none", MixingLength::none), word("duran", MixingLength::duran)};
 template <>
 constexpr std::array words_of<DragLaw>{
@@ -266,6 +272,16 @@ constexpr Key table[] = {
     {"phases", "young", of<&ElasticKeys::young, &GrainsKeys::young>(required, "required; of grains: from largest-overlap"), "Pa",
      "Young's modulus; of grains for contacts with law = \"hertz\".", positive, "", "grains"},
     {"phases", "poisson", of<&ElasticKeys::poisson, &GrainsKeys::poisson>(0.0), "", "Poisson's ratio; of grains for contacts with law = \"hertz\".", {.above = -1.0, .below = 0.5}},
+    {"phases", "formulation", of<&ElasticKeys::formulation>(Formulation::total_lagrangian), "",
+     "Where the strain of a body comes from: from its first shape, whose neighbours stay neighbours; or step by step from the velocities of "
+     "those that are near, as in Halik et al. 2015 (docs/method.md)."},
+    {"phases", "elasticity", of<&ElasticKeys::elasticity>(Elasticity::neo_hookean), "",
+     "Law of a body with formulation = \"total-lagrangian\"; both are Hooke's for small strains."},
+    {"phases", "hourglass", of<&ElasticKeys::hourglass>(0.1), "Young's modulus",
+     "Strength of the control of motions that the gradient does not see, of a body with formulation = \"total-lagrangian\".", not_negative},
+    {"phases", "retardation", of<&ElasticKeys::retardation>(0.0), "s",
+     "Damping of Kelvin and Voigt, of a body with formulation = \"total-lagrangian\": a vibration of angular frequency w has the damping ratio "
+     "w retardation/2.", not_negative},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
      "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",

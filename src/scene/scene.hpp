@@ -32,6 +32,8 @@ enum class EquationOfState { linear, tait };
 enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
 enum class Slip { no_slip, free_slip };
 enum class FluidScheme { plain, consistent };  // docs/method.md
+enum class Formulation { total_lagrangian, updated_lagrangian };    // of elastic bodies; docs/method.md
+enum class Elasticity { neo_hookean, saint_venant_kirchhoff };      // laws/hyperelastic.hpp
 enum class Turbulence { none, mixing_length, smagorinsky };
 enum class MixingLength { none, duran };  // of a column of air; Duran, Andreotti & Claudin 2012
 /// Drag of a grain by name (laws/drag_coefficients.hpp); none: the number of the entry.
@@ -75,8 +77,12 @@ struct FluidKeys {
 
 struct ElasticKeys {
   static constexpr PhaseKind kind = PhaseKind::elastic;
+  Formulation formulation{};
   double young{};  // Pa
   double poisson{};
+  Elasticity elasticity{};             // of total-lagrangian bodies, as the next two
+  double hourglass{};                  // strength of the hourglass control, of Young's modulus
+  double retardation{};                // s, of Kelvin and Voigt's damping
   double artificial_viscosity{};       // Monaghan's alpha
   double artificial_viscosity_beta{};  // Monaghan's beta
   bool energy{};                       // integrate the internal energy (eq. 13)

@@ -24,6 +24,7 @@ long Simulation::searches() const {
 std::size_t Simulation::bytes() const { return work_->bytes() + (watch_ ? watch_->bytes() : 0); }
 
 Frame Simulation::frame(int index) const {
+  for (const auto& model : models_) model->derive();
   Frame f;
   f.index = index;
   f.step = state_.steps;
@@ -114,6 +115,7 @@ std::vector<std::string> Simulation::history_columns() const {
 }
 
 std::vector<double> Simulation::history_row() const {
+  for (const auto& model : models_) model->derive();
   std::vector<double> row{state_.time, static_cast<double>(state_.steps), state_.dt, 0, 0, 0, 0, 0};
   for (const auto& model : models_) {
     if (model->phase() < 0) continue;

@@ -187,6 +187,7 @@ void Watch::make_pairs() {
   const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
   for (const auto& e : see_.plan.entries) {
     if ((e.law != Law::contact && e.law != Law::elastic) || e.of_spheres()) continue;  // spheres: Model::trouble
+    if (e.forward < 0 && e.backward < 0) continue;                                     // first neighbours for ever
     const bool turned = wall(e.a);
     const bool at_wall = wall(e.a) || wall(e.b);
     pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward, e.law == Law::elastic,
