@@ -4,7 +4,9 @@
 
 #include "base/errors.hpp"
 #include "models/air/air.hpp"
+#include "models/bodies/body_contact.hpp"
 #include "models/bodies/elastic_phase.hpp"
+#include "models/bodies/sets.hpp"
 #include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
@@ -34,10 +36,6 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
   return std::make_unique<M>(scene, layout, number);
 }
 
-bool is_total(const Phase& phase) {
-  return phase.kind() == PhaseKind::elastic && phase.elastic().formulation == Formulation::total_lagrangian;
-}
-
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
     case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
@@ -58,7 +56,7 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
   if (is(column, grains)) return Law::column;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
-  if (is(elastic, elastic) && (a.name == b.name || (!is_total(a) && !is_total(b)))) return Law::elastic;
+  if (is(elastic, elastic)) return Law::elastic;
   const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
   if (touches(a) && touches(b)) return Law::contact;
   throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + kind_of(a).name + ", and \"" + b.name +
@@ -85,7 +83,7 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
 
 void classify(const Scene& scene, PlanEntry& e) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
-  e.law = law_of(a, b);
+  e.law = e.of_bodies ? Law::contact : law_of(a, b);
   if (e.law == Law::coupling && e.drag_law != DragLaw::none) e.law = Law::drag;
   e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
   e.other = e.partner(e.fluid);
@@ -96,6 +94,8 @@ void classify(const Scene& scene, PlanEntry& e) {
 Models make_models(const Scene& scene, const Layout& layout) {
   Models models;
   models.push_back(std::make_unique<CommonWork>(layout));
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)  // they lead before their bodies move
+    models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
@@ -107,11 +107,14 @@ Models make_models(const Scene& scene, const Layout& layout) {
   for (const auto& e : layout.entries) {
     if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
     if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
-    if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
+    if (e.of_bodies) models.push_back(std::make_unique<BodyContact>(scene, layout, e));
+    else if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
   }
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));
+  for (std::size_t k = 0; k < scene.markers.size(); ++k)
+    models.push_back(std::make_unique<MarkedSet>(scene, layout, k));
   return models;
 }
 

@@ -59,6 +59,8 @@ struct PlanEntry {
   bool corrected = false;            // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
+  bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
+  double restitution = 1, friction = 0;  // of such
   int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }

@@ -38,6 +38,7 @@ enum Stage : std::size_t {
   contacts,
   reaction,
   drag,
+  motion,
   hold,
   kick,
   watch,

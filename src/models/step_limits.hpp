@@ -14,6 +14,8 @@ struct StepConstants {
   static constexpr double elastic = 0.25;   // h/c_P, h the smallest of the body's entries
   static constexpr double total = 0.8;      // of the bound of the leapfrog on the stiffest vibration
   static constexpr double contact = 0.10;   // sqrt(m/K), about a thirtieth of a contact's duration
+  static constexpr double restitution = 0.10;   // sqrt(m*/K) of two particles of bodies (laws/body_contact.hpp)
+  static constexpr double body_contact = 0.35;  // the same between bodies of many particles
 };
 
 /// A bound on the time step. `value` is at the start; limits that follow the motion are renewed every step.

@@ -161,6 +161,8 @@ struct Interaction {
   double drag{};       // fluid-grains: drag coefficient of a grain, 0 switches it off
   DragLaw drag_law{};  // column-grains: drag of a grain
   ContactLaw law{};    // of grains with grains, walls and bodies
+  std::optional<double> restitution;  // contact of bodies: of two particles that meet
+  std::optional<double> friction;     // contact of bodies: Coulomb's coefficient
 };
 
 // ---- fills: what is where at the beginning
@@ -248,6 +250,20 @@ struct Forcing {
   bool hold_bulk_speed{};         // instead: what keeps the initial mean velocity along periodic axes
 };
 
+/// A set of particles of an elastic body, by their places at the start.
+struct BodySet {
+  std::string phase;
+  std::optional<BoxShape> box;  // empty: all of them
+};
+/// A set that is held or driven.
+struct Motion : BodySet {
+  VectorExpression velocity;  // m/s, formulas in t
+};
+/// A set whose mean place is written to history.csv.
+struct Marker : BodySet {
+  std::string name;
+};
+
 // ---- what is measured
 // -----------------------------------------------------------------------------------------------
 
@@ -325,6 +341,8 @@ struct Scene {
   std::vector<Interaction> interactions;
   std::vector<Fill> fills;
   std::vector<Forcing> forcings;
+  std::vector<Motion> motions;
+  std::vector<Marker> markers;
   Measuring measuring;
   TimeControl time;
   OutputControl output;

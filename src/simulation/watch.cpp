@@ -129,6 +129,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
   for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
+  if (!see_.scene.motions.empty()) start_speed_ += see_.plan.largest_speed;  // what drives them feeds energy
 }
 
 /// The bounds of each phase that moves.

@@ -139,6 +139,7 @@ scheme = "plain"
 energy = true
 [phases.steel]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 7870
 young = 206e9
 poisson = 0.3

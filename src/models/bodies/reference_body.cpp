@@ -151,8 +151,7 @@ class GroupMaker {
   std::vector<Entry> entries_;
 };
 
-/// M^-1 and sum w X. Where a particle's neighbours lie in one line or plane, M has no inverse: the directions in which
-/// nothing is known get none.
+/// M^-1 and sum w X. A particle without neighbours has none; one whose neighbours lie in one line or plane is noted.
 template <class T>
 void correct(ReferenceBody<T>& body, const std::vector<std::vector<Near>>& near) {
   const std::size_t room = body.groups.size() * body.width, dim = static_cast<std::size_t>(body.dimensions);
@@ -167,12 +166,14 @@ void correct(ReferenceBody<T>& body, const std::vector<std::vector<Near>>& near)
       m += n.w * x * x.transpose();
       sum += n.w * x;
     }
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
-    const double least = 1e-3 * solver.eigenvalues()[2];
-    Eigen::Vector3d inverse = Eigen::Vector3d::Zero();
-    for (int e = 0; e < 3; ++e)
-      if (solver.eigenvalues()[e] > least) inverse[e] = 1.0 / solver.eigenvalues()[e];
-    const Eigen::Matrix3d l = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+    if (near[k].empty()) continue;
+    if (dim == 2) m(2, 2) = 0.5 * m.trace();
+    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m, Eigen::EigenvaluesOnly).eigenvalues();
+    if (!(values[0] > 1e-3 * values[2])) {
+      if (body.flat < 0) body.flat = static_cast<std::int64_t>(k);
+      continue;
+    }
+    const Eigen::Matrix3d l = m.inverse();
     std::size_t c = 0;
     for (std::size_t d = 0; d < dim; ++d) {
       body.sum[d][k] = static_cast<T>(sum[static_cast<int>(d)]);

@@ -52,6 +52,7 @@ class ReferenceBody {
   AlignedVector<T> scattered_weights;
   std::array<AlignedVector<T>, 6> inverse;   // M^-1, M = sum w X (x) X: 2D xx xy yy, 3D xx xy xz yy yz zz
   std::array<AlignedVector<T>, 3> sum;       // sum w X
+  std::int64_t flat = -1;                    // first particle whose neighbours lie in one line or plane
   std::uint64_t pairs = 0;                   // directed
 
   /// Connected parts of the body: each is an interval of ids or several.

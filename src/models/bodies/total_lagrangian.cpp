@@ -114,6 +114,32 @@ BARCHAN_SIMD_INLINE void put(LanesOf<T> value, const TotalWork<T>& work, std::si
   for (std::size_t k = 0; k < count; ++k) column[work.at[first + k]] = each[k];
 }
 
+/// Displacements of an interval of ids that stand in order, less `mean`; returns the largest.
+template <class T>
+double write_in_order(const double* x, const double* start, std::size_t begin, std::size_t end, double mean,
+                      double inverse, typename TotalWork<T>::Place* to) {
+  using Place = typename TotalWork<T>::Place;
+  using Wide = LanesOf<double>;
+  constexpr std::size_t width = static_cast<std::size_t>(Wide::width);
+  Wide most(0.0);
+  const auto write = [&]<class V>(std::size_t k, V u, V& largest) __attribute__((always_inline)) {
+    largest = simd::max(largest, simd::max(u, -u));
+    if constexpr (std::is_integral_v<Place>) {
+      const V q = u * V(inverse);
+      simd::convert<Place>(q + select(q < V(0.0), V(-0.5), V(0.5))).store(to + k);
+    } else {
+      u.store(to + k);
+    }
+  };
+  std::size_t k = begin;
+  for (; k + width <= end; k += width) write(k, Wide::load(x + k) - Wide::load(start + k) - Wide(mean), most);
+  simd::Vec<double, 1> last(0.0);
+  for (; k < end; ++k) write(k, simd::Vec<double, 1>(x[k] - start[k] - mean), last);
+  double largest = last.v;
+  for (int lane = 0; lane < Wide::width; ++lane) largest = std::max(largest, most[lane]);
+  return largest;
+}
+
 template <int Dim, class T>
 double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
             const TotalParameters& q) {
@@ -156,7 +182,7 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
         for (std::size_t k = begin; k < end; ++k) write(k, work.displaced[d][k] - mean);
       } else if (work.in_order) {
         const double mean = x[d][anchor] - start[anchor];
-        for (std::size_t k = begin; k < end; ++k) write(k, x[d][k] - start[k] - mean);
+        most = std::max(most, write_in_order<T>(x[d], start, begin, end, mean, inverse, to));
       } else {
         const double mean = x[d][at[anchor]] - start[anchor];
         for (std::size_t k = begin; k < end; ++k) write(k, x[d][at[k]] - start[k] - mean);

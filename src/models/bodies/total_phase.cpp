@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "engine/integrate.hpp"
 #include "engine/means.hpp"
 #include "models/bodies/stiffest_vibration.hpp"
 #include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -46,6 +48,7 @@ class BodyOf : public TotalBody {
   }
   const std::vector<std::uint32_t>& places() const override { return work_.at; }
   std::uint64_t pairs() const override { return reference_.pairs; }
+  std::int64_t flat() const override { return reference_.flat; }
   std::size_t bytes() const override { return reference_.bytes(); }
   void archive(Archive& a) override {
     for (std::size_t d = 0; d < 3; ++d)
@@ -114,6 +117,13 @@ void TotalPhase::attach(Workspace& w) {
   body_ = scene_.precision == Precision::mixed
               ? make_body<float>(start_, layout_, plan_.spacing, own_, parameters_)
               : make_body<double>(start_, layout_, plan_.spacing, own_, parameters_);
+  if (const std::int64_t flat = body_->flat(); flat >= 0) {
+    const Vec3& x = start_[static_cast<std::size_t>(flat)];
+    throw SceneError(located(scene_, "phases." + plan_.name + ".formulation") + ": the neighbours of the particle at (" +
+                     brief(x[0]) + ", " + brief(x[1]) + ", " + brief(x[2]) +
+                     ") m lie in one line or plane, from which no strain follows; expected bodies of two layers of "
+                     "particles or more, a wider radius, or \"updated-lagrangian\"");
+  }
   start_.clear();
   start_.shrink_to_fit();
   body_->set_places(w.particles(number_));
@@ -146,6 +156,8 @@ void TotalPhase::kick_and_drift() {
 
 void TotalPhase::load() {
   PhaseParticles& p = w_->particles(number_);
+  if (must_find_places_) body_->set_places(p);
+  must_find_places_ = false;
   stretched_ = body_->pack(p);
   body_->load(p);
   forces_.add(p, w_->state.time, true);
@@ -170,6 +182,7 @@ void TotalPhase::row(std::vector<double>& values) const {
 void TotalPhase::derive() {
   PhaseParticles& p = w_->particles(number_);
   body_->set_places(p);
+  must_find_places_ = true;  // these may be the particles of an earlier state
   body_->pack(p);
   const TotalDetail& detail = body_->detail();
   const double volume = std::pow(plan_.spacing, layout_.dimensions);
