@@ -30,9 +30,10 @@ struct BodyContactLaw {
   double rub = 0;           // N s/m, c_t
   double friction = 0;      // mu
 
-  static BodyContactLaw of(double distance, double stiffness, double reduced_mass, double restitution, double friction) {
+  static BodyContactLaw of(double distance, double stiffness, double reduced_mass, double restitution,
+                           double friction) {
     const double root = std::sqrt(stiffness * reduced_mass);
-    return {distance, stiffness,  reduced_mass, 2.0 * SphereContact::damping_ratio(restitution) * root,
+    return {distance,   stiffness, reduced_mass, 2.0 * SphereContact::damping_ratio(restitution) * root,
             2.0 * root, friction};
   }
   /// s, by which 0.1 of it is a step that keeps the restitution.

@@ -2,7 +2,8 @@
 // gradient F = I + H, plane strain in two dimensions.
 //
 //   neo-Hookean (Ciarlet & Geymonat 1982; Simo & Pister 1984):
-//     psi = mu/2 (F:F - 3 - 2 ln J) + lambda/4 (J^2 - 1 - 2 ln J),   P = [mu (J F - cof F) + lambda/2 (J^2 - 1) cof F]/J
+//     psi = mu/2 (F:F - 3 - 2 ln J) + lambda/4 (J^2 - 1 - 2 ln J),   P = [mu (J F - cof F) + lambda/2 (J^2 - 1) cof
+//     F]/J
 //   St. Venant-Kirchhoff:
 //     psi = lambda/2 (tr E)^2 + mu E:E,  E = (F^T F - I)/2,          P = F (lambda tr E I + 2 mu E)
 //   Kelvin & Voigt's damping of both: S gains t_r (lambda tr E' I + 2 mu E'), E' = sym(F^T F'); a vibration of angular

@@ -39,7 +39,8 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
     case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
-    case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
+    case PhaseKind::elastic:
+      return {"elastic", true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
     case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
     case PhaseKind::wall: return {"wall", false, false, describe_wall, make<Wall>};
     case PhaseKind::column: return {"column", false, false, describe_column, make<ColumnPhase>};
@@ -89,6 +90,7 @@ void classify(const Scene& scene, PlanEntry& e) {
   e.other = e.partner(e.fluid);
   e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
                 scene.phases[e.fluid].fluid().scheme == FluidScheme::consistent;
+  e.corrected = e.corrected || (e.law == Law::elastic && e.a == e.b && is_total(a));
 }
 
 Models make_models(const Scene& scene, const Layout& layout) {

@@ -61,7 +61,7 @@ struct PlanEntry {
   DragLaw drag_law = DragLaw::none;  // of grains in a column
   bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
   double restitution = 1, friction = 0;  // of such
-  int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
+  int forward = -1, backward = -1;       // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.

@@ -74,7 +74,8 @@ class Model {
   /// are filled: it reads the fields and what archive() saves.
   virtual void columns(std::vector<std::string>&) const {}
   virtual void row(std::vector<double>&) const {}
-  /// Brings the fields up to date that only outputs read, and what a row tells of them. Called before every frame and row.
+  /// Brings the fields up to date that only outputs read, and what a row tells of them. Called before every frame and
+  /// row.
   virtual void derive() {}
   /// What has gone wrong in what only it sees, with the remedy; empty: nothing.
   virtual std::optional<std::string> trouble() const { return std::nullopt; }

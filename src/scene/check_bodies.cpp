@@ -26,15 +26,16 @@ void check_contact(const Interaction& pair, const Phase& a, const Phase& b, cons
   if (!touch_as_bodies(pair, a, b)) {
     for (const char* key : {".restitution", ".friction"})
       if (report.has(dotted + key))
-        report(dotted + key,
-               bodies_may_touch(a, b) ? "nothing reads it without restitution; expected restitution beside it"
-                                      : "only a body with another body or a wall has it; expected no such key here");
+        report(dotted + key, bodies_may_touch(a, b)
+                                 ? "nothing reads it without restitution; expected restitution beside it"
+                                 : "only a body with another body or a wall has it; expected no such key here");
     return;
   }
   for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
     if (report.has(dotted + key))
-      report(dotted + key, "bodies touch where the spacings of their particles end; expected no such key beside "
-                           "restitution or a total Lagrangian body");
+      report(dotted + key,
+             "bodies touch where the spacings of their particles end; expected no such key beside "
+             "restitution or a total Lagrangian body");
 }
 
 void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report) {
@@ -49,9 +50,8 @@ void check_set(const BodySet& set, const std::string& dotted, const Scene& scene
 }
 
 bool good_name(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_';
-  });
+  return !name.empty() &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
 }  // namespace

@@ -31,9 +31,9 @@ enum class PhaseKind { fluid, elastic, grains, wall, column };
 enum class EquationOfState { linear, tait };
 enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
 enum class Slip { no_slip, free_slip };
-enum class FluidScheme { plain, consistent };  // docs/method.md
-enum class Formulation { total_lagrangian, updated_lagrangian };    // of elastic bodies; docs/method.md
-enum class Elasticity { neo_hookean, saint_venant_kirchhoff };      // laws/hyperelastic.hpp
+enum class FluidScheme { plain, consistent };                     // docs/method.md
+enum class Formulation { total_lagrangian, updated_lagrangian };  // of elastic bodies; docs/method.md
+enum class Elasticity { neo_hookean, saint_venant_kirchhoff };    // laws/hyperelastic.hpp
 enum class Turbulence { none, mixing_length, smagorinsky };
 enum class MixingLength { none, duran };  // of a column of air; Duran, Andreotti & Claudin 2012
 /// Drag of a grain by name (laws/drag_coefficients.hpp); none: the number of the entry.
@@ -158,9 +158,9 @@ struct Interaction {
   double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
   std::optional<double> radius_in_metres;  // m; empty: `radius` says it
   KernelKind kernel{};
-  double drag{};       // fluid-grains: drag coefficient of a grain, 0 switches it off
-  DragLaw drag_law{};  // column-grains: drag of a grain
-  ContactLaw law{};    // of grains with grains, walls and bodies
+  double drag{};                      // fluid-grains: drag coefficient of a grain, 0 switches it off
+  DragLaw drag_law{};                 // column-grains: drag of a grain
+  ContactLaw law{};                   // of grains with grains, walls and bodies
   std::optional<double> restitution;  // contact of bodies: of two particles that meet
   std::optional<double> friction;     // contact of bodies: Coulomb's coefficient
 };

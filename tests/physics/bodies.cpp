@@ -1,4 +1,5 @@
-// Bodies: the restitution that a scene writes is the one that two particles have; bars and plates against exact solutions.
+// Bodies: the restitution that a scene writes is the one that two particles have; bars and plates against exact
+// solutions.
 #include <algorithm>
 #include <cmath>
 
@@ -25,22 +26,27 @@ struct Meeting {
 /// The share of their relative speed that two single particles keep.
 double restitution_of(const Meeting& m, int start) {
   const std::string young = number(m.young);
-  std::vector<std::string> set{"interactions={ kernel = \"cubic-spline\", a-b = { restitution = " + number(m.restitution) + " } }",
-                               "phases.a.young=" + young,
-                               "phases.b.young=" + young,
-                               "phases.b.density=" + number(m.density_b),
-                               "phases.a.formulation=" + m.formulation,
-                               "phases.b.formulation=" + m.formulation,
-                               "fill.0.velocity=[" + number(m.speed) + ", 0, 0]",
-                               "time.largest-speed=" + number(m.speed),
-                               "time.end=1"};
+  std::vector<std::string> set{
+      "interactions={ kernel = \"cubic-spline\", a-b = { restitution = " + number(m.restitution) + " } }",
+      "phases.a.young=" + young,
+      "phases.b.young=" + young,
+      "phases.b.density=" + number(m.density_b),
+      "phases.a.formulation=" + m.formulation,
+      "phases.b.formulation=" + m.formulation,
+      "fill.0.velocity=[" + number(m.speed) + ", 0, 0]",
+      "time.largest-speed=" + number(m.speed),
+      "time.end=1"};
   // Where the contact begins within a step is different for each start.
   const double wave = std::sqrt(m.young * 0.7 / (1.3 * 0.4 * 7870.0));
   set.push_back("fill.1.shape.points=[[" + number(0.003 + 1e-4 * 1e-3 * m.speed / wave * start) + ", 0.002, 0.002]]");
   Drive drive("verification/two_particle_impact", set);
   auto& s = drive.simulation();
-  const auto apart = [&] { return drive.phase(1).column(Field::position)[0] - drive.phase(0).column(Field::position)[0]; };
-  const auto parting = [&] { return drive.phase(1).column(Field::velocity)[0] - drive.phase(0).column(Field::velocity)[0]; };
+  const auto apart = [&] {
+    return drive.phase(1).column(Field::position)[0] - drive.phase(0).column(Field::position)[0];
+  };
+  const auto parting = [&] {
+    return drive.phase(1).column(Field::velocity)[0] - drive.phase(0).column(Field::velocity)[0];
+  };
   for (int k = 0; k < 20000 && !(parting() > 0.0 && apart() > 1e-3); ++k) s.step(1.0);
   return parting() / m.speed;
 }
@@ -128,10 +134,11 @@ TEST(TotalLagrangianBodies, TwoEqualBarsTouchForTheExactTime) {
   const double exact = 2.0 * 0.040 / 5936.0;
   double first = -1.0, last = 0.0, before = 0.0;
   while (s.time() < 2.7e-5) {
+    const double begin = s.time();
     s.step(1.0);
-    const double gain = (mean_speed(drive.phase(1)) - before) / s.dt();
+    const double gain = (mean_speed(drive.phase(1)) - before) / (s.time() - begin);
     before = mean_speed(drive.phase(1));
-    if (gain > 0.05 * 10.0 / exact) {  // a twentieth of the exact force
+    if (gain > 0.5 * 10.0 / exact) {  // half of the exact force
       if (first < 0.0) first = s.time();
       last = s.time();
     }
@@ -169,20 +176,18 @@ TEST(TotalLagrangianBodies, APlateSwingsWithItsPeriodAndKeepsItsEnergy) {
     return y - 0.1;
   };
   const double start = energy();
-  // Zeros of the tip's motion: half a period and a whole one.
+  // Zeros of the tip's motion: half a period and a whole one. It starts at zero.
   std::vector<double> zeros;
-  double y = 0.0, t = 0.0, rest = 0.0;
+  double y = 0.0, t = 0.0;
   int looked = 0;
   while (s.time() < 0.3) {
     s.step(0.3 - s.time() + 1e-12);
     if (++looked % 20 != 0) continue;
     const double now = tip();
-    if (looked == 20) rest = 0.0;
     if (y * now < 0.0) zeros.push_back(t + (s.time() - t) * (y / (y - now)));
     y = now;
     t = s.time();
   }
-  (void)rest;
   ASSERT_GE(zeros.size(), 2u);
   const double period = zeros[1];
   report("period over Timoshenko's 0.2565 s - 1", period / 0.2565 - 1.0, 0.015);

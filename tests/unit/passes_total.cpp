@@ -1,5 +1,5 @@
-// Total Lagrangian bodies against naive twins written from the formulas in their headers: the acceleration, and that it is
-// the exact slope of an energy; laws of the material against the slope of theirs.
+// Total Lagrangian bodies against naive twins written from the formulas in their headers: the acceleration, and that it
+// is the exact slope of an energy; laws of the material against the slope of theirs.
 #include <gtest/gtest.h>
 
 #include "kernels/kernel.hpp"
@@ -100,7 +100,8 @@ std::vector<Vec3> places_of(const Shape& s, const Bounds& b, Uniform& random) {
   return places;
 }
 Bounds bounds_of(const Shape& s) {
-  return s.dimensions == 2 ? box(2, {21, 7, 0}, {s.periodic, false, false}) : box(3, {7, 6, 5}, {s.periodic, false, s.periodic});
+  return s.dimensions == 2 ? box(2, {21, 7, 0}, {s.periodic, false, false})
+                           : box(3, {7, 6, 5}, {s.periodic, false, s.periodic});
 }
 
 class TotalLagrangian : public testing::TestWithParam<Shape> {};
@@ -297,10 +298,12 @@ TEST_P(TotalLagrangian, ATurnMakesNoForceAndMomentumIsKept) {
 }
 
 TEST(TotalLagrangianDamping, IsTheRetardationOfTheStress) {
-  // With H = 0 and a uniform rate the stress is t_r (lambda tr E' I + 2 mu E'): that of the strain t_r E' without damping.
+  // With H = 0 and a uniform rate the stress is t_r (lambda tr E' I + 2 mu E'): that of the strain t_r E' without
+  // damping.
   Uniform random(9);
   const Bounds b = box(2, {20, 6, 0}, {false, false, false});
-  Stage<double> damped(2, b, lattice(b, 1.0, 0.0, random), Elasticity::neo_hookean, 0.25), strained(2, b, damped.start, Elasticity::neo_hookean);
+  Stage<double> damped(2, b, lattice(b, 1.0, 0.0, random), Elasticity::neo_hookean, 0.25),
+      strained(2, b, damped.start, Elasticity::neo_hookean);
   constexpr double rate = 1e-6;
   for (std::size_t k = 0; k < damped.start.size(); ++k) {
     damped.p.column(Field::velocity, 0)[k] = rate * damped.start[k][0] - 3.0 * rate * damped.start[k][1];

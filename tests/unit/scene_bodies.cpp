@@ -15,8 +15,10 @@ struct Parts {
 };
 
 std::string text_of(const Parts& parts) {
-  return "spacing = 0.1\n[domain]\nsize = [2, 1]\n[phases.a]\nkind = \"elastic\"\ndensity = 1000\nyoung = 1e6\n" + parts.a +
-         "\n[phases.b]\nkind = \"elastic\"\ndensity = 1000\nyoung = 1e6\n[phases.sand]\nkind = \"grains\"\ndensity = 10\n"
+  return "spacing = 0.1\n[domain]\nsize = [2, 1]\n[phases.a]\nkind = \"elastic\"\ndensity = 1000\nyoung = 1e6\n" +
+         parts.a +
+         "\n[phases.b]\nkind = \"elastic\"\ndensity = 1000\nyoung = 1e6\n[phases.sand]\nkind = \"grains\"\ndensity = "
+         "10\n"
          "[interactions]\na-a = {}\nb-b = 2.1\nsand-sand = 1.1\n" +
          parts.pair +
          "\n[[fill]]\nphase = \"a\"\nshape = { cube = { centre = [0.5, 0.5], count = 4 } }\n"
@@ -38,10 +40,11 @@ void expect_refused(const Parts& parts, const std::string& key, const std::strin
 }
 
 TEST(SceneBodies, TakesTheirKeys) {
-  const Scene s = scene_of({"elasticity = \"saint-venant-kirchhoff\"\nhourglass = 0.2\nretardation = 1e-5",
-                            "a-b = { restitution = 0.5, friction = 0.25 }",
-                            "[[motion]]\nphase = \"a\"\nbox = { min = [0, 0], max = [0.4, 1] }\nvelocity = [0, \"sin(t)\"]\n"
-                            "[[marker]]\nname = \"end\"\nphase = \"b\"\n"});
+  const Scene s =
+      scene_of({"elasticity = \"saint-venant-kirchhoff\"\nhourglass = 0.2\nretardation = 1e-5",
+                "a-b = { restitution = 0.5, friction = 0.25 }",
+                "[[motion]]\nphase = \"a\"\nbox = { min = [0, 0], max = [0.4, 1] }\nvelocity = [0, \"sin(t)\"]\n"
+                "[[marker]]\nname = \"end\"\nphase = \"b\"\n"});
   const ElasticKeys& a = s.phases[0].elastic();
   EXPECT_EQ(a.formulation, Formulation::total_lagrangian) << "the default";
   EXPECT_EQ(a.elasticity, Elasticity::saint_venant_kirchhoff);
@@ -89,9 +92,7 @@ void expect_refused_at_start(const std::string& text, const std::string& words) 
   try {
     const Simulation simulation(s, plan, blocks);
     ADD_FAILURE() << "not refused: " << words;
-  } catch (const SceneError& e) {
-    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-  }
+  } catch (const SceneError& e) { EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what(); }
 }
 
 TEST(SceneBodies, RefusesEmptySetsAndBodiesOfOneLayer) {

@@ -43,9 +43,8 @@ bool BodyContact::of_single_particles() const {
   return std::any_of(layout_.phases.begin(), layout_.phases.end(), [&](const PlanPhase& p) {
     const auto k = static_cast<std::size_t>(&p - layout_.phases.data());
     if (!entry_.has(k) || !p.moves) return false;
-    return p.count == 1 || std::none_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
-             return e.a == k && e.b == k;
-           });
+    return p.count == 1 || std::none_of(layout_.entries.begin(), layout_.entries.end(),
+                                        [&](const PlanEntry& e) { return e.a == k && e.b == k; });
   });
 }
 

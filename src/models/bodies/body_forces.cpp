@@ -27,12 +27,13 @@ void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, c
       v[d] = Lanes(record[R::velocity + d]);
       force[d] = Lanes(0.0);
     }
-    for_each_neighbour<R::size>(row, others, [&](const Lanes* b) __attribute__((always_inline)) {
-      std::array<Lanes, Dim> r, dv;
-      const Lanes r2 = separation<Dim>(x, b + R::position, r);
-      for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
-      BodyContactLaw::add<Rubs>(constants, r, r2, dv, force);
-    });
+    for_each_neighbour<R::size>(
+        row, others, [&](const Lanes* b) __attribute__((always_inline)) {
+          std::array<Lanes, Dim> r, dv;
+          const Lanes r2 = separation<Dim>(x, b + R::position, r);
+          for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
+          BodyContactLaw::add<Rubs>(constants, r, r2, dv, force);
+        });
     for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
   }
 }

@@ -88,7 +88,8 @@ class GroupMaker {
     for (std::size_t begin = 0, end = 0; begin < entries_.size(); begin = end) {
       while (end < entries_.size() && entries_[end].same_slot(entries_[begin])) ++end;
       if (end - begin == body_.width) {
-        body_.wholes.push_back({static_cast<std::int32_t>(entries_[begin].delta), weights_of<T>(*entries_[begin].near)});
+        body_.wholes.push_back(
+            {static_cast<std::int32_t>(entries_[begin].delta), weights_of<T>(*entries_[begin].near)});
         continue;
       }
       parts.emplace_back(begin, end);
@@ -110,9 +111,7 @@ class GroupMaker {
     std::size_t lane;
     const Near* near;
     bool same_slot(const Entry& o) const { return delta == o.delta && offset == o.offset; }
-    bool operator<(const Entry& o) const {
-      return std::tie(delta, offset, lane) < std::tie(o.delta, o.offset, o.lane);
-    }
+    bool operator<(const Entry& o) const { return std::tie(delta, offset, lane) < std::tie(o.delta, o.offset, o.lane); }
   };
   std::size_t stride() const { return body_.width * static_cast<std::size_t>(1 + body_.dimensions); }
   void put(AlignedVector<T>& to, std::size_t slot, std::size_t lane, const Near& n) const {
@@ -221,17 +220,6 @@ void find_pieces(ReferenceBody<T>& body, const std::vector<std::vector<Near>>& n
 }  // namespace
 
 template <class T>
-std::size_t ReferenceBody<T>::bytes() const {
-  std::size_t total = groups.capacity() * sizeof(Group) + wholes.capacity() * sizeof(Whole) +
-                      part_delta.capacity() * sizeof(std::int32_t) + index.capacity() * sizeof(std::uint32_t) +
-                      (part_weights.capacity() + scattered_weights.capacity()) * sizeof(T);
-  for (const auto& c : inverse) total += c.capacity() * sizeof(T);
-  for (const auto& c : sum) total += c.capacity() * sizeof(T);
-  for (const auto& c : place) total += c.capacity() * sizeof(double);
-  return total;
-}
-
-template <class T>
 ReferenceBody<T> make_reference_body(const std::vector<Vec3>& places, const Bounds& bounds, double spacing,
                                      KernelKind kernel, double radius, std::size_t width) {
   ReferenceBody<T> body;
@@ -255,8 +243,6 @@ ReferenceBody<T> make_reference_body(const std::vector<Vec3>& places, const Boun
   return body;
 }
 
-template class ReferenceBody<float>;
-template class ReferenceBody<double>;
 template ReferenceBody<float> make_reference_body(const std::vector<Vec3>&, const Bounds&, double, KernelKind, double,
                                                   std::size_t);
 template ReferenceBody<double> make_reference_body(const std::vector<Vec3>&, const Bounds&, double, KernelKind, double,

@@ -8,7 +8,6 @@
 // without order (a random packing) take slots with an index by lane.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -42,18 +41,18 @@ class ReferenceBody {
 
   std::size_t size = 0, width = 0;
   int dimensions = 2;
-  double volume = 0.0;  // m^dimensions, of a particle
+  double volume = 0.0;                       // m^dimensions, of a particle
   std::array<std::vector<double>, 3> place;  // m, X
   std::vector<Group> groups;                 // of `width` particles; the last may have fewer
   std::vector<Whole> wholes;
-  std::vector<std::int32_t> part_delta;      // one a slot
-  AlignedVector<T> part_weights;             // a slot: width times w, then wX by axis
-  AlignedVector<std::uint32_t> index;        // a slot: width indices
+  std::vector<std::int32_t> part_delta;  // one a slot
+  AlignedVector<T> part_weights;         // a slot: width times w, then wX by axis
+  AlignedVector<std::uint32_t> index;    // a slot: width indices
   AlignedVector<T> scattered_weights;
-  std::array<AlignedVector<T>, 6> inverse;   // M^-1, M = sum w X (x) X: 2D xx xy yy, 3D xx xy xz yy yz zz
-  std::array<AlignedVector<T>, 3> sum;       // sum w X
-  std::int64_t flat = -1;                    // first particle whose neighbours lie in one line or plane
-  std::uint64_t pairs = 0;                   // directed
+  std::array<AlignedVector<T>, 6> inverse;  // M^-1, M = sum w X (x) X: 2D xx xy yy, 3D xx xy xz yy yz zz
+  std::array<AlignedVector<T>, 3> sum;      // sum w X
+  std::int64_t flat = -1;                   // first particle whose neighbours lie in one line or plane
+  std::uint64_t pairs = 0;                  // directed
 
   /// Connected parts of the body: each is an interval of ids or several.
   struct Piece {
@@ -61,9 +60,6 @@ class ReferenceBody {
   };
   std::vector<Piece> pieces;
   double diameter = 0.0;  // m, the longest of the parts
-
-  std::size_t slots() const { return wholes.size() + part_delta.size() + index.size() / std::max<std::size_t>(width, 1); }
-  std::size_t bytes() const;
 };
 
 /// `places` (m) of a phase with this spacing; `width`: lanes of T.

@@ -39,7 +39,8 @@ SolidState state_of(const std::array<AlignedVector<double>, 9>& gradient, std::s
 SolidState solid_of(const std::array<AlignedVector<double>, 9>& gradient, std::size_t k, int dimensions, Elasticity law,
                     const ElasticModuli& moduli) {
   if (law == Elasticity::neo_hookean)
-    return dimensions == 2 ? state_of<2, NeoHookean>(gradient, k, moduli) : state_of<3, NeoHookean>(gradient, k, moduli);
+    return dimensions == 2 ? state_of<2, NeoHookean>(gradient, k, moduli)
+                           : state_of<3, NeoHookean>(gradient, k, moduli);
   return dimensions == 2 ? state_of<2, SaintVenantKirchhoff>(gradient, k, moduli)
                          : state_of<3, SaintVenantKirchhoff>(gradient, k, moduli);
 }

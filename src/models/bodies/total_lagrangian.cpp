@@ -33,9 +33,10 @@ BARCHAN_SIMD_INLINE void sweep(const ReferenceBody<T>& body, std::size_t group, 
   for (std::uint32_t s = begin.whole; s < end.whole; ++s) {
     const auto& slot = body.wholes[s];
     for (std::size_t d = 0; d < Dim; ++d) wx[d] = V(slot.weights.wx[d]);
-    f(V(slot.weights.w), wx, [at = first + slot.delta]<class C>(const C* column) __attribute__((always_inline)) {
-      return simd::Vec<C, V::width>::load(column + at);
-    });
+    f(
+        V(slot.weights.w), wx, [at = first + slot.delta]<class C>(const C* column) __attribute__((always_inline)) {
+          return simd::Vec<C, V::width>::load(column + at);
+        });
   }
   const auto weights = [&](const T* from) __attribute__((always_inline)) {
     for (std::size_t d = 0; d < Dim; ++d) wx[d] = V::load(from + (1 + d) * width);
@@ -43,15 +44,17 @@ BARCHAN_SIMD_INLINE void sweep(const ReferenceBody<T>& body, std::size_t group, 
   };
   for (std::uint32_t s = begin.part; s < end.part; ++s) {
     const V w = weights(body.part_weights.data() + s * stride);
-    f(w, wx, [at = first + body.part_delta[s]]<class C>(const C* column) __attribute__((always_inline)) {
-      return simd::Vec<C, V::width>::load(column + at);
-    });
+    f(
+        w, wx, [at = first + body.part_delta[s]]<class C>(const C* column) __attribute__((always_inline)) {
+          return simd::Vec<C, V::width>::load(column + at);
+        });
   }
   for (std::uint32_t s = begin.scattered; s < end.scattered; ++s) {
     const V w = weights(body.scattered_weights.data() + s * stride);
-    f(w, wx, [index = body.index.data() + s * width]<class C>(const C* column) __attribute__((always_inline)) {
-      return simd::gather<C, V::width>(column, index);
-    });
+    f(
+        w, wx, [index = body.index.data() + s * width]<class C>(const C* column) __attribute__((always_inline)) {
+          return simd::gather<C, V::width>(column, index);
+        });
   }
 }
 
@@ -84,12 +87,13 @@ BARCHAN_SIMD_INLINE Matrix<Dim, LanesOf<T>> gradient_sum(const ReferenceBody<T>&
     own[d] = Place::load(from<T>(columns[d]) + first);
     for (std::size_t e = 0; e < Dim; ++e) g[d][e] = V(T(0));
   }
-  sweep<Dim>(body, group, [&](V, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
-    for (std::size_t d = 0; d < Dim; ++d) {
-      const V u = apart<T>(own[d], load(from<T>(columns[d])));
-      for (std::size_t e = 0; e < Dim; ++e) g[d][e] = simd::fma(u, wx[e], g[d][e]);
-    }
-  });
+  sweep<Dim>(
+      body, group, [&](V, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
+        for (std::size_t d = 0; d < Dim; ++d) {
+          const V u = apart<T>(own[d], load(from<T>(columns[d])));
+          for (std::size_t e = 0; e < Dim; ++e) g[d][e] = simd::fma(u, wx[e], g[d][e]);
+        }
+      });
   return g;
 }
 
@@ -122,7 +126,7 @@ double write_in_order(const double* x, const double* start, std::size_t begin, s
   using Wide = LanesOf<double>;
   constexpr std::size_t width = static_cast<std::size_t>(Wide::width);
   Wide most(0.0);
-  const auto write = [&]<class V>(std::size_t k, V u, V& largest) __attribute__((always_inline)) {
+  const auto write = [&]<class V>(std::size_t k, V u, V & largest) __attribute__((always_inline)) {
     largest = simd::max(largest, simd::max(u, -u));
     if constexpr (std::is_integral_v<Place>) {
       const V q = u * V(inverse);
@@ -254,12 +258,13 @@ void forces_of(PhaseParticles& body, const ReferenceBody<T>& reference, const To
       for (std::size_t e = 0; e < Dim; ++e)
         stress[d] = simd::fma(V::load(reach[d * Dim + e] + first), V::load(reference.sum[e].data() + first), stress[d]);
     }
-    sweep<Dim>(reference, group, [&](V w, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
-      for (std::size_t d = 0; d < Dim; ++d) {
-        for (std::size_t e = 0; e < Dim; ++e) stress[d] = simd::fma(load(reach[d * Dim + e]), wx[e], stress[d]);
-        strayed[d] = simd::fma(w, apart<T>(own[d], load(from<T>(work.displacement[d]))), strayed[d]);
-      }
-    });
+    sweep<Dim>(
+        reference, group, [&](V w, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
+          for (std::size_t d = 0; d < Dim; ++d) {
+            for (std::size_t e = 0; e < Dim; ++e) stress[d] = simd::fma(load(reach[d * Dim + e]), wx[e], stress[d]);
+            strayed[d] = simd::fma(w, apart<T>(own[d], load(from<T>(work.displacement[d]))), strayed[d]);
+          }
+        });
     for (std::size_t d = 0; d < Dim; ++d)
       put(simd::fma(kappa, strayed[d], simd::fma(inverse_density, stress[d], V(static_cast<T>(q.gravity[d])))), work,
           first, count, a[d]);
@@ -287,14 +292,15 @@ void detail_of(const ReferenceBody<T>& reference, const TotalWork<T>& work, cons
     std::array<Place, Dim> own;
     for (std::size_t d = 0; d < Dim; ++d) own[d] = Place::load(from<T>(work.displacement[d]) + first);
     V energy(T(0));  // sum w |u_ab - H X_ab|^2
-    sweep<Dim>(reference, group, [&](V w, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
-      const V inverse = select(w > V(T(0)), V(T(1)) / simd::max(w, V(T(1e-30))), V(T(0)));
-      for (std::size_t d = 0; d < Dim; ++d) {
-        V e = unit * apart<T>(own[d], load(from<T>(work.displacement[d])));
-        for (std::size_t c = 0; c < Dim; ++c) e = simd::fnma(h[d][c], wx[c] * inverse, e);
-        energy = simd::fma(w * e, e, energy);
-      }
-    });
+    sweep<Dim>(
+        reference, group, [&](V w, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
+          const V inverse = select(w > V(T(0)), V(T(1)) / simd::max(w, V(T(1e-30))), V(T(0)));
+          for (std::size_t d = 0; d < Dim; ++d) {
+            V e = unit * apart<T>(own[d], load(from<T>(work.displacement[d])));
+            for (std::size_t c = 0; c < Dim; ++c) e = simd::fnma(h[d][c], wx[c] * inverse, e);
+            energy = simd::fma(w * e, e, energy);
+          }
+        });
     const Wide result = simd::convert<double>(half * energy);
     result.store(detail.hourglass.data() + first);
   }

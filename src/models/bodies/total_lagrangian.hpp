@@ -35,7 +35,7 @@ struct TotalParameters {
   double hourglass = 0.0;  // kappa, Pa
   double density = 0.0;    // kg/m3, at rest
   Vec3 gravity{};
-  Vec3 period{};           // m; 0: not periodic
+  Vec3 period{};  // m; 0: not periodic
 };
 
 /// What only outputs read, of one particle: the gradient H and the energy density of the hourglass control (J/m3).
@@ -54,9 +54,8 @@ BARCHAN_PER_INSTRUCTION_SET(pack_displacements,
                                                       const TotalParameters& parameters);)
 
 /// H, the density, and Q.
-BARCHAN_PER_INSTRUCTION_SET(total_stress,
-                            void total_stress(PhaseParticles& body, const ReferenceBody<float>& reference,
-                                              TotalWork<float>& work, const TotalParameters& parameters);
+BARCHAN_PER_INSTRUCTION_SET(total_stress, void total_stress(PhaseParticles& body, const ReferenceBody<float>& reference,
+                                                            TotalWork<float>& work, const TotalParameters& parameters);
                             void total_stress(PhaseParticles& body, const ReferenceBody<double>& reference,
                                               TotalWork<double>& work, const TotalParameters& parameters);)
 

@@ -49,7 +49,6 @@ class BodyOf : public TotalBody {
   const std::vector<std::uint32_t>& places() const override { return work_.at; }
   std::uint64_t pairs() const override { return reference_.pairs; }
   std::int64_t flat() const override { return reference_.flat; }
-  std::size_t bytes() const override { return reference_.bytes(); }
   void archive(Archive& a) override {
     for (std::size_t d = 0; d < 3; ++d)
       if (!work_.displaced[d].empty()) a.values("displacement", work_.displaced[d].data(), work_.displaced[d].size());
@@ -114,13 +113,12 @@ void TotalPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 
 void TotalPhase::attach(Workspace& w) {
   w_ = &w;
-  body_ = scene_.precision == Precision::mixed
-              ? make_body<float>(start_, layout_, plan_.spacing, own_, parameters_)
-              : make_body<double>(start_, layout_, plan_.spacing, own_, parameters_);
+  body_ = scene_.precision == Precision::mixed ? make_body<float>(start_, layout_, plan_.spacing, own_, parameters_)
+                                               : make_body<double>(start_, layout_, plan_.spacing, own_, parameters_);
   if (const std::int64_t flat = body_->flat(); flat >= 0) {
     const Vec3& x = start_[static_cast<std::size_t>(flat)];
-    throw SceneError(located(scene_, "phases." + plan_.name + ".formulation") + ": the neighbours of the particle at (" +
-                     brief(x[0]) + ", " + brief(x[1]) + ", " + brief(x[2]) +
+    throw SceneError(located(scene_, "phases." + plan_.name + ".formulation") +
+                     ": the neighbours of the particle at (" + brief(x[0]) + ", " + brief(x[1]) + ", " + brief(x[2]) +
                      ") m lie in one line or plane, from which no strain follows; expected bodies of two layers of "
                      "particles or more, a wider radius, or \"updated-lagrangian\"");
   }
@@ -145,7 +143,8 @@ void TotalPhase::limits(std::vector<StepLimit>& limits) const {
   limits.push_back({"elastic " + plan_.name, scene_.time.safety * undamped, "its stiffest vibration"});
   const double slow = parameters_.moduli.retardation;
   if (slow > 0.0)
-    limits.push_back({"damping " + plan_.name, scene_.time.safety * StepConstants::total / (slow * frequency * frequency),
+    limits.push_back({"damping " + plan_.name,
+                      scene_.time.safety * StepConstants::total / (slow * frequency * frequency),
                       "the retardation of its stiffest vibration"});
 }
 
@@ -166,7 +165,8 @@ void TotalPhase::load() {
 std::optional<std::string> TotalPhase::trouble() const {
   if (stretched_ < 1.0) return std::nullopt;
   return "the body \"" + plan_.name +
-         "\" is stretched to four times its size, beyond what mixed precision holds: set precision = \"double\", or lower "
+         "\" is stretched to four times its size, beyond what mixed precision holds: set precision = \"double\", or "
+         "lower "
          "what pulls it";
 }
 

@@ -14,14 +14,13 @@ namespace barchan {
 class TotalBody {
  public:
   virtual ~TotalBody() = default;
-  virtual void set_places(const PhaseParticles& particles) = 0;   // they may have been sorted
-  virtual double pack(const PhaseParticles& particles) = 0;       // see pack_displacements
-  virtual void load(PhaseParticles& particles) = 0;               // stress, then acceleration
-  virtual const TotalDetail& detail() = 0;                        // of what was packed
-  virtual const std::vector<std::uint32_t>& places() const = 0;   // by id
+  virtual void set_places(const PhaseParticles& particles) = 0;  // they may have been sorted
+  virtual double pack(const PhaseParticles& particles) = 0;      // see pack_displacements
+  virtual void load(PhaseParticles& particles) = 0;              // stress, then acceleration
+  virtual const TotalDetail& detail() = 0;                       // of what was packed
+  virtual const std::vector<std::uint32_t>& places() const = 0;  // by id
   virtual std::uint64_t pairs() const = 0;
-  virtual std::int64_t flat() const = 0;                          // see ReferenceBody
-  virtual std::size_t bytes() const = 0;
+  virtual std::int64_t flat() const = 0;  // see ReferenceBody
   virtual void archive(Archive& a) = 0;
 };
 
@@ -56,7 +55,7 @@ class TotalPhase : public Model {
   std::vector<Vec3> start_;  // m, by id
   std::unique_ptr<TotalBody> body_;
   bool must_find_places_ = false;
-  double stretched_ = 0.0;                              // of what the displacements can hold
+  double stretched_ = 0.0;                               // of what the displacements can hold
   double strain_energy_ = 0.0, hourglass_energy_ = 0.0;  // J, of the last derive
 };
 
