@@ -112,6 +112,7 @@ struct PlanPhase {
   bool enclosed = false;                 // a fluid whose mean density is kept
   double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
+  std::string physics = "";              // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
   std::vector<Field> fields;
   PhaseRules rules;
 };

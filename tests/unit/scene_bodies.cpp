@@ -11,7 +11,7 @@ namespace barchan {
 namespace {
 
 struct Parts {
-  std::string a, pair = "a-b = { restitution = 0.5, friction = 0.25 }", more;
+  std::string a = "", pair = "a-b = { restitution = 0.5, friction = 0.25 }", more = "";
 };
 
 std::string text_of(const Parts& parts) {

@@ -69,6 +69,7 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
   p.friction = Friction::fluid;
+  p.physics = phase.fluid().scheme == FluidScheme::plain ? "plain fluid" : "consistent fluid";
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
   enclose(scene, blocks, number, layout, warnings);
@@ -176,6 +177,7 @@ void Air::attach(Workspace& w) {
   q.acceleration = forces_.uniform();
   for (const auto& e : layout_.entries)
     if (e.law == Law::coupling && e.fluid == number_) q.pores = 0.5 * q.sound_speed / q.smoothing_length;
+  q.shut_in = plan_.enclosed && q.pores == 0.0;
   q.lattice_moment = lattice_moment(layout_, number_);
   if (plan_.free_surface) {
     surface_ = std::make_unique<SurfaceFinder>();

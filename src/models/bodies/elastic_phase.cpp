@@ -52,6 +52,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   };
   p.body = true;
   p.fixed_neighbours = phase.elastic().formulation == Formulation::total_lagrangian;
+  if (!p.fixed_neighbours) p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration};
   if (!p.fixed_neighbours || asked(stress)) p.fields.push_back(stress);
   if (phase.elastic().energy) p.fields.push_back(energy);

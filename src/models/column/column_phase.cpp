@@ -37,6 +37,7 @@ constexpr double interval_share = 0.004;
 void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                      std::vector<std::string>&) {
   const ColumnKeys& keys = scene.phases[number].column();
+  layout.phases[number].physics = "column";
   const Formula friction_velocity(keys.friction_velocity);
   constexpr int moments = 64;
   double& wind = layout.phases[number].wind;
