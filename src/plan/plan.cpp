@@ -68,13 +68,14 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 }
 
 /// The first direction of an entry, and its opposite. A wall looks for nobody but the fluid that is extended into it.
-void add_directions(Plan& plan, PlanEntry& e) {
+void add_directions(const Scene& scene, Plan& plan, PlanEntry& e) {
   if (e.law == Law::column || e.law == Law::drag) return;  // by height: nobody is looked for
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
   if (e.law == Law::elastic && plan.phases[e.a].fixed_neighbours) return;
+  if (e.of_bodies && (only_sides(scene, scene.phases[e.a]) || only_sides(scene, scene.phases[e.b]))) return;  // planes
   if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
   const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.law == Law::boundary; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);
@@ -111,7 +112,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     } else if (e.law != Law::column && e.law != Law::drag) {
       e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     }
-    add_directions(plan, e);
+    add_directions(scene, plan, e);
     plan.entries.push_back(e);
     if (e.a == e.b || (e.law == Law::contact && !e.of_bodies)) {
       for (const std::size_t p : {e.a, e.b})

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/couplings.hpp"
+
 namespace barchan {
 
 namespace {
@@ -27,13 +29,39 @@ BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry&
 
 }  // namespace
 
+namespace {
+
+std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const Phase& wall) {
+  std::vector<BodySide> sides;
+  if (!only_sides(scene, wall)) return sides;
+  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  for (const Fill& fill : scene.fills)
+    for (std::size_t axis = 0; fill.phase == wall.name && axis < static_cast<std::size_t>(layout.dimensions); ++axis)
+      for (const bool high : {false, true}) {
+        const auto& all = std::get<SidesShape>(fill.shape).sides;
+        if (std::find(all.begin(), all.end(), names[axis][high]) != all.end())
+          sides.push_back({axis, high ? -1.0 : 1.0, high ? layout.bounds.high[axis] : layout.bounds.low[axis]});
+      }
+  return sides;
+}
+
+}  // namespace
+
 BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
-    : scene_(scene), layout_(layout), entry_(entry), law_(law_of(scene, layout, entry)) {}
+    : scene_(scene), layout_(layout), entry_(entry), law_(law_of(scene, layout, entry)) {
+  for (const std::size_t k : {entry.a, entry.b})
+    if (!layout.phases[k].moves) sides_ = sides_of(scene, layout, scene.phases[k]);
+}
 
 void BodyContact::schedule(Schedule& s) {
   using enum Field;
   for (const std::size_t phase : {entry_.a, entry_.b}) {
-    if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves) continue;
+    if (!layout_.phases[phase].moves) continue;
+    if (!sides_.empty())
+      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration}, [this, phase] {
+               push_from_sides(phase);
+             }});
+    if (entry_.direction(phase) < 0) continue;
     s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration}, [this, phase] { push(phase); }});
   }
 }
@@ -59,6 +87,11 @@ void BodyContact::limits(std::vector<StepLimit>& limits) const {
 void BodyContact::push(std::size_t phase) {
   body_contact_forces(w_->particles(phase), w_->motion[phase], w_->list(entry_.direction(phase)),
                       w_->motion[entry_.partner(phase)], law_, w_->state.dt);
+}
+
+void BodyContact::push_from_sides(std::size_t phase) {
+  const double half = 0.5 * layout_.phases[entry_.partner(phase)].spacing;
+  for (const BodySide& side : sides_) body_side_forces(w_->particles(phase), side, half, law_, w_->state.dt);
 }
 
 }  // namespace barchan

@@ -15,12 +15,14 @@ class BodyContact : public Model {
 
  private:
   void push(std::size_t phase);
+  void push_from_sides(std::size_t phase);
   bool of_single_particles() const;
 
   const Scene& scene_;
   const Layout& layout_;
   const PlanEntry& entry_;
   BodyContactLaw law_;
+  std::vector<BodySide> sides_;  // of a wall that is nothing else
   Workspace* w_ = nullptr;
 };
 

@@ -13,4 +13,16 @@ BARCHAN_PER_INSTRUCTION_SET(body_contact_forces,
                             void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
                                                      const RecordArray& others, const BodyContactLaw& law, double dt);)
 
+/// A side of the domain: a plane.
+struct BodySide {
+  std::size_t axis;
+  double sign, place;  // +1 where the inside lies above it; m
+};
+
+BARCHAN_PER_INSTRUCTION_SET(body_side_forces,
+                            /// The same of a plane: as of a particle of the wall that faces each particle. `half`: m,
+                            /// from the plane to where that particle stands.
+                            void body_side_forces(PhaseParticles& a, const BodySide& side, double half,
+                                                  const BodyContactLaw& law, double dt);)
+
 }  // namespace barchan
