@@ -1,4 +1,4 @@
-// Keys of elastic bodies: what they are read into, and what is refused by name.
+// Scenes of elastic bodies: what is refused by name.
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
@@ -37,27 +37,6 @@ void expect_refused(const Parts& parts, const std::string& key, const std::strin
     EXPECT_NE(what.find(key), std::string::npos) << what;
     EXPECT_NE(what.find(words), std::string::npos) << what;
   }
-}
-
-TEST(SceneBodies, TakesTheirKeys) {
-  const Scene s =
-      scene_of({"elasticity = \"saint-venant-kirchhoff\"\nhourglass = 0.2\nretardation = 1e-5",
-                "a-b = { restitution = 0.5, friction = 0.25 }",
-                "[[motion]]\nphase = \"a\"\nbox = { min = [0, 0], max = [0.4, 1] }\nvelocity = [0, \"sin(t)\"]\n"
-                "[[marker]]\nname = \"end\"\nphase = \"b\"\n"});
-  const ElasticKeys& a = s.phases[0].elastic();
-  EXPECT_EQ(a.formulation, Formulation::total_lagrangian) << "the default";
-  EXPECT_EQ(a.elasticity, Elasticity::saint_venant_kirchhoff);
-  EXPECT_EQ(a.hourglass, 0.2);
-  EXPECT_EQ(a.retardation, 1e-5);
-  EXPECT_EQ(s.interactions[0].radius, 1.6) << "recommended for a total Lagrangian body";
-  EXPECT_EQ(s.interactions[0].kernel, KernelKind::wendland_c2);
-  EXPECT_EQ(s.interactions[3].restitution, 0.5);
-  EXPECT_EQ(s.interactions[3].friction, 0.25);
-  ASSERT_EQ(s.motions.size(), 1u);
-  EXPECT_EQ(s.motions[0].box->max[0], 0.4);
-  EXPECT_EQ(s.motions[0].velocity[1].formula, "sin(t)");
-  EXPECT_FALSE(s.markers.at(0).box.has_value());
 }
 
 TEST(SceneBodies, RefusesKeysThatNothingReads) {
