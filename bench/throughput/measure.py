@@ -28,6 +28,8 @@ CASES = {  # name: options of throughput
     "air 3D, plain, 2.86 dx, double": ["--case", "air3d", "--steps", "10"],
     "air 3D, plain, 2.86 dx, mixed": ["--case", "air3d", "--precision", "mixed", "--steps", "10"],
     "elastic 2D, 2.6 dx": ["--case", "elastic2d", "--n", "100000", "--warm", "150"],
+    "elastic 2D, total Lagrangian, 2.6 dx, double": ["--case", "elastic2d-total", "--n", "100000", "--warm", "150"],
+    "elastic 2D, total Lagrangian, 2.6 dx, mixed": ["--case", "elastic2d-total", "--precision", "mixed", "--n", "100000", "--warm", "150"],
     "grains 2D, 1.1 d": ["--case", "grains2d", "--n", "100000"],
     "dune.toml": ["--case", str(ROOT / "scenes/dune.toml"), "--steps", "100"],
 }

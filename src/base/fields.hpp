@@ -35,7 +35,10 @@ namespace barchan {
   row(radius, "r", "m", scalar, state, "of a sphere whose phase has sizes") \
   row(angular_velocity, "w", "1/s", axial, state, "of a sphere that rubs; in 2D about z") \
   row(contact_acceleration, "a_c", "m/s2", vector, state, "of a sphere: what its contacts gave in their last step; acceleration holds all the rest") \
-  row(angular_acceleration, "dw/dt", "1/s2", axial, state, "of a sphere that rubs, in the last step of its contacts")
+  row(angular_acceleration, "dw/dt", "1/s2", axial, state, "of a sphere that rubs, in the last step of its contacts") \
+  row(von_mises_stress, "s_v", "Pa", scalar, derived, "of a body: the stress in one direction that distorts as much (von Mises)") \
+  row(principal_stress, "s_1 s_2 s_3", "Pa", principal, derived, "of a body: principal values of Cauchy's stress, the largest first; positive pulls") \
+  row(strain, "E", "1", symmetric, derived, "of a total Lagrangian body: strain of Green and Lagrange, xx yy zz xy yz xz")
 // clang-format on
 
 #define BARCHAN_NAME(name, symbol, unit, rank, lifetime, meaning) name,
@@ -43,8 +46,9 @@ enum class Field : int { BARCHAN_FIELDS(BARCHAN_NAME) count };
 #undef BARCHAN_NAME
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
-/// deviator: symmetric, traceless (2 or 6 numbers); axial: about an axis (1 number in 2D, about z, or 3).
-enum class Rank { scalar, vector, deviator, symmetric, matrix, axial };
+/// deviator: symmetric, traceless (2 or 6 numbers); axial: about an axis (1 number in 2D, about z, or 3);
+/// principal: three values.
+enum class Rank { scalar, vector, deviator, symmetric, matrix, axial, principal };
 
 struct FieldInfo {
   Field id;
@@ -73,6 +77,7 @@ constexpr int components(Rank rank, int dimensions) {
     case Rank::symmetric: return 6;
     case Rank::matrix: return dimensions * dimensions;
     case Rank::axial: return dimensions == 2 ? 1 : 3;
+    case Rank::principal: return 3;
   }
   return 0;
 }

@@ -4,7 +4,10 @@
 
 #include "base/errors.hpp"
 #include "models/air/air.hpp"
+#include "models/bodies/body_contact.hpp"
 #include "models/bodies/elastic_phase.hpp"
+#include "models/bodies/sets.hpp"
+#include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
 #include "models/coupling/sand_layer.hpp"
@@ -35,7 +38,8 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
     case PhaseKind::fluid: return {true, true, describe_air, make<Air>};
-    case PhaseKind::elastic: return {true, false, describe_elastic, make<ElasticPhase>};
+    case PhaseKind::elastic:
+      return {true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
     case PhaseKind::grains: return {true, false, describe_grains, make<GrainPhase>};
     case PhaseKind::wall: return {false, false, describe_wall, make<Wall>};
     case PhaseKind::column: return {false, false, describe_column, make<ColumnPhase>};
@@ -79,17 +83,20 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
 
 void classify(const Scene& scene, PlanEntry& e) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
-  e.law = law_of(a, b);
+  e.law = e.of_bodies ? Law::contact : law_of(a, b);
   if (e.law == Law::coupling && e.drag_law != DragLaw::none) e.law = Law::drag;
   e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
   e.other = e.partner(e.fluid);
   e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
                 scene.phases[e.fluid].fluid().scheme == FluidScheme::consistent;
+  e.corrected = e.corrected || (e.law == Law::elastic && e.a == e.b && is_total(a));
 }
 
 Models make_models(const Scene& scene, const Layout& layout) {
   Models models;
   models.push_back(std::make_unique<CommonWork>(layout));
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)  // they lead before their bodies move
+    models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
@@ -101,11 +108,14 @@ Models make_models(const Scene& scene, const Layout& layout) {
   for (const auto& e : layout.entries) {
     if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
     if (e.drag > 0) models.push_back(make_drag_entry(scene, layout, e));
-    if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
+    if (e.of_bodies) models.push_back(std::make_unique<BodyContact>(scene, layout, e));
+    else if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(make_contact_entry(scene, layout, e));
   }
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));
+  for (std::size_t k = 0; k < scene.markers.size(); ++k)
+    models.push_back(std::make_unique<MarkedSet>(scene, layout, k));
   return models;
 }
 

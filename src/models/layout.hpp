@@ -71,7 +71,9 @@ struct PlanEntry {
   bool corrected = false;            // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
-  int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
+  bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
+  double restitution = 1, friction = 0;  // of such
+  int forward = -1, backward = -1;       // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
@@ -117,6 +119,8 @@ struct PlanPhase {
   bool held = false;                     // a fluid whose bulk speed is held
   bool free_surface = false;             // a fluid that does not fill its space
   bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
+  bool body = false;                     // elastic
+  bool fixed_neighbours = false;         // a body whose neighbours are those of its first shape: nobody searches them
   bool enclosed = false;                 // a fluid whose mean density is kept
   double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid

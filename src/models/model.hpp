@@ -39,6 +39,7 @@ enum Stage : std::size_t {
   contacts,
   reaction,
   drag,
+  motion,
   hold,
   kick,
   watch,
@@ -73,6 +74,9 @@ class Model {
   /// the end. The columns are the same in every row of a run. A row may follow the loading of a checkpoint at once,
   /// before records are filled: it reads the fields and what archive() saves.
   virtual void history(HistoryRow&) const {}
+  /// Brings the fields up to date that only outputs read, and what a row tells of them. Called before every frame and
+  /// row.
+  virtual void derive() {}
   /// A fault that only this model can find, with the remedy; empty: there is none.
   virtual std::optional<std::string> trouble() const { return std::nullopt; }
   /// Directed pairs in its own lists of an entry, and how often it has searched them: for models that have such.

@@ -28,6 +28,7 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "contacts",
                                                          "reaction on solids",
                                                          "drag",
+                                                         "driven sets",
                                                          "bulk speed",
                                                          "kick",
                                                          "watch"};

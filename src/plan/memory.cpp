@@ -79,12 +79,19 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     const double n = static_cast<double>(p.count), all = n * (1.0 + images_a_particle(plan, k));
     const double own = n * (columns(plan, p) * wide + id);
     fields += own + n * (wide + id);  // and what a sort writes into
-    const bool body = std::find(p.fields.begin(), p.fields.end(), Field::stress) != p.fields.end();
     const double motion = plan.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size,
                  stress = plan.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size;
     const bool seen = std::any_of(plan.entries.begin(), plan.entries.end(),
                                   [&](const PlanEntry& e) { return e.sees_solid() && e.other == k; });
-    records += all * wide * (motion * (seen ? 2.0 : 1.0) + (body ? stress : 0.0) + (p.eddies ? 4.0 : 0.0));
+    records += all * wide *
+               (motion * (seen ? 2.0 : 1.0) + (p.body && !p.fixed_neighbours ? stress : 0.0) + (p.eddies ? 4.0 : 0.0));
+    if (p.fixed_neighbours) {  // models/bodies/reference_body.hpp: constants and sums of a particle; the search before
+      const double numbers = dimensions == 2 ? 11.0 : 24.0, gradient = dimensions == 2 ? 5.0 : 10.0;
+      const double number = scene.precision == Precision::mixed ? index : wide;
+      records += n * (numbers * number + (gradient + dimensions) * wide + index);
+      for (const auto& e : plan.entries)
+        if (e.law == Law::elastic && e.a == k) start += n * 40.0 * (1.0 + e.consistency.neighbours);
+    }
     const double search = all * dimensions * narrow * 1.125 + (all - n) * sizeof(Image);
     grids += cells(plan, k) * 4.0 * index + search + 2.0 * n * index;
     past += own + cells(plan, k) * 2.0 * index + search;

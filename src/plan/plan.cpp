@@ -22,6 +22,17 @@ double Plan::step() const {
 
 namespace {
 
+/// m/s, the largest of a driven set at 65 times.
+double driven_speed(const Scene& scene, const Motion& motion) {
+  const Formula u(motion.velocity[0]), v(motion.velocity[1]), w(motion.velocity[2]);
+  double speed = 0.0;
+  for (int k = 0; k <= 64; ++k) {
+    const double t = scene.time.end * k / 64.0;
+    speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
+  }
+  return speed;
+}
+
 double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   double speed = scene.time.largest_speed;
   if (speed > 0) return speed;
@@ -36,18 +47,21 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
       speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
     }
   }
+  for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion));
   double height = 0;
   for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
 /// The first direction of an entry, and its opposite. A wall searches only the fluid that is extended into it.
-void add_directions(Plan& plan, PlanEntry& e) {
+void add_directions(const Scene& scene, Plan& plan, PlanEntry& e) {
   if (e.law == Law::column || e.law == Law::drag) return;  // the wind is found by height: no search
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
+  if (e.law == Law::elastic && plan.phases[e.a].fixed_neighbours) return;
+  if (e.of_bodies && (only_sides(scene, scene.phases[e.a]) || only_sides(scene, scene.phases[e.b]))) return;  // planes
   if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
   const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.law == Law::boundary; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);
@@ -72,8 +86,11 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.drag = i.drag;
     e.contact = i.law;
     e.drag_law = i.drag_law;
+    e.of_bodies = touch_as_bodies(i, scene.phases[e.a], scene.phases[e.b]);
+    e.restitution = i.restitution.value_or(1.0);
+    e.friction = i.friction.value_or(0.0);
     classify(scene, e);
-    if (e.of_spheres()) {
+    if (e.of_spheres() || e.of_bodies) {
       const auto across = [&](std::size_t k) {
         return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
       };
@@ -81,9 +98,9 @@ void add_entries(const Scene& scene, Plan& plan) {
     } else if (e.law != Law::column && e.law != Law::drag) {
       e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     }
-    add_directions(plan, e);
+    add_directions(scene, plan, e);
     plan.entries.push_back(e);
-    if (e.a == e.b || e.law == Law::contact) {
+    if (e.a == e.b || (e.law == Law::contact && !e.of_bodies)) {
       for (const std::size_t p : {e.a, e.b})
         if (e.a == e.b || plan.phases[p].smoothing_length == 0) plan.phases[p].smoothing_length = 0.5 * e.radius;
     }

@@ -32,8 +32,10 @@ std::string law_of(const PlanEntry& e) {
 std::string meaning(const PlanEntry& e) {
   if (e.law == Law::drag) return "no kernel: the mean wind about the grain, in layers near the ground";
   if (e.law == Law::column) return "no kernel: the wind of the grain's height";
+  if (e.corrected && e.law == Law::elastic) return "corrected to first order in the body's first shape";
   if (e.corrected) return "corrected to first order by the consistent scheme";
   if (e.of_spheres()) return "spheres: touching decides";
+  if (e.of_bodies) return "bodies: touching decides";
   if (e.law == Law::contact || e.law == Law::repulsive) return "a contact law, not an approximation";
   if (e.consistency.consistent()) return "consistent";
   if (e.law == Law::elastic && e.a != e.b) return "a contact law, not an approximation";

@@ -49,8 +49,7 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
 void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    const bool body = std::find(p.fields.begin(), p.fields.end(), Field::stress) != p.fields.end();
-    if (body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]))
+    if (p.body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
                               p.name + "\" together");
   }

@@ -160,7 +160,7 @@ class PhysicsChecker {
   void pair(const Interaction& pair, const Phase& a, const Phase& b) {
     const std::string dotted = "interactions." + pair.a + "-" + pair.b;
     contact(pair, a, b, dotted);
-    if (of_spheres(pair)) return;
+    if (of_spheres(pair) || touch_as_bodies(pair, a, b)) return;
     const auto is = [&](PhaseKind k, PhaseKind l) {
       return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };

@@ -209,6 +209,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_domain(scene, report);
   check_forcings(scene, report);
   check_physics(scene, report);
+  check_bodies(scene, report);
   check_columns(scene, report);
   check_walls(scene, report);
   check_measuring(scene, report);

@@ -41,6 +41,9 @@ void check_physics(const Scene& scene, const Report& report);
 void check_columns(const Scene& scene, const Report& report);
 void check_walls(const Scene& scene, const Report& report);
 
+/// Of elastic bodies: keys of another formulation, contacts, sets of particles.
+void check_bodies(const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

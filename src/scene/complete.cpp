@@ -47,6 +47,15 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
   pair.kernel = fluid ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
   if (fluid) pair.radius = repulsive ? 0.0 : 2.1;
   else pair.radius = bodies || column ? 0.0 : 1.1;
+  const Phase *first = nullptr, *second = nullptr;
+  for (const Phase& phase : phases) {
+    if (phase.name == a) first = &phase;
+    if (phase.name == b) second = &phase;
+  }
+  if (first && second && first == second && is_total(*first)) {
+    pair.radius = 1.6;
+    pair.kernel = KernelKind::wendland_c2;
+  }
   if (column) pair.drag_law = DragLaw::duran;
   return pair;
 }

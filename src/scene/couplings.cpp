@@ -55,4 +55,26 @@ bool has_eddies(const Scene& scene, const Phase& fluid) {
          });
 }
 
+bool is_total(const Phase& phase) {
+  return phase.kind() == PhaseKind::elastic && phase.elastic().formulation == Formulation::total_lagrangian;
+}
+
+bool bodies_may_touch(const Phase& a, const Phase& b) {
+  const auto body_or_wall = [](const Phase& p) {
+    return p.kind() == PhaseKind::elastic || p.kind() == PhaseKind::wall;
+  };
+  const bool body = a.kind() == PhaseKind::elastic || b.kind() == PhaseKind::elastic;
+  return a.name != b.name && body && body_or_wall(a) && body_or_wall(b);
+}
+
+bool only_sides(const Scene& scene, const Phase& wall) {
+  return wall.if_wall() && std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+           return fill.phase != wall.name || std::holds_alternative<SidesShape>(fill.shape);
+         });
+}
+
+bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b) {
+  return bodies_may_touch(a, b) && (pair.restitution || is_total(a) || is_total(b));
+}
+
 }  // namespace barchan

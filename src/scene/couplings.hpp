@@ -33,4 +33,13 @@ bool drags_by_law(const Scene& scene, const Phase& phase);
 /// `roughness` or `shear-stress`.
 bool has_eddies(const Scene& scene, const Phase& fluid);
 
+/// An elastic body whose strain comes from its first shape.
+bool is_total(const Phase& phase);
+/// Whether the two can have a contact of bodies: a body with another body or a wall.
+bool bodies_may_touch(const Phase& a, const Phase& b);
+/// Whether all particles of a wall stand behind sides of the domain: for a body it is those planes.
+bool only_sides(const Scene& scene, const Phase& wall);
+/// Whether this entry is one: it says restitution, or a total Lagrangian body has no other.
+bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b);
+
 }  // namespace barchan

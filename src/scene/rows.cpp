@@ -30,6 +30,8 @@ constexpr Key table[] = {
      "A pair without an entry does not interact."},
     {"", "fill", at<&Scene::fills>(required), "", "What is where at the beginning; fills are carried out in order."},
     {"", "forcing", at<&Scene::forcings>("none"), "", "Body forces on single phases."},
+    {"", "motion", at<&Scene::motions>("none"), "", "Sets of particles of bodies that are clamped or driven."},
+    {"", "marker", at<&Scene::markers>("none"), "", "Sets of particles of bodies whose mean place is written to history.csv."},
     {"", "probe", measured<&Measuring::probes>("none"), "", "Places at which a fluid is followed in time."},
     {"", "profile", measured<&Measuring::profiles>("none"), "", "Averages over time along a line."},
     {"", "grid", measured<&Measuring::grids>("none"), "", "Averages over time on a regular grid."},
@@ -71,6 +73,16 @@ constexpr Key table[] = {
     {"phases", "young", of<&ElasticKeys::young, &GrainsKeys::young>(required, "required; of grains: from largest-overlap"), "Pa",
      "Young's modulus; of grains for contacts with law = \"hertz\".", positive, "", "grains"},
     {"phases", "poisson", of<&ElasticKeys::poisson, &GrainsKeys::poisson>(0.0), "", "Poisson's ratio; of grains for contacts with law = \"hertz\".", {.above = -1.0, .below = 0.5}},
+    {"phases", "formulation", of<&ElasticKeys::formulation>(Formulation::total_lagrangian), "",
+     "Where the strain of a body comes from: from its first shape, whose neighbours stay neighbours; or step by step from the velocities of "
+     "those that are near, as in Halik et al. 2015 (docs/method.md)."},
+    {"phases", "elasticity", of<&ElasticKeys::elasticity>(Elasticity::neo_hookean), "",
+     "Law of a body with formulation = \"total-lagrangian\"; both are Hooke's for small strains."},
+    {"phases", "hourglass", of<&ElasticKeys::hourglass>(0.5), "Young's modulus",
+     "Strength of the control of motions that the gradient does not see, of a body with formulation = \"total-lagrangian\".", not_negative},
+    {"phases", "retardation", of<&ElasticKeys::retardation>(0.0), "s",
+     "Damping of Kelvin and Voigt, of a body with formulation = \"total-lagrangian\": a vibration of angular frequency w has the damping ratio "
+     "w retardation/2.", not_negative},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
      "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",
@@ -130,6 +142,10 @@ constexpr Key table[] = {
     {"interactions.pair", "drag", drag("0; duran with a column"), "",
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
      "grain's drag by name (docs/method.md).", not_negative},
+    {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
+     "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
+     "speed (docs/method.md). Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
+    {"interactions.pair", "friction", at<&Interaction::friction>("0"), "", "Coulomb's coefficient of friction of such a contact.", not_negative},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
 
     {"fill", "phase", at<&Fill::phase>(required), "", "Phase of the particles."},
@@ -189,6 +205,18 @@ constexpr Key table[] = {
     {"forcing", "hold", hold("none"), "",
      "bulk-speed: the uniform acceleration that keeps the fluid's initial mean velocity along the periodic axes, as in a channel of "
      "constant mass flux. history.csv has it."},
+
+    {"motion", "phase", at<&Motion::phase, Motion>(required), "", "Elastic phase."},
+    {"motion", "box", at<&Motion::box, Motion>("all of it"), "", "Particles that stand in this box at the start."},
+    {"motion", "velocity", at<&Motion::velocity>("zero: clamped"), "m/s", "Velocity of the set, a function of time. history.csv has the force on it.", {}, "t"},
+    {"motion.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
+    {"motion.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
+
+    {"marker", "name", at<&Marker::name>(required), "", "Letters, digits and underscores: of the columns NAME_x, NAME_y (and NAME_z) in history.csv."},
+    {"marker", "phase", at<&Marker::phase, Marker>(required), "", "Elastic phase."},
+    {"marker", "box", at<&Marker::box, Marker>("all of it"), "", "Particles that stand in this box at the start."},
+    {"marker.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
+    {"marker.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
 
     {"probe", "name", at<&Probe::name, Probe>(required), "", "Letters, digits and underscores: it is written to probe_NAME.csv."},
     {"probe", "phase", at<&Probe::phase, Probe>(required), "", "Fluid that is followed."},

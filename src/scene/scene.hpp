@@ -70,8 +70,12 @@ struct ElasticKeys {
   static constexpr PhaseKind kind = PhaseKind::elastic;
   static constexpr const char* word = "elastic";
   static constexpr bool has_particles = true;
+  Formulation formulation{};
   double young{};  // Pa
   double poisson{};
+  Elasticity elasticity{};             // of total-lagrangian bodies, as the next two
+  double hourglass{};                  // strength of the hourglass control, of Young's modulus
+  double retardation{};                // s, of Kelvin and Voigt's damping
   double artificial_viscosity{};       // Monaghan's alpha
   double artificial_viscosity_beta{};  // Monaghan's beta
   bool energy{};                       // integrate the internal energy (eq. 13)
@@ -158,9 +162,11 @@ struct Interaction {
   double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
   std::optional<double> radius_in_metres;  // m; empty: `radius` says it
   KernelKind kernel{};
-  double drag{};       // fluid-grains: drag coefficient of a grain, 0 switches it off
-  DragLaw drag_law{};  // column-grains: drag of a grain
-  ContactLaw law{};    // of grains with grains, walls and bodies
+  double drag{};                      // fluid-grains: drag coefficient of a grain, 0 switches it off
+  DragLaw drag_law{};                 // column-grains: drag of a grain
+  ContactLaw law{};                   // of grains with grains, walls and bodies
+  std::optional<double> restitution;  // contact of bodies: of two particles that meet
+  std::optional<double> friction;     // contact of bodies: Coulomb's coefficient
 };
 
 // ---- fills: what is where at the beginning -------------------------------------------------------------------------
@@ -244,6 +250,20 @@ struct Forcing {
   bool hold_bulk_speed{};         // instead: what keeps the initial mean velocity along periodic axes
 };
 
+/// A set of particles of an elastic body, by their places at the start.
+struct BodySet {
+  std::string phase;
+  std::optional<BoxShape> box;  // empty: all of them
+};
+/// A set that is held or driven.
+struct Motion : BodySet {
+  VectorExpression velocity;  // m/s, formulas in t
+};
+/// A set whose mean place is written to history.csv.
+struct Marker : BodySet {
+  std::string name;
+};
+
 // ---- what is measured ----------------------------------------------------------------------------------------------
 
 /// What all instruments have.
@@ -316,6 +336,8 @@ struct Scene {
   std::vector<Interaction> interactions;
   std::vector<Fill> fills;
   std::vector<Forcing> forcings;
+  std::vector<Motion> motions;
+  std::vector<Marker> markers;
   Measuring measuring;
   TimeControl time;
   OutputControl output;

@@ -38,6 +38,16 @@ template <>
 inline constexpr std::array words_of<FluidScheme>{word("plain", FluidScheme::plain),
                                                   word("consistent", FluidScheme::consistent)};
 
+enum class Formulation { total_lagrangian, updated_lagrangian };  // of elastic bodies; docs/method.md
+template <>
+inline constexpr std::array words_of<Formulation>{word("total-lagrangian", Formulation::total_lagrangian),
+                                                  word("updated-lagrangian", Formulation::updated_lagrangian)};
+
+enum class Elasticity { neo_hookean, saint_venant_kirchhoff };  // laws/hyperelastic.hpp
+template <>
+inline constexpr std::array words_of<Elasticity>{word("neo-hookean", Elasticity::neo_hookean),
+                                                 word("saint-venant-kirchhoff", Elasticity::saint_venant_kirchhoff)};
+
 enum class Turbulence { none, mixing_length, smagorinsky };
 template <>
 inline constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),

@@ -28,7 +28,7 @@ Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravi
       moving_walls = moving_walls || moves(*wall);
     }
   }
-  const bool forced = !scene.forcings.empty();
+  const bool forced = !scene.forcings.empty() || !scene.motions.empty();
   keeps_energy_ = !forced && !moving_walls;
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan.dimensions); ++d) {
     keeps_momentum_[d] = !walls && !forced && gravity_[d] == 0.0;

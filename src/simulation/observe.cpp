@@ -24,6 +24,7 @@ long Simulation::searches() const {
 std::size_t Simulation::bytes() const { return work_->bytes() + (watch_ ? watch_->bytes() : 0); }
 
 Frame Simulation::frame(int index) const {
+  for (const auto& model : models_) model->derive();
   Frame f;
   f.index = index;
   f.step = state_.steps;
@@ -122,6 +123,7 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
 }
 
 HistoryRow Simulation::history() const {
+  for (const auto& model : models_) model->derive();
   HistoryRow row;
   row.add("time [s]", state_.time);
   row.add("step", static_cast<double>(state_.steps));

@@ -129,6 +129,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
   for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
+  if (!see_.scene.motions.empty()) start_speed_ += see_.plan.largest_speed;  // what drives them feeds energy
 }
 
 /// The bounds of each phase that moves.
@@ -187,6 +188,7 @@ void Watch::make_pairs() {
   const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
   for (const auto& e : see_.plan.entries) {
     if ((e.law != Law::contact && e.law != Law::elastic) || e.of_spheres()) continue;  // spheres: Model::trouble
+    if (e.forward < 0 && e.backward < 0) continue;                                     // first neighbours for ever
     const bool turned = wall(e.a);
     const bool at_wall = wall(e.a) || wall(e.b);
     pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward, e.law == Law::elastic,

@@ -119,6 +119,7 @@ spacing = 0.1
 size = [3, 2]
 [phases.rod]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 1000
 young = 1e6
 poisson = 0.3

@@ -205,12 +205,14 @@ spacing = 1e-3
 size = [0.04, 0.03]
 [phases.a]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 1000
 young = 1e7
 poisson = 0.3
 artificial-viscosity = 0.5
 [phases.b]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 1000
 young = 1e7
 poisson = 0.3

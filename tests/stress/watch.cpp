@@ -34,6 +34,7 @@ std::string message_of(Simulation& s, long steps) {
 std::string dropped(bool body_first) {
   const std::string body = R"toml([phases.body]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 1000
 young = 1e6
 poisson = 0.3

@@ -29,6 +29,7 @@ density = 2650
 const std::string steel = R"(
 [phases.steel]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 7870
 young = 206e9
 poisson = 0.3

@@ -140,6 +140,7 @@ scheme = "plain"
 energy = true
 [phases.steel]
 kind = "elastic"
+formulation = "updated-lagrangian"
 density = 7870
 young = 206e9
 poisson = 0.3
@@ -482,6 +483,60 @@ TEST(SceneReader, ReadsTheKeysOfColumns) {
   EXPECT_EQ(scene.interactions.at(1).drag_law, DragLaw::duran);
   EXPECT_EQ(scene.measuring.saltation.at(0).flight, 4);
   EXPECT_EQ(scene.measuring.saltation.at(0).count, 20);
+}
+
+const std::string body_keys = R"toml(
+spacing = 0.1
+[domain]
+size = [2, 1]
+[phases.a]
+kind = "elastic"
+formulation = "total-lagrangian"
+density = 1000
+young = 1e6
+elasticity = "saint-venant-kirchhoff"
+hourglass = 0.2
+retardation = 1e-5
+[phases.b]
+kind = "elastic"
+density = 1000
+young = 1e6
+[interactions]
+a-a = {}
+a-b = { restitution = 0.5, friction = 0.25 }
+[[fill]]
+phase = "a"
+shape = { cube = { centre = [0.5, 0.5], count = 4 } }
+[[fill]]
+phase = "b"
+shape = { cube = { centre = [1.3, 0.5], count = 4 } }
+[[motion]]
+phase = "a"
+box = { min = [0, 0], max = [0.4, 1] }
+velocity = [0, "sin(t)"]
+[[marker]]
+name = "end"
+phase = "b"
+[time]
+end = 1
+)toml";
+
+TEST(SceneReader, ReadsTheKeysOfBodies) {
+  const Scene s = parse_scene(body_keys, "s.toml");
+  const ElasticKeys& a = s.phases.at(0).elastic();
+  EXPECT_EQ(a.formulation, Formulation::total_lagrangian);
+  EXPECT_EQ(s.phases.at(1).elastic().formulation, Formulation::total_lagrangian) << "the default";
+  EXPECT_EQ(a.elasticity, Elasticity::saint_venant_kirchhoff);
+  EXPECT_EQ(a.hourglass, 0.2);
+  EXPECT_EQ(a.retardation, 1e-5);
+  EXPECT_EQ(s.interactions.at(0).radius, 1.6) << "recommended for a total Lagrangian body";
+  EXPECT_EQ(s.interactions.at(0).kernel, KernelKind::wendland_c2);
+  EXPECT_EQ(s.interactions.at(1).restitution, 0.5);
+  EXPECT_EQ(s.interactions.at(1).friction, 0.25);
+  EXPECT_EQ(s.motions.at(0).box->max[0], 0.4);
+  EXPECT_EQ(s.motions.at(0).velocity[1].formula, "sin(t)");
+  EXPECT_EQ(s.markers.at(0).name, "end");
+  EXPECT_FALSE(s.markers.at(0).box.has_value());
 }
 
 /// Of every key of a phase: the kinds that have it have a member for it, and no two keys have the same member. That a

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/integrate.hpp"
+#include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
 
 namespace barchan {
@@ -45,9 +46,19 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   using enum Field;
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.physics = "elastic";
-  p.fields = {position, velocity, density, pressure, acceleration, stress};
+  const auto asked = [&](Field field) {
+    const auto& names = scene.output.fields;
+    return std::find(names.begin(), names.end(), info(field).name) != names.end();
+  };
+  p.body = true;
+  p.fixed_neighbours = phase.elastic().formulation == Formulation::total_lagrangian;
+  if (!p.fixed_neighbours) p.physics = "elastic";
+  p.fields = {position, velocity, density, pressure, acceleration};
+  if (!p.fixed_neighbours || asked(stress)) p.fields.push_back(stress);
   if (phase.elastic().energy) p.fields.push_back(energy);
+  for (const Field field : {von_mises_stress, principal_stress})
+    if (asked(field)) p.fields.push_back(field);
+  if (p.fixed_neighbours && asked(strain)) p.fields.push_back(strain);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
   p.rules = rules_of(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
@@ -94,7 +105,7 @@ void ElasticPhase::schedule(Schedule& s) {
   s.add({stage::strain_records, plan_.name, {position, velocity, density, pressure, Field::stress}, {}, [this] {
            pack_middle();
          }});
-  s.add({stage::strain, plan_.name, all, all, [this] { strain(); }});
+  s.add({stage::strain, plan_.name, all, all, [this] { this->strain(); }});
   s.add({stage::elastic, plan_.name, all, {acceleration}, [this] { load(); }});
 }
 
@@ -123,6 +134,14 @@ void ElasticPhase::strain() {
   PhaseParticles& p = w_->particles(number_);
   elastic_strain(p, w_->stress[number_], neighbours_, parameters_, w_->state.dt);
   drift(p, 0.5 * w_->state.dt);
+}
+
+/// Von Mises and principal stresses.
+void ElasticPhase::derive() {
+  PhaseParticles& p = w_->particles(number_);
+  if (!p.has(Field::von_mises_stress) && !p.has(Field::principal_stress)) return;
+  const SolidFields fields(p);
+  for (std::size_t k = 0; k < p.size(); ++k) fields.write_from_stress(k);
 }
 
 void ElasticPhase::load() {

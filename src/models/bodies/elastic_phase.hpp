@@ -18,6 +18,7 @@ class ElasticPhase : public Model {
   void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
+  void derive() override;
   void limits(std::vector<StepLimit>& limits) const override;
   int phase() const override { return static_cast<int>(number_); }
 

@@ -1,0 +1,28 @@
+// The sums of a contact of bodies.
+#pragma once
+
+#include "engine/pair_loop.hpp"
+#include "laws/body_contact.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+BARCHAN_PER_INSTRUCTION_SET(body_contact_forces,
+                            /// Adds to the acceleration of `a` what the particles of the other phase give; dt: s, of
+                            /// the step. Records of motion.
+                            void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
+                                                     const RecordArray& others, const BodyContactLaw& law, double dt);)
+
+/// A side of the domain: a plane.
+struct BodySide {
+  std::size_t axis;
+  double sign, place;  // +1 where the inside lies above it; m
+};
+
+BARCHAN_PER_INSTRUCTION_SET(body_side_forces,
+                            /// The same of a plane: as of a particle of the wall that faces each particle. `half`: m,
+                            /// from the plane to where that particle stands.
+                            void body_side_forces(PhaseParticles& a, const BodySide& side, double half,
+                                                  const BodyContactLaw& law, double dt);)
+
+}  // namespace barchan

@@ -1,0 +1,129 @@
+#include "models/bodies/sets.hpp"
+
+#include "base/errors.hpp"
+#include "engine/means.hpp"
+#include "scene/located.hpp"
+
+namespace barchan {
+
+namespace {
+
+const char* const axes[] = {"x", "y", "z"};
+
+}  // namespace
+
+SetOfBody::SetOfBody(const Layout& layout, const BodySet& set) : layout_(layout), set_(set) {
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (layout.phases[k].name == set.phase) phase_ = k;
+}
+
+void SetOfBody::find(const std::vector<ParticleBlock>& blocks) {
+  const std::vector<Vec3>& places = blocks[phase_].position;
+  const double slack = 1e-6 * layout_.phases[phase_].spacing;
+  ids_.clear();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    bool inside = true;
+    for (std::size_t d = 0; set_.box && d < static_cast<std::size_t>(layout_.dimensions); ++d)
+      inside = inside && places[k][d] >= set_.box->min[d] - slack && places[k][d] <= set_.box->max[d] + slack;
+    if (inside) ids_.push_back(static_cast<std::uint32_t>(k));
+  }
+  places_ = ids_;
+}
+
+void SetOfBody::attach(Workspace& w, const std::string& section) {
+  w_ = &w;
+  if (ids_.empty())
+    throw SceneError(located(w.scene, section) + ": no particle of phase \"" + set_.phase +
+                     "\" stands in the box at the start; expected a box that holds some");
+  place_of_.resize(particles().size());
+  set_places();
+  w.when_sorted.push_back([this] { set_places(); });
+}
+
+void SetOfBody::set_places() {
+  const PhaseParticles& p = particles();
+  for (std::size_t k = 0; k < p.size(); ++k)
+    place_of_[static_cast<std::size_t>(p.id()[k] - p.first_id())] = static_cast<std::uint32_t>(k);
+  for (std::size_t q = 0; q < ids_.size(); ++q) places_[q] = place_of_[ids_[q]];
+}
+
+DrivenSet::DrivenSet(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      number_(number),
+      set_(layout, scene.motions[number]),
+      velocity_(compile(scene.motions[number].velocity)) {}
+
+void DrivenSet::begin(State&, const std::vector<ParticleBlock>& blocks) { set_.find(blocks); }
+
+void DrivenSet::attach(Workspace& w) {
+  w_ = &w;
+  set_.attach(w, "motion." + std::to_string(number_));
+  set_velocity(w.state.time);
+}
+
+void DrivenSet::schedule(Schedule& s) {
+  using enum Field;
+  const std::string& name = layout_.phases[set_.phase()].name;
+  s.add({stage::kick_and_drift, name + ", motion", {}, {velocity, acceleration}, [this] { lead(); }});
+  s.add({stage::motion, name, {}, {velocity, acceleration}, [this] { hold(); }});
+}
+
+void DrivenSet::set_velocity(double time) {
+  PhaseParticles& p = set_.particles();
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    const double speed = velocity_[static_cast<std::size_t>(d)]({0, 0, 0}, time);
+    double *v = p.column(Field::velocity, d), *a = p.column(Field::acceleration, d);
+    for (const std::uint32_t k : set_.places()) {
+      v[k] = speed;
+      a[k] = 0.0;
+    }
+  }
+}
+
+/// The velocity in the middle of the step carries the set through it.
+void DrivenSet::lead() { set_velocity(w_->state.time + 0.5 * w_->state.dt); }
+
+/// The forces of the step are known: they are noted, and the set goes on as it is driven.
+void DrivenSet::hold() {
+  const PhaseParticles& p = set_.particles();
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    const double* a = p.column(Field::acceleration, d);
+    force_[static_cast<std::size_t>(d)] =
+        p.mass() * ordered_sum(set_.places().size(), [&](std::size_t q) { return a[set_.places()[q]]; });
+  }
+  set_velocity(w_->state.time);
+}
+
+void DrivenSet::history(HistoryRow& row) const {
+  for (int d = 0; d < layout_.dimensions; ++d)
+    row.add("motion_" + std::to_string(number_) + "_force_" + axes[d] + " [N]", force_[static_cast<std::size_t>(d)]);
+}
+
+void DrivenSet::archive(Archive& a) {
+  a.number("force on a driven set", force_);
+  if (a.loads()) set_.set_places();
+}
+
+MarkedSet::MarkedSet(const Scene& scene, const Layout& layout, std::size_t number)
+    : layout_(layout), marker_(scene.markers[number]), number_(number), set_(layout, scene.markers[number]) {}
+
+void MarkedSet::begin(State&, const std::vector<ParticleBlock>& blocks) { set_.find(blocks); }
+
+void MarkedSet::attach(Workspace& w) { set_.attach(w, "marker." + std::to_string(number_)); }
+
+void MarkedSet::history(HistoryRow& row) const {
+  const PhaseParticles& p = set_.particles();
+  const auto n = static_cast<double>(set_.places().size());
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    const double* x = p.column(Field::position, d);
+    row.add(marker_.name + "_" + axes[d] + " [m]",
+            ordered_sum(set_.places().size(), [&](std::size_t q) { return x[set_.places()[q]]; }) / n);
+  }
+}
+
+void MarkedSet::archive(Archive& a) {
+  if (a.loads()) set_.set_places();
+}
+
+}  // namespace barchan

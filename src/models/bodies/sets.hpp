@@ -1,0 +1,74 @@
+// Sets of particles of bodies, by their places at the start: clamped, driven, or followed.
+#pragma once
+
+#include <vector>
+
+#include "models/forces.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+/// The particles of a set.
+class SetOfBody {
+ public:
+  SetOfBody(const Layout& layout, const BodySet& set);
+  void find(const std::vector<ParticleBlock>& blocks);
+  /// Throws SceneError when nobody stands in the box.
+  void attach(Workspace& w, const std::string& section);
+  /// Where they stand after a sort or a load.
+  void set_places();
+  std::size_t phase() const { return phase_; }
+  const std::vector<std::uint32_t>& places() const { return places_; }
+  PhaseParticles& particles() const { return w_->particles(phase_); }
+
+ private:
+  const Layout& layout_;
+  const BodySet& set_;
+  std::size_t phase_ = 0;
+  std::vector<std::uint32_t> ids_, places_;  // ids from the phase's first
+  std::vector<std::uint32_t> place_of_;      // by id
+  Workspace* w_ = nullptr;
+};
+
+/// A set that is clamped or driven: its particles have the velocity of the section.
+class DrivenSet : public Model {
+ public:
+  DrivenSet(const Scene& scene, const Layout& layout, std::size_t number);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void history(HistoryRow& row) const override;
+  void archive(Archive& a) override;
+
+ private:
+  void lead();
+  void hold();
+  void set_velocity(double time);
+
+  const Scene& scene_;
+  const Layout& layout_;
+  std::size_t number_;
+  SetOfBody set_;
+  std::array<Formula, 3> velocity_;
+  Vec3 force_{};  // N, of the rest of the body on the set, in the last step
+  Workspace* w_ = nullptr;
+};
+
+/// A set whose mean place is a column of history.csv.
+class MarkedSet : public Model {
+ public:
+  MarkedSet(const Scene& scene, const Layout& layout, std::size_t number);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule&) override {}
+  void history(HistoryRow& row) const override;
+  void archive(Archive& a) override;
+
+ private:
+  const Layout& layout_;
+  const Marker& marker_;
+  std::size_t number_;
+  SetOfBody set_;
+};
+
+}  // namespace barchan

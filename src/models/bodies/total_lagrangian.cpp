@@ -1,0 +1,359 @@
+#include "models/bodies/total_lagrangian.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/pair_loop.hpp"
+#include "engine/shares.hpp"
+
+namespace barchan::BARCHAN_TARGET {
+
+namespace {
+
+using hyperelastic::Matrix;
+
+template <class T>
+constexpr std::size_t margin = TotalWork<T>::margin;
+
+/// A column from its first particle on.
+template <class T, class C>
+BARCHAN_SIMD_INLINE const C* from(const AlignedVector<C>& column) {
+  return column.data() + margin<T>;
+}
+
+/// Calls f(w, wX, load) for every slot of a group; load(column) has the neighbours' values.
+template <int Dim, class T, class F>
+BARCHAN_SIMD_INLINE void sweep(const ReferenceBody<T>& body, std::size_t group, F&& f) {
+  using V = LanesOf<T>;
+  constexpr std::size_t width = static_cast<std::size_t>(V::width), stride = width * (1 + Dim);
+  using Group = typename ReferenceBody<T>::Group;
+  const Group begin = group > 0 ? body.groups[group - 1] : Group{}, end = body.groups[group];
+  const auto first = static_cast<std::ptrdiff_t>(group * width);
+  std::array<V, Dim> wx;
+  for (std::uint32_t s = begin.whole; s < end.whole; ++s) {
+    const auto& slot = body.wholes[s];
+    for (std::size_t d = 0; d < Dim; ++d) wx[d] = V(slot.weights.wx[d]);
+    f(
+        V(slot.weights.w), wx, [at = first + slot.delta]<class C>(const C* column) __attribute__((always_inline)) {
+          return simd::Vec<C, V::width>::load(column + at);
+        });
+  }
+  const auto weights = [&](const T* from) __attribute__((always_inline)) {
+    for (std::size_t d = 0; d < Dim; ++d) wx[d] = V::load(from + (1 + d) * width);
+    return V::load(from);
+  };
+  for (std::uint32_t s = begin.part; s < end.part; ++s) {
+    const V w = weights(body.part_weights.data() + s * stride);
+    f(
+        w, wx, [at = first + body.part_delta[s]]<class C>(const C* column) __attribute__((always_inline)) {
+          return simd::Vec<C, V::width>::load(column + at);
+        });
+  }
+  for (std::uint32_t s = begin.scattered; s < end.scattered; ++s) {
+    const V w = weights(body.scattered_weights.data() + s * stride);
+    f(
+        w, wx, [index = body.index.data() + s * width]<class C>(const C* column) __attribute__((always_inline)) {
+          return simd::gather<C, V::width>(column, index);
+        });
+  }
+}
+
+/// u_a - u_b in the units of the work.
+template <class T, class P>
+BARCHAN_SIMD_INLINE LanesOf<T> apart(P a, P b) {
+  return simd::convert<T>(a - b);
+}
+
+/// M^-1 of a group.
+template <int Dim, class T>
+BARCHAN_SIMD_INLINE Matrix<Dim, LanesOf<T>> inverse_of(const ReferenceBody<T>& body, std::size_t first) {
+  Matrix<Dim, LanesOf<T>> l;
+  std::size_t c = 0;
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = d; e < Dim; ++e) l[d][e] = l[e][d] = LanesOf<T>::load(body.inverse[c++].data() + first);
+  return l;
+}
+
+/// sum w u_ab (x) X_ab of columns of vectors u.
+template <int Dim, class T, class Column>
+BARCHAN_SIMD_INLINE Matrix<Dim, LanesOf<T>> gradient_sum(const ReferenceBody<T>& body, std::size_t group,
+                                                         const std::array<Column, 3>& columns) {
+  using V = LanesOf<T>;
+  using Place = simd::Vec<typename Column::value_type, V::width>;
+  std::array<Place, Dim> own;
+  Matrix<Dim, V> g;
+  const std::size_t first = group * static_cast<std::size_t>(V::width);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    own[d] = Place::load(from<T>(columns[d]) + first);
+    for (std::size_t e = 0; e < Dim; ++e) g[d][e] = V(T(0));
+  }
+  sweep<Dim>(
+      body, group, [&](V, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
+        for (std::size_t d = 0; d < Dim; ++d) {
+          const V u = apart<T>(own[d], load(from<T>(columns[d])));
+          for (std::size_t e = 0; e < Dim; ++e) g[d][e] = simd::fma(u, wx[e], g[d][e]);
+        }
+      });
+  return g;
+}
+
+/// H = unit G M^-1.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE Matrix<Dim, V> gradient_of(const Matrix<Dim, V>& sums, const Matrix<Dim, V>& inverse, V unit) {
+  Matrix<Dim, V> h = hyperelastic::product<Dim>(sums, inverse);
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e < Dim; ++e) h[d][e] = h[d][e] * unit;
+  return h;
+}
+
+/// Writes a group's values to a column of the phase.
+template <class T>
+BARCHAN_SIMD_INLINE void put(LanesOf<T> value, const TotalWork<T>& work, std::size_t first, std::size_t count,
+                             double* column) {
+  constexpr int width = LanesOf<T>::width;
+  const simd::Vec<double, width> wide = simd::convert<double>(value);
+  if (work.in_order && count == width) return wide.store(column + first);
+  alignas(64) std::array<double, static_cast<std::size_t>(width)> each;
+  wide.store(each.data());
+  for (std::size_t k = 0; k < count; ++k) column[work.at[first + k]] = each[k];
+}
+
+/// Displacements of an interval of ids that stand in order, less `mean`; returns the largest.
+template <class T>
+double write_in_order(const double* x, const double* start, std::size_t begin, std::size_t end, double mean,
+                      double inverse, typename TotalWork<T>::Place* to) {
+  using Place = typename TotalWork<T>::Place;
+  using Wide = LanesOf<double>;
+  constexpr std::size_t width = static_cast<std::size_t>(Wide::width);
+  Wide most(0.0);
+  const auto write = [&]<class V>(std::size_t k, V u, V & largest) __attribute__((always_inline)) {
+    largest = simd::max(largest, simd::max(u, -u));
+    if constexpr (std::is_integral_v<Place>) {
+      const V q = u * V(inverse);
+      simd::convert<Place>(q + select(q < V(0.0), V(-0.5), V(0.5))).store(to + k);
+    } else {
+      u.store(to + k);
+    }
+  };
+  std::size_t k = begin;
+  for (; k + width <= end; k += width) write(k, Wide::load(x + k) - Wide::load(start + k) - Wide(mean), most);
+  simd::Vec<double, 1> last(0.0);
+  for (; k < end; ++k) write(k, simd::Vec<double, 1>(x[k] - start[k] - mean), last);
+  double largest = last.v;
+  for (int lane = 0; lane < Wide::width; ++lane) largest = std::max(largest, most[lane]);
+  return largest;
+}
+
+template <int Dim, class T>
+double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
+            const TotalParameters& q) {
+  using Place = typename TotalWork<T>::Place;
+  constexpr bool whole = std::is_integral_v<Place>;
+  std::array<const double*, Dim> x{}, v{};
+  for (int d = 0; d < Dim; ++d) {
+    x[static_cast<std::size_t>(d)] = body.column(Field::position, d);
+    v[static_cast<std::size_t>(d)] = body.column(Field::velocity, d);
+  }
+  const std::uint32_t* at = work.at.data();
+  for (std::size_t d = 0; d < Dim; ++d) {
+    if (!(q.period[d] > 0.0)) continue;
+    // Sorting puts particles back into a periodic domain: displacements go on from where they were.
+    const auto n = static_cast<std::int64_t>(reference.size);
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double u = x[d][at[k]] - reference.place[d][k];
+      work.displaced[d][k] = u + q.period[d] * std::nearbyint((work.displaced[d][k] - u) / q.period[d]);
+    }
+  }
+  const double inverse = 1.0 / work.unit;
+  double most = 0.0;
+  const auto pieces = static_cast<std::int64_t>(reference.pieces.size());
+#pragma omp parallel for schedule(static) reduction(max : most)
+  for (std::int64_t piece = 0; piece < pieces; ++piece) {
+    const auto& [begin, end, anchor] = reference.pieces[static_cast<std::size_t>(piece)];
+    for (std::size_t d = 0; d < Dim; ++d) {
+      Place* to = work.displacement[d].data() + margin<T>;
+      const double* start = reference.place[d].data();
+      const auto write = [&](std::size_t k, double u) __attribute__((always_inline)) {
+        const double size = std::abs(u);
+        most = size > most ? size : most;
+        if constexpr (whole) to[k] = static_cast<Place>(u * inverse + std::copysign(0.5, u));
+        else to[k] = u;
+      };
+      if (q.period[d] > 0.0) {
+        const double mean = work.displaced[d][anchor];
+        for (std::size_t k = begin; k < end; ++k) write(k, work.displaced[d][k] - mean);
+      } else if (work.in_order) {
+        const double mean = x[d][anchor] - start[anchor];
+        most = std::max(most, write_in_order<T>(x[d], start, begin, end, mean, inverse, to));
+      } else {
+        const double mean = x[d][at[anchor]] - start[anchor];
+        for (std::size_t k = begin; k < end; ++k) write(k, x[d][at[k]] - start[k] - mean);
+      }
+      if (work.velocity[d].empty()) continue;
+      T* speed = work.velocity[d].data() + margin<T>;
+      for (std::size_t k = begin; k < end; ++k) speed[k] = static_cast<T>(v[d][at[k]] - v[d][at[anchor]]);
+    }
+  }
+  return whole ? most * inverse / 2147483520.0 : 0.0;
+}
+
+template <int Dim, class Law, bool Damped, class T>
+void stress_of(PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work, const TotalParameters& q) {
+  using V = LanesOf<T>;
+  constexpr std::size_t width = static_cast<std::size_t>(V::width);
+  const V lambda(static_cast<T>(q.moduli.lambda)), mu(static_cast<T>(q.moduli.mu));
+  const V slow_lambda(static_cast<T>(q.moduli.lambda * q.moduli.retardation)),
+      slow_mu(static_cast<T>(q.moduli.mu * q.moduli.retardation));
+  const V unit(static_cast<T>(work.unit)), kappa(static_cast<T>(q.hourglass)), rho(static_cast<T>(q.density));
+  double* density = body.column(Field::density);
+  std::array<T*, Dim * Dim> reach{};
+  for (std::size_t c = 0; c < Dim * Dim; ++c) reach[c] = work.reach[c].data() + margin<T>;
+  Shares shares(static_cast<std::int64_t>(reference.groups.size()), 64);
+#pragma omp parallel
+  for (const std::int64_t g : shares) {
+    const auto group = static_cast<std::size_t>(g);
+    const std::size_t first = group * width, count = std::min(width, reference.size - first);
+    const Matrix<Dim, V> inverse = inverse_of<Dim>(reference, first);
+    const Matrix<Dim, V> h = gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.displacement), inverse, unit);
+    const V jacobian = hyperelastic::dilation<Dim>(h);
+    Matrix<Dim, V> p = Law::template stress<Dim>(h, jacobian, lambda, mu);
+    if constexpr (Damped) {
+      const Matrix<Dim, V> rate =
+          gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.velocity), inverse, V(T(1)));
+      const Matrix<Dim, V> more = hyperelastic::damping_stress<Dim>(h, rate, slow_lambda, slow_mu);
+      for (std::size_t d = 0; d < Dim; ++d)
+        for (std::size_t e = 0; e < Dim; ++e) p[d][e] += more[d][e];
+    }
+    const Matrix<Dim, V> t = hyperelastic::product<Dim>(p, inverse);
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e) (kappa * h[d][e] - t[d][e]).store(reach[d * Dim + e] + first);
+    put(rho / (V(T(1)) + jacobian), work, first, count, density);
+  }
+}
+
+template <int Dim, class T>
+void forces_of(PhaseParticles& body, const ReferenceBody<T>& reference, const TotalWork<T>& work,
+               const TotalParameters& q) {
+  using V = LanesOf<T>;
+  using Place = simd::Vec<typename TotalWork<T>::Place, V::width>;
+  constexpr std::size_t width = static_cast<std::size_t>(V::width);
+  const V inverse_density(static_cast<T>(1.0 / q.density)),
+      kappa(static_cast<T>(-2.0 * q.hourglass * work.unit / q.density));
+  std::array<double*, Dim> a{};
+  for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = body.column(Field::acceleration, d);
+  std::array<const T*, Dim * Dim> reach{};
+  for (std::size_t c = 0; c < Dim * Dim; ++c) reach[c] = from<T>(work.reach[c]);
+  Shares shares(static_cast<std::int64_t>(reference.groups.size()), 64);
+#pragma omp parallel
+  for (const std::int64_t g : shares) {
+    const auto group = static_cast<std::size_t>(g);
+    const std::size_t first = group * width, count = std::min(width, reference.size - first);
+    std::array<Place, Dim> own;
+    std::array<V, Dim> stress, strayed;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      own[d] = Place::load(from<T>(work.displacement[d]) + first);
+      stress[d] = strayed[d] = V(T(0));
+      for (std::size_t e = 0; e < Dim; ++e)
+        stress[d] = simd::fma(V::load(reach[d * Dim + e] + first), V::load(reference.sum[e].data() + first), stress[d]);
+    }
+    sweep<Dim>(
+        reference, group, [&](V w, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
+          for (std::size_t d = 0; d < Dim; ++d) {
+            for (std::size_t e = 0; e < Dim; ++e) stress[d] = simd::fma(load(reach[d * Dim + e]), wx[e], stress[d]);
+            strayed[d] = simd::fma(w, apart<T>(own[d], load(from<T>(work.displacement[d]))), strayed[d]);
+          }
+        });
+    for (std::size_t d = 0; d < Dim; ++d)
+      put(simd::fma(kappa, strayed[d], simd::fma(inverse_density, stress[d], V(static_cast<T>(q.gravity[d])))), work,
+          first, count, a[d]);
+  }
+}
+
+template <int Dim, class T>
+void detail_of(const ReferenceBody<T>& reference, const TotalWork<T>& work, const TotalParameters& q,
+               TotalDetail& detail) {
+  using V = LanesOf<T>;
+  using Place = simd::Vec<typename TotalWork<T>::Place, V::width>;
+  using Wide = simd::Vec<double, V::width>;
+  constexpr std::size_t width = static_cast<std::size_t>(V::width);
+  const V unit(static_cast<T>(work.unit)), half(static_cast<T>(0.5 * q.hourglass));
+  const auto groups = static_cast<std::int64_t>(reference.groups.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t g = 0; g < groups; ++g) {
+    const auto group = static_cast<std::size_t>(g);
+    const std::size_t first = group * width;
+    const Matrix<Dim, V> h = gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.displacement),
+                                              inverse_of<Dim>(reference, first), unit);
+    for (std::size_t d = 0; d < Dim; ++d)
+      for (std::size_t e = 0; e < Dim; ++e)
+        simd::convert<double>(h[d][e]).store(detail.gradient[d * Dim + e].data() + first);
+    std::array<Place, Dim> own;
+    for (std::size_t d = 0; d < Dim; ++d) own[d] = Place::load(from<T>(work.displacement[d]) + first);
+    V energy(T(0));  // sum w |u_ab - H X_ab|^2
+    sweep<Dim>(
+        reference, group, [&](V w, const std::array<V, Dim>& wx, auto&& load) __attribute__((always_inline)) {
+          const V inverse = select(w > V(T(0)), V(T(1)) / simd::max(w, V(T(1e-30))), V(T(0)));
+          for (std::size_t d = 0; d < Dim; ++d) {
+            V e = unit * apart<T>(own[d], load(from<T>(work.displacement[d])));
+            for (std::size_t c = 0; c < Dim; ++c) e = simd::fnma(h[d][c], wx[c] * inverse, e);
+            energy = simd::fma(w * e, e, energy);
+          }
+        });
+    const Wide result = simd::convert<double>(half * energy);
+    result.store(detail.hourglass.data() + first);
+  }
+}
+
+template <int Dim, class T>
+void stress_by_law(PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
+                   const TotalParameters& q) {
+  const bool damped = q.moduli.retardation > 0.0;
+  if (q.law == Elasticity::neo_hookean)
+    damped ? stress_of<Dim, NeoHookean, true>(body, reference, work, q)
+           : stress_of<Dim, NeoHookean, false>(body, reference, work, q);
+  else
+    damped ? stress_of<Dim, SaintVenantKirchhoff, true>(body, reference, work, q)
+           : stress_of<Dim, SaintVenantKirchhoff, false>(body, reference, work, q);
+}
+
+}  // namespace
+
+double pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& reference, TotalWork<float>& work,
+                          const TotalParameters& q) {
+  return body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
+}
+double pack_displacements(const PhaseParticles& body, const ReferenceBody<double>& reference, TotalWork<double>& work,
+                          const TotalParameters& q) {
+  return body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
+}
+
+void total_stress(PhaseParticles& body, const ReferenceBody<float>& reference, TotalWork<float>& work,
+                  const TotalParameters& q) {
+  body.dimensions() == 2 ? stress_by_law<2>(body, reference, work, q) : stress_by_law<3>(body, reference, work, q);
+}
+void total_stress(PhaseParticles& body, const ReferenceBody<double>& reference, TotalWork<double>& work,
+                  const TotalParameters& q) {
+  body.dimensions() == 2 ? stress_by_law<2>(body, reference, work, q) : stress_by_law<3>(body, reference, work, q);
+}
+
+void total_forces(PhaseParticles& body, const ReferenceBody<float>& reference, const TotalWork<float>& work,
+                  const TotalParameters& q) {
+  body.dimensions() == 2 ? forces_of<2>(body, reference, work, q) : forces_of<3>(body, reference, work, q);
+}
+void total_forces(PhaseParticles& body, const ReferenceBody<double>& reference, const TotalWork<double>& work,
+                  const TotalParameters& q) {
+  body.dimensions() == 2 ? forces_of<2>(body, reference, work, q) : forces_of<3>(body, reference, work, q);
+}
+
+void total_detail(const ReferenceBody<float>& reference, const TotalWork<float>& work, const TotalParameters& q,
+                  TotalDetail& detail) {
+  reference.dimensions == 2 ? detail_of<2>(reference, work, q, detail) : detail_of<3>(reference, work, q, detail);
+}
+void total_detail(const ReferenceBody<double>& reference, const TotalWork<double>& work, const TotalParameters& q,
+                  TotalDetail& detail) {
+  reference.dimensions == 2 ? detail_of<2>(reference, work, q, detail) : detail_of<3>(reference, work, q, detail);
+}
+
+}  // namespace barchan::BARCHAN_TARGET

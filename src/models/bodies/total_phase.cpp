@@ -1,0 +1,201 @@
+#include "models/bodies/total_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "engine/integrate.hpp"
+#include "engine/means.hpp"
+#include "models/bodies/stiffest_vibration.hpp"
+#include "models/bodies/stress_fields.hpp"
+#include "output/numbers.hpp"
+#include "scene/located.hpp"
+
+namespace barchan {
+
+namespace {
+
+template <class T>
+class BodyOf : public TotalBody {
+ public:
+  BodyOf(ReferenceBody<T> reference, const TotalParameters& parameters)
+      : reference_(std::move(reference)), parameters_(parameters) {
+    work_.resize(reference_.size, reference_.width, reference_.dimensions, parameters.moduli.retardation > 0.0);
+    if constexpr (std::is_same_v<T, float>) work_.unit = room * reference_.diameter / 4294967296.0;
+    for (std::size_t d = 0; d < 3; ++d)
+      if (parameters.period[d] > 0.0) work_.displaced[d].assign(reference_.size, 0.0);
+    const std::size_t padded = reference_.groups.size() * reference_.width;
+    const auto numbers = static_cast<std::size_t>(reference_.dimensions * reference_.dimensions);
+    for (std::size_t c = 0; c < numbers; ++c) detail_.gradient[c].assign(padded, 0.0);
+    detail_.hourglass.assign(padded, 0.0);
+  }
+  void set_places(const PhaseParticles& p) override {
+    work_.in_order = true;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const auto id = static_cast<std::size_t>(p.id()[k] - p.first_id());
+      work_.at[id] = static_cast<std::uint32_t>(k);
+      work_.in_order = work_.in_order && id == k;
+    }
+  }
+  double pack(const PhaseParticles& p) override { return pack_displacements(p, reference_, work_, parameters_); }
+  void load(PhaseParticles& p) override {
+    total_stress(p, reference_, work_, parameters_);
+    total_forces(p, reference_, work_, parameters_);
+  }
+  const TotalDetail& detail() override {
+    total_detail(reference_, work_, parameters_, detail_);
+    return detail_;
+  }
+  const std::vector<std::uint32_t>& places() const override { return work_.at; }
+  std::uint64_t pairs() const override { return reference_.pairs; }
+  std::int64_t flat() const override { return reference_.flat; }
+  void archive(Archive& a) override {
+    for (std::size_t d = 0; d < 3; ++d)
+      if (!work_.displaced[d].empty()) a.values("displacement", work_.displaced[d].data(), work_.displaced[d].size());
+  }
+
+ private:
+  static constexpr double room = 8.0;  // displacements within a body: of its diameter, both ways together
+  ReferenceBody<T> reference_;
+  TotalParameters parameters_;
+  TotalWork<T> work_;
+  TotalDetail detail_;
+};
+
+template <class T>
+std::unique_ptr<TotalBody> make_body(const std::vector<Vec3>& places, const Layout& layout, double spacing,
+                                     const PlanEntry* own, const TotalParameters& parameters) {
+  return std::make_unique<BodyOf<T>>(
+      make_reference_body<T>(places, layout.bounds, spacing, own ? own->kernel : KernelKind::wendland_c2,
+                             own ? own->radius : 0.0, simd::width_in_use<T>()),
+      parameters);
+}
+
+}  // namespace
+
+template <class T>
+void TotalWork<T>::resize(std::size_t size, std::size_t width, int dimensions, bool damped) {
+  const std::size_t room = (size + width - 1) / width * width + 2 * margin, dim = static_cast<std::size_t>(dimensions);
+  for (std::size_t d = 0; d < dim; ++d) {
+    displacement[d].assign(room, Place(0));
+    if (damped) velocity[d].assign(room, T(0));
+  }
+  for (std::size_t c = 0; c < dim * dim; ++c) reach[c].assign(room, T(0));
+  at.assign(size, 0);
+}
+template struct TotalWork<float>;
+template struct TotalWork<double>;
+
+TotalPhase::TotalPhase(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      phase_(scene.phases[number]),
+      plan_(layout.phases[number]),
+      number_(number),
+      forces_(scene, phase_.name) {
+  for (const auto& e : layout.entries)
+    if (e.law == Law::elastic && e.a == number && e.b == number) own_ = &e;
+  const ElasticKeys& keys = phase_.elastic();
+  parameters_.law = keys.elasticity;
+  parameters_.moduli = ElasticModuli::of(keys.young, keys.poisson, keys.retardation);
+  parameters_.hourglass = keys.hourglass * keys.young;
+  parameters_.density = phase_.density;
+  parameters_.gravity = scene.domain.gravity;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout.dimensions); ++d)
+    if (layout.bounds.periodic[d]) parameters_.period[d] = layout.bounds.high[d] - layout.bounds.low[d];
+}
+
+void TotalPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  PhaseParticles& p = state.phases[number_];
+  std::fill_n(p.column(Field::density), p.size(), phase_.density);
+  start_ = blocks[number_].position;
+}
+
+void TotalPhase::attach(Workspace& w) {
+  w_ = &w;
+  body_ = scene_.precision == Precision::mixed ? make_body<float>(start_, layout_, plan_.spacing, own_, parameters_)
+                                               : make_body<double>(start_, layout_, plan_.spacing, own_, parameters_);
+  if (const std::int64_t flat = body_->flat(); flat >= 0) {
+    const Vec3& x = start_[static_cast<std::size_t>(flat)];
+    throw SceneError(located(scene_, "phases." + plan_.name + ".formulation") +
+                     ": the neighbours of the particle at (" + brief(x[0]) + ", " + brief(x[1]) + ", " + brief(x[2]) +
+                     ") m lie in one line or plane, from which no strain follows; expected bodies of two layers of "
+                     "particles or more, a wider radius, or \"updated-lagrangian\"");
+  }
+  start_.clear();
+  start_.shrink_to_fit();
+  body_->set_places(w.particles(number_));
+  w.when_sorted.push_back([this] { body_->set_places(w_->particles(number_)); });
+}
+
+void TotalPhase::schedule(Schedule& s) {
+  using enum Field;
+  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
+  s.add({stage::elastic, plan_.name, {position, velocity}, {density, acceleration}, [this] { load(); }});
+}
+
+/// The stiffest vibration bounds the step; so does what damps it.
+void TotalPhase::limits(std::vector<StepLimit>& limits) const {
+  if (plan_.count == 0 || !own_) return;
+  const double frequency =
+      stiffest_vibration(own_->kernel, own_->radius, plan_.spacing, layout_.dimensions, parameters_);
+  const double undamped = StepConstants::total * 2.0 / frequency;
+  limits.push_back({"elastic " + plan_.name, scene_.time.safety * undamped, "its stiffest vibration"});
+  const double slow = parameters_.moduli.retardation;
+  if (slow > 0.0)
+    limits.push_back({"damping " + plan_.name,
+                      scene_.time.safety * StepConstants::total / (slow * frequency * frequency),
+                      "the retardation of its stiffest vibration"});
+}
+
+void TotalPhase::kick_and_drift() {
+  const double dt = w_->state.dt;
+  barchan::kick_and_drift(w_->particles(number_), 0.5 * dt, dt, nullptr);
+}
+
+void TotalPhase::load() {
+  PhaseParticles& p = w_->particles(number_);
+  if (must_find_places_) body_->set_places(p);
+  must_find_places_ = false;
+  stretched_ = body_->pack(p);
+  body_->load(p);
+  forces_.add(p, w_->state.time, true);
+}
+
+std::optional<std::string> TotalPhase::trouble() const {
+  if (stretched_ < 1.0) return std::nullopt;
+  return "the body \"" + plan_.name +
+         "\" is stretched to four times its size, beyond what mixed precision holds: set precision = \"double\", or "
+         "lower "
+         "what pulls it";
+}
+
+void TotalPhase::history(HistoryRow& row) const {
+  row.add(plan_.name + "_strain_energy [J]", strain_energy_);
+  row.add(plan_.name + "_hourglass_energy [J]", hourglass_energy_);
+}
+
+void TotalPhase::derive() {
+  PhaseParticles& p = w_->particles(number_);
+  body_->set_places(p);
+  must_find_places_ = true;  // these may be the particles of an earlier state
+  body_->pack(p);
+  const TotalDetail& detail = body_->detail();
+  const double volume = std::pow(plan_.spacing, layout_.dimensions);
+  const SolidFields fields(p);
+  const auto solid = [&](std::size_t id) {
+    return solid_of(detail.gradient, id, layout_.dimensions, parameters_.law, parameters_.moduli);
+  };
+  for (std::size_t id = 0; id < p.size(); ++id) fields.write(body_->places()[id], solid(id));
+  strain_energy_ = volume * ordered_sum(p.size(), [&](std::size_t id) { return solid(id).energy; });
+  hourglass_energy_ = volume * ordered_sum(p.size(), [&](std::size_t id) { return detail.hourglass[id]; });
+}
+
+std::uint64_t TotalPhase::pairs(const PlanEntry& entry) const { return &entry == own_ && body_ ? body_->pairs() : 0; }
+
+void TotalPhase::archive(Archive& a) {
+  body_->archive(a);
+  if (a.loads()) body_->set_places(w_->particles(number_));
+}
+
+}  // namespace barchan

@@ -1,0 +1,83 @@
+// Elastic bodies: keys that their formulation does not read, contacts of bodies, sets of their particles.
+#include <algorithm>
+
+#include "scene/checks.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+namespace {
+
+void check_formulation(const Phase& phase, const Report& report) {
+  const std::string dotted = "phases." + phase.name;
+  const bool total = is_total(phase);
+  const auto refuse = [&](const char* key, const char* other) {
+    if (report.has(dotted + "." + key) && !report.touched(dotted + "." + key))
+      report(dotted + "." + key, std::string("nothing reads it; expected formulation = \"") + other + "\" beside it");
+  };
+  for (const char* key : {"elasticity", "hourglass", "retardation"})
+    if (!total) refuse(key, "total-lagrangian");
+  for (const char* key : {"artificial-viscosity", "artificial-viscosity-beta", "energy"})
+    if (total) refuse(key, "updated-lagrangian");
+}
+
+/// restitution and friction, and what a contact of bodies has no use for.
+void check_contact(const Interaction& pair, const Phase& a, const Phase& b, const Report& report) {
+  const std::string dotted = "interactions." + pair.a + "-" + pair.b;
+  if (!touch_as_bodies(pair, a, b)) {
+    for (const char* key : {".restitution", ".friction"})
+      if (report.has(dotted + key))
+        report(dotted + key, bodies_may_touch(a, b)
+                                 ? "nothing reads it without restitution; expected restitution beside it"
+                                 : "only a body with another body or a wall has it; expected no such key here");
+    return;
+  }
+  for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
+    if (report.has(dotted + key))
+      report(dotted + key,
+             "bodies touch where the spacings of their particles end; expected no such key beside "
+             "restitution or a total Lagrangian body");
+}
+
+void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report) {
+  if (report.touched(dotted) || !report.has(dotted + ".phase")) return;
+  const Phase* phase = find_phase(scene, set.phase);
+  if (!phase) return report(dotted + ".phase", unknown_phase(set.phase, scene));
+  if (!report.touched("phases." + phase->name + ".kind") && phase->kind() != PhaseKind::elastic)
+    return report(dotted + ".phase", "\"" + phase->name + "\" is no body; expected a phase of kind elastic");
+  for (std::size_t d = 0; set.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
+    if (!(set.box->min[d] <= set.box->max[d]))
+      return report(dotted + ".box", "its lower corner lies above its upper one; expected min <= max");
+}
+
+bool good_name(const std::string& name) {
+  return !name.empty() &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+}  // namespace
+
+void check_bodies(const Scene& scene, const Report& report) {
+  const auto known = [&](const Phase& phase) { return !report.touched("phases." + phase.name); };
+  for (const Phase& phase : scene.phases)
+    if (known(phase) && phase.kind() == PhaseKind::elastic) check_formulation(phase, report);
+  for (const Interaction& pair : scene.interactions) {
+    const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
+    if (a && b && known(*a) && known(*b) && !report.touched("interactions." + pair.a + "-" + pair.b))
+      check_contact(pair, *a, *b, report);
+  }
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)
+    check_set(scene.motions[k], "motion." + std::to_string(k), scene, report);
+  for (std::size_t k = 0; k < scene.markers.size(); ++k) {
+    const std::string dotted = "marker." + std::to_string(k), &name = scene.markers[k].name;
+    check_set(scene.markers[k], dotted, scene, report);
+    if (!report.has(dotted + ".name") || report.touched(dotted + ".name")) continue;
+    if (!good_name(name))
+      report(dotted + ".name",
+             "\"" + name + "\" becomes a part of a column's name; expected letters, digits and underscores");
+    for (std::size_t other = 0; other < k; ++other)
+      if (scene.markers[other].name == name)
+        report(dotted + ".name", "\"" + name + "\" is given twice; expected a name of its own");
+  }
+}
+
+}  // namespace barchan

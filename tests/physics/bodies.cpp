@@ -1,0 +1,192 @@
+// Bodies: the restitution that a scene writes is the one that two particles have; bars and plates against exact
+// solutions.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/drive.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::Drive;
+using testing::report;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+struct Meeting {
+  double restitution, young, speed;  // -, Pa, m/s
+  double density_b = 7870.0;         // kg/m3
+  std::string formulation = "total-lagrangian";
+};
+
+/// The share of their relative speed that two single particles keep.
+double restitution_of(const Meeting& m, int start) {
+  const std::string young = number(m.young);
+  std::vector<std::string> set{
+      "interactions={ kernel = \"cubic-spline\", a-b = { restitution = " + number(m.restitution) + " } }",
+      "phases.a.young=" + young,
+      "phases.b.young=" + young,
+      "phases.b.density=" + number(m.density_b),
+      "phases.a.formulation=" + m.formulation,
+      "phases.b.formulation=" + m.formulation,
+      "fill.0.velocity=[" + number(m.speed) + ", 0, 0]",
+      "time.largest-speed=" + number(m.speed),
+      "time.end=1"};
+  // Where the contact begins within a step is different for each start.
+  const double wave = std::sqrt(m.young * 0.7 / (1.3 * 0.4 * 7870.0));
+  set.push_back("fill.1.shape.points=[[" + number(0.003 + 1e-4 * 1e-3 * m.speed / wave * start) + ", 0.002, 0.002]]");
+  Drive drive("verification/two_particle_impact", set);
+  auto& s = drive.simulation();
+  const auto apart = [&] {
+    return drive.phase(1).column(Field::position)[0] - drive.phase(0).column(Field::position)[0];
+  };
+  const auto parting = [&] {
+    return drive.phase(1).column(Field::velocity)[0] - drive.phase(0).column(Field::velocity)[0];
+  };
+  for (int k = 0; k < 20000 && !(parting() > 0.0 && apart() > 1e-3); ++k) s.step(1.0);
+  return parting() / m.speed;
+}
+
+TEST(BodyContact, TwoParticlesKeepTheWrittenShareOfTheirSpeed) {
+  double worst = 0.0, elastic = 0.0;
+  std::vector<Meeting> meetings;
+  for (const double e : {0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 1.0}) meetings.push_back({e, 206e9, 10.0});
+  for (const double young : {206e6, 206e7, 206e8, 206e10, 206e11, 206e12}) {
+    meetings.push_back({0.5, young, 10.0});
+    meetings.push_back({1.0, young, 10.0});
+  }
+  for (const double speed : {0.1, 1.0, 100.0}) {
+    meetings.push_back({0.2, 206e9, speed});
+    meetings.push_back({1.0, 206e9, speed});
+  }
+  meetings.push_back({0.5, 206e9, 10.0, 787.0});
+  meetings.push_back({1.0, 206e9, 10.0, 787.0});
+  meetings.push_back({0.5, 206e9, 10.0, 7870.0, "updated-lagrangian"});
+  for (const Meeting& m : meetings)
+    for (const int start : {1, 17, 40}) {
+      const double error = std::abs(restitution_of(m, start) - m.restitution);
+      EXPECT_LE(error, m.restitution == 1.0 ? 1e-4 : 0.01)
+          << "restitution " << m.restitution << ", E " << m.young << ", V " << m.speed << ", start " << start;
+      double& most = m.restitution == 1.0 ? elastic : worst;
+      most = std::max(most, error);
+    }
+  report("restitution 0.05 to 0.95, largest error", worst, 0.01);
+  report("restitution 1, largest error", elastic, 1e-4);
+}
+
+TEST(BodyContact, FrictionStopsWhatSlides) {
+  // A block slides on a floor: it stops after V^2/(2 mu g), and without friction it does not.
+  const char* const scene = R"(dimensions = 2
+spacing = 0.01
+[domain]
+size = [1.0, 0.2]
+gravity = [0, -10]
+[phases.block]
+kind = "elastic"
+density = 1000
+young = 1e6
+poisson = 0.2
+retardation = 3e-4
+[phases.floor]
+kind = "wall"
+[interactions]
+block-block = 2.1
+block-floor = { friction = 0.4, restitution = 0.2 }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "block"
+shape = { box = { min = [0.1, 0.0], max = [0.2, 0.05] } }
+velocity = [0.8, 0]
+[time]
+end = 0.4
+)";
+  Scene s = parse_scene(scene, "block.toml");
+  const auto blocks = generate(s);
+  Simulation simulation(s, make_plan(s, blocks), blocks);
+  const auto mean = [&] {
+    const auto& p = simulation.phases()[0];
+    double sum = 0.0;
+    for (std::size_t k = 0; k < p.size(); ++k) sum += p.column(Field::position)[k];
+    return sum / static_cast<double>(p.size());
+  };
+  const double start = mean();
+  while (simulation.time() < 0.4) simulation.step(0.4 - simulation.time() + 1e-12);
+  report("way over V^2/(2 mu g) - 1", (mean() - start) / 0.08 - 1.0, 0.05);
+  EXPECT_NEAR(mean() - start, 0.08, 0.004);
+}
+
+/// The bar's speed in the mean, m/s.
+double mean_speed(const PhaseParticles& p) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < p.size(); ++k) sum += p.column(Field::velocity)[k];
+  return sum / static_cast<double>(p.size());
+}
+
+TEST(TotalLagrangianBodies, TwoEqualBarsTouchForTheExactTime) {
+  Drive drive("verification/two_bars");
+  auto& s = drive.simulation();
+  const double exact = 2.0 * 0.040 / 5936.0;
+  double first = -1.0, last = 0.0, before = 0.0;
+  while (s.time() < 2.7e-5) {
+    const double begin = s.time();
+    s.step(1.0);
+    const double gain = (mean_speed(drive.phase(1)) - before) / (s.time() - begin);
+    before = mean_speed(drive.phase(1));
+    if (gain > 0.5 * 10.0 / exact) {  // half of the exact force
+      if (first < 0.0) first = s.time();
+      last = s.time();
+    }
+  }
+  const double a = mean_speed(drive.phase(0)), b = mean_speed(drive.phase(1));
+  report("time of contact over 2L/c - 1", (last - first) / exact - 1.0, 0.02);
+  report("restitution", (b - a) / 10.0, 0.98);
+  report("speed of A over V", a / 10.0, 0.02);
+  EXPECT_NEAR((last - first) / exact, 1.0, 0.02);
+  EXPECT_GE((b - a) / 10.0, 0.98);
+  EXPECT_LE(std::abs(a) / 10.0, 0.02);
+}
+
+TEST(TotalLagrangianBodies, APlateSwingsWithItsPeriodAndKeepsItsEnergy) {
+  Drive drive("verification/cantilever", {"time.end=0.3"});
+  auto& s = drive.simulation();
+  const auto names = s.history_columns();
+  const auto sum_of = [&](const std::vector<std::string>& wanted) {
+    const auto row = s.history_row();
+    double sum = 0.0;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (std::find(wanted.begin(), wanted.end(), names[k]) != wanted.end()) sum += row[k];
+    return sum;
+  };
+  const auto energy = [&] {
+    return sum_of({"plate_kinetic_energy [J]", "plate_strain_energy [J]", "plate_hourglass_energy [J]"});
+  };
+  const auto tip = [&] { return sum_of({"tip_y [m]"}) - 0.1; };
+  const double start = energy();
+  // Zeros of the tip's motion: half a period and a whole one. It starts at zero.
+  std::vector<double> zeros;
+  double y = 0.0, t = 0.0;
+  int looked = 0;
+  while (s.time() < 0.3) {
+    s.step(0.3 - s.time() + 1e-12);
+    if (++looked % 20 != 0) continue;
+    const double now = tip();
+    if (y * now < 0.0) zeros.push_back(t + (s.time() - t) * (y / (y - now)));
+    y = now;
+    t = s.time();
+  }
+  ASSERT_GE(zeros.size(), 2u);
+  const double period = zeros[1];
+  report("period over Timoshenko's 0.2565 s - 1", period / 0.2565 - 1.0, 0.015);
+  report("energy kept", energy() / start - 1.0, 1e-4);
+  EXPECT_NEAR(period / 0.2565, 1.0, 0.015);
+  EXPECT_NEAR(energy() / start, 1.0, 1e-4);
+}
+
+}  // namespace
+}  // namespace barchan
