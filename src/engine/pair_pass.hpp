@@ -34,8 +34,8 @@ BARCHAN_SIMD_INLINE void take_quantity(Has<q, Dim, T>& particle, const T* record
 
 /// Neighbours from their transposed record; beside: of laws that read it, at: the list's entries.
 template <int Dim, class T, Quantity... q>
-BARCHAN_SIMD_INLINE void take(Particle<Dim, T, Quantities<q...>>& particle, const T* record, const double* beside,
-                              const std::uint32_t* at) {
+BARCHAN_SIMD_INLINE void take(Particle<Dim, T, Quantities<q...>>& particle, const T* record,
+                              [[maybe_unused]] const double* beside, [[maybe_unused]] const std::uint32_t* at) {
   for (std::size_t d = 0; d < Dim; ++d) particle.x[d] = record[MotionRecord<Dim>::position + d];
   (take_quantity<q, false, Dim, T>(particle, record, beside, at), ...);
 }
