@@ -177,7 +177,6 @@ void Air::attach(Workspace& w) {
   q.acceleration = forces_.uniform();
   for (const auto& e : layout_.entries)
     if (e.law == Law::coupling && e.fluid == number_) q.pores = 0.5 * q.sound_speed / q.smoothing_length;
-  q.shut_in = plan_.enclosed && q.pores == 0.0;
   q.lattice_moment = lattice_moment(layout_, number_);
   if (plan_.free_surface) {
     surface_ = std::make_unique<SurfaceFinder>();

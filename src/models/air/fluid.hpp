@@ -38,7 +38,6 @@ struct FluidParameters {
   double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
   double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
   double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
-  bool shut_in;            // by walls alone: it has no surface (fluid_finish.hpp)
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.

@@ -169,13 +169,8 @@ constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
 ///   grad p    = w M^-1 P + (1-w) [2 (p_a - p_v) B - P]
 ///   lap p     = w (-2 Dim/tr M) [L_p - (M^-1 P).B] + (1-w) 2 [L_p - rho0 g.B]
 /// p_v is the pressure of the void: zero beyond a free surface; below zero in a fluid that fills its space, so that a
-/// hole behind a grain closes. A fluid that walls shut in, without grains that leave holes, has no surface: its
-/// corrected operators count down to a wholeness of zero, because next to a wall whose kernel is shorter than the
-/// fluid's disturbed particles lie below 0.6 (the cavity's error at 50 a side was 0.0061, and is 0.0052).
-struct SurfaceBounds {
-  double begins, ends;
-};
-constexpr SurfaceBounds open_surface{0.3, 0.6}, shut_in_surface{0.0, 0.3};
+/// hole behind a grain closes.
+constexpr double surface_begins = 0.3, surface_ends = 0.6;
 
 /// Without friction, rows next to a heavy free surface rock each other up, where the operators change from corrected to
 /// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. The rate
@@ -224,8 +219,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   }
   weighted_trace = simd::min(weighted_trace + trace, V(0.5) * trace);  // both negative
   const V per_trace = V(1.0) / trace;
-  const SurfaceBounds& surface = q.shut_in ? shut_in_surface : open_surface;
-  const V inner = smooth_step(place.wholeness, surface.begins, surface.ends), outer = V(1.0) - inner;
+  const V inner = smooth_step(place.wholeness, surface_begins, surface_ends), outer = V(1.0) - inner;
   const V viscosity = q.least_viscosity > 0.0 ? least_viscosity<Dim, V>(V(mu), inner, place.normal, q) : V(mu);
   const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
   const V specific = V(1.0) / rho;
