@@ -2,8 +2,8 @@
 // of each it sums a law's pairs in every entry, and hands the sums to the model.
 //
 // A particle's sums have one order: entry by entry, in a row as the list has it. Positions and ids decide that order,
-// so the results have the same bits on any number of threads. Only for hot files: everything here is inlined into them
-// or has a vector of their instruction set in its type.
+// so the results have the same bits on any number of threads. Only for hot files, in whose namespace it stands: no
+// function for one instruction set has the name of one for another (base/instructions.hpp).
 #pragma once
 
 #include <span>
@@ -16,13 +16,14 @@
 #include "laws/pair.hpp"
 #include "state/particles.hpp"
 
-namespace barchan {
+namespace barchan::BARCHAN_TARGET {
 
 namespace detail {
 
 /// First: of the first particle, which has nothing beside its record.
 template <Quantity q, bool first, int Dim, class T>
-BARCHAN_SIMD_INLINE void take_quantity(Has<q, Dim, T>& particle, const T* record, [[maybe_unused]] const double* beside,
+BARCHAN_SIMD_INLINE void take_quantity(barchan::detail::Has<q, Dim, T>& particle, const T* record,
+                                       [[maybe_unused]] const double* beside,
                                        [[maybe_unused]] const std::uint32_t* at) {
   using R = MotionRecord<Dim>;
   if constexpr (q == Quantity::velocity)
@@ -34,8 +35,8 @@ BARCHAN_SIMD_INLINE void take_quantity(Has<q, Dim, T>& particle, const T* record
 
 /// Neighbours from their transposed record; beside: of laws that read it, at: the list's entries.
 template <int Dim, class T, Quantity... q>
-BARCHAN_SIMD_INLINE void take(Particle<Dim, T, Quantities<q...>>& particle, const T* record, const double* beside,
-                              const std::uint32_t* at) {
+BARCHAN_SIMD_INLINE void take(Particle<Dim, T, Quantities<q...>>& particle, const T* record,
+                              [[maybe_unused]] const double* beside, [[maybe_unused]] const std::uint32_t* at) {
   for (std::size_t d = 0; d < Dim; ++d) particle.x[d] = record[MotionRecord<Dim>::position + d];
   (take_quantity<q, false, Dim, T>(particle, record, beside, at), ...);
 }
@@ -124,4 +125,4 @@ BARCHAN_SIMD_INLINE void accelerate(PhaseParticles& a, const RecordArray& own, c
   else accelerate_in<3>(a, own, entry);
 }
 
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET
