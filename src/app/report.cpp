@@ -51,9 +51,9 @@ void add_measured(RunReport& r, const Plan& plan, const Measurements& measuremen
 }
 
 void add_budgets(RunReport& r, const Simulation& simulation) {
-  const auto columns = simulation.history_columns();
-  const auto row = simulation.history_row();
-  for (std::size_t c = 2; c < row.size(); ++c) r.budgets[columns[c].substr(0, columns[c].find(" ["))] = row[c];
+  const HistoryRow row = simulation.history();
+  for (std::size_t c = HistoryRow::dt; c < row.names.size(); ++c)
+    r.budgets[row.names[c].substr(0, row.names[c].find(" ["))] = row.values[c];
   if (const auto drift = simulation.budget().momentum_drift(simulation.state())) r.budgets["momentum_drift"] = *drift;
   if (const auto growth = simulation.budget().energy_growth(simulation.state())) r.budgets["energy_growth"] = *growth;
   r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation.searches());

@@ -213,7 +213,7 @@ std::string Run::break_down(const std::string& what) {
   const fs::path bad = bad_file(directory_, scene_);
   barchan::write_frame(bad, simulation_.frame(static_cast<int>(clock().frames)), scene_.output.format,
                        scene_.output.compress);
-  const std::string message =
+  std::string message =
       what + "; last good state: " + series_->last_file() + " (t = " + brief(clock().last_frame_time) + " s, step " +
       std::to_string(clock().last_frame_step) + "), first bad state: " + bad.filename().string() +
       " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";

@@ -8,33 +8,39 @@
 
 namespace barchan {
 
-enum class Field : int {
-  position,
-  velocity,
-  density,
-  pressure,
-  acceleration,
-  density_rate,
-  velocity_gradient,
-  stress,
-  energy,
-  energy_rate,
-  shift_velocity,
-  anisotropy,
-  wholeness,
-  surface_normal,
-  eddy_viscosity,
-  ground_distance,
-  wall_normal,
-  wall_depth,
-  drag_acceleration,
-  smoothing_length,
-  radius,
-  angular_velocity,
-  contact_acceleration,
-  angular_acceleration,
-  count
-};
+/// The rows, one a field: name, symbol, unit, rank, whether a step starts from it (state) or a task derives it anew
+/// (derived), meaning. A name is also that of the enumerator and of the field in files and in a scene's output.fields.
+// clang-format off
+#define BARCHAN_FIELDS(row) \
+  row(position, "x", "m", vector, state, "place of the particle") \
+  row(velocity, "v", "m/s", vector, state, "velocity; between steps half a step behind the position") \
+  row(density, "rho", "kg/m3", scalar, state, "density") \
+  row(pressure, "p", "Pa", scalar, state, "pressure from the equation of state") \
+  row(acceleration, "a", "m/s2", vector, state, "total acceleration of the last pass") \
+  row(density_rate, "drho/dt", "kg/m3/s", scalar, state, "rate of change of the density") \
+  row(velocity_gradient, "grad v", "1/s", matrix, derived, "velocity gradient, row-major") \
+  row(stress, "s", "Pa", symmetric, state, "deviatoric stress, xx yy zz xy yz xz") \
+  row(energy, "e", "J/kg", scalar, state, "specific internal energy") \
+  row(energy_rate, "de/dt", "W/kg", scalar, derived, "rate of change of the internal energy") \
+  row(shift_velocity, "du", "m/s", vector, state, "transport velocity less the velocity (particle shifting)") \
+  row(anisotropy, "A", "1", deviator, state, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz") \
+  row(wholeness, "chi", "1", scalar, state, "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface") \
+  row(surface_normal, "n", "1/m", vector, state, "of a fluid with a free surface: direction inwards near the surface, zero elsewhere") \
+  row(eddy_viscosity, "nu_t", "m2/s", scalar, state, "kinematic viscosity of the unresolved turbulence") \
+  row(ground_distance, "d", "m", scalar, derived, "distance to the surface of the nearest wall or grain at rest") \
+  row(wall_normal, "n", "1", vector, state, "unit normal of a wall particle, into the fluid") \
+  row(wall_depth, "phi", "m", scalar, state, "distance of a wall particle behind the wall's surface, 0: unknown") \
+  row(drag_acceleration, "a_d", "m/s2", vector, state, "acceleration of a grain by the drag of a column of air") \
+  row(smoothing_length, "h", "m", scalar, derived, "half the kernel radius of the phase with itself") \
+  row(radius, "r", "m", scalar, state, "of a sphere whose phase has sizes") \
+  row(angular_velocity, "w", "1/s", axial, state, "of a sphere that rubs; in 2D about z") \
+  row(contact_acceleration, "a_c", "m/s2", vector, state, "of a sphere: what its contacts gave in their last step; acceleration holds all the rest") \
+  row(angular_acceleration, "dw/dt", "1/s2", axial, state, "of a sphere that rubs, in the last step of its contacts")
+// clang-format on
+
+#define BARCHAN_NAME(name, symbol, unit, rank, lifetime, meaning) name,
+enum class Field : int { BARCHAN_FIELDS(BARCHAN_NAME) count };
+#undef BARCHAN_NAME
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
 
 /// deviator: symmetric, traceless (2 or 6 numbers); axial: about an axis (1 number in 2D, about z, or 3).
@@ -50,46 +56,12 @@ struct FieldInfo {
   std::string_view meaning;
 };
 
-inline constexpr std::array<FieldInfo, field_count> field_table{{
-    {Field::position, "position", "x", "m", Rank::vector, true, "place of the particle"},
-    {Field::velocity, "velocity", "v", "m/s", Rank::vector, true,
-     "velocity; between steps half a step behind the position"},
-    {Field::density, "density", "rho", "kg/m3", Rank::scalar, true, "density"},
-    {Field::pressure, "pressure", "p", "Pa", Rank::scalar, true, "pressure from the equation of state"},
-    {Field::acceleration, "acceleration", "a", "m/s2", Rank::vector, true, "total acceleration of the last pass"},
-    {Field::density_rate, "density_rate", "drho/dt", "kg/m3/s", Rank::scalar, true, "rate of change of the density"},
-    {Field::velocity_gradient, "velocity_gradient", "grad v", "1/s", Rank::matrix, false,
-     "velocity gradient, row-major"},
-    {Field::stress, "stress", "s", "Pa", Rank::symmetric, true, "deviatoric stress, xx yy zz xy yz xz"},
-    {Field::energy, "energy", "e", "J/kg", Rank::scalar, true, "specific internal energy"},
-    {Field::energy_rate, "energy_rate", "de/dt", "W/kg", Rank::scalar, false, "rate of change of the internal energy"},
-    {Field::shift_velocity, "shift_velocity", "du", "m/s", Rank::vector, true,
-     "transport velocity less the velocity (particle shifting)"},
-    {Field::anisotropy, "anisotropy", "A", "1", Rank::deviator, true,
-     "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz"},
-    {Field::wholeness, "wholeness", "chi", "1", Rank::scalar, true,
-     "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface"},
-    {Field::surface_normal, "surface_normal", "n", "1/m", Rank::vector, true,
-     "of a fluid with a free surface: direction inwards near the surface, zero elsewhere"},
-    {Field::eddy_viscosity, "eddy_viscosity", "nu_t", "m2/s", Rank::scalar, true,
-     "kinematic viscosity of the unresolved turbulence"},
-    {Field::ground_distance, "ground_distance", "d", "m", Rank::scalar, false,
-     "distance to the surface of the nearest wall or grain at rest"},
-    {Field::wall_normal, "wall_normal", "n", "1", Rank::vector, true, "unit normal of a wall particle, into the fluid"},
-    {Field::wall_depth, "wall_depth", "phi", "m", Rank::scalar, true,
-     "distance of a wall particle behind the wall's surface, 0: unknown"},
-    {Field::drag_acceleration, "drag_acceleration", "a_d", "m/s2", Rank::vector, true,
-     "acceleration of a grain by the drag of a column of air"},
-    {Field::smoothing_length, "smoothing_length", "h", "m", Rank::scalar, false,
-     "half the kernel radius of the phase with itself"},
-    {Field::radius, "radius", "r", "m", Rank::scalar, true, "of a sphere whose phase has sizes"},
-    {Field::angular_velocity, "angular_velocity", "w", "1/s", Rank::axial, true,
-     "of a sphere that rubs; in 2D about z"},
-    {Field::contact_acceleration, "contact_acceleration", "a_c", "m/s2", Rank::vector, true,
-     "of a sphere: what its contacts gave in their last step; acceleration holds all the rest"},
-    {Field::angular_acceleration, "angular_acceleration", "dw/dt", "1/s2", Rank::axial, true,
-     "of a sphere that rubs, in the last step of its contacts"},
-}};
+enum class Lifetime { state, derived };
+
+#define BARCHAN_ROW(name, symbol, unit, rank, lifetime, meaning) \
+  {Field::name, #name, symbol, unit, Rank::rank, Lifetime::lifetime == Lifetime::state, meaning},
+inline constexpr std::array<FieldInfo, field_count> field_table{{BARCHAN_FIELDS(BARCHAN_ROW)}};
+#undef BARCHAN_ROW
 
 constexpr const FieldInfo& info(Field f) { return field_table[static_cast<std::size_t>(f)]; }
 
@@ -111,12 +83,5 @@ constexpr std::optional<Field> find_field(std::string_view name) {
     if (f.name == name) return f.id;
   return std::nullopt;
 }
-
-constexpr bool table_is_in_order() {
-  for (std::size_t k = 0; k < field_count; ++k)
-    if (static_cast<std::size_t>(field_table[k].id) != k) return false;
-  return true;
-}
-static_assert(table_is_in_order(), "the table of fields must be in the order of enum Field");
 
 }  // namespace barchan

@@ -8,7 +8,8 @@
 #include <cstring>
 
 #if __has_include(<sys/platform/x86.h>)
-#define _Bool bool  // the header is written in C; clang knows no _Bool in C++
+// The header is written in C; clang knows no _Bool in C++.
+#define _Bool bool  // NOLINT(bugprone-reserved-identifier)
 #include <sys/platform/x86.h>
 #undef _Bool
 #endif

@@ -1,9 +1,9 @@
 // Which SIMD instructions a file is compiled for, and which of them the program uses.
 //
-// The hot files (src/CMakeLists.txt lists them) are compiled twice, for AVX2 and for AVX-512; all other files are
-// compiled for AVX2. Each copy stands in a namespace of its own, barchan::avx2 and barchan::avx512, and so do the
-// vectors of simd/vec.hpp: no function of one copy has the name of a function of the other, and the linker cannot take
-// one for the other. At start the program chooses a copy, once. A program built for one instruction set (presets
+// The hot files (those that stand in namespace BARCHAN_TARGET) are compiled twice, for AVX2 and for AVX-512; all other
+// files are compiled for AVX2. Each copy stands in a namespace of its own, barchan::avx2 and barchan::avx512, and so do
+// the vectors of simd/vec.hpp: no function of one copy has the name of a function of the other, and the linker cannot
+// take one for the other. At start the program chooses a copy, once. A program built for one instruction set (presets
 // native, dev and the sanitizers) has one copy and nothing to choose.
 #pragma once
 

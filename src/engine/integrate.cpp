@@ -23,7 +23,8 @@ std::array<double*, Dim> columns(PhaseParticles& phase, Field field) {
   return c;
 }
 
-// Called by all threads of a team; each thread goes through the same particles in every loop, so none waits.
+// Called by all threads of a team; each thread goes through the same particles in every loop, so no thread waits for
+// another.
 template <std::size_t Dim, bool Shifted>
 void kick_and_drift_all(PhaseParticles& phase, double half_kick, double time) {
   const auto x = columns<Dim>(phase, Field::position), v = columns<Dim>(phase, Field::velocity),

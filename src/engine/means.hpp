@@ -33,8 +33,8 @@ class BlockMean {
   std::vector<double> parts_;
 };
 
-/// Takes the mean off the density rates: mass and volume of an enclosed fluid are given, and the truncation error of
-/// the divergence must not pump it up.
+/// Subtracts the mean from the density rates: mass and volume of an enclosed fluid are given, and the truncation error
+/// of the divergence must not change them.
 void keep_mean_density(PhaseParticles& fluid, BlockMean& mean);
 
 /// Holds the mean velocity of a fluid along some axes, as a channel flow of constant mass flux is held: adds the

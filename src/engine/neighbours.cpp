@@ -168,7 +168,7 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
           for (int x = 0; x < mx; ++x) {
             const long near = (zs[static_cast<std::size_t>(z)] * ny + ys[static_cast<std::size_t>(y)]) * nx +
                               xs[static_cast<std::size_t>(x)];
-            if (direction.a == direction.b && near < q) continue;  // seen from there
+            if (direction.a == direction.b && near < q) continue;  // compared when `near` was q
             const Range& other = ranges_[direction.b][static_cast<std::size_t>(near)];
             if (other.low[0] > other.high[0]) continue;
             valid = valid && apart(own, other) < most * most;
@@ -221,7 +221,7 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force, cons
 /// Whether a particle of the phase stands elsewhere than at the last sort, as far as measure() and the search see.
 bool Neighbours::has_moved(std::size_t phase) const {
   return std::any_of(ranges_[phase].begin(), ranges_[phase].end(), [](const Range& range) {
-    if (range.low[0] > range.high[0]) return false;  // nobody is there
+    if (range.low[0] > range.high[0]) return false;  // no particle is there
     for (std::size_t d = 0; d < 3; ++d)
       if (!(range.low[d] == 0.0f && range.high[d] == 0.0f)) return true;
     return false;

@@ -1,4 +1,4 @@
-// Who is whose neighbour: the grids of all phases and the lists of all entries, rebuilt exactly when they must be.
+// The neighbours of all particles: grids of all phases and lists of all entries, made anew when a list may lack a pair.
 #pragma once
 
 #include <array>

@@ -47,7 +47,7 @@ class Candidates {
     size_ = n;
     for (std::size_t k = n; k % lanes != 0; ++k) position_[0][k] = far_away;
   }
-  /// Writes the indices of those within reach of x, but `self`; returns the end. Writes up to a vector beyond it.
+  /// Writes the indices of candidates within reach of x except `self`; returns the end. May write one vector beyond it.
   BARCHAN_SIMD_INLINE std::uint32_t* near(const std::array<float, 3>& x, Floats reach_squared, std::int32_t self,
                                           std::uint32_t* out) const {
     std::array<Floats, Dim> own;
@@ -83,7 +83,7 @@ class Candidates {
   }
 };
 
-/// Each thread has its own, made when it first asks.
+/// One object for each thread, made at its first call.
 template <int Dim>
 Candidates<Dim>& own_candidates() {
   thread_local Candidates<Dim> candidates;

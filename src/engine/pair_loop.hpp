@@ -53,6 +53,13 @@ BARCHAN_SIMD_INLINE void for_each_staged(PairList::Row row, const T* data, Begin
   }
 }
 
+/// One number of each of Width neighbours from `at` on. By halves: registers of two are filled without masks.
+template <int Width>
+BARCHAN_SIMD_INLINE simd::Vec<double, Width> gather_of(const double* values, const std::uint32_t* at) {
+  if constexpr (Width == 1) return {values[at[0] / PairList::stride]};
+  else return simd::join(gather_of<Width / 2>(values, at), gather_of<Width / 2>(values, at + Width / 2));
+}
+
 /// Added to every squared distance (m^2): particles in one place are 3e-19 m apart for the kernels and laws, which
 /// divide by the distance. Their r is zero, so that a force along r is zero as well, in both precisions. Within the
 /// range of simd::inverse_sqrt; lost in the rounding of every distance that matters.

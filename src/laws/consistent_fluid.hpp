@@ -18,6 +18,26 @@
 
 namespace barchan {
 
+/// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
+constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
+  return d >= e ? d * (d + 1) / 2 + e : e * (e + 1) / 2 + d;
+}
+
+/// Trace of a moment.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V trace_of(const std::array<V, Dim*(Dim + 1) / 2>& m) {
+  if constexpr (Dim == 2) return m[0] + m[2];
+  else return m[0] + m[2] + m[5];
+}
+
+/// Length of a vector.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V length_of(const std::array<V, Dim>& x) {
+  V square = x[0] * x[0];
+  for (std::size_t d = 1; d < Dim; ++d) square = simd::fma(x[d], x[d], square);
+  return simd::sqrt(square);
+}
+
 template <int Dim>
 struct ConsistentFluid {
   static constexpr bool needs_distance = true;

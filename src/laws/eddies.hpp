@@ -40,4 +40,11 @@ inline double log_law_friction(double distance, double roughness, double spacing
   return s * s;
 }
 
+/// The viscosity (Pa s) that turns the speed (m/s) of a particle of the fluid, against a grain whose centre is half a
+/// spacing behind its surface, into the stress of the logarithmic law at this distance (m) from the surface:
+/// mu u/(d + dx/2) = rho (kappa/ln(d/z0))^2 u^2.
+inline double rough_viscosity(double density, double distance, double roughness, double spacing, double speed) {
+  return density * log_law_friction(distance, roughness, spacing) * speed * (distance + 0.5 * spacing);
+}
+
 }  // namespace barchan

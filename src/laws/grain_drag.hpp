@@ -9,7 +9,8 @@
 
 #include <array>
 
-#include "simd/vec.hpp"
+#include "laws/grain_barrier.hpp"
+#include "laws/pair.hpp"
 
 namespace barchan {
 
@@ -21,6 +22,28 @@ struct GrainDrag {
     for (std::size_t d = 1; d < Dim; ++d) v2 = fma(v[d], v[d], v2);
     const T factor = strength * sqrt(v2);
     for (std::size_t d = 0; d < Dim; ++d) force[d] = fnma(factor, v[d], force[d]);
+  }
+};
+
+/// The drag and the barrier of an entry of a fluid and grains, one side at a time.
+struct DragAndBarrier : PairLaw<Needs::value_and_gradient, Quantity::velocity, Quantity::volume> {
+  double strength;  // K = 1/2 C_D rho_f A [kg/m]
+  double density;   // kg/m3, of the fluid
+  GrainBarrier barrier;
+  bool a_is_fluid = false;  // whose volume V_f is
+
+  template <int Dim, class T>
+  struct Sums {
+    std::array<T, Dim> force;  // N, on a
+  };
+
+  template <int Dim, class T>
+  BARCHAN_SIMD_INLINE void add(const Own<Dim, T>& a, const Own<Dim, T>& b, const Pair<Dim, T>& ab,
+                               Sums<Dim, T>& s) const {
+    const auto v = difference(a.v, b.v);
+    const T volume = a_is_fluid ? a.volume : b.volume;
+    GrainDrag::add(v, T(strength) * ab.w * volume, s.force);
+    barrier.add(ab.r, ab.r2, v, T(density) * volume, s.force);
   }
 };
 

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simd/vec.hpp"
+#include "laws/pair.hpp"
 
 namespace barchan {
 
@@ -58,6 +58,22 @@ struct KernelContact {
   template <class T>
   static T touch(T overlap) {
     return select(overlap > T(0.0), T(1.0), T(0.0));
+  }
+};
+
+/// An entry of contacts through its kernel.
+struct KernelContacts : PairLaw<Needs::value_and_gradient, Quantity::velocity> {
+  KernelContact contact;
+
+  template <int Dim, class T>
+  struct Sums {
+    std::array<T, Dim> force;  // N, on a
+  };
+
+  template <int Dim, class T>
+  BARCHAN_SIMD_INLINE void add(const Own<Dim, T>& a, const Own<Dim, T>& b, const Pair<Dim, T>& ab,
+                               Sums<Dim, T>& s) const {
+    KernelContact::add(KernelContact::Constants<T>(contact), ab.r, ab.r2, difference(a.v, b.v), ab.w, ab.f, s.force);
   }
 };
 

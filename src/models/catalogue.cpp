@@ -22,7 +22,6 @@ namespace {
 
 /// How a kind of phase enters the program.
 struct Kind {
-  const char* name;
   bool moves, flows;
   void (*describe)(const Scene&, const std::vector<ParticleBlock>&, std::size_t, Layout&, std::vector<std::string>&);
   std::unique_ptr<Model> (*make)(const Scene&, const Layout&, std::size_t);
@@ -35,11 +34,11 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
-    case PhaseKind::fluid: return {"fluid", true, true, describe_air, make<Air>};
-    case PhaseKind::elastic: return {"elastic", true, false, describe_elastic, make<ElasticPhase>};
-    case PhaseKind::grains: return {"grains", true, false, describe_grains, make<GrainPhase>};
-    case PhaseKind::wall: return {"wall", false, false, describe_wall, make<Wall>};
-    case PhaseKind::column: return {"column", false, false, describe_column, make<ColumnPhase>};
+    case PhaseKind::fluid: return {true, true, describe_air, make<Air>};
+    case PhaseKind::elastic: return {true, false, describe_elastic, make<ElasticPhase>};
+    case PhaseKind::grains: return {true, false, describe_grains, make<GrainPhase>};
+    case PhaseKind::wall: return {false, false, describe_wall, make<Wall>};
+    case PhaseKind::column: return {false, false, describe_column, make<ColumnPhase>};
   }
   return {};
 }
@@ -56,8 +55,8 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(elastic, elastic)) return Law::elastic;
   const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
   if (touches(a) && touches(b)) return Law::contact;
-  throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + kind_of(a).name + ", and \"" + b.name +
-                   "\", of kind " + kind_of(b).name + "; expected no such entry");
+  throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + a.kind_word() + ", and \"" + b.name +
+                   "\", of kind " + b.kind_word() + "; expected no such entry");
 }
 
 }  // namespace
@@ -66,7 +65,7 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
                      std::vector<std::string>& warnings) {
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     const Kind kind = kind_of(scene.phases[k]);
-    layout.phases[k].kind = kind.name;
+    layout.phases[k].kind = scene.phases[k].kind_word();
     layout.phases[k].moves = kind.moves;
     layout.phases[k].flows = kind.flows;
   }
@@ -101,9 +100,9 @@ Models make_models(const Scene& scene, const Layout& layout) {
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {
     if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
-    if (e.drag > 0) models.push_back(std::make_unique<DragModel>(scene, layout, e));
+    if (e.drag > 0) models.push_back(make_drag_entry(scene, layout, e));
     if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
-      models.push_back(std::make_unique<ContactEntry>(scene, layout, e));
+      models.push_back(make_contact_entry(scene, layout, e));
   }
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));

@@ -13,10 +13,10 @@ namespace barchan {
 class Forces {
  public:
   Forces() = default;
-  /// Those of the scene on this phase; those that hold a bulk speed are not among them.
+  /// The [[forcing]] entries of this phase that give an acceleration, not those with hold.
   Forces(const Scene& scene, const std::string& phase);
 
-  /// The sum of those components that are numbers (m/s2).
+  /// The sum of the components that are numbers (m/s2).
   Vec3 uniform() const;
   /// Adds to the accelerations the components that are formulas of place and time; `numbers`: those that are numbers
   /// too.

@@ -24,7 +24,19 @@ enum class Law {
   contact,    // grains with grains, walls or bodies
   elastic,    // elastic-elastic: stress
 };
-std::string to_string(Law law);
+inline std::string to_string(Law law) {
+  switch (law) {
+    case Law::fluid: return "fluid";
+    case Law::boundary: return "boundary";
+    case Law::repulsive: return "repulsive";
+    case Law::coupling: return "coupling";
+    case Law::column: return "column";
+    case Law::drag: return "drag";
+    case Law::contact: return "contact";
+    case Law::elastic: return "elastic";
+  }
+  return "";
+}
 
 /// How a turbulent fluid rubs on the other side of an entry (models/air/eddies.hpp).
 enum class Friction {
@@ -94,7 +106,7 @@ struct PlanPhase {
   std::string kind;  // as the scene calls it
   std::size_t count = 0;
   double spacing = 0;           // m, of its particles at the start
-  double diameter = 0;          // m, mean, of spheres; 0: its particles are none
+  double diameter = 0;          // m, mean, of spheres; 0: its particles are not spheres
   double largest_diameter = 0;  // m
   double mass = 0;              // kg a particle (per metre of depth in 2D); of spheres that of the mean diameter
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
@@ -108,14 +120,15 @@ struct PlanPhase {
   bool enclosed = false;                 // a fluid whose mean density is kept
   double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
+  std::string physics = "";              // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
   std::vector<Field> fields;
   PhaseRules rules;
 };
 
 struct Layout {
   int dimensions = 2;
-  double largest_speed = 0;  // m/s, what the automatic sound speed is ten times of
-  double slab = 1;    // m, thickness in 2D of what spheres stand in: the largest mean diameter; 1 without spheres
+  double largest_speed = 0;  // m/s; the automatic sound speed is ten times this
+  double slab = 1;    // m, in 2D the thickness of the slab of the spheres: the largest mean diameter; 1 without spheres
   double skin = 0.1;  // of the lists, in their radii; the widest
   Bounds bounds;
   std::vector<PlanPhase> phases;

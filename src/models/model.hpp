@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/schedule.hpp"
+#include "models/history_row.hpp"
 #include "models/layout.hpp"
 #include "models/step_limits.hpp"
 #include "scene/generate.hpp"
@@ -55,25 +56,24 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  /// Gives the particles of its phase, whose position and velocity are there, the rest of their initial state.
+  /// Sets the initial state of its phase but for position and velocity, which are set before.
   virtual void begin(State&, const std::vector<ParticleBlock>&) {}
   /// Binds the records and lists that its tasks work on; once, when the state is there. Throws SceneError where only
   /// the particles show a mistake.
   virtual void attach(Workspace&) {}
   /// Adds its tasks. Needs no state: the plan prints what the step will execute.
   virtual void schedule(Schedule&) = 0;
-  /// What bounds the step from the beginning to the end.
+  /// The bounds of the step that are the same in the whole run.
   virtual void limits(std::vector<StepLimit>&) const {}
-  /// A bound that follows the motion; null: none.
+  /// A bound of the step that changes with the motion; null: there is none.
   virtual const StepLimit* moving_limit() { return nullptr; }
   /// Its phase; -1: it belongs to an entry.
   virtual int phase() const { return -1; }
-  /// Columns of history.csv of its own, and their values: of a moving phase behind those that all have, of an entry at
-  /// the end. A row may follow the loading of a checkpoint at once, before records
-  /// are filled: it reads the fields and what archive() saves.
-  virtual void columns(std::vector<std::string>&) const {}
-  virtual void row(std::vector<double>&) const {}
-  /// What has gone wrong in what only it sees, with the remedy; empty: nothing.
+  /// Adds its columns of history.csv with their values: of a moving phase behind those that all have, of an entry at
+  /// the end. The columns are the same in every row of a run. A row may follow the loading of a checkpoint at once,
+  /// before records are filled: it reads the fields and what archive() saves.
+  virtual void history(HistoryRow&) const {}
+  /// A fault that only this model can find, with the remedy; empty: there is none.
   virtual std::optional<std::string> trouble() const { return std::nullopt; }
   /// Directed pairs in its own lists of an entry, and how often it has searched them: for models that have such.
   virtual std::uint64_t pairs(const PlanEntry&) const { return 0; }

@@ -110,7 +110,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   const std::size_t phases = layout.phases.size();
   const int size = layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
   const bool mixed = scene.precision == Precision::mixed;
-  // Who reads records in double: every law but the fluid's own in mixed precision, and who asks for it (need_motion).
+  // Records in double are read by: every law but the fluid's own in mixed precision, and by tasks that call
+  // need_motion.
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
     if (e.sees_solid()) seen[e.other] = true;

@@ -1,4 +1,4 @@
-// What a run will take, as simulation/estimate.hpp measures it.
+// The time and memory of a run, as simulation/estimate.hpp measures them.
 #pragma once
 
 #include "plan/memory.hpp"
@@ -6,7 +6,7 @@
 namespace barchan {
 
 struct Estimate {
-  std::string failure;  // why nothing could be measured, or not to the end; empty: all is well
+  std::string failure;  // why the measurement failed or stopped early; empty: it did not
   bool measured = false;
   double steps = 0;              // steps to the end at the first step's length
   double processor_seconds = 0;  // s of one thread, output aside

@@ -54,7 +54,7 @@ double lists(const Plan& plan) {
       const auto& from = plan.phases[plan.directions[static_cast<std::size_t>(direction)].a];
       const auto& to = plan.phases[plan.directions[static_cast<std::size_t>(direction)].b];
       const double around = (e.consistency.neighbours + 1) * std::pow(1.0 + plan.skin, plan.dimensions) + 4.0;
-      // Those who look across the border of two phases stand on one side of it.
+      // Particles with neighbours of another phase stand on one side of the border: half of a neighbourhood.
       const double full = e.a == e.b ? around : std::min(around / 2.0, 4.0 + 4.0 * static_cast<double>(to.count));
       const double looking = static_cast<double>(from.count);
       bytes += looking * index * (1.0 + (e.a == e.b ? full : full * 0.1));

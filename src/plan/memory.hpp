@@ -1,4 +1,4 @@
-// The memory that a run will take, from the plan alone: told before anything is allocated.
+// The memory that a run will take, from the plan alone: known before anything is allocated.
 #pragma once
 
 #include <string>

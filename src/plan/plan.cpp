@@ -13,20 +13,6 @@
 
 namespace barchan {
 
-std::string to_string(Law law) {
-  switch (law) {
-    case Law::fluid: return "fluid";
-    case Law::boundary: return "boundary";
-    case Law::repulsive: return "repulsive";
-    case Law::coupling: return "coupling";
-    case Law::column: return "column";
-    case Law::drag: return "drag";
-    case Law::contact: return "contact";
-    case Law::elastic: return "elastic";
-  }
-  return "";
-}
-
 double Plan::step() const {
   if (fixed_step > 0) return fixed_step;
   double dt = 1e300;
@@ -55,9 +41,9 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
-/// The first direction of an entry, and its opposite. A wall looks for nobody but the fluid that is extended into it.
+/// The first direction of an entry, and its opposite. A wall searches only the fluid that is extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
-  if (e.law == Law::column || e.law == Law::drag) return;  // by height: nobody is looked for
+  if (e.law == Law::column || e.law == Law::drag) return;  // the wind is found by height: no search
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
@@ -107,7 +93,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (p.smoothing_length == 0)
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
-    if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // nobody is looked for
+    if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // no search
     if (p.flows) p.rules.way = 2.0 * p.smoothing_length;
   }
 }
@@ -119,7 +105,7 @@ void add_passes(Plan& plan, const Models& models) {
     (schedule.has(k) || k == stage::watch ? plan.passes : plan.skipped).push_back(schedule.name(k));
 }
 
-/// A time to which a step adds nothing stands still: the end is never reached.
+/// Where a step is below the rounding of the time, the time does not grow: the end is never reached.
 void check_steps(const Scene& scene, Plan& plan) {
   const double steps = scene.time.end / plan.step();
   constexpr double most = 1e12;  // 4500 roundings of the time a step are left

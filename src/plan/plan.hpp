@@ -1,4 +1,4 @@
-// Scene -> Plan: the only place that decides what is needed. Everything after it obeys.
+// Scene -> Plan: decides fields, lists, limits and tasks of a run. All later parts take them from the plan.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +28,9 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks);
 
 /// Fills Plan::warnings; the last work of make_plan.
 void add_warnings(const Scene& scene, Plan& plan);
+
+/// Adds warnings of what lies outside the ranges of the stability atlas (docs/stability.md).
+void warn_outside_stable_ranges(const Scene& scene, Plan& plan);
 
 /// The plan as a person reads it (estimate.hpp has it as JSON).
 std::string to_text(const Plan& plan, const Scene& scene);

@@ -62,6 +62,7 @@ void add_warnings(const Scene& scene, Plan& plan) {
   warn_of_pairing(scene, plan);
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
+  warn_outside_stable_ranges(scene, plan);
 }
 
 }  // namespace barchan

@@ -80,7 +80,7 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
     felt = true;
     if (other->kind() != PhaseKind::grains) {
       report(entry, "a column of air acts on grains only, and \"" + other->name + "\" is of kind " +
-                        kind_word(other->kind()) + "; expected no such entry");
+                        other->kind_word() + "; expected no such entry");
       continue;
     }
     for (const char* key : {".radius", ".radius-in-metres", ".kernel"})

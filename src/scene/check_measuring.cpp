@@ -39,7 +39,7 @@ class Checker {
       const bool known_kind = phase && !report_.touched("phases." + phase->name + ".kind");
       if (!phase) report_(dotted + ".phase", unknown_phase(measured.phase, scene_));
       else if (known_kind && phase->kind() != PhaseKind::fluid && !(grains && phase->kind() == PhaseKind::grains))
-        report_(dotted + ".phase", "\"" + phase->name + "\" is of kind " + kind_word(phase->kind()) +
+        report_(dotted + ".phase", "\"" + phase->name + "\" is of kind " + phase->kind_word() +
                                        "; expected a phase of kind fluid" + (grains ? " or grains" : ""));
     }
   }
@@ -110,7 +110,7 @@ class Checker {
     if (report_.touched("phases." + wall->name)) return;
     const auto wrong = [&](const std::string& what) { report_(dotted + ".wall", "\"" + wall->name + "\" " + what); };
     if (wall->kind() != PhaseKind::wall)
-      return wrong("is of kind " + kind_word(wall->kind()) + "; expected a phase of kind wall");
+      return wrong(std::string("is of kind ") + wall->kind_word() + "; expected a phase of kind wall");
     if (wall->wall().slip != Slip::no_slip || wall->wall().law != WallLaw::adami)
       return wrong("lets the fluid slip; expected a wall with slip = \"no-slip\" and law = \"adami\"");
     const std::string side = w.top ? "top" : "bottom";
@@ -135,7 +135,7 @@ class Checker {
     if (phase && fine(dotted + ".phase") && !report_.touched("phases." + phase->name + ".kind") &&
         phase->kind() != PhaseKind::grains)
       report_(dotted + ".phase",
-              "\"" + phase->name + "\" is of kind " + kind_word(phase->kind()) + "; expected a phase of kind grains");
+              "\"" + phase->name + "\" is of kind " + phase->kind_word() + "; expected a phase of kind grains");
   }
 
  private:

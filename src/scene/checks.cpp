@@ -74,7 +74,7 @@ void check_phases(const Scene& scene, const Report& report) {
   for (const Phase& phase : scene.phases) {
     const std::string dotted = "phases." + phase.name;
     if (report.touched(dotted + ".kind")) continue;
-    const std::string kind = kind_word(phase.kind());
+    const std::string kind = phase.kind_word();
     for (const Key* key : keys_of("phases")) {
       const std::string here = dotted + "." + std::string(key->name);
       if (belongs_to_kind(*key, kind) || !report.has(here)) continue;
@@ -83,7 +83,7 @@ void check_phases(const Scene& scene, const Report& report) {
     }
     const bool filled =
         std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
-    if (!filled && phase.kind() != PhaseKind::column && !report.touched("fill"))
+    if (!filled && phase.has_particles() && !report.touched("fill"))
       report(dotted, "no particle; expected a [[fill]] with phase = \"" + phase.name + "\"");
   }
 }

@@ -9,6 +9,11 @@
 namespace barchan {
 namespace {
 
+/// `fluid`
+std::string_view kind_word(PhaseKind kind) {
+  return find_key("phases", "kind")->slot.words[static_cast<std::size_t>(kind)].word;
+}
+
 std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", value);
@@ -69,12 +74,6 @@ std::string default_text(const Key& key) {
   return whole ? std::to_string(*whole) : "";
 }
 
-std::string kind_word(PhaseKind kind) {
-  for (const Word& word : find_key("phases", "kind")->slot.words)
-    if (word.meaning == static_cast<int>(kind)) return std::string(word.word);
-  return "";
-}
-
 bool belongs_to_kind(const Key& key, std::string_view kind) {
   const std::span<const PhaseKind> kinds = key.slot.kinds;
   return kinds.empty() || std::any_of(kinds.begin(), kinds.end(), [&](PhaseKind k) { return kind_word(k) == kind; });
@@ -82,7 +81,8 @@ bool belongs_to_kind(const Key& key, std::string_view kind) {
 
 std::string kinds_text(const Key& key, std::string_view between) {
   std::string text;
-  for (const PhaseKind kind : key.slot.kinds) text += (text.empty() ? "" : std::string(between)) + kind_word(kind);
+  for (const PhaseKind kind : key.slot.kinds)
+    text += (text.empty() ? "" : std::string(between)) + std::string(kind_word(kind));
   return text;
 }
 

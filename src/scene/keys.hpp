@@ -48,12 +48,6 @@ using Target =
                  std::string*, Vec3*, std::optional<Vec3>*, Expression*, VectorExpression*, std::vector<std::string>*,
                  std::vector<Vec3>*, std::vector<std::array<double, 2>>*>;
 
-/// A word of a document and the number of what it stands for: an enumerator, an axis, true or false.
-struct Word {
-  std::string_view word;
-  int meaning;
-};
-
 /// What a key is when the document does not give it. Without a value the member stays empty or zero.
 struct Default {
   std::variant<std::monostate, bool, int, double> value{};  // int: also the meaning of a word
@@ -97,7 +91,6 @@ const Key* find_key(std::string_view section, std::string_view name);  ///< null
 std::vector<const Key*> keys_of(std::string_view section);             ///< in the order of the table
 std::string path_of(const Key& key);                                   ///< SECTION.NAME: the section of its inner keys
 std::vector<std::string> choices(const Key& key);
-std::string kind_word(PhaseKind kind);  ///< `fluid`
 bool belongs_to_kind(const Key& key, std::string_view kind);
 std::string kinds_text(const Key& key, std::string_view between);  ///< `fluid, elastic`; "" for all
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/vec3.hpp"
-#include "kernels/kernel_kind.hpp"
+#include "scene/words.hpp"
 
 namespace barchan {
 
@@ -28,14 +28,6 @@ using VectorExpression = std::array<Expression, 3>;
 // ---- phases ---------------------------------------------------------------------------------------------------------
 
 enum class PhaseKind { fluid, elastic, grains, wall, column };
-enum class EquationOfState { linear, tait };
-enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
-enum class Slip { no_slip, free_slip };
-enum class FluidScheme { plain, consistent };  // docs/method.md
-enum class Turbulence { none, mixing_length, smagorinsky };
-enum class MixingLength { none, duran };  // of a column of air; Duran, Andreotti & Claudin 2012
-/// Drag of a grain by name (laws/drag_coefficients.hpp); none: the number of the entry.
-enum class DragLaw { none, stokes, schiller_naumann, cheng, duran, di_felice };
 
 /// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
 struct LogProfile {
@@ -45,8 +37,6 @@ struct LogProfile {
   bool over_ground{};  // height counted from the ground under the point (bed and dune)
 };
 
-enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; laws/sphere_contact.hpp
-
 /// Sizes of the spheres of a phase: diameters spread evenly over mean (1 - spread) .. mean (1 + spread).
 struct SphereSize {
   double mean{};    // m
@@ -54,10 +44,13 @@ struct SphereSize {
   double largest() const { return mean * (1.0 + spread); }
 };
 
-// The keys of each kind of phase: a key that a kind does not have does not exist in its type.
+// The keys of each kind of phase: a key that a kind does not have does not exist in its type. `word` is what a document
+// calls the kind.
 
 struct FluidKeys {
   static constexpr PhaseKind kind = PhaseKind::fluid;
+  static constexpr const char* word = "fluid";
+  static constexpr bool has_particles = true;
   double viscosity{};                 // m2/s, kinematic
   std::optional<double> sound_speed;  // m/s; empty: 10 times the largest speed that the scene promises
   EquationOfState equation_of_state{};
@@ -75,6 +68,8 @@ struct FluidKeys {
 
 struct ElasticKeys {
   static constexpr PhaseKind kind = PhaseKind::elastic;
+  static constexpr const char* word = "elastic";
+  static constexpr bool has_particles = true;
   double young{};  // Pa
   double poisson{};
   double artificial_viscosity{};       // Monaghan's alpha
@@ -84,6 +79,8 @@ struct ElasticKeys {
 
 struct GrainsKeys {
   static constexpr PhaseKind kind = PhaseKind::grains;
+  static constexpr const char* word = "grains";
+  static constexpr bool has_particles = true;
   double restitution{};                 // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
   std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
   std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of its spacing
@@ -98,6 +95,8 @@ struct GrainsKeys {
 
 struct WallKeys {
   static constexpr PhaseKind kind = PhaseKind::wall;
+  static constexpr const char* word = "wall";
+  static constexpr bool has_particles = true;
   WallLaw law{};
   Slip slip{};
   VectorExpression velocity;           // m/s, a function of time: the surface slides, the particles stay in place
@@ -109,6 +108,8 @@ struct WallKeys {
 /// Air as a profile by height, without particles.
 struct ColumnKeys {
   static constexpr PhaseKind kind = PhaseKind::column;
+  static constexpr const char* word = "column";
+  static constexpr bool has_particles = false;
   double viscosity{};                // m2/s, kinematic
   Expression friction_velocity;      // m/s, a function of time: rho u*^2 is the stress on the column's top
   std::optional<double> height;      // m; empty: the domain's
@@ -128,6 +129,12 @@ struct Phase {
   std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys, ColumnKeys> own;  // in the order of PhaseKind
 
   PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }
+  const char* kind_word() const {
+    return std::visit([](const auto& keys) { return keys.word; }, own);
+  }
+  bool has_particles() const {
+    return std::visit([](const auto& keys) { return keys.has_particles; }, own);
+  }
   // The keys of its kind; std::bad_variant_access when it is of another kind.
   const FluidKeys& fluid() const { return std::get<FluidKeys>(own); }
   const ElasticKeys& elastic() const { return std::get<ElasticKeys>(own); }
@@ -143,8 +150,7 @@ struct Phase {
   }
 };
 
-// ---- the interaction matrix
-// -------------------------------------------------------------------------------------------
+// ---- the interaction matrix ----------------------------------------------------------------------------------------
 
 /// One entry of the matrix: an unordered pair of phases. A pair without an entry does not interact.
 struct Interaction {
@@ -157,8 +163,7 @@ struct Interaction {
   ContactLaw law{};    // of grains with grains, walls and bodies
 };
 
-// ---- fills: what is where at the beginning
-// ------------------------------------------------------------------------------
+// ---- fills: what is where at the beginning -------------------------------------------------------------------------
 
 struct BoxShape {
   Vec3 min{}, max{};
@@ -196,7 +201,8 @@ struct TheRestShape {};  // the domain less what earlier fills hold
 
 /// Height of the ground above the bed as a function of x (and z in 3D), in metres.
 struct DuneShape {
-  enum class Form { cosine, gaussian, asymmetric, rushil, formula } form{};
+  using Form = DuneForm;
+  Form form{};
   double height{}, length{}, at{};  // m; `at` is the crest's x
   double slip_face_angle{};         // degrees, asymmetric only
   Expression formula;               // formula only: height over the bed, m
@@ -211,9 +217,6 @@ struct BedShape {
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
                            FormulaShape, SidesShape, BedShape, TheRestShape>;
 
-/// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
-enum class Packing { square, hexagonal, random, fitted, settled };
-
 struct Fill {
   std::string phase;
   Shape shape = TheRestShape{};
@@ -226,8 +229,7 @@ struct Fill {
   bool hydrostatic{};                     // fluid phases: start from the hydrostatic pressure instead
 };
 
-// ---- the rest
-// -----------------------------------------------------------------------------------------------------------
+// ---- the rest ------------------------------------------------------------------------------------------------------
 
 struct Domain {
   Vec3 origin{};  // m
@@ -242,8 +244,7 @@ struct Forcing {
   bool hold_bulk_speed{};         // instead: what keeps the initial mean velocity along periodic axes
 };
 
-// ---- what is measured
-// -----------------------------------------------------------------------------------------------
+// ---- what is measured ----------------------------------------------------------------------------------------------
 
 /// What all instruments have.
 struct Measured {
@@ -289,8 +290,6 @@ struct TimeControl {
   double largest_speed{};            // m/s, a promise used for the automatic sound speed; 0: from the fills
 };
 
-enum class FrameFormat { vtp, vtu };
-
 struct OutputControl {
   double every{};                   // s between frames; 0: first and last only
   double history_every{};           // s between rows of history.csv; 0: a hundredth of the end time
@@ -300,8 +299,6 @@ struct OutputControl {
   bool walls{};               // write wall particles too
   double checkpoint_every{};  // s of wall time between checkpoints; 0: at the end and at signals only
 };
-
-enum class Precision { double_precision, mixed };
 
 struct Scene {
   std::string file;  // as given, for messages

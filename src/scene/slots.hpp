@@ -9,10 +9,6 @@
 
 namespace barchan::slots {
 
-/// The words of an enumeration, specialised beside the table.
-template <class Enum>
-constexpr std::array<Word, 0> words_of{};
-
 inline constexpr Default required{.in_words = "required", .required = true};
 
 /// A default as a row writes it: a value of the member's type, words where a value does not tell it, or both.

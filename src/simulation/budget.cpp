@@ -20,7 +20,8 @@ bool moves(const WallKeys& wall) {
 Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravity_(scene.domain.gravity) {
   bool walls = false, moving_walls = false;
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
-    if (plan.phases[k].moves) moving_.push_back(k);
+    const PlanPhase& p = plan.phases[k];
+    if (p.moves) moving_.push_back({k, p.flows ? p.sound_speed : 0.0, p.flows ? scene.phases[k].density : 0.0});
     sound_speed_ = std::max(sound_speed_, plan.phases[k].sound_speed);
     if (const WallKeys* wall = scene.phases[k].if_wall()) {
       walls = true;
@@ -38,8 +39,8 @@ Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravi
 
 Budget::Sums Budget::sums(const State& state) const {
   Sums s;
-  for (const std::size_t k : moving_) {
-    const PhaseParticles& p = state.phases[k];
+  for (const Moving& moving : moving_) {
+    const PhaseParticles& p = state.phases[moving.phase];
     const std::size_t n = p.size();
     s.mass += ordered_sum(n, [&](std::size_t i) { return p.mass_of(i); });
     for (int d = 0; d < p.dimensions(); ++d) {
@@ -49,6 +50,13 @@ Budget::Sums Budget::sums(const State& state) const {
       s.kinetic += 0.5 * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i] * v[i]; });
       if (gravity_[c] != 0.0)
         s.potential -= gravity_[c] * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * x[i]; });
+    }
+    if (moving.density > 0.0) {
+      const double* rho = p.column(Field::density);
+      s.stored += 0.5 * std::pow(moving.sound_speed, 2) * ordered_sum(n, [&](std::size_t i) {
+                    const double strain = rho[i] / moving.density - 1.0;
+                    return p.mass_of(i) * strain * strain;
+                  });
     }
   }
   return s;
@@ -68,7 +76,7 @@ std::optional<double> Budget::energy_growth(const State& state) const {
   const Sums now = sums(state);
   const double scale = std::max(now.kinetic, start_.kinetic);
   if (!keeps_energy_ || !(scale > 0.5 * now.mass * std::pow(idle * sound_speed_, 2))) return std::nullopt;
-  return (now.kinetic + now.potential - start_.kinetic - start_.potential) / scale;
+  return (now.mechanical() - start_.mechanical()) / scale;
 }
 
 void Budget::report(const State& state, Warnings& warnings) const {
@@ -80,8 +88,9 @@ void Budget::report(const State& state, Warnings& warnings) const {
                                  " %: the results are not to be trusted "
                                  "in what depends on it; a smaller time.safety or spacing may help");
   if (const auto growth = energy_growth(state); growth && *growth > energy_bound)
-    warnings.add("energy", "the kinetic energy and that of the weight grew by " + brief(100.0 * *growth) +
-                               " % of the motion's, although nothing in the scene drives it; expected at most " +
+    warnings.add("energy", "the energy of the motion, of the weight and of the compression together grew by " +
+                               brief(100.0 * *growth) +
+                               " % of the kinetic energy, although nothing in the scene drives it; expected at most " +
                                brief(100.0 * energy_bound) + " %: a smaller time.safety or spacing may help");
 }
 

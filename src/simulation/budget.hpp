@@ -1,8 +1,9 @@
 // What a run should have kept: momentum and energy, where the physics of its scene promises that.
 //
 // Momentum along an axis is kept when no wall stands in the scene, no force acts on a phase, and nothing weighs along
-// that axis. Energy may only fall (into heat) when no force acts and no wall moves: kinetic energy and that of the
-// weight together. Mass has no budget: a particle carries its own, and none is made or taken away.
+// that axis. Energy may only fall (into heat) when no force acts and no wall moves: the sum of the kinetic energy, that
+// of the weight, and that which the compression of the fluids stores. Mass has no budget: a particle carries its own,
+// and none is made or taken away.
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ class Budget {
   /// What may be lost or gained before a run says so.
   static constexpr double momentum_bound = 0.01;  // of mass times speed
   static constexpr double energy_bound = 0.05;    // of the energy of the motion
-  /// Slower motion than this part of the sound speed is not told from the energy that compression stores.
-  static constexpr double idle = 0.02;
+  /// Slower motion than this part of the sound speed is idle: its energy is not looked at.
+  static constexpr double idle = 0.005;
 
   /// Of the state at the beginning.
   Budget(const Scene& scene, const Plan& plan, const State& state);
@@ -36,13 +37,20 @@ class Budget {
 
  private:
   struct Sums {
-    std::array<double, 3> momentum{};                   // kg m/s
-    double mass = 0.0, kinetic = 0.0, potential = 0.0;  // kg, J, J
+    std::array<double, 3> momentum{};                                 // kg m/s
+    double mass = 0.0, kinetic = 0.0, potential = 0.0, stored = 0.0;  // kg, J, J, J
+    double mechanical() const { return kinetic + potential + stored; }
   };
   Sums sums(const State& state) const;
 
-  std::vector<std::size_t> moving_;  // phases
-  Vec3 gravity_{};                   // m/s2
+  /// Of a phase that moves. Compression stores m c^2 (rho/rho0 - 1)^2/2, exactly so in a fluid with the linear equation
+  /// of state and to the second order with Tait's.
+  struct Moving {
+    std::size_t phase = 0;
+    double sound_speed = 0.0, density = 0.0;  // m/s and kg/m3 of a fluid; 0: nothing is stored
+  };
+  std::vector<Moving> moving_;
+  Vec3 gravity_{};  // m/s2
   std::array<bool, 3> keeps_momentum_{};
   bool keeps_energy_ = false;
   double sound_speed_ = 0.0;  // m/s, the largest

@@ -1,4 +1,4 @@
-// What a run will take, from a few of its own steps.
+// The time and memory of a run, estimated from a few of its own steps.
 #pragma once
 
 #include "plan/estimate.hpp"

@@ -14,7 +14,7 @@ class KeptState {
 
   /// Copies the state of this time. Allocates nothing.
   void keep(const std::vector<PhaseParticles>& particles, double time, long step);
-  /// Swaps what is kept with the state of the particles. Twice is as if nothing had happened.
+  /// Swaps what is kept with the state of the particles. A second call restores both.
   void exchange(std::vector<PhaseParticles>& particles);
 
   double time() const { return time_; }

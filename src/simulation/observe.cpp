@@ -1,4 +1,4 @@
-// What a Simulation tells: frames, rows of history.csv, warnings.
+// The results of a Simulation: frames, rows of history.csv, warnings.
 #include <algorithm>
 #include <cmath>
 
@@ -61,96 +61,82 @@ Frame Simulation::frame(int index) const {
       f.phase.push_back(static_cast<std::int32_t>(k));
     }
   }
-  const std::vector<Field> fields = frame_fields(scene_);
-  for (const Field field : fields) {
-    const FieldInfo& about = info(field);
-    FrameField out;
-    out.name = about.name;
-    out.unit = about.unit;
-    const int width = components(about.rank, plan_.dimensions);
-    out.components = about.rank == Rank::scalar      ? 1
-                     : about.rank == Rank::vector    ? 3
-                     : about.rank == Rank::symmetric ? 6
-                                                     : width;
-    out.values.reserve(n * static_cast<std::size_t>(out.components));
-    for (const std::size_t k : written) {
-      const auto& p = state_.phases[k];
-      for (std::size_t i = 0; i < p.size(); ++i)
-        for (int c = 0; c < out.components; ++c) {
-          double value = 0.0;
-          if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
-          else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
-          else if (p.has(field) && c < width) value = p.column(field, c)[i];
-          out.values.push_back(value);
-        }
-    }
-    f.fields.push_back(std::move(out));
-  }
+  for (const Field field : frame_fields(scene_)) f.fields.push_back(values_of(field, written, n));
   return f;
 }
 
-std::vector<std::string> Simulation::history_columns() const {
-  std::vector<std::string> c{"time [s]",
-                             "step",
-                             "dt [s]",
-                             "momentum_x [kg m/s]",
-                             "momentum_y [kg m/s]",
-                             "momentum_z [kg m/s]",
-                             "largest_speed [m/s]",
-                             "largest_density_error"};
-  for (const auto& model : models_) {
-    if (model->phase() < 0) continue;
-    if (plan_.phases[static_cast<std::size_t>(model->phase())].moves) {
-      const std::string& name = plan_.phases[static_cast<std::size_t>(model->phase())].name;
-      c.push_back(name + "_kinetic_energy [J]");
-      c.push_back(name + "_largest_speed [m/s]");
-      c.push_back(name + "_mean_vx [m/s]");
-    }
-    model->columns(c);
+/// The values of a field of the phases that a frame has, `n` particles.
+FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const {
+  const FieldInfo& about = info(field);
+  FrameField out;
+  out.name = about.name;
+  out.unit = about.unit;
+  const int width = components(about.rank, plan_.dimensions);
+  out.components = about.rank == Rank::scalar      ? 1
+                   : about.rank == Rank::vector    ? 3
+                   : about.rank == Rank::symmetric ? 6
+                                                   : width;
+  out.values.reserve(n * static_cast<std::size_t>(out.components));
+  for (const std::size_t k : written) {
+    const auto& p = state_.phases[k];
+    for (std::size_t i = 0; i < p.size(); ++i)
+      for (int c = 0; c < out.components; ++c) {
+        double value = 0.0;
+        if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
+        else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
+        else if (p.has(field) && c < width) value = p.column(field, c)[i];
+        out.values.push_back(value);
+      }
   }
-  for (const auto& model : models_)
-    if (model->phase() < 0) model->columns(c);
-  return c;
+  return out;
 }
 
-std::vector<double> Simulation::history_row() const {
-  std::vector<double> row{state_.time, static_cast<double>(state_.steps), state_.dt, 0, 0, 0, 0, 0};
+void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
+  const auto& p = state_.phases[k];
+  const std::size_t n = p.size();
+  std::array<const double*, 3> v{};
+  for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
+  double fastest = 0.0;
+  const bool sizes = p.has(Field::radius);
+  const double square = ordered_sum(n, [&](std::size_t i) {
+    double s = 0;
+    for (int d = 0; d < plan_.dimensions; ++d)
+      s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
+    fastest = std::max(fastest, s);
+    return sizes ? s * p.mass_of(i) / p.mass() : s;
+  });
+  std::array<double, 3> mean{};
+  for (int d = 0; d < plan_.dimensions; ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    const double total = ordered_sum(n, [&](std::size_t i) { return v[c][i]; });
+    row.values[HistoryRow::momentum_x + c] +=
+        sizes ? ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
+    mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
+  }
+  fastest = std::sqrt(fastest);
+  row.raise(HistoryRow::largest_speed, fastest);
+  const std::string& name = plan_.phases[k].name;
+  row.add(name + "_kinetic_energy [J]", 0.5 * p.mass() * square);
+  row.add(name + "_largest_speed [m/s]", fastest);
+  row.add(name + "_mean_vx [m/s]", mean[0]);
+}
+
+HistoryRow Simulation::history() const {
+  HistoryRow row;
+  row.add("time [s]", state_.time);
+  row.add("step", static_cast<double>(state_.steps));
+  row.add("dt [s]", state_.dt);
+  for (const char* name : {"momentum_x [kg m/s]", "momentum_y [kg m/s]", "momentum_z [kg m/s]", "largest_speed [m/s]",
+                           "largest_density_error"})
+    row.add(name, 0.0);
   for (const auto& model : models_) {
     if (model->phase() < 0) continue;
     const auto k = static_cast<std::size_t>(model->phase());
-    if (!plan_.phases[k].moves) {
-      model->row(row);
-      continue;
-    }
-    const auto& p = state_.phases[k];
-    const std::size_t n = p.size();
-    std::array<const double*, 3> v{};
-    for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
-    double fastest = 0.0;
-    const bool sizes = p.has(Field::radius);
-    const double square = ordered_sum(n, [&](std::size_t i) {
-      double s = 0;
-      for (int d = 0; d < plan_.dimensions; ++d)
-        s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
-      fastest = std::max(fastest, s);
-      return sizes ? s * p.mass_of(i) / p.mass() : s;
-    });
-    std::array<double, 3> mean{};
-    for (int d = 0; d < plan_.dimensions; ++d) {
-      const auto c = static_cast<std::size_t>(d);
-      const double total = ordered_sum(n, [&](std::size_t i) { return v[c][i]; });
-      row[3 + c] += sizes ? ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
-      mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
-    }
-    fastest = std::sqrt(fastest);
-    row[6] = std::max(row[6], fastest);
-    row.push_back(0.5 * p.mass() * square);
-    row.push_back(fastest);
-    row.push_back(mean[0]);
-    model->row(row);
+    if (plan_.phases[k].moves) add_phase(k, row);
+    model->history(row);
   }
   for (const auto& model : models_)
-    if (model->phase() < 0) model->row(row);
+    if (model->phase() < 0) model->history(row);
   return row;
 }
 

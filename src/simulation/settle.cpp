@@ -19,7 +19,7 @@ namespace {
 // A bed rests when its farthest grain goes less than this in sqrt(d/g), twice, and when contacts that begin without
 // memory, as those of the run do, let no grain go farther than `at_place` (diameters).
 constexpr double at_rest = 2e-4, at_place = 5e-3;
-constexpr int most_trials = 20;
+constexpr int most_trials = 5;       // of the last: deep beds may always find a grain that goes on a little
 constexpr double restitution = 0.2;  // while they settle
 constexpr double loose = 1.35;       // height of the lattice over that of the bed, for equal grains
 // sqrt(d/g): in this time what slows the grains takes a speed to its e-th part; at the begin of a stage, when stiffer
@@ -295,17 +295,19 @@ SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<Partic
   for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
-  for (std::size_t stage = 0, trials = 0; stage < stages.size(); ++trials) {
+  int trials = 0;
+  for (std::size_t stage = 0; stage < stages.size();) {
     const bool last = stage + 1 == stages.size();
     const auto way = rest(stages[stage], blocks, stage > 0, stage == 0 ? fall : 2.0 * push, latest);
-    if (!way || trials > most_trials)
+    if (!way)
       throw SceneError(
           scene.file + ": fill." + std::to_string(k) +
           ".packing: the grains do not come to rest; expected friction above 0, and a restitution below 1");
     const std::size_t before = blocks[0].position.size();
     if (stage == 0 || last) cut(scene, k, s, blocks[0]);
     if (blocks[0].position.empty()) break;  // generate() tells it
-    if (!last || (*way < place && blocks[0].position.size() == before)) ++stage;
+    const bool stays = *way < place && blocks[0].position.size() == before;
+    if (!last || stays || ++trials == most_trials) ++stage;
   }
   return {blocks[0].position, blocks[0].radius};
 }

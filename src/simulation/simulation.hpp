@@ -57,9 +57,10 @@ class Simulation {
 
   /// A copy of the state for the writer.
   Frame frame(int index) const;
-  /// Names and values of one row of history.csv.
-  std::vector<std::string> history_columns() const;
-  std::vector<double> history_row() const;
+  /// One row of history.csv: names and values.
+  HistoryRow history() const;
+  std::vector<std::string> history_columns() const { return history().names; }
+  std::vector<double> history_row() const { return history().values; }
   /// Throws BreakdownError if the present state is wrong (simulation/watch.hpp); the watch of step() looks now and then
   /// only.
   void check() { watch_->look_closely(moment()); }
@@ -69,9 +70,9 @@ class Simulation {
   long good_step() const { return watch_->good().step(); }
   double good_time() const { return watch_->good().time(); }
   Frame good_frame(int index);
-  /// What should have been kept since the beginning.
+  /// Momentum and energy, which the run should conserve, against the beginning.
   const Budget& budget() const { return *budget_; }
-  /// What is remarkable so far.
+  /// The warnings of the run so far.
   Warnings warnings() const;
 
   /// Saves everything that the next step starts from, or loads it into a simulation of the same scene: the run then
@@ -83,6 +84,9 @@ class Simulation {
   void choose_step(double largest);
   Moment moment() const { return {state_.time, state_.dt, state_.steps}; }
   void make_state(const std::vector<ParticleBlock>& blocks);
+  FrameField values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const;
+  /// What all phases that move have in a row of history.csv.
+  void add_phase(std::size_t number, HistoryRow& row) const;
   void rule(const std::string& name, double value, double& dt);
 
   Scene scene_;

@@ -19,7 +19,7 @@ std::array<const double*, Dim> columns(const PhaseParticles& p, Field field) {
   return c;
 }
 
-/// Particles begin .. end of a phase against its bounds: a NaN is within none.
+/// Particles begin .. end of a phase against its bounds: a NaN fails every bound.
 template <std::size_t Dim, bool Dense, class Part, class Guard>
 Part look_at_block(const PhaseParticles& p, const Guard& g, double fastest2, std::size_t begin, std::size_t end) {
   const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
@@ -28,7 +28,7 @@ Part look_at_block(const PhaseParticles& p, const Guard& g, double fastest2, std
 #pragma omp simd reduction(+ : squares, wrong) reduction(max : fastest, densest) reduction(min : lightest)
   for (std::size_t k = begin; k < end; ++k) {
     double v2 = 0.0;
-    int good = 1;  // a number, so that & does not ask in turn
+    int good = 1;  // a number, so that & evaluates all conditions without a branch
     for (std::size_t d = 0; d < Dim; ++d) {
       v2 += v[d][k] * v[d][k];
       good &= static_cast<int>(x[d][k] >= g.low[d]) & static_cast<int>(x[d][k] <= g.high[d]);
@@ -216,7 +216,7 @@ void Watch::look(const Moment& now) {
   look_at_energy(now);
   if (keeps) good_.keep(see_.particles, now.time, now.step);
   next_ = now.step + longest_interval;
-  for (const auto& pair : pairs_)  // none may be near and apart again unseen
+  for (const auto& pair : pairs_)  // two particles must not come near and separate again between two looks
     if (pair.left < way * longest_interval)
       next_ = std::min(next_, now.step + std::max(1L, static_cast<long>(pair.left / way)));
 }

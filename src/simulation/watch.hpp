@@ -21,7 +21,7 @@
 
 namespace barchan {
 
-/// What the watch lets through in all phases; models give the bounds of their own (PhaseRules). docs/output.md gives
+/// Bounds of the watch that hold in all phases; each model gives its own besides (PhaseRules). docs/output.md gives
 /// the reasons.
 struct WatchBounds {
   static constexpr double outside = 0.5;              // spacings beyond a side of the domain
@@ -131,7 +131,7 @@ class Watch {
   double nearest_in(const Guard& g, std::size_t k) const;
   void note_density(const Guard& g, double error, const Moment& now);
 
-  // the slow part: who it is, and in which words
+  // the slow part: finds the particle and makes the message
   std::optional<std::string> wrong_with(const Guard& g, std::size_t k, double dt) const;
   std::optional<std::string> wrong_place(const Guard& g, std::size_t k) const;
   std::string who(std::size_t phase, std::size_t k, const Moment& now) const;

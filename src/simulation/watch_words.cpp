@@ -1,4 +1,4 @@
-// The slow part of the watch: which particle is wrong, in which words, and what to change.
+// The slow part of the watch: finds the particle that is wrong and makes the message with the remedy.
 #include <algorithm>
 #include <cmath>
 
@@ -190,8 +190,8 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
                        ", or move the fills apart");
 }
 
-/// Particles in pairs feel each other no longer: more than a share of the phase is nearer than pair_distance to
-/// somebody. A sample decides whether all are counted.
+/// Pairing: the kernel no longer separates two particles. A fault when more than a share is nearer than pair_distance
+/// to another particle. A sample decides whether all are counted.
 void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const {
   const PhaseParticles& p = see_.particles[g.phase];
   const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.phases[g.phase].spacing, 2);

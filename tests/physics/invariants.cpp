@@ -6,7 +6,7 @@
 #include "models/air/energy.hpp"
 #include "models/air/fluid.hpp"
 #include "models/bodies/elastic.hpp"
-#include "models/grains/grains.hpp"
+#include "models/pair_forces.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {
@@ -241,10 +241,10 @@ TEST_P(Invariants, GrainsKeepMomentumAndAngularMomentum) {
     for (std::size_t q = 0; q < 4; ++q) {
       const auto& [a, b, radius] = cast.directions[q];
       const auto law = with_kernel<double>(KernelKind::cubic_spline, radius, GetParam(), [](const auto& kernel) {
-        return KernelContact{40.0, 0.9, kernel.value(1.0), 1.0 / std::abs(kernel.derivative(1.0))};
+        return KernelContacts{{}, {40.0, 0.9, kernel.value(1.0), 1.0 / std::abs(kernel.derivative(1.0))}};
       });
-      contact_forces(cast.phases[a], cast.motion[a], cast.list(q), cast.motion[b], KernelKind::cubic_spline, radius,
-                     law);
+      pair_forces(cast.phases[a], cast.motion[a],
+                  PairEntry<KernelContacts>{&cast.list(q), &cast.motion[b], KernelKind::cubic_spline, radius, law});
     }
     Balance momentum, angular;
     for (const auto& p : cast.phases) {

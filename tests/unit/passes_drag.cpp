@@ -1,5 +1,5 @@
 // The drag of grains in a fluid against its naive twin, from both sides, and action and reaction.
-#include "models/coupling/drag.hpp"
+#include "models/pair_forces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,8 +53,9 @@ TEST_P(DragPass, EqualsTheNaiveSumsAndActsBack) {
       });
       for (std::size_t d = 0; d < 3; ++d) expected[d].push_back(force[d] / p.mass());
     }
-    drag_forces(p, cast.motion[a], cast.list(a), cast.motion[1 - a],
-                DragEntry{KernelKind::wendland_c2, radius, strength, density, barrier}, a == 0);
+    pair_forces(p, cast.motion[a],
+                PairEntry<DragAndBarrier>{&cast.list(a), &cast.motion[1 - a], KernelKind::wendland_c2, radius,
+                                          DragAndBarrier{{}, strength, density, barrier, a == 0}});
     for (int d = 0; d < dimensions; ++d)
       EXPECT_LT(difference(p.column(Field::acceleration, d), expected[static_cast<std::size_t>(d)]), 1e-12);
     for (std::size_t k = 0; k < p.size(); ++k)

@@ -4,7 +4,7 @@
 
 #include "kernels/kernel.hpp"
 #include "models/bodies/elastic.hpp"
-#include "models/grains/grains.hpp"
+#include "models/pair_forces.hpp"
 #include "models/walls/walls.hpp"
 #include "unit/naive_fluid.hpp"
 
@@ -197,7 +197,7 @@ TEST_P(SolidPasses, ContactsEqualTheNaiveSums) {
     const double radius = cast.directions[b].radius, damping = b == 0 ? 0.7 : 0.0, stiffness = 30.0;
     const auto w = [&](double r) { return naive::weight(KernelKind::cubic_spline, radius, dimensions, r); };
     const auto slope = [&](double r) { return r * gradient_factor(KernelKind::cubic_spline, radius, dimensions, r); };
-    const KernelContact law{stiffness, damping, w(1.0), 1.0 / std::abs(slope(1.0))};
+    const KernelContacts law{{}, {stiffness, damping, w(1.0), 1.0 / std::abs(slope(1.0))}};
     for (std::size_t k = 0; k < grains.size(); ++k)
       for_all_pairs(
           cast.bounds, grains, k, cast.phases[b], b == 0, radius,
@@ -210,7 +210,8 @@ TEST_P(SolidPasses, ContactsEqualTheNaiveSums) {
             const double force = stiffness * g * ratio - damping * ratio * v_n;
             for (std::size_t d = 0; d < 3; ++d) expected[d][k] += force * r[d] / distance / grains.mass();
           });
-    contact_forces(grains, cast.motion[0], cast.list(b), cast.motion[b], KernelKind::cubic_spline, radius, law);
+    pair_forces(grains, cast.motion[0],
+                PairEntry<KernelContacts>{&cast.list(b), &cast.motion[b], KernelKind::cubic_spline, radius, law});
   }
   for (int d = 0; d < dimensions; ++d)
     EXPECT_LT(difference(grains.column(Field::acceleration, d), expected[static_cast<std::size_t>(d)]), rounding);
@@ -228,11 +229,12 @@ TEST_P(SolidPasses, CoincidentGrainsFeelNothing) {
     two[0].column(Field::velocity, 0)[0] = 3.0;
     Cast cast(b, std::move(two), {{0, 0, 1.1}, {0, 1, 1.1}});
     const auto law = with_kernel<double>(kernel, 1.1, dimensions, [](const auto& w) {
-      return KernelContact{40.0, 0.9, w.value(1.0), 1.0 / std::abs(w.derivative(1.0))};
+      return KernelContacts{{}, {40.0, 0.9, w.value(1.0), 1.0 / std::abs(w.derivative(1.0))}};
     });
     for (std::size_t q = 0; q < 2; ++q) {
       ASSERT_EQ(cast.list(q).entries(), 2u);
-      contact_forces(cast.phases[0], cast.motion[0], cast.list(q), cast.motion[q], kernel, 1.1, law);
+      pair_forces(cast.phases[0], cast.motion[0],
+                  PairEntry<KernelContacts>{&cast.list(q), &cast.motion[q], kernel, 1.1, law});
       for (int d = 0; d < dimensions; ++d)
         for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(cast.phases[0].column(Field::acceleration, d)[k], 0.0);
     }

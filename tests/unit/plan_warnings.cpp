@@ -55,6 +55,9 @@ TEST(PlanSees, AFluidThatIsShutIn) {
           "radius = 0.22 } }\n[[fill]]\nphase = \"water\"\nshape = \"the-rest\" #");
   EXPECT_TRUE(staggered.phases[0].enclosed) << staggered.phases[0].enclosure;
   EXPECT_TRUE(box().warnings.empty()) << box().warnings.front();
+  const Scene periodic =
+      parse_scene(with(testing::square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\", \"y\"]"), "p.toml");
+  EXPECT_TRUE(make_plan(periodic, generate(periodic)).phases[0].enclosed) << "every side periodic";
 }
 
 TEST(PlanSees, AFluidThatIsNotShutIn) {
@@ -71,9 +74,6 @@ TEST(PlanSees, AFluidThatIsNotShutIn) {
                        "[phases.oil]\nkind = \"fluid\"\ndensity = 900\n[interactions.oil-oil]\nradius = 2.1\n"
                        "[interactions.water-oil]\nradius = 2.1\n[interactions.oil-wall]\nradius = 2.1");
   EXPECT_FALSE(oil.phases[0].enclosed) << "each must give way to the other";
-  const Scene periodic =
-      parse_scene(with(testing::square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\", \"y\"]"), "p.toml");
-  EXPECT_FALSE(make_plan(periodic, generate(periodic)).phases[0].enclosed) << "no wall";
 }
 
 TEST(PlanSees, WhatTheSceneSaysGoesFirst) {
@@ -161,6 +161,14 @@ TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {
                                        "shape = { box = { min = [0, 0], max = [1, 1] } }"),
                                   "body.toml");
   EXPECT_TRUE(warns(make_plan(scene, generate(scene)), "nothing holds the body \"air\" together"));
+}
+
+TEST(PlanWarns, OfWhatTheAtlasFoundUnstable) {
+  const std::string atlas = "the stability atlas";
+  EXPECT_FALSE(warns(box(), atlas));
+  EXPECT_TRUE(warns(box("end = 1", "end = 1\nsafety = 9"), "time.safety: 9 is outside what " + atlas));
+  EXPECT_FALSE(warns(box("end = 1", "end = 1\nstep = 1e-4"), atlas));
+  EXPECT_TRUE(warns(box("end = 1", "end = 1\nstep = 1e-2"), "time.step: ")) << "a fixed step beside the limit";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -483,14 +484,29 @@ TEST(SceneReader, ReadsTheKeysOfColumns) {
   EXPECT_EQ(scene.measuring.saltation.at(0).count, 20);
 }
 
-TEST(SceneReader, TheTestsAboveNameEveryKeyOfTheTable) {
-  const std::string all = every_key + sphere_keys + column_keys;
-  for (const Key& key : all_keys()) {
-    if (key.section.starts_with("fill.shape")) continue;
-    const std::string name(key.name);
-    if (name == "step") continue;  // not beside safety; OverridesReplaceAddAndMake has it
-    const bool named = all.find(name + " =") != std::string::npos || all.find("[" + name) != std::string::npos;
-    EXPECT_TRUE(named) << key.section << "." << name;
+/// Of every key of a phase: the kinds that have it have a member for it, and no two keys have the same member. That a
+/// document's value arrives there and counts is what tests/cli/key_consumers.cpp shows of every key.
+TEST(SceneReader, EveryKeyOfAPhaseHasAMemberOfItsOwn) {
+  const Slot& chooses = find_key("phases", "kind")->slot;
+  for (const Word& kind : chooses.words) {
+    Phase phase;
+    chooses.choose(&phase, kind.meaning);
+    EXPECT_EQ(phase.kind_word(), kind.word);
+    std::map<const void*, std::string_view> owners;
+    for (const Key* key : keys_of("phases")) {
+      if (!key->slot.member || (key->slot.accepts & as_section)) continue;
+      const void* member = std::visit(
+          [](auto target) -> const void* {
+            if constexpr (std::is_same_v<decltype(target), std::monostate>) return nullptr;
+            else return target;
+          },
+          key->slot.member(&phase));
+      const bool belongs = belongs_to_kind(*key, kind.word);
+      if (belongs)
+        EXPECT_TRUE(member && owners.emplace(member, key->name).second)
+            << key->name << " of " << kind.word << (member ? " writes what another key writes" : " has no member");
+      else EXPECT_TRUE(!member || key->name == "spacing") << key->name << " of " << kind.word;
+    }
   }
 }
 

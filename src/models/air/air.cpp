@@ -125,15 +125,7 @@ const StepLimit* Air::moving_limit() {
   return &viscous_limit_;
 }
 
-void Air::columns(std::vector<std::string>& names) const {
-  names.push_back(plan_.name + "_mean_pressure [Pa]");
-  names.push_back(plan_.name + "_density_error_rms");
-  if (plan_.held) names.push_back(plan_.name + "_held_acceleration_x [m/s2]");
-}
-
-/// Raises the largest density error, the eighth value of the row.
-void Air::row(std::vector<double>& values) const {
-  constexpr std::size_t largest_error = 7;
+void Air::history(HistoryRow& row) const {
   const std::size_t n = particles_->size();
   const auto count = static_cast<double>(n);
   const double* rho = std::as_const(*particles_).column(Field::density);
@@ -144,10 +136,11 @@ void Air::row(std::vector<double>& values) const {
     worst = std::max(worst, e);
     return e * e;
   });
-  values[largest_error] = std::max(values[largest_error], worst);
-  values.push_back(n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
-  values.push_back(n > 0 ? std::sqrt(squares / count) : 0.0);
-  if (plan_.held) values.push_back(hold_.acceleration[0]);
+  row.raise(HistoryRow::largest_density_error, worst);
+  row.add(plan_.name + "_mean_pressure [Pa]",
+          n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
+  row.add(plan_.name + "_density_error_rms", n > 0 ? std::sqrt(squares / count) : 0.0);
+  if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
 }
 
 void Air::archive(Archive& a) {

@@ -1,4 +1,4 @@
-// A fluid phase: its tasks in a step, and all that it remembers.
+// A fluid phase: its tasks in a step, and the numbers that it keeps from step to step.
 #pragma once
 
 #include <array>
@@ -30,8 +30,7 @@ class Air : public Model {
   void limits(std::vector<StepLimit>& limits) const override;
   const StepLimit* moving_limit() override;
   int phase() const override { return static_cast<int>(number_); }
-  void columns(std::vector<std::string>& names) const override;
-  void row(std::vector<double>& values) const override;
+  void history(HistoryRow& row) const override;
   void archive(Archive& a) override;
 
  private:

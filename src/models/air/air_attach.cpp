@@ -1,4 +1,4 @@
-// A fluid phase before its first step: what the plan learns of it, and what it binds.
+// A fluid phase before its first step: its description for the plan, and the records and lists of its tasks.
 #include <algorithm>
 #include <cmath>
 
@@ -69,6 +69,7 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
   p.friction = Friction::fluid;
+  p.physics = phase.fluid().scheme == FluidScheme::plain ? "plain fluid" : "consistent fluid";
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
   enclose(scene, blocks, number, layout, warnings);

@@ -67,11 +67,9 @@ double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDist
     distance[k] = at;
     largest = std::max(largest, nu);
     records.root[k] = std::sqrt(e.density * nu);
-    // Grains stand half a spacing behind their surface; the pair's viscosity turns the speed into the law's stress.
     records.touch[k] = e.density * e.viscosity;
     if (e.roughness > 0.0 && at < e.grain_reach)
-      records.touch[k] +=
-          e.density * log_law_friction(at, e.roughness, e.spacing) * std::sqrt(speed2) * (at + 0.5 * e.spacing);
+      records.touch[k] += rough_viscosity(e.density, at, e.roughness, e.spacing, std::sqrt(speed2));
   }
   return largest;
 }

@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/shares.hpp"
+#include "engine/pair_pass.hpp"
 #include "laws/eddy_fluid.hpp"
+#include "laws/eddy_friction.hpp"
 #include "models/air/eddies.hpp"
 #include "models/air/fluid_rows.hpp"
 
@@ -59,40 +60,25 @@ std::array<Four, Dim> wall_stress(const EddyNeighbour& e, const std::array<Four,
   return tau;
 }
 
-/// The pairs of a wall of given stress: mu_ab v_ab = tau (r.n). The normal is that of the raw sums' own B, which lack
-/// the kernel's constant and its sign: `scale`.
+/// The viscosity of the pairs of a solid that rubs by one.
 template <int Dim>
-EddySums<Dim> with_wall_stress(const EddyNeighbour& e, const RawSums<Dim>& raw, double scale,
-                               const EddyColumns<Dim>& columns, const FourOf& at, const EddyParameters& p) {
-  EddySums<Dim> s{raw, {}};
-  const Four size = Four(std::copysign(1.0, scale)) * length_of<Dim, Four>(raw.concentration);
-  std::array<Four, Dim> normal;
-  for (std::size_t d = 0; d < Dim; ++d)
-    normal[d] = simd::select(size != Four(0.0), -raw.concentration[d] / size, Four(0.0));
-  const auto tau = wall_stress<Dim>(e, normal, columns, at, p);
-  Four across(0.0);
-  for (std::size_t d = 0; d < Dim; ++d) across += raw.weighted[d] * normal[d];
-  for (std::size_t f = 0; f < Dim; ++f) {
-    Four moment(0.0);
-    for (std::size_t d = 0; d < Dim; ++d) moment += raw.moment[moment_index(f, d)] * normal[d];
-    for (std::size_t d = 0; d < Dim; ++d) s.flux[d * Dim + f] = tau[d] * moment;
-  }
-  for (std::size_t d = 0; d < Dim; ++d) s.viscous[d] = tau[d] * across;
-  return s;
+Four wall_viscosity(const EddyNeighbour& e, const EddyColumns<Dim>& columns, const FourOf& at,
+                    const EddyParameters& p) {
+  const Four root = load_four(columns.root, at.first, at.count);
+  return e.friction == Friction::grains   ? load_four(columns.touch, at.first, at.count)
+         : e.friction == Friction::smooth ? pair_viscosity(root, Four(std::sqrt(p.density * p.viscosity)))
+                                          : root * root;
 }
 
-/// The pairs of a solid that the particle touches with a viscosity of its own.
+/// The sums of a solid's pairs with their friction.
 template <int Dim>
-EddySums<Dim> with_viscosity(const EddyNeighbour& e, const RawSums<Dim>& raw, const EddyColumns<Dim>& columns,
-                             const FourOf& at, const EddyParameters& p) {
-  const Four root = load_four(columns.root, at.first, at.count);
-  const Four mu = e.friction == Friction::grains   ? load_four(columns.touch, at.first, at.count)
-                  : e.friction == Friction::smooth ? pair_viscosity(root, Four(std::sqrt(p.density * p.viscosity)))
-                                                   : root * root;
-  EddySums<Dim> s{raw, {}};
-  for (auto& v : s.viscous) v *= mu;
-  for (std::size_t m = 0; m < Dim * Dim; ++m) s.flux[m] = mu * raw.velocity[m];
-  return s;
+EddySums<Dim> with_friction(const EddyNeighbour& e, const RawSums<Dim>& raw, double scale,
+                            const EddyColumns<Dim>& columns, const FourOf& at, const EddyParameters& p) {
+  using Law = EddyFluid<Dim>;
+  if (e.friction != Friction::rough && e.friction != Friction::driven)
+    return Law::with_viscosity(raw, wall_viscosity<Dim>(e, columns, at, p));
+  const auto normal = Law::template normal_of<Four>(raw, scale);
+  return Law::with_stress(raw, normal, wall_stress<Dim>(e, normal, columns, at, p));
 }
 
 /// Sums over all entries; `company`: share of the neighbourhood that the fluid itself fills, the first entry.
@@ -110,44 +96,17 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
       const Roots roots{e.eddies ? e.eddies->root.data() : nullptr, e.root};
       if (sum_rows<Dim, EddyFluid, T>(at, e.pair, kernels[c], unit, own_of, pairs, roots)) s.take(pairs, scale, weight);
     } else if (sum_rows<Dim, ConsistentFluid, T>(at, e.pair, kernels[c], unit, own_of, raw)) {
-      const bool given = e.friction == Friction::rough || e.friction == Friction::driven;
-      s.take(given ? with_wall_stress<Dim>(e, raw, scale, columns, at, p) : with_viscosity<Dim>(e, raw, columns, at, p),
-             scale, weight);
+      s.take(with_friction<Dim>(e, raw, scale, columns, at, p), scale, weight);
     }
     if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);
   }
   return s;
 }
 
-/// The friction that the sums make; on the way, the squares of the stress mu |S| and of the strain |S|.
-template <int Dim>
-struct StressOf {
-  const EddySums<Dim>& s;
-  Four phi2{0.0}, shear2{0.0};  // |T|^2 and |S|^2
-
-  template <class Matrix, class Gradient>
-  BARCHAN_SIMD_INLINE std::array<Four, Dim> operator()(const Matrix& inverse, const Gradient& grad_v) {
-    std::array<std::array<Four, Dim>, Dim> t;
-    std::array<Four, Dim> friction = s.viscous;
-    for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e < Dim; ++e) {
-        t[d][e] = s.flux[d * Dim] * inverse[e];
-        for (std::size_t f = 1; f < Dim; ++f) t[d][e] = simd::fma(s.flux[d * Dim + f], inverse[f * Dim + e], t[d][e]);
-        friction[d] -= t[d][e] * s.weighted[e];
-      }
-    for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e < Dim; ++e) {
-        const Four both = t[d][e] + t[e][d], strain = grad_v[d][e] + grad_v[e][d];
-        phi2 += Four(0.5) * both * both;
-        shear2 += Four(0.5) * strain * strain;
-      }
-    return friction;
-  }
-};
-
 /// nu_t of the next step; where there is none yet, from the strain alone.
 template <int Dim>
-BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns, const StressOf<Dim>& stress, const FourOf& at,
+BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
+                                         const typename EddyFluid<Dim>::template Stress<Four>& stress, const FourOf& at,
                                          const EddyParameters& p) {
   if (p.model == Turbulence::none) return;
   const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
@@ -184,7 +143,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
     const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p, company);
     auto anisotropy = columns.anisotropy(at);
     auto place = columns.place(at, company);
-    StressOf<Dim> stress{s};
+    typename EddyFluid<Dim>::template Stress<Four> stress{s};
     const Four rho = load_four(columns.rho, at.first, at.count);
     const auto r = finish_consistent<Dim, Four>(s, 1.0, rho, q, anisotropy, place, stress);
     renew_viscosity<Dim>(eddy_columns, stress, at, p);
@@ -193,40 +152,20 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
 }
 
 template <int Dim>
-void reaction(PhaseParticles& solid, const RecordArray& own_records, const FluidNeighbour& e, const EddyRecords& eddies,
+void reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& e, const EddyRecords& eddies,
               double molecular) {
   using R = MotionRecord<Dim>;
-  const double inverse_mass = 1.0 / solid.mass();
-  const double* data = e.records->data();
-  const ReadyKernel ready(e.kernel, e.radius, Dim);
-  const auto n = static_cast<std::int64_t>(solid.size());
-  Shares shares(n, 256);
-#pragma omp parallel
-  for (const std::int64_t i : shares) {
-    const auto k = static_cast<std::size_t>(i);
-    const auto row = e.list->row(k);
-    const double* record = own_records[k];
-    std::array<Lanes, Dim> x, v, sum{};
-    for (std::size_t d = 0; d < Dim; ++d) {
-      x[d] = Lanes(record[R::position + d]);
-      v[d] = Lanes(record[R::velocity + d]);
-    }
-    double factor = 0.0;
-    ready([&](const auto& kernel) __attribute__((always_inline)) {
-      factor = kernel.slope_factor();
-      for (const std::uint32_t* q = row.begin; q != row.end; q += Lanes::width) {
-        Lanes b[R::size];
-        simd::load_transposed<R::size>(data, R::size / PairList::stride, q, b);
-        std::array<Lanes, Dim> r;
-        const Lanes f = kernel.slope(separation<Dim>(x, b + R::position, r)) * b[R::volume] *
-                        (gather_of<Lanes::width>(eddies.touch.data(), q) - Lanes(molecular));
-        for (std::size_t d = 0; d < Dim; ++d) sum[d] = simd::fma(f, v[d] - b[R::velocity + d], sum[d]);
-      }
-    });
-    for (std::size_t d = 0; d < Dim; ++d)
-      solid.column(Field::acceleration, static_cast<int>(d))[k] +=
-          2.0 * factor * record[R::volume] * inverse_mass * simd::sum(sum[d]);
-  }
+  const PairEntry<EddyFriction> entry{
+      e.list, e.records, e.kernel, e.radius, EddyFriction{{}, molecular}, eddies.touch.data()};
+  std::array<double*, Dim> acceleration{};
+  for (std::size_t d = 0; d < Dim; ++d) acceleration[d] = solid.column(Field::acceleration, static_cast<int>(d));
+  const double inverse_mass = 1.0 / solid.mass(), factor = ReadyKernel(e.kernel, e.radius, Dim).slope_factor();
+  pair_pass<Dim, EddyFriction>(
+      solid.size(), 256, own, {&entry, 1}, [](std::size_t, auto&) {},
+      [&](std::size_t k, const auto& sums, bool) {
+        for (std::size_t d = 0; d < Dim; ++d)
+          acceleration[d][k] += 2.0 * factor * own[k][R::volume] * inverse_mass * simd::sum(sums.drawn[d]);
+      });
 }
 
 }  // namespace

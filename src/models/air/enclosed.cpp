@@ -152,8 +152,8 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
         }
       }
   }
-  result.shut_in = walled;
-  result.why = result.shut_in ? "shut in by walls, and no free space" : "no wall shuts it in";
+  result.shut_in = true;
+  result.why = walled ? "shut in by walls, and no free space" : "no free space, and every side is periodic";
   return result;
 }
 

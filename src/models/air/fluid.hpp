@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/pair_entry.hpp"
 #include "engine/pair_loop.hpp"
 #include "scene/scene.hpp"
 #include "state/particles.hpp"

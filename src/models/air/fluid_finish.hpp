@@ -63,25 +63,11 @@ struct SurfaceColumns {
   }
 };
 
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V trace_of(const std::array<V, Dim*(Dim + 1) / 2>& m) {
-  if constexpr (Dim == 2) return m[0] + m[2];
-  else return m[0] + m[2] + m[5];
-}
-
 /// 0 below a, 1 above b, smooth between (3 x^2 - 2 x^3).
 template <class V>
 BARCHAN_SIMD_INLINE V smooth_step(V x, double a, double b) {
   const V t = simd::min(simd::max((x - V(a)) * V(1.0 / (b - a)), V(0.0)), V(1.0));
   return t * t * (V(3.0) - V(2.0) * t);
-}
-
-/// Length of a vector.
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V length_of(const std::array<V, Dim>& x) {
-  V square = x[0] * x[0];
-  for (std::size_t d = 1; d < Dim; ++d) square = simd::fma(x[d], x[d], square);
-  return simd::sqrt(square);
 }
 
 /// Takes the part of the shift that leads out of the fluid away; what leads inwards or along the surface stays.
@@ -168,11 +154,6 @@ constexpr double least_determinant = 0.6;
 template <int Dim>
 constexpr double least_determinant_of(const FluidParameters& q) {
   return q.loosening > 0.0 ? least_determinant * (Dim == 2 ? 0.25 : 0.125) : least_determinant;
-}
-
-/// Place of (d, e) in a moment: xx xy yy | xx xy yy xz yz zz.
-constexpr std::size_t moment_index(std::size_t d, std::size_t e) {
-  return d >= e ? d * (d + 1) / 2 + e : e * (e + 1) / 2 + d;
 }
 
 /// A fluid particle alone in the pores of a bed is no fluid: the grains about it answer with its own pressure, and what

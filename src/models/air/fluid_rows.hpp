@@ -40,13 +40,6 @@ const T* records_of(const FluidNeighbour& e) {
   else return e.compact->data();
 }
 
-/// One number of each of Width neighbours from `at` on. By halves: registers of two are filled without masks.
-template <int Width>
-BARCHAN_SIMD_INLINE simd::Vec<double, Width> gather_of(const double* values, const std::uint32_t* at) {
-  if constexpr (Width == 1) return {values[at[0] / PairList::stride]};
-  else return simd::join(gather_of<Width / 2>(values, at), gather_of<Width / 2>(values, at + Width / 2));
-}
-
 /// The roots of neighbours whose record is b and whose entries in the list begin at `at`.
 template <int Dim, class T>
 BARCHAN_SIMD_INLINE LanesOf<T> roots_of(const Roots& roots, [[maybe_unused]] const LanesOf<T>* b,
@@ -121,9 +114,6 @@ BARCHAN_SIMD_INLINE bool sum_rows(const FourOf& at, const FluidNeighbour& e, con
   raw = reduce<typename Law<Dim>::template Sums<Four>, T>(sums);
   return true;
 }
-
-/// At most this many entries a phase.
-constexpr std::size_t most_entries = 16;
 
 template <class T, class Range, class PairOf = std::identity>
 std::vector<ReadyKernelOf<T>>& ready_kernels(const Range& neighbours, int dimensions, PairOf pair_of = {}) {

@@ -24,7 +24,7 @@ GroundDistance::GroundDistance(const Bounds& bounds, const Sides& sides, double 
   nearest_.assign(cells, -1);
   crowd_.assign(cells, 0);
   stale_.assign(cells + 2 * margin(), 0);
-  // Those above each other one after another, as they mostly have the same ground.
+  // Particles above each other come one after another: most of them have the same ground.
   for (int x = -halo_[0]; x <= halo_[0]; ++x)
     for (int y = -halo_[1]; y <= halo_[1]; ++y)
       for (int z = -halo_[2]; z <= halo_[2]; ++z) around_.push_back(x * stride_[0] + y * stride_[1] + z * stride_[2]);

@@ -11,10 +11,10 @@
 
 namespace barchan {
 
-/// What eddies are kept small by. Sides are planes, fitted walls a cloud of small pieces of their surface. Everything
-/// else is a cloud of particles one spacing thick: at every search for neighbours, the nearest of them is propagated
-/// from cell to cell (Danielsson 1980), so that a fluid particle, wherever it is, compares the candidates of its own
-/// and the adjacent cells only.
+/// The surfaces that limit the size of eddies. Sides are planes, fitted walls a cloud of small pieces of their surface.
+/// Everything else is a cloud of particles one spacing thick: at every search for neighbours, the nearest of them is
+/// propagated from cell to cell (Danielsson 1980), so that a fluid particle, wherever it is, compares the candidates of
+/// its own and the adjacent cells only.
 class GroundDistance {
  public:
   /// A phase whose particles are ground.

@@ -1,4 +1,4 @@
-// The free surface of a fluid: who stands on it, which way is in, and a pressure that does not pull there.
+// The free surface of a fluid: its particles, their normals into the fluid, and the limit of the pressure there.
 #pragma once
 
 #include <cstdint>

@@ -45,6 +45,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   using enum Field;
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
+  p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration, stress};
   if (phase.elastic().energy) p.fields.push_back(energy);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);

@@ -37,6 +37,7 @@ constexpr double interval_share = 0.004;
 void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                      std::vector<std::string>&) {
   const ColumnKeys& keys = scene.phases[number].column();
+  layout.phases[number].physics = "column";
   const Formula friction_velocity(keys.friction_velocity);
   constexpr int moments = 64;
   double& wind = layout.phases[number].wind;
@@ -364,20 +365,12 @@ void ColumnPhase::archive(Archive& a) {
   if (a.loads()) air_->integrate_speed();
 }
 
-void ColumnPhase::columns(std::vector<std::string>& names) const {
-  const std::string& name = scene_.phases[number_].name;
-  if (!keys_.averaging) names.push_back(name + "_momentum_x [kg m/s]");
-  names.push_back(name + "_boundary_impulse_x [kg m/s]");
-}
-
 /// The air's momentum is counted at the same moment as that of the grains: less what they have got since the last
 /// exchange.
-void ColumnPhase::row(std::vector<double>& values) const {
+void ColumnPhase::history(HistoryRow& row) const {
+  const std::string impulse = scene_.phases[number_].name + "_boundary_impulse_x [kg m/s]";
   const AirProfile& air = profile();
-  if (keys_.averaging) {
-    values.push_back(area_ * air.boundary);
-    return;
-  }
+  if (keys_.averaging) return row.add(impulse, area_ * air.boundary);
   double momentum = air_->momentum();
   for (const double given : air.given) momentum += given;
   momentum *= area_;
@@ -387,8 +380,8 @@ void ColumnPhase::row(std::vector<double>& values) const {
     const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
     momentum -= time * ordered_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }
-  values.push_back(momentum);
-  values.push_back(area_ * air.boundary);
+  row.add(scene_.phases[number_].name + "_momentum_x [kg m/s]", momentum);
+  row.add(impulse, area_ * air.boundary);
 }
 
 }  // namespace barchan

@@ -24,8 +24,7 @@ class ColumnPhase : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   int phase() const override { return static_cast<int>(number_); }
-  void columns(std::vector<std::string>& names) const override;
-  void row(std::vector<double>& values) const override;
+  void history(HistoryRow& row) const override;
   void archive(Archive& a) override;
 
  private:

@@ -1,23 +1,12 @@
-// An entry of a fluid and grains with a form drag.
+// An entry of a fluid and grains with a form drag given by a number.
 #pragma once
 
-#include "models/coupling/drag.hpp"
-#include "models/workspace.hpp"
+#include <memory>
+
+#include "models/model.hpp"
 
 namespace barchan {
 
-class DragModel : public Model {
- public:
-  DragModel(const Scene& scene, const Layout& layout, const PlanEntry& entry);
-  void attach(Workspace& w) override { w_ = &w; }
-  void schedule(Schedule& s) override;
-
- private:
-  void pull(std::size_t phase);
-
-  const PlanEntry& entry_;
-  DragEntry law_;
-  Workspace* w_ = nullptr;
-};
+std::unique_ptr<Model> make_drag_entry(const Scene& scene, const Layout& layout, const PlanEntry& entry);
 
 }  // namespace barchan

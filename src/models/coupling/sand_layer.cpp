@@ -240,7 +240,7 @@ void SandLayer::feel() {
   });
 }
 
-/// What the grains of a layer's cells pull by area, and how much more as the air gets faster.
+/// The drag of the grains in a layer's cells by area, and its derivative by the speed of the air.
 void SandLayer::spread() {
   const PhaseParticles& p = w_->particles(grains_);
   const double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
@@ -263,21 +263,16 @@ void SandLayer::archive(Archive& a) {
   for (auto& layer : layers_) layer.integrate_speed();
 }
 
-void SandLayer::columns(std::vector<std::string>& names) const {
-  names.push_back(name_ + "_ground_stress [Pa]");
-  names.push_back(name_ + "_bed_stress [Pa]");
-}
-
 /// Means over the ground: of the stress on top of the layers, and at the height of the bed.
-void SandLayer::row(std::vector<double>& values) const {
+void SandLayer::history(HistoryRow& row) const {
   double top = 0.0, bed = 0.0;
   for (std::size_t c = 0; c < layers_.size(); ++c) {
     const AirProfile& p = profile(c);
     top += p.stress.back();
     bed += p.stress[layers_[c].cell_at(0.5 * diameter_)];
   }
-  values.push_back(top / static_cast<double>(layers_.size()));
-  values.push_back(bed / static_cast<double>(layers_.size()));
+  row.add(name_ + "_ground_stress [Pa]", top / static_cast<double>(layers_.size()));
+  row.add(name_ + "_bed_stress [Pa]", bed / static_cast<double>(layers_.size()));
 }
 
 }  // namespace barchan

@@ -23,8 +23,7 @@ class SandLayer : public Model {
   SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& entry);
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
-  void columns(std::vector<std::string>& names) const override;
-  void row(std::vector<double>& values) const override;
+  void history(HistoryRow& row) const override;
   void archive(Archive& a) override;
 
  private:

@@ -26,7 +26,7 @@ void SolidInFluid::schedule(Schedule& s) {
 }
 
 void SolidInFluid::extend() {
-  // The acceleration is that of the step before: this step's is not known yet.
+  // The acceleration of the last step: the one of this step is computed later.
   extend_into_solid(w_->particles(solid_), w_->extended[solid_], sources_, scene_.domain.gravity,
                     ExtensionRule{Slip::no_slip, !grains_, grains_});
   share_extended(*w_, solid_);

@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "kernels/kernel.hpp"
+#include "models/pair_forces.hpp"
 
 namespace barchan {
 
@@ -39,31 +40,18 @@ KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEn
 
 }  // namespace
 
-ContactEntry::ContactEntry(const Scene& scene, const Layout& layout, const PlanEntry& entry)
-    : layout_(layout), entry_(entry), law_(contact_law(scene, layout, entry)) {
-  if (entry.law != Law::repulsive) return;
-  // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
-  // automatic.
-  const PlanPhase& p = layout.phases[entry.fluid];
-  law_.stiffness = p.mass / (p.spacing * p.spacing) * p.sound_speed * 0.1 * p.sound_speed;
-  law_.damping = 0.0;
-}
-
-void ContactEntry::schedule(Schedule& s) {
-  using enum Field;
-  const auto in = entry_.law == Law::repulsive ? stage::repel : stage::contacts;
-  const auto side = [&](std::size_t phase) {
-    if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves) return;
-    s.add({in, entry_.name, {position, velocity}, {acceleration}, [this, phase] { push(phase); }});
-  };
-  side(entry_.a);
-  if (entry_.a != entry_.b) side(entry_.b);
-}
-
-/// The particles of one phase feel those of the other.
-void ContactEntry::push(std::size_t phase) {
-  contact_forces(w_->particles(phase), w_->motion[phase], w_->list(entry_.direction(phase)),
-                 w_->motion[entry_.partner(phase)], entry_.kernel, entry_.radius, law_);
+std::unique_ptr<Model> make_contact_entry(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
+  KernelContacts law{{}, contact_law(scene, layout, entry)};
+  const bool ghosts = entry.law == Law::repulsive;
+  if (ghosts) {
+    // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
+    // automatic.
+    const PlanPhase& p = layout.phases[entry.fluid];
+    law.contact.stiffness = p.mass / (p.spacing * p.spacing) * p.sound_speed * 0.1 * p.sound_speed;
+    law.contact.damping = 0.0;
+  }
+  return std::make_unique<ForceEntry<KernelContacts>>(layout, entry, law, ghosts ? stage::repel : stage::contacts,
+                                                      FieldSet{Field::position, Field::velocity});
 }
 
 }  // namespace barchan

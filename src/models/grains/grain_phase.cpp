@@ -61,6 +61,7 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound) {
 void describe_spheres(const Scene& scene, std::size_t number, Layout& layout) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
+  p.physics = "spheres";
   p.smoothing_length = 0.5 * p.diameter;
   p.fields = {position, velocity, acceleration, contact_acceleration};
   if (p.largest_diameter > p.diameter) p.fields.push_back(radius);
@@ -91,6 +92,7 @@ void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std:
   PlanPhase& p = layout.phases[number];
   p.friction = Friction::grains;
   if (p.diameter > 0) return describe_spheres(scene, number, layout);
+  p.physics = "grains";
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
   // speed of the grains is not looked at: `contact-speed` is there for fast ones.

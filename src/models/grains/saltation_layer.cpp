@@ -46,14 +46,7 @@ SaltationHistory::SaltationHistory(const Scene& scene, const Layout& layout, con
       area_(ground_area(scene)),
       bed_(scene.domain.origin[1], scene.domain.origin[1] + scene.domain.size[1], diameter_) {}
 
-void SaltationHistory::columns(std::vector<std::string>& names) const {
-  const std::string& n = layer_.name;
-  names.insert(names.end(), {n + "_bed [m]", n + "_flux [kg/m/s]", n + "_in_flight", n + "_flight_mass [kg/m2]",
-                             n + "_flight_speed [m/s]", n + "_apex [m]"});
-  if (air_around(w_->layout, w_->state, phase_)) names.push_back(n + "_bed_friction_velocity [m/s]");
-}
-
-void SaltationHistory::row(std::vector<double>& values) const {
+void SaltationHistory::history(HistoryRow& row) const {
   const PhaseParticles& p = w_->particles(phase_);
   const double bed = bed_(p), least = bed + layer_.flight * diameter_, g = std::abs(scene_.domain.gravity[1]);
   const double *y = p.column(Field::position, 1), *vx = p.column(Field::velocity, 0),
@@ -71,11 +64,16 @@ void SaltationHistory::row(std::vector<double>& values) const {
       apex += y[k] - bed + vy[k] * vy[k] / (2.0 * g);
     }
   }
-  values.insert(values.end(), {bed, flux / area_, flying, mass / area_, mass > 0.0 ? speed / mass : 0.0,
-                               rising > 0.0 ? apex / rising : 0.0});
+  const std::string& n = layer_.name;
+  row.add(n + "_bed [m]", bed);
+  row.add(n + "_flux [kg/m/s]", flux / area_);
+  row.add(n + "_in_flight", flying);
+  row.add(n + "_flight_mass [kg/m2]", mass / area_);
+  row.add(n + "_flight_speed [m/s]", mass > 0.0 ? speed / mass : 0.0);
+  row.add(n + "_apex [m]", rising > 0.0 ? apex / rising : 0.0);
   if (const AirProfile* air = air_around(w_->layout, w_->state, phase_)) {
     const double stress = air_stress(*air, bed), density = scene_.phases[air->phase].density;
-    values.push_back(std::copysign(std::sqrt(std::abs(stress) / density), stress));
+    row.add(n + "_bed_friction_velocity [m/s]", std::copysign(std::sqrt(std::abs(stress) / density), stress));
   }
 }
 

@@ -11,8 +11,7 @@ class SaltationHistory : public Model {
   SaltationHistory(const Scene& scene, const Layout& layout, const SaltationLayer& layer);
   void attach(Workspace& w) override { w_ = &w; }
   void schedule(Schedule&) override {}
-  void columns(std::vector<std::string>& names) const override;
-  void row(std::vector<double>& values) const override;
+  void history(HistoryRow& row) const override;
 
  private:
   const Scene& scene_;

@@ -295,12 +295,7 @@ void Spheres::go(bool last, double dt) {
   if (!(farthest2 < 0.24 * slack() * slack())) search();
 }
 
-void Spheres::columns(std::vector<std::string>& names) const {
-  names.insert(names.end(), {"contacts", "contacts_deepest", "contacts_stored_energy [J]", "contacts_lost_energy [J]",
-                             "rotation_energy [J]"});
-}
-
-void Spheres::row(std::vector<double>& values) const {
+void Spheres::history(HistoryRow& row) const {
   double turning = 0.0;
   for (const Part& part : parts_) {
     const PhaseParticles& p = w_->particles(part.phase);
@@ -315,7 +310,11 @@ void Spheres::row(std::vector<double>& values) const {
     });
   }
   const double depth = layout_.slab;  // energies are by metre of depth in 2D
-  values.insert(values.end(), {contacts_, deepest_, stored_ / depth, lost_ / depth, turning});
+  row.add("contacts", contacts_);
+  row.add("contacts_deepest", deepest_);
+  row.add("contacts_stored_energy [J]", stored_ / depth);
+  row.add("contacts_lost_energy [J]", lost_ / depth);
+  row.add("rotation_energy [J]", turning);
 }
 
 std::optional<std::string> Spheres::trouble() const {

@@ -49,8 +49,7 @@ class Spheres : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void limits(std::vector<StepLimit>& limits) const override;
-  void columns(std::vector<std::string>& names) const override;
-  void row(std::vector<double>& values) const override;
+  void history(HistoryRow& row) const override;
   std::optional<std::string> trouble() const override;
   std::uint64_t pairs(const PlanEntry& entry) const override;
   long searches() const override { return searches_; }

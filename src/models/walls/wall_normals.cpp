@@ -9,75 +9,101 @@
 
 namespace barchan {
 
+namespace {
+
+/// The places of wall particles in cells as wide as the kernel reaches. Cells divide periodic sides and stand in a map:
+/// walls are thin, domains large.
+class WallPlaces {
+ public:
+  WallPlaces(const Bounds& bounds, double reach) : bounds_(bounds), side_{reach, reach, reach} {
+    for (std::size_t d = 0; d < dimensions(); ++d) {
+      if (!bounds.periodic[d]) continue;
+      count_[d] = std::max(1, static_cast<int>(std::floor(period(d) / reach)));
+      side_[d] = period(d) / count_[d];
+    }
+  }
+
+  void add(const Vec3& x) { cells_[cell_of(x)].push_back(x); }
+
+  /// Calls f(x - y) with the nearest image of each place y in the cells about x.
+  template <class F>
+  void for_each_about(const Vec3& x, F&& f) const {
+    for (const Cell& cell : about(cell_of(x))) {
+      const auto found = cells_.find(cell);
+      if (found == cells_.end()) continue;
+      for (const Vec3& y : found->second) {
+        Vec3 r = x - y;
+        for (std::size_t d = 0; d < dimensions(); ++d)
+          if (bounds_.periodic[d]) r[d] -= period(d) * std::round(r[d] / period(d));
+        f(r);
+      }
+    }
+  }
+
+ private:
+  using Cell = std::array<int, 3>;
+  std::size_t dimensions() const { return static_cast<std::size_t>(bounds_.dimensions); }
+  double period(std::size_t d) const { return bounds_.high[d] - bounds_.low[d]; }
+  Cell wrap(Cell c) const {
+    for (std::size_t d = 0; d < 3; ++d)
+      if (count_[d] > 0) c[d] = (c[d] % count_[d] + count_[d]) % count_[d];
+    return c;
+  }
+  Cell cell_of(const Vec3& x) const {
+    Cell c{0, 0, 0};
+    for (std::size_t d = 0; d < dimensions(); ++d)
+      c[d] = static_cast<int>(std::floor((x[d] - bounds_.low[d]) / side_[d]));
+    return wrap(c);
+  }
+  /// The cell and its neighbours, each once.
+  std::vector<Cell> about(const Cell& centre) const {
+    const bool solid = bounds_.dimensions == 3;
+    std::vector<Cell> cells;
+    cells.reserve(27);
+    for (int c = 0; c < (solid ? 27 : 9); ++c)
+      cells.push_back(wrap({centre[0] + c % 3 - 1, centre[1] + c / 3 % 3 - 1, centre[2] + (solid ? c / 9 - 1 : 0)}));
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+  }
+
+  const Bounds& bounds_;
+  std::array<int, 3> count_{0, 0, 0};
+  std::array<double, 3> side_;
+  std::map<Cell, std::vector<Vec3>> cells_;
+};
+
+Vec3 vector_of(const PhaseParticles& p, Field field, std::size_t k) {
+  Vec3 x{};
+  for (int d = 0; d < p.dimensions(); ++d) x[static_cast<std::size_t>(d)] = p.column(field, d)[k];
+  return x;
+}
+
+}  // namespace
+
 void find_wall_normals(std::span<PhaseParticles* const> walls, const Bounds& bounds, double spacing) {
   const double reach = 4.0 * spacing;
-  const auto dimensions = static_cast<std::size_t>(bounds.dimensions);
-  // Cells that divide periodic sides, in a map: walls are thin, domains large.
-  std::array<int, 3> count{0, 0, 0};
-  std::array<double, 3> side{reach, reach, reach};
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    if (!bounds.periodic[d]) continue;
-    count[d] = std::max(1, static_cast<int>(std::floor((bounds.high[d] - bounds.low[d]) / reach)));
-    side[d] = (bounds.high[d] - bounds.low[d]) / count[d];
-  }
-  using Cell = std::array<int, 3>;
-  const auto wrap = [&](Cell c) {
-    for (std::size_t d = 0; d < 3; ++d)
-      if (count[d] > 0) c[d] = (c[d] % count[d] + count[d]) % count[d];
-    return c;
-  };
-  const auto cell_of = [&](const Vec3& x) {
-    Cell c{0, 0, 0};
-    for (std::size_t d = 0; d < dimensions; ++d) c[d] = static_cast<int>(std::floor((x[d] - bounds.low[d]) / side[d]));
-    return wrap(c);
-  };
-  const auto place = [&](const PhaseParticles& p, std::size_t k) {
-    Vec3 x{};
-    for (std::size_t d = 0; d < dimensions; ++d) x[d] = p.column(Field::position, static_cast<int>(d))[k];
-    return x;
-  };
-  std::map<Cell, std::vector<Vec3>> cells;
+  WallPlaces places(bounds, reach);
   for (const PhaseParticles* p : walls)
-    for (std::size_t k = 0; k < p->size(); ++k) cells[cell_of(place(*p, k))].push_back(place(*p, k));
+    for (std::size_t k = 0; k < p->size(); ++k) places.add(vector_of(*p, Field::position, k));
   for (PhaseParticles* p : walls)
     for (std::size_t k = 0; k < p->size(); ++k) {
-      Vec3 known{};
-      for (std::size_t d = 0; d < dimensions; ++d) known[d] = p->column(Field::wall_normal, static_cast<int>(d))[k];
-      if (p->column(Field::wall_depth)[k] > 0.0 || norm(known) > 0.0) continue;
-      const Vec3 x = place(*p, k);
-      const Cell centre = cell_of(x);
-      std::vector<Cell> about;
-      about.reserve(27);
-      for (int c = 0; c < (dimensions == 3 ? 27 : 9); ++c)
-        about.push_back(
-            wrap({centre[0] + c % 3 - 1, centre[1] + c / 3 % 3 - 1, centre[2] + (dimensions == 3 ? c / 9 - 1 : 0)}));
-      std::sort(about.begin(), about.end());
-      about.erase(std::unique(about.begin(), about.end()), about.end());
+      if (p->column(Field::wall_depth)[k] > 0.0 || norm(vector_of(*p, Field::wall_normal, k)) > 0.0) continue;
       Vec3 out{};
       double size = 0.0;
       with_kernel<double>(KernelKind::cubic_spline, reach, bounds.dimensions, [&](const auto& kernel) {
-        for (const Cell& c : about) {
-          const auto found = cells.find(c);
-          if (found == cells.end()) continue;
-          for (const Vec3& y : found->second) {
-            Vec3 r = x - y;
-            for (std::size_t d = 0; d < dimensions; ++d)
-              if (bounds.periodic[d]) {
-                const double period = bounds.high[d] - bounds.low[d];
-                r[d] -= period * std::round(r[d] / period);
-              }
-            const double length = norm(r);
-            if (!(length > 0.0) || length >= reach) continue;
-            const double slope = std::abs(kernel.derivative(length));
-            out = out + slope / length * r;
-            size += slope;
-          }
-        }
+        places.for_each_about(vector_of(*p, Field::position, k), [&](const Vec3& r) {
+          const double length = norm(r);
+          if (!(length > 0.0) || length >= reach) return;
+          const double slope = std::abs(kernel.derivative(length));
+          out = out + slope / length * r;
+          size += slope;
+        });
       });
       const double length = norm(out);
       if (length > 1e-3 * size)
-        for (std::size_t d = 0; d < dimensions; ++d)
-          p->column(Field::wall_normal, static_cast<int>(d))[k] = out[d] / length;
+        for (int d = 0; d < bounds.dimensions; ++d)
+          p->column(Field::wall_normal, d)[k] = out[static_cast<std::size_t>(d)] / length;
     }
 }
 

@@ -1,4 +1,4 @@
-// Normals of walls that are filled inside the domain, whose surface nobody has described.
+// Normals of walls that are filled inside the domain and have no described surface.
 #pragma once
 
 #include <span>

@@ -1,0 +1,94 @@
+// The words of a document: each enumeration of a scene with the words that stand for its values.
+//
+// To add a word: the enumerator, and its word in the row below it.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "kernels/kernel_kind.hpp"
+
+namespace barchan {
+
+/// A word of a document and the number of what it stands for: an enumerator, an axis, true or false.
+struct Word {
+  std::string_view word;
+  int meaning;
+};
+template <class Enum>
+constexpr Word word(std::string_view word, Enum meaning) {
+  return {word, static_cast<int>(meaning)};
+}
+
+/// The words of an enumeration.
+template <class Enum>
+inline constexpr std::array<Word, 0> words_of{};
+
+template <>
+inline constexpr std::array words_of<KernelKind>{word("cubic-spline", KernelKind::cubic_spline),
+                                                 word("wendland-c2", KernelKind::wendland_c2)};
+
+enum class EquationOfState { linear, tait };
+template <>
+inline constexpr std::array words_of<EquationOfState>{word("linear", EquationOfState::linear),
+                                                      word("tait", EquationOfState::tait)};
+
+enum class FluidScheme { plain, consistent };  // docs/method.md
+template <>
+inline constexpr std::array words_of<FluidScheme>{word("plain", FluidScheme::plain),
+                                                  word("consistent", FluidScheme::consistent)};
+
+enum class Turbulence { none, mixing_length, smagorinsky };
+template <>
+inline constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
+                                                 word("mixing-length", Turbulence::mixing_length),
+                                                 word("smagorinsky", Turbulence::smagorinsky)};
+
+enum class MixingLength { none, duran };  // of a column of air; Duran, Andreotti & Claudin 2012
+template <>
+inline constexpr std::array words_of<MixingLength>{word("none", MixingLength::none),
+                                                   word("duran", MixingLength::duran)};
+
+/// Drag of a grain by name (laws/drag_coefficients.hpp); none has no word: the entry gives a number.
+enum class DragLaw { none, stokes, schiller_naumann, cheng, duran, di_felice };
+template <>
+inline constexpr std::array words_of<DragLaw>{
+    word("stokes", DragLaw::stokes), word("schiller-naumann", DragLaw::schiller_naumann), word("cheng", DragLaw::cheng),
+    word("duran", DragLaw::duran), word("di-felice", DragLaw::di_felice)};
+
+enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 2015 section 6 (one row of ghosts)
+template <>
+inline constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
+
+enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; laws/sphere_contact.hpp
+template <>
+inline constexpr std::array words_of<ContactLaw>{word("kernel", ContactLaw::kernel), word("linear", ContactLaw::linear),
+                                                 word("hertz", ContactLaw::hertz)};
+
+enum class Slip { no_slip, free_slip };
+template <>
+inline constexpr std::array words_of<Slip>{word("no-slip", Slip::no_slip), word("free-slip", Slip::free_slip)};
+
+/// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
+enum class Packing { square, hexagonal, random, fitted, settled };
+template <>
+inline constexpr std::array words_of<Packing>{word("rows", Packing::square), word("staggered", Packing::hexagonal),
+                                              word("random", Packing::random), word("fitted", Packing::fitted),
+                                              word("settled", Packing::settled)};
+
+enum class DuneForm { cosine, gaussian, asymmetric, rushil, formula };
+template <>
+inline constexpr std::array words_of<DuneForm>{word("cosine", DuneForm::cosine), word("gaussian", DuneForm::gaussian),
+                                               word("asymmetric", DuneForm::asymmetric),
+                                               word("rushil", DuneForm::rushil), word("formula", DuneForm::formula)};
+
+enum class FrameFormat { vtp, vtu };
+template <>
+inline constexpr std::array words_of<FrameFormat>{word("vtp", FrameFormat::vtp), word("vtu", FrameFormat::vtu)};
+
+enum class Precision { double_precision, mixed };
+template <>
+inline constexpr std::array words_of<Precision>{word("double", Precision::double_precision),
+                                                word("mixed", Precision::mixed)};
+
+}  // namespace barchan
