@@ -10,8 +10,21 @@
 //   Hertz:  k = 4/3 E* sqrt(R* delta),  c = sqrt(5) zeta sqrt(m* k), k_t = 3 (1 - nu)/(2 - nu) k   (Mindlin 1949)
 //   c_t = c/2
 //
-// Velocities of a step are half a step behind its positions. A dashpot takes them at the time of the positions: with
-// what the force itself adds, v + F dt/(2 m*), which gives F = (k delta - c v)/(1 + c dt/(2 m*)).
+// A step of the contacts (leapfrog) takes the force at x_n for the time from t_n - dt/2 to t_n + dt/2, with velocities
+// that are half a step behind. Twelve steps a contact are few, so the force is that which makes the step exact:
+//   the mean over t_n - dt .. t_n + dt with the weight 1 - |s|/dt, because x_(n+1) - 2 x_n + x_(n-1) = dt^2 mean(F)/m.
+//     A spring that begins inside of that time, while the spheres go a = |v_n| dt, gives K ramp(delta, a) with
+//     ramp = max(delta, 0) + a w^3/6, w = max(1 - |delta|/a, 0); a dashpot c v_n begin(delta, a), begin = w^2/2 before
+//     and 1 - w^2/2 after the touch. So contacts have a force up to one step before and after they overlap. The same
+//     ramp rounds the end of the clipped force.
+//   the spring and the dashpot for which the discrete oscillator has the decay and the frequency of the continuous one:
+//     with T^2 = k dt^2/m*, D = c/sqrt(m* k): K = k (1 - T^2 (1 + D^2)/12), C = c (1 - T^2 D^2/12), to order T^4.
+//   the dashpot's velocity at t_n: with what the force itself adds, v + F dt/(2 m*), F = (K delta - C v)/(1 + C dt/(2
+//   m*)).
+// Found for 12 steps a contact, all phases of the first touch (tests/unit/sphere_contact.cpp): e = 0.3 within 0.3 %,
+// 0.5 to 0.9 within 0.2 %; the plain force missed them by 14 and 2 to 8 %. Spheres without a dashpot take the plain
+// force at x_n, so that the steps stay those of a mechanical system: where many touch at once, a force that knows
+// velocities gains energy (1 % in 10^4 steps of a dense gas).
 //
 // Grains do not stick: the force is clipped to repulsion, and the contact ends where the clipped force does (Schwager
 // and Poeschel 2007). Then a head-on impact keeps the share
@@ -82,7 +95,7 @@ struct TouchingSpheres {
   std::array<V, Dim> normal;    // from b to a
   std::array<V, Dim> velocity;  // v_a - v_b, m/s
   std::array<V, spin> spin_a, spin_b;
-  V overlap;           // m, > 0
+  V overlap;           // m; below 0 a gap
   V lever_a, lever_b;  // m, from the centres to the contact
   V reduced_mass;      // kg
   V reduced_radius;    // m
@@ -116,17 +129,135 @@ struct Constants {
         half_dt(0.5 * step) {}
 };
 
+/// What one step sees of a force that sets in where a length x (m) passes 0, while x changes by a (m) in a step.
+template <class V>
+struct Onset {
+  V ratio, left;  // x/a; 1 - |x|/a, at least 0
+  Onset(V x, V a) : ratio(x / a), left(simd::max(V(1.0) - simd::max(ratio, -ratio), V(0.0))) {}
+};
+/// Of a force in proportion to x: its mean in place of max(x, 0).
+template <class V>
+BARCHAN_SIMD_INLINE V ramp(V x, V a) {
+  const V w = Onset<V>(x, a).left;
+  return fma(a * (w * w), w * V(1.0 / 6.0), simd::max(x, V(0.0)));
+}
+/// The same in the budget of energy: the work of the steps through x = 0 is then that of the spring, at any speed.
+template <class V>
+BARCHAN_SIMD_INLINE V ramp_of_work(V x, V a) {
+  const V w = Onset<V>(x, a).left;
+  return fnma(V(0.25) * a, w * (V(1.0) - w), simd::max(x, V(0.0)));
+}
+/// Of a force that is there from x = 0: the share of the step.
+template <class V>
+BARCHAN_SIMD_INLINE V begin(V x, V a) {
+  const V w = Onset<V>(x, a).left, half = V(0.5) * (w * w);
+  return select(x > V(0.0), V(1.0) - half, half);
+}
+/// Of x^(3/2) and x^(1/4), for a = 1: ((x + 1)^q - 2 x^q + (x - 1)^q)/(q (q - 1)), q = 7/2 and 9/4, bases at least 0.
+template <class V>
+struct HertzOnset {
+  V force, root;
+  explicit HertzOnset(V x) {
+    const V weights[3] = {V(1.0), V(-2.0), V(1.0)}, at[3] = {x + V(1.0), x, x - V(1.0)};
+    force = root = V(0.0);
+    for (int k = 0; k < 3; ++k) {
+      const V y = simd::max(at[k], V(0.0)), r = simd::sqrt(y), y2 = y * y;
+      force = fma(weights[k], y2 * (y * r), force);
+      root = fma(weights[k], y2 * simd::sqrt(r), root);
+    }
+    force = force * V(1.0 / 8.75);
+    root = root * V(1.0 / 2.8125);
+  }
+};
+
+/// The normal force of a step and what it consists of.
+template <class V>
+struct Normal {
+  V force, elastic;  // N; elastic: its part that is stored
+  V depth;           // m, the overlap, of a contact that begins part of a step's way
+  V stiffness;       // N/m, at that depth
+  V dashpot;         // N s/m
+  V share;           // of the step in which they touch
+};
+
+template <class V>
+BARCHAN_SIMD_INLINE Normal<V> linear_normal(const Constants<V>& c, V x, V approach, V mass, V inverse_mass) {
+  const V twelfth(1.0 / 12.0), damping2 = c.dashpot * c.dashpot;
+  const V turn2 = c.stiffness * (c.dt * c.dt) * inverse_mass;
+  const V k = c.stiffness * fnma(turn2 * twelfth, V(1.0) + damping2, V(1.0));
+  const V dashpot = c.dashpot * simd::sqrt(mass * c.stiffness) * fnma(turn2 * twelfth, damping2, V(1.0));
+  const V least(1e-30), drag = dashpot * inverse_mass * c.half_dt;
+  const V before = fma(simd::max(approach, -approach), c.dt, least);
+  const V centred = fnma(k * ramp(x, before) * inverse_mass, c.half_dt, approach);
+  const V a = fma(simd::max(centred, -centred), c.dt, least);
+  Normal<V> n;
+  n.elastic = k * ramp_of_work(x, a);
+  n.share = begin(x, a);
+  n.depth = simd::max(x, V(0.0));
+  n.stiffness = c.stiffness;
+  n.dashpot = dashpot;
+  const V loading = fma(dashpot * n.share, approach, k * ramp(x, a)) / fma(drag, n.share, V(1.0));
+  const V ending = k * ramp(fma(dashpot, approach, k * x) / (fma(drag, k, k)), a);
+  const auto loses = c.dashpot > V(0.0);
+  n.elastic = select(loses, n.elastic, k * n.depth);
+  n.force = select(loses, select(approach > V(0.0), loading, ending), n.elastic);
+  return n;
+}
+
+template <class V>
+BARCHAN_SIMD_INLINE Normal<V> hertz_normal(const Constants<V>& c, V x, V approach, V mass, V inverse_mass, V radius) {
+  const V least(1e-30), overlap = simd::max(x, least), root = simd::sqrt(radius), near(4.0);
+  const V stiff = c.stiffness * root, damp = c.dashpot * simd::sqrt(mass * stiff);
+  Normal<V> n;
+  const V square_root = simd::sqrt(overlap), here = stiff * square_root;
+  const V turn2 = V(1.5) * here * (c.dt * c.dt) * inverse_mass, slower = fnma(turn2, V(1.0 / 12.0), V(1.0));
+  const V before = fma(simd::max(approach, -approach), c.dt, least);
+  const auto begins = x < near * before;
+  n.depth = overlap;
+  n.stiffness = here;
+  n.elastic = here * overlap * slower;
+  n.dashpot = damp * simd::sqrt(square_root);
+  n.share = V(1.0);
+  // Far from the onset x^(3/2) + a^2/(16 sqrt(x)), which is what the weights make of it.
+  const V small = V(1.0 / 16.0) / (overlap * overlap);
+  const auto far_of = [&](V a) { return here * overlap * fma(a * a, small, slower); };
+  const auto near_of = [&](V a, V onset) { return stiff * (a * simd::sqrt(a)) * slower * onset; };
+  V first = far_of(before);
+  if (to_bits(begins) != 0) {
+    const HertzOnset<V> early(simd::min(x / before, near));
+    first = select(begins, near_of(before, early.force), first);
+    n.dashpot = select(begins, damp * simd::sqrt(simd::sqrt(before)) * early.root, n.dashpot);
+    n.share = begin(x, before);
+    n.depth = simd::max(overlap, V(0.25) * before);
+    n.stiffness = stiff * simd::sqrt(n.depth);
+  }
+  const V centred = fnma(first * inverse_mass, c.half_dt, approach);
+  const V a = fma(simd::max(centred, -centred), c.dt, least);
+  const auto begins_still = x < near * a;
+  V elastic = far_of(a);
+  if (to_bits(begins_still) != 0)
+    elastic = select(begins_still, near_of(a, HertzOnset<V>(simd::min(x / a, near)).force), elastic);
+  const V drag = n.dashpot * inverse_mass;
+  n.dashpot = n.dashpot * fnma(drag * drag, c.dt * c.dt * V(1.0 / 12.0), V(1.0));
+  const V force = fma(n.dashpot, approach, elastic) / fma(n.dashpot * inverse_mass, c.half_dt, V(1.0));
+  const V slope = V(1.5) * here;
+  const V ending = select(x > V(0.0), slope * ramp(force / slope, before), V(0.0));
+  n.force = select(c.dashpot > V(0.0), select(approach > V(0.0), force, ending), n.elastic);
+  return n;
+}
+
 /// A spring that gives way at a limit. `slip` (m) is that before the step and becomes that after it; `grown` is k_t
-/// over that of the step before. Returns the force (N); adds what is lost.
+/// over that of the step before; `in_touch`: the share of the step that counts for the slip. Returns the force (N);
+/// adds what is lost.
 template <class V, std::size_t N>
 BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::array<V, N>& old,
                                            const std::array<V, N>& velocity, V stiffness, V old_stiffness, V dashpot,
-                                           V limit, V inverse_mass, V dt, V& lost, V& stored) {
+                                           V limit, V inverse_mass, V dt, V in_touch, V& lost, V& stored) {
   std::array<V, N> force;
   const V centred = V(1.0) / fma(dashpot * inverse_mass, V(0.5) * dt, V(1.0));
   V f2(1e-200), was(0.0), now(0.0), work(0.0);
   for (std::size_t k = 0; k < N; ++k) {
-    slip[k] = fma(velocity[k], dt, slip[k]);
+    slip[k] = fma(velocity[k], dt * in_touch, slip[k]);
     force[k] = -fma(stiffness, slip[k], dashpot * velocity[k]) * centred;
     f2 = fma(force[k], force[k], f2);
   }
@@ -160,13 +291,14 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
   ContactForces<V, Dim> out;
   V v_n(0.0);
   for (std::size_t d = 0; d < Dim; ++d) v_n = fma(s.velocity[d], s.normal[d], v_n);
-  const V k = Hertz ? c.stiffness * simd::sqrt(s.reduced_radius * s.overlap) : c.stiffness;
-  const V dashpot = c.dashpot * simd::sqrt(s.reduced_mass * k);
-  const V elastic = k * s.overlap;
   const V inverse_mass = V(1.0) / s.reduced_mass;
-  const V normal = simd::max(fnma(dashpot, v_n, elastic), V(0.0)) / fma(dashpot * inverse_mass, c.half_dt, V(1.0));
-  out.lost = (elastic - normal) * fma(normal * inverse_mass, c.half_dt, v_n) * c.dt;
-  out.stored = V(Hertz ? 0.4 : 0.5) * elastic * s.overlap;
+  sphere_contact::Normal<V> along_n;
+  if constexpr (Hertz)
+    along_n = sphere_contact::hertz_normal(c, s.overlap, -v_n, s.reduced_mass, inverse_mass, s.reduced_radius);
+  else along_n = sphere_contact::linear_normal(c, s.overlap, -v_n, s.reduced_mass, inverse_mass);
+  const V k = along_n.stiffness, normal = along_n.force, dashpot = along_n.dashpot;
+  out.lost = (along_n.elastic - normal) * fma(normal * inverse_mass, c.half_dt, v_n) * c.dt;
+  out.stored = V(Hertz ? 0.4 : 0.5) * along_n.elastic * simd::max(s.overlap, V(0.0));
   for (std::size_t d = 0; d < Dim; ++d) out.force[d] = normal * s.normal[d];
   for (std::size_t d = 0; d < spin; ++d) out.torque_a[d] = out.torque_b[d] = V(0.0);
   if constexpr (Rubs) {
@@ -175,7 +307,7 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
     V k_t = c.tangential * k, old_k_t = k_t, shrink(1.0);
     if constexpr (Hertz) {
       // k_t of the step before over that of now; the overlap was delta + v_n dt.
-      const V ratio = simd::sqrt(simd::max(fma(v_n, c.dt, s.overlap), V(0.0)) / s.overlap);
+      const V ratio = simd::sqrt(simd::max(fma(v_n, c.dt, along_n.depth), V(0.0)) / along_n.depth);
       old_k_t = k_t * ratio;
       shrink = simd::min(ratio, V(1.0));
     }
@@ -200,7 +332,7 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
     }
     // A tangential push turns solid spheres as well: 2/7 of the mass resists.
     const auto f = sphere_contact::slide<V, spin>(slip, old, v_t, k_t, old_k_t, c_t, c.friction * normal,
-                                                  V(3.5) * inverse_mass, c.dt, out.lost, out.stored);
+                                                  V(3.5) * inverse_mass, c.dt, along_n.share, out.lost, out.stored);
     for (std::size_t d = 0; d < spin; ++d) memory[d] = slip[d];
     if constexpr (Dim == 2) {
       out.force[0] = fnma(f[0], n[1], out.force[0]);
@@ -236,7 +368,7 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
         }
       }
       const auto g = sphere_contact::slide<V, spin>(slip, old, roll, k_t, old_k_t, c_t, c.rolling * normal,
-                                                    V(0.625) * inverse_mass, c.dt, out.lost, out.stored);
+                                                    V(0.625) * inverse_mass, c.dt, along_n.share, out.lost, out.stored);
       for (std::size_t d = 0; d < spin; ++d) {
         memory[spin + d] = slip[d];
         out.torque_a[d] = fma(s.reduced_radius, g[d], out.torque_a[d]);

@@ -74,12 +74,12 @@ class InitialVelocity {
   std::array<Formula, 3> components_;
 };
 
-/// Spheres lie in the ground of the air, which has another wall than they have: nothing joins the two.
+/// Spheres, loose or fixed, lie in the ground of the air, which has another wall than they have: nothing joins the two.
 bool may_overlap(const Scene& scene, const Fill& a, const Fill& b) {
   const Phase *p = find_phase(scene, a.phase), *q = find_phase(scene, b.phase);
   if (!p || !q || entry_between(scene, *p, *q)) return false;
-  const auto ground_and_spheres = [](const Phase& wall, const Phase& grains) {
-    return wall.if_wall() && grains.if_grains() && grains.diameter();
+  const auto ground_and_spheres = [](const Phase& wall, const Phase& spheres) {
+    return wall.if_wall() && !wall.diameter() && spheres.diameter();
   };
   return ground_and_spheres(*p, *q) || ground_and_spheres(*q, *p);
 }

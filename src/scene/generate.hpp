@@ -33,7 +33,6 @@ using Settle =
 std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle = {});
 
 /// Distance of the places of a phase's fills: of spheres the largest diameter, else the scene's spacing.
-double spacing_of(const Scene& scene, const Phase& phase);
 
 /// Height of the ground (bed and dune of the first fill that has one) over the domain's bottom at x, z; 0 without a
 /// bed.

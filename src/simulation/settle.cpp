@@ -3,17 +3,31 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <optional>
 
 #include "base/errors.hpp"
+#include "scene/ground.hpp"
+#include "scene/places.hpp"
+#include "scene/shapes.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
 
 namespace {
 
-constexpr double at_rest = 1e-3;     // of sqrt(g d): the fastest grain of a bed at rest
+// A bed rests when its farthest grain goes less than this in sqrt(d/g), twice, and when contacts that begin without
+// memory, as those of the run do, let no grain go farther than `at_place` (diameters).
+constexpr double at_rest = 2e-4, at_place = 5e-3;
+constexpr int most_trials = 5;       // of the last: deep beds may always find a grain that goes on a little
 constexpr double restitution = 0.2;  // while they settle
 constexpr double loose = 1.35;       // height of the lattice over that of the bed, for equal grains
+// sqrt(d/g): in this time what slows the grains takes a speed to its e-th part; at the begin of a stage, when stiffer
+// contacts push them apart, and else.
+constexpr double slow_push = 0.05, slow_fall = 2.0, push = 0.5;
+constexpr double soft_overlap = 0.002;  // diameters: of the lowest grains in the soft bed
+constexpr double soft_impact = 0.03;    // diameters: of grains that fall into it
+constexpr double stiffer = 8.0;         // contacts from stage to stage
 const char* const box_name = "settling_box";
 
 /// The box that a fill's grains fall into, and its height when they have settled.
@@ -112,69 +126,190 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
   at_box.law = law;
   s.interactions.push_back(at_box);
   s.fills.push_back(sides);
+  s.time.end = 1e3;
+  return s;
+}
+
+/// The loose lattice from which the grains fall: `s` is the scene in which they do.
+Fill loose_lattice(const Scene& s, const Fill& fill, const Container& c, const SphereSize& size) {
   Fill grains = fill;
   BoxShape loosely{c.low, c.high};
   loosely.min[1] = c.from;
-  loosely.max[1] = c.from + height - 1.01 * size.largest();
+  loosely.max[1] = s.domain.origin[1] + s.domain.size[1] - 1.01 * size.largest();
   grains.shape = loosely;
   grains.packing = Packing::square;
   // What disorder the sizes do not bring, a little motion does.
-  const double shake = std::sqrt(norm(scene.domain.gravity) * size.mean), wave = 2.1 / size.mean;
+  const double shake = std::sqrt(norm(s.domain.gravity) * size.mean), wave = 2.1 / size.mean;
   char formula[3][96];
   std::snprintf(formula[0], sizeof formula[0], "%.17g*sin(%.17g*(1.3*x + 0.7*y + 0.9*z))", shake, wave);
   std::snprintf(formula[1], sizeof formula[1], "%.17g*sin(%.17g*(0.8*x - 1.1*y + 1.7*z))", shake, wave);
   std::snprintf(formula[2], sizeof formula[2], "%.17g*sin(%.17g*(1.9*x + 0.6*y - 1.2*z))", shake, wave);
-  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) grains.velocity[d] = {formula[d], 0.0};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(s.dimensions); ++d) grains.velocity[d] = {formula[d], 0.0};
   grains.log_profile.reset();
-  s.fills.push_back(grains);
-  s.time.end = 1e3;
+  return grains;
+}
+
+/// Walls as they are; grains of the lattice that are over the ground of the walls, not much higher than they shall lie.
+/// `thickness`: becomes that of the bed where it is largest (m).
+std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, const Scene& s, const Container& c,
+                                         double& thickness) {
+  const SphereSize size = *s.phases[0].diameter();
+  Scene alone = s;
+  alone.fills = {loose_lattice(s, fill, c, size)};
+  std::vector<ParticleBlock> blocks = generate(s), grains = generate(alone);
+  const double stretch = loose * std::pow(1.0 + size.spread, s.dimensions), bottom = scene.domain.origin[1];
+  // Fixed spheres: those of walls whose particles lie in the domain.
+  const PeriodicSpace space(s.domain);
+  const auto width = [](const Phase& p) { return p.diameter() ? p.diameter()->largest() : p.spacing; };
+  double widest = size.largest();
+  for (const Phase& p : s.phases) widest = std::max(widest, width(p));
+  Places fixed(space, widest);
+  for (std::size_t p = 1; p < s.phases.size(); ++p)
+    if (s.phases[p].name != box_name)
+      for (const Vec3& x : blocks[p].position) fixed.add(space.wrapped(x), width(s.phases[p]), 0);
+  std::vector<Ground> floors;
+  for (const Fill& f : s.fills)
+    if (const auto* bed = std::get_if<BedShape>(&f.shape)) floors.emplace_back(*bed, scene.domain);
+  std::optional<Ground> top;
+  if (const auto* bed = std::get_if<BedShape>(&fill.shape)) top.emplace(*bed, scene.domain);
+  ParticleBlock& kept = blocks[0];
+  const ParticleBlock& all = grains[0];
+  for (std::size_t i = 0; i < all.position.size(); ++i) {
+    const Vec3& x = all.position[i];
+    double floor = c.from;
+    for (const Ground& g : floors) floor = std::max(floor, bottom + g.height(x[0], x[2]));
+    const double high = top ? bottom + top->height(x[0], x[2]) : c.high[1];
+    if (!floors.empty() && x[1] < floor) continue;
+    if (fixed.owner_near(x, size.largest(), 1.0) >= 0) continue;
+    if (x[1] > floor + (high - floor) * stretch + 2.0 * size.largest()) continue;
+    thickness = std::max(thickness, high - floor);
+    kept.position.push_back(x);
+    kept.velocity.push_back(all.velocity[i]);
+    if (!all.radius.empty()) kept.radius.push_back(all.radius[i]);
+  }
+  if (kept.position.empty())
+    throw SceneError(scene.file + ": fill: no room for a settled bed of \"" + fill.phase +
+                     "\" over the walls; expected a higher bed");
+  return blocks;
+}
+
+/// The farthest way of a grain since its place was told last, which is told anew (m).
+double way_of(const PhaseParticles& p, std::vector<Vec3>& place) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    Vec3& x = place[static_cast<std::size_t>(p.id()[i] - p.first_id())];
+    double way2 = 0.0;
+    for (int a = 0; a < p.dimensions(); ++a) {
+      const double now = p.column(Field::position, a)[i], way = now - x[static_cast<std::size_t>(a)];
+      way2 += way * way;
+      x[static_cast<std::size_t>(a)] = now;
+    }
+    most = std::max(most, way2);
+  }
+  return std::sqrt(most);
+}
+
+/// Lets the grains of the first phase move until they rest; their places become those of the blocks. Returns the
+/// farthest way of a grain (m), nothing when they do not come to rest before `latest` (s).
+std::optional<double> rest(const Scene& s, std::vector<ParticleBlock>& blocks, bool pushed, double first_look,
+                           double latest) {
+  Simulation run(s, make_plan(s, blocks), blocks);
+  PhaseParticles& p = run.phases()[0];
+  const double d = s.phases[0].diameter()->mean, unit = std::sqrt(d / norm(s.domain.gravity));
+  const auto damp = [&] {
+    const double slow = pushed && run.time() < push * unit ? slow_push : slow_fall;
+    const double share = std::exp(-run.last_step() / (slow * unit));
+    for (const Field f : {Field::velocity, Field::angular_velocity})
+      for (int a = 0; p.has(f) && a < p.components(f); ++a)
+        for (std::size_t i = 0; i < p.size(); ++i) p.column(f, a)[i] *= share;
+  };
+  std::vector<Vec3> place = blocks[0].position;
+  // Sorting wraps grains into a periodic domain: a way of a period is none, and no grain rests in that moment.
+  double next = first_look * unit;
+  for (int calm = 0; calm < 2; next += unit) {
+    while (run.time() < next) {
+      run.step(next - run.time());
+      damp();
+    }
+    calm = way_of(p, place) < at_rest * d ? calm + 1 : 0;
+    if (run.time() > latest) return std::nullopt;
+  }
+  ParticleBlock& block = blocks[0];
+  place.swap(block.position);
+  block.velocity.assign(block.position.size(), Vec3{});
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    Vec3 way = block.position[i] - place[i];
+    for (std::size_t a = 0; a < 3; ++a)
+      if (s.domain.periodic[a]) way[a] -= s.domain.size[a] * std::round(way[a] / s.domain.size[a]);
+    farthest = std::max(farthest, norm(way));
+  }
+  return farthest;
+}
+
+/// The places of the grains in the domain of the scene, less those outside of the fill's shape.
+void cut(const Scene& scene, std::size_t k, const Scene& s, ParticleBlock& block) {
+  for (Vec3& x : block.position)
+    for (std::size_t a = 0; a < 3; ++a)
+      if (s.domain.periodic[a]) x[a] -= s.domain.size[a] * std::floor((x[a] - s.domain.origin[a]) / s.domain.size[a]);
+  if (block.radius.empty()) block.radius.assign(block.position.size(), 0.5 * s.phases[0].diameter()->mean);
+  keep_inside(scene, k, block.position, block.radius);
+  block.velocity.assign(block.position.size(), Vec3{});
+}
+
+/// The stiffnesses (N/m) through which the contacts go before they are those of the scene.
+std::vector<double> soft_stages(const Scene& s, double thickness) {
+  const SphereSize size = *s.phases[0].diameter();
+  const double d = size.mean, g = norm(s.domain.gravity), fall = slow_fall * std::sqrt(g * d),
+               mass = s.phases[0].density * std::numbers::pi / 6.0 * std::pow(size.largest(), 3),
+               layers = std::max(1.0, thickness / d);
+  const double first =
+      std::max(layers * mass * g / (soft_overlap * d), 0.5 * mass * std::pow(fall / (soft_impact * d), 2));
+  const GrainsKeys& keys = s.phases[0].grains();
+  std::vector<double> stages;
+  const double last = keys.stiffness ? *keys.stiffness : 300.0 * first;
+  for (double k = first; k * 1.5 < last; k *= stiffer) stages.push_back(k);
+  return stages;
+}
+
+/// The same with linear contacts of a stiffness.
+Scene softened(Scene s, double stiffness) {
+  for (Interaction& pair : s.interactions) pair.law = ContactLaw::linear;
+  GrainsKeys& keys = std::get<GrainsKeys>(s.phases[0].own);
+  keys.stiffness = stiffness;
+  keys.young = 0.0;
+  s.time.largest_speed = 2.0 * slow_fall * std::sqrt(norm(s.domain.gravity) * s.phases[0].diameter()->mean);
   return s;
 }
 
 }  // namespace
 
 SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<ParticleBlock>&) {
-  const Fill& fill = scene.fills[k];
-  const Container c = container_of(scene, fill, k);
+  const Container c = container_of(scene, scene.fills[k], k);
   const Scene s = settling_scene(scene, k, c);
-  const auto blocks = generate(s);
-  Simulation run(s, make_plan(s, blocks), blocks);
-  const PhaseParticles& p = run.phases()[0];
-  const double g = norm(scene.domain.gravity), d = p.mean_radius() * 2.0, height = s.domain.size[1];
-  const double limit = at_rest * std::sqrt(g * d),
-               latest = 20.0 * std::sqrt(2.0 * height / g) + 400.0 * std::sqrt(d / g);
-  const auto fastest = [&] {
-    double most = 0.0;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      double v2 = 0.0;
-      for (int a = 0; a < p.dimensions(); ++a) v2 += std::pow(p.column(Field::velocity, a)[i], 2);
-      most = std::max(most, v2);
-    }
-    return std::sqrt(most);
-  };
-  // A grain on its way up is slow for a moment as well: two looks, apart by the fall through a tenth of a diameter.
-  double next = std::sqrt(2.0 * height / g);
-  for (int calm = 0; calm < 2;) {
-    while (run.time() < next) run.step(next - run.time());
-    calm = fastest() < limit ? calm + 1 : 0;
-    next += std::sqrt(0.2 * d / g);
-    if (run.time() > latest)
+  double thickness = 0.0;
+  std::vector<ParticleBlock> blocks = begin_loosely(scene, scene.fills[k], s, c, thickness);
+  const double unit = std::sqrt(s.phases[0].diameter()->mean / norm(scene.domain.gravity)),
+               fall = std::sqrt(2.0 * thickness / norm(scene.domain.gravity)) / unit;
+  std::vector<Scene> stages;
+  for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
+  stages.push_back(s);
+  const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
+  int trials = 0;
+  for (std::size_t stage = 0; stage < stages.size();) {
+    const bool last = stage + 1 == stages.size();
+    const auto way = rest(stages[stage], blocks, stage > 0, stage == 0 ? fall : 2.0 * push, latest);
+    if (!way)
       throw SceneError(
           scene.file + ": fill." + std::to_string(k) +
           ".packing: the grains do not come to rest; expected friction above 0, and a restitution below 1");
+    const std::size_t before = blocks[0].position.size();
+    if (stage == 0 || last) cut(scene, k, s, blocks[0]);
+    if (blocks[0].position.empty()) break;  // generate() tells it
+    const bool stays = *way < place && blocks[0].position.size() == before;
+    if (!last || stays || ++trials == most_trials) ++stage;
   }
-  std::vector<std::size_t> place(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) place[static_cast<std::size_t>(p.id()[i] - p.first_id())] = i;
-  SettledGrains settled;
-  for (const std::size_t i : place) {
-    Vec3 x{};
-    for (int a = 0; a < p.dimensions(); ++a) x[static_cast<std::size_t>(a)] = p.column(Field::position, a)[i];
-    for (std::size_t a = 0; a < 3; ++a)
-      if (s.domain.periodic[a]) x[a] -= s.domain.size[a] * std::floor((x[a] - s.domain.origin[a]) / s.domain.size[a]);
-    settled.position.push_back(x);
-    settled.radius.push_back(p.has(Field::radius) ? p.column(Field::radius)[i] : p.mean_radius());
-  }
-  return settled;
+  return {blocks[0].position, blocks[0].radius};
 }
 
 std::vector<ParticleBlock> make_particles(const Scene& scene) { return generate(scene, settle); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "engine/pair_loop.hpp"
@@ -88,6 +89,8 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
     turns[d] = V(step.period[d] > 0.0 ? 1.0 / step.period[d] : 0.0);
   }
   const auto count = static_cast<std::uint32_t>(chunk.end - chunk.begin);
+  // Pairs that may touch within a step.
+  const V margin(step.dt * (chunk.fastest + (group.weight < 1.0 ? step.fastest : chunk.fastest)));
   const double* records = step.records;
   const std::size_t stride = R::size;
   constexpr double magic = 6755399441055744.0;  // 1.5 2^52: added and taken off it rounds to the nearest whole number
@@ -108,11 +111,10 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
         r2 = fma(r, r, r2);
       }
       const V r_a = x_a[R::radius], r_b = x_b[R::radius], reach = r_a + r_b;
-      const auto touching = r2 < reach * reach;
-      const std::uint32_t has = to_bits(touching);
+      const auto near = r2 < (reach + margin) * (reach + margin);
+      if ((to_bits(near) | had) == 0) continue;
       double* memory = chunk.memory.data() + q * batch * numbers + half;
-      if (has == 0) {
-        if (had == 0) continue;
+      if (to_bits(near) == 0) {
         for (std::size_t k = 0; k < numbers; ++k) {
           const V slip = V::load(memory + k * batch);
           tally.lost = fma(drop * V(group.weight), slip * slip, tally.lost);
@@ -129,11 +131,16 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
         simd::load_transposed<4>(records + R::spin, stride, b, w_b);
       }
       const V distance = simd::sqrt(r2), inverse = V(1.0) / distance, inverse_reach = V(1.0) / reach;
-      s.overlap = simd::max(reach - distance, V(1e-30));
+      s.overlap = reach - distance;
+      V parts(0.0);
       for (std::size_t d = 0; d < Dim; ++d) {
         s.normal[d] *= inverse;
         s.velocity[d] = v_a[d] - v_b[d];
+        parts = fma(s.velocity[d], s.normal[d], parts);
       }
+      const auto touching = near & (s.overlap > V(-step.dt) * simd::max(parts, -parts));
+      const std::uint32_t has = to_bits(touching);
+      if ((has | had) == 0) continue;
       for (std::size_t d = 0; d < spins; ++d) {
         s.spin_a[d] = Rubs ? (Dim == 2 ? v_a[2] : w_a[d]) : V(0.0);
         s.spin_b[d] = Rubs ? (Dim == 2 ? v_b[2] : w_b[d]) : V(0.0);
@@ -176,8 +183,9 @@ void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at
   constexpr std::size_t spins = R::spins, numbers = Rubs ? (Rolls ? 2 * spins : spins) : 0;
   const double* r = step.records + at.sphere * R::size;
   const double radius = r[R::radius], distance = at.sign * (r[at.axis] - at.place), overlap = radius - distance;
+  const double parts = at.sign * r[R::velocity + at.axis];
   const SphereContact& law = step.laws[at.law];
-  if (!(overlap > 0.0)) {
+  if (!(overlap > -step.dt * std::abs(parts))) {
     if (at.touches && Rubs && !Hertz)
       for (std::size_t k = 0; k < numbers; ++k)
         chunk.lost += 0.5 * law.tangential * law.stiffness * at.memory[k] * at.memory[k];
@@ -219,6 +227,7 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
   using R = SphereRecord<Dim>;
   const double dt = step.dt;
   float farthest2 = 0.0f;
+  double fastest2 = 0.0;
   for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
     const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
     const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
@@ -226,20 +235,24 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
     const double inverse_mass = passive[passive_mass], radius = from[R::radius];
     const double inverse_inertia = 2.5 * inverse_mass / (radius * radius);
     float way2 = 0.0f;
+    double v2 = 0.0;
     for (std::size_t d = 0; d < Dim; ++d) {
       const double v = from[R::velocity + d] + dt * (passive[d] + inverse_mass * force[d]);
       to[d] = from[d] + dt * v;
       to[R::velocity + d] = v;
-      const float way = way_of<Dim>(from, d) + static_cast<float>(dt * v);
+      v2 += v * v;
+      const float go = static_cast<float>(dt * v), way = way_of<Dim>(from, d) + go;
       set_way<Dim>(to, d, way);
-      way2 += way * way;
+      way2 += (way + go) * (way + go);  // a contact sets in up to a step before the touch
     }
+    fastest2 = std::max(fastest2, v2);
     to[R::radius] = radius;
     for (std::size_t d = 0; d < R::spins; ++d)
       to[R::spin + d] = from[R::spin + d] + dt * inverse_inertia * force[(Dim == 2 ? 2 : 4) + d];
     farthest2 = std::max(farthest2, way2);
   }
   chunk.farthest2 = static_cast<double>(farthest2);
+  chunk.fastest = std::sqrt(fastest2);
 }
 
 template <int Dim>

@@ -10,9 +10,9 @@ namespace barchan {
 
 namespace {
 
-/// Steps in a contact. Kuwagi et al. and most codes take 10 to 50; with 12 velocity Verlet holds the energy of
-/// grains with e = 1 within 6e-3 (linear) and 5e-4 (Hertz), with 48 within 5e-4 and 2e-5 (tests/physics/spheres.cpp).
-constexpr double steps_a_contact = 12.0;
+/// Steps in a contact (laws/sphere_contact.hpp); most codes take 10 to 50. Without loss: for the energy of a dense gas
+/// within 1e-3 (tests/physics/spheres.cpp).
+double steps_a_contact(double restitution, bool hertz) { return restitution < 1.0 ? 12.0 : hertz ? 24.0 : 48.0; }
 
 /// Mass of a sphere of the phase (kg, not by depth): of the mean diameter, times a share of its radius cubed.
 double mass_of(const Layout& layout, std::size_t phase, double share = 1.0) {
@@ -83,7 +83,8 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
       curvature += moves ? 2.0 / (p.diameter * least) : 0.0;
     }
     const double speed = std::max(layout.largest_speed, 1e-300);
-    step_ = std::min(step_, law.duration(1.0 / inverse_mass, 1.0 / curvature, speed) / steps_a_contact);
+    step_ =
+        std::min(step_, law.duration(1.0 / inverse_mass, 1.0 / curvature, speed) / steps_a_contact(restitution, hertz));
     reach_ = std::max(reach_, e.radius);
     laws_.push_back(law);
   }

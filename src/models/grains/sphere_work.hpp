@@ -72,7 +72,8 @@ struct SphereChunk {
   // of the last step
   double lost = 0.0, stored = 0.0;  // J
   double deepest = 0.0;             // overlap over the sum of radii
-  double farthest2 = 0.0;           // m2, square of the longest way since the search
+  double farthest2 = 0.0;           // m2, square of the longest way since the search, one step ahead
+  double fastest = 0.0;             // m/s
   double contacts = 0.0;
 };
 
@@ -94,6 +95,7 @@ struct SphereStep {
   const SphereColumns* columns = nullptr;  // by phase
   std::array<double, 3> period{};          // m, 0: not periodic
   double dt = 0.0;                         // s
+  double fastest = 0.0;                    // m/s, of all chunks
   bool last = false;                       // of its bundle: half a kick, and into the columns
   bool rubs = false, rolls = false;        // some law does
   std::size_t numbers = 0;                 // of the memory of a pair

@@ -24,7 +24,8 @@ class SphereLaws {
   const std::vector<std::uint32_t>& table() const { return table_; }
   bool rubs() const;
   bool rolls() const;
-  /// A twelfth of the shortest contact at the largest speed of the scene (s); infinite without contacts.
+  /// A twelfth (without loss a 24th or 48th) of the shortest contact at the largest speed of the scene (s); infinite
+  /// without contacts.
   double step() const { return step_; }
   double reach() const { return reach_; }  ///< m, the largest sum of two radii
 
