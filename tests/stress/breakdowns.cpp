@@ -41,7 +41,7 @@ const std::vector<Case>& broken_on_the_way() {
       {"TooFewNeighbours",
        &vortices,
        {"interactions.fluid-fluid=1.2", "phases.fluid.sound-speed=2.5"},  // with 2.6 spacings the same fluid lives
-       {"phase \"fluid\"", "density 1.3", "out of bounds (0.7 to 1.3)", "the radius of interactions.fluid-fluid"}},
+       {"phase \"fluid\"", ": density ", "out of bounds (0.7 to 1.3)", "the radius of interactions.fluid-fluid"}},
       {"CubicSplinePairing",
        &vortices,
        {"phases.fluid.scheme='plain'", "interactions.kernel='cubic-spline'", "interactions.fluid-fluid=3"},

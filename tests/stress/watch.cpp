@@ -158,7 +158,7 @@ TEST(Warnings, TellOfTheLargestDensityError) {
   ASSERT_EQ(message_of(*quiet, 100), "");
   EXPECT_TRUE(quiet->warnings().texts().empty());
 
-  const auto off = simulation(vortices, {"interactions.fluid-fluid=1.5"});
+  const auto off = simulation(vortices, {"interactions.fluid-fluid=1.5", "phases.fluid.enclosed=false"});
   ASSERT_EQ(message_of(*off, 300), "");
   const auto warnings = off->warnings().texts();
   ASSERT_EQ(warnings.size(), 1u);
