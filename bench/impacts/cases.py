@@ -208,7 +208,7 @@ def plots(results):
         phase = np.linspace(0, max(t), 400)
         axes.plot(phase, 23.057 * np.sin(2 * np.pi * phase / TIMOSHENKO), "--", color=red, label="beam: thin amplitude, Timoshenko's period")
         axes.set(xlabel="time [s]", ylabel="tip [mm]")
-        axes.legend(loc="best")
+        axes.legend(loc="lower center", bbox_to_anchor=(.5, 1.), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_cantilever.png", dpi=110)
     if "bars" in results:
         t, a, b = (np.array(x) for x in results["bars"]["history"])
@@ -218,7 +218,7 @@ def plots(results):
         axes.plot([0, 2e6 * LENGTH / WAVE, max(t) * 1e6], [10, 0, 0], ":", color="black", label="exact")
         axes.plot([0, 2e6 * LENGTH / WAVE, max(t) * 1e6], [0, 10, 10], ":", color="black")
         axes.set(xlabel="time [us]", ylabel="mean speed [m/s]")
-        axes.legend(loc="best")
+        axes.legend(loc="lower center", bbox_to_anchor=(.5, 1.), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_bars.png", dpi=110)
     if "paper" in results:
         figure, all_axes = pyplot.subplots(2, 4, figsize=(11, 4.6), layout="constrained", sharey=True)
@@ -229,7 +229,7 @@ def plots(results):
             axes.set(title="figure " + r["figure"], xlabel="time [us]")
         for axes in all_axes[:, 0]:
             axes.set_ylabel("mean speed [m/s]")
-        all_axes[0, 0].legend(loc="best")
+        all_axes[0, 0].legend(loc="lower center", bbox_to_anchor=(.5, 1.06), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_paper.png", dpi=110)
 
 
