@@ -23,6 +23,11 @@ const StableRange* range_of(std::string_view kind, std::string_view quantity) {
   return found == std::end(stable_ranges) ? nullptr : found;
 }
 
+std::string range_text(const StableRange& r) {
+  constexpr double without_bound = 1e9;
+  return r.high >= without_bound ? "at least " + brief(r.low) : brief(r.low) + " to " + brief(r.high);
+}
+
 class Comparison {
  public:
   Comparison(const Scene& scene, Plan& plan) : scene_(scene), plan_(plan) {}
@@ -32,7 +37,7 @@ class Comparison {
     const std::string& kind = p.physics;
     if (plan_.fixed_step == 0) {
       if (scene_.time.safety != 1.0) compare(kind, "safety", scene_.time.safety, "time.safety", "");
-    } else if (const double limit = limit_at_safety_one(); limit > 0) {
+    } else if (const double limit = limit_at_safety_one(p.name); limit > 0) {
       compare(kind, "safety", plan_.fixed_step / limit, "time.step", " of the stability limit");
     }
     const std::string of = "phases." + p.name;
@@ -57,10 +62,12 @@ class Comparison {
   }
 
  private:
-  double limit_at_safety_one() const {
+  /// Of the waves in a fluid or a body (s); 0: it has none. That of contacts counts only where grains touch.
+  double limit_at_safety_one(const std::string& phase) const {
     double least = 0;
     for (const StepLimit& l : plan_.limits)
-      if (least == 0 || l.value < least) least = l.value;
+      if ((l.name == "acoustic " + phase || l.name == "elastic " + phase) && (least == 0 || l.value < least))
+        least = l.value;
     return least / scene_.time.safety;
   }
   void compare(const std::string& kind, std::string_view quantity, double value, const std::string& key,
@@ -69,8 +76,8 @@ class Comparison {
     constexpr double rounding = 1e-6;
     if (!r || (value >= r->low * (1 - rounding) && value <= r->high * (1 + rounding))) return;
     plan_.warnings.push_back(key + ": " + brief(value) + unit +
-                             " is outside what the stability atlas found stable for " + kind + ", " + brief(r->low) +
-                             " to " + brief(r->high) + " (docs/stability.md)");
+                             " is outside what the stability atlas found stable for " + kind + ", " + range_text(*r) +
+                             " (docs/stability.md)");
   }
 
   const Scene& scene_;
