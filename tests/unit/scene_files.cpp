@@ -23,7 +23,10 @@ TEST(SceneFiles, AllReadAndMakeParticles) {
     if (entry.path().extension() != ".toml") continue;
     ++count;
     try {
-      const Scene scene = read_scene(entry.path().string());
+      Scene scene = read_scene(entry.path().string());
+      for (Fill& fill :
+           scene.fills)  // EveryScene.RunsInTheProgram lets them settle, which takes minutes in a sanitizer
+        if (fill.packing == Packing::settled) fill.packing = Packing::hexagonal;
       EXPECT_FALSE(scene.title.empty()) << entry.path();
       const auto blocks = make_particles(scene);
       for (std::size_t k = 0; k < blocks.size(); ++k) {
