@@ -145,6 +145,8 @@ def write_page():
     parts = []
     for file in sorted(RESULTS.glob("*.json")):
         result = json.loads(file.read_text())
+        if "runs" not in result:  # the atlas stands beside the ensembles
+            continue
         lines, _ = verdict(result)
         parts += [f"\n## {title(result)}\n", f"`{result['command']}`\n"] + ["\n".join(f"- {x}" for x in lines) + "\n",
                   HEAD + "\n" + "\n".join(row(r) for r in result["runs"]) + f"\n\nMeasured on {result['processor']}.\n"]
