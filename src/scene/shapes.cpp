@@ -14,6 +14,7 @@
 #include "scene/located.hpp"
 #include "scene/outline.hpp"
 #include "scene/random.hpp"
+#include "scene/relaxed.hpp"
 
 namespace barchan {
 namespace {
@@ -216,6 +217,8 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
       std::erase_if(places,
                     [&](const Vec3& x) { return occupied.inside.owner_near(x, dx, rest_distance, below) >= 0; });
     }
+  } else if (fill.packing == Packing::relaxed) {
+    places = relaxed_places(scene, k);
   } else if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
     places = points->at;
   } else if (const auto* cube = std::get_if<CubeShape>(&fill.shape)) {
