@@ -42,7 +42,8 @@ void ForceOn::schedule(Schedule& s) {
   using enum Field;
   const FieldSet reads = wall_ ? FieldSet{position, velocity} : FieldSet{position, acceleration};
   const FieldSet writes = wall_ ? FieldSet{acceleration} : FieldSet{};
-  s.add({stage::motion, layout_.phases[phase_].name + ", force", reads, writes, [this] { measure(); }});
+  s.add({wall_ ? stage::reaction : stage::motion, layout_.phases[phase_].name + ", force", reads, writes,
+         [this] { measure(); }});
 }
 
 void ForceOn::measure() {

@@ -42,7 +42,7 @@ TEST(ForceMeters, ForceOnAWallIsWhatTheFluidLoses) {
         size += std::abs(push);
       }
       const double force = history(*run, d == 0 ? "floor_force_x [N]" : "floor_force_y [N]");
-      if (step > 10) EXPECT_GT(std::abs(force), 1e-6 * size) << "there is a force";
+      if (step > 10) { EXPECT_GT(std::abs(force), 1e-6 * size) << "there is a force"; }
       worst = std::max(worst, std::abs(gain + force) / size);
     }
   }

@@ -77,7 +77,7 @@ TEST(Relaxed, ADiscHasRoundRows) {
   EXPECT_GT(m.even.least_sum, 0.95);
   EXPECT_LT(m.even.largest_sum, 1.05);
   EXPECT_GT(m.least_depth, 0.49);
-  EXPECT_NEAR(static_cast<double>(m.in_layer), 2.0 * std::numbers::pi * 9.5, 3.0);
+  EXPECT_NEAR(static_cast<double>(m.in_layer), 2.0 * std::numbers::pi * 9.5, 5.0);
 }
 
 TEST(Relaxed, ASquareThatFitsNoRows) {
@@ -154,7 +154,7 @@ TEST(Relaxed, WallsKnowTheirSurface) {
     Vec3 r = post_block.position[i] - Vec3{0.1, 1.03, 0};
     r[0] -= 3.0 * std::round(r[0] / 3.0);
     EXPECT_NEAR(post_block.depth[i], 0.4 - norm(r), 1e-6);
-    if (norm(r) > 0.1) EXPECT_NEAR(dot(post_block.normal[i], r) / norm(r), 1.0, 1e-6);
+    if (norm(r) > 0.1) { EXPECT_NEAR(dot(post_block.normal[i], r) / norm(r), 1.0, 1e-6); }
     outermost += post_block.depth[i] < 0.75 * dx;
   }
   EXPECT_NEAR(static_cast<double>(outermost), 2.0 * std::numbers::pi * 3.5, 2.0);
