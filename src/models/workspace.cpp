@@ -28,7 +28,7 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "contacts",
                                                          "reaction on solids",
                                                          "drag",
-                                                         "driven sets",
+                                                         "driven and measured sets",
                                                          "bulk speed",
                                                          "kick",
                                                          "watch"};

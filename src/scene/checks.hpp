@@ -44,6 +44,9 @@ void check_walls(const Scene& scene, const Report& report);
 /// Of elastic bodies: keys of another formulation, contacts, sets of particles.
 void check_bodies(const Scene& scene, const Report& report);
 
+/// Reads the files of surfaces into the scene. What is wrong with a file is told where the scene names it.
+void read_surfaces(Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

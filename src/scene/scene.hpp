@@ -186,9 +186,24 @@ struct RingShape {
   Vec3 centre{};
   double inner{}, outer{};
 };  // 2D ring (tube along z in 3D)
+/// Of what stands in numbers or in a file: scaled about the origin, turned about z through it, then moved.
+struct Placement {
+  double scale{};
+  double turn{};  // degrees, anticlockwise
+  Vec3 move{};    // m
+};
 struct PolygonShape {
   std::vector<std::array<double, 2>> corners;
-};  // in x, y; at least three corners
+  Placement placement;
+};                                  // in x, y; at least three corners
+using Facet = std::array<Vec3, 3>;  // corners of a triangle; a segment has its end twice
+struct SurfaceShape {
+  std::string file;  // as written: relative to the scene's file
+  Placement placement;
+  std::vector<Facet> facets;  // as the file has them; read with the scene
+  bool triangles{};           // else segments in x, y
+  std::string checksum;       // of the file
+};
 struct CubeShape {
   Vec3 centre{};
   int count{};
@@ -221,12 +236,13 @@ struct BedShape {
 };
 
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
-                           FormulaShape, SidesShape, BedShape, TheRestShape>;
+                           FormulaShape, SidesShape, BedShape, TheRestShape, SurfaceShape>;
 
 struct Fill {
   std::string phase;
   Shape shape = TheRestShape{};
   Packing packing{};
+  LeaveOut leave_out{};
   double perturb{};  // spacings of its phase: each coordinate moved by a uniform number in +-perturb
   unsigned seed{};
   VectorExpression velocity;              // m/s, formulas in x, y, z
@@ -248,6 +264,10 @@ struct Forcing {
   std::string phase;              // body force on this phase
   VectorExpression acceleration;  // m/s2, formulas in x, y, z, t
   bool hold_bulk_speed{};         // instead: what keeps the initial mean velocity along periodic axes
+  VectorExpression velocity;      // m/s, instead: a fluid is brought to it,
+  Expression rate;                // 1/s: dv/dt = rate (velocity - v); both formulas in x, y, z, t
+  std::optional<BoxShape> box;    // where the phase feels it; empty: everywhere
+  bool relaxes() const { return rate.is_formula() || rate.value > 0.0; }
 };
 
 /// A set of particles of an elastic body, by their places at the start.
@@ -258,6 +278,11 @@ struct BodySet {
 /// A set that is held or driven.
 struct Motion : BodySet {
   VectorExpression velocity;  // m/s, formulas in t
+};
+/// A wall, a body or a part of one, whose force and torque are written to history.csv.
+struct ForceMeter : BodySet {
+  std::string name;
+  Vec3 about{};  // m, of the torque
 };
 /// A set whose mean place is written to history.csv.
 struct Marker : BodySet {
@@ -338,6 +363,7 @@ struct Scene {
   std::vector<Forcing> forcings;
   std::vector<Motion> motions;
   std::vector<Marker> markers;
+  std::vector<ForceMeter> force_meters;
   Measuring measuring;
   TimeControl time;
   OutputControl output;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
@@ -13,7 +12,10 @@
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
 #include "scene/located.hpp"
+#include "scene/outline.hpp"
 #include "scene/random.hpp"
+#include "scene/region.hpp"
+#include "scene/relaxed.hpp"
 
 namespace barchan {
 namespace {
@@ -25,16 +27,6 @@ struct Region {
   Vec3 anchor{};          // m, a place of the lattice
   Inside inside;
 };
-
-bool in_polygon(const std::vector<std::array<double, 2>>& corners, double x, double y) {
-  bool inside = false;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const auto& [xi, yi] = corners[i];
-    const auto& [xj, yj] = corners[j];
-    if ((yi > y) != (yj > y) && x < (xj - xi) * (y - yi) / (yj - yi) + xi) inside = !inside;
-  }
-  return inside;
-}
 
 /// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other
 /// packings keep half a spacing from sides that are not periodic.
@@ -82,17 +74,8 @@ class RegionOf {
   void operator()(const DiscShape& disc) { round(disc.centre, -1.0, disc.radius, 2); }
   void operator()(const RingShape& ring) { round(ring.centre, ring.inner, ring.outer, 2); }
   void operator()(const SphereShape& sphere) { round(sphere.centre, -1.0, sphere.radius, 3); }
-  void operator()(const PolygonShape& polygon) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3 lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity};
-    for (const auto& corner : polygon.corners)
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        lower[axis] = std::min(lower[axis], corner[axis]);
-        upper[axis] = std::max(upper[axis], corner[axis]);
-      }
-    bound(region_, scene_, lower, upper, 2);
-    region_.inside = [corners = polygon.corners](const Vec3& x) { return in_polygon(corners, x[0], x[1]); };
-  }
+  void operator()(const PolygonShape& polygon) { closed(polygon); }
+  void operator()(const SurfaceShape& surface) { closed(surface); }
   void operator()(const FormulaShape& shape) {
     region_.inside = [formula = std::make_shared<Formula>(shape.inside)](const Vec3& x) { return (*formula)(x) > 0.0; };
   }
@@ -110,6 +93,12 @@ class RegionOf {
   void operator()(const SidesShape&) {}
 
  private:
+  void closed(const Shape& shape) {
+    const int dimensions = facet_dimensions(shape);
+    const auto outline = std::make_shared<const Outline>(facets_of(shape), dimensions);
+    bound(region_, scene_, outline->lower(), outline->upper(), static_cast<std::size_t>(dimensions));
+    region_.inside = [outline](const Vec3& x) { return outline->inside(x); };
+  }
   void round(const Vec3& centre, double inner, double outer, std::size_t axes) {
     if (scene_.dimensions == 2) axes = 2;
     const double slack = 1e-9 * spacing_;
@@ -162,6 +151,27 @@ std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const 
     for (std::size_t axis = 0; axis < 3; ++axis)
       x[axis] = scene.domain.origin[axis] + (x[axis] - scene.domain.origin[axis]) * stretch[axis];
   return places;
+}
+
+/// Refuses what no memory holds. cells: places that a lattice of the spacing has in the fill's bounds.
+void check_room(const Scene& scene, std::size_t k, double cells) {
+  const Fill& fill = scene.fills[k];
+  if (!(cells <= 1e9))
+    throw SceneError(located(scene, "fill." + std::to_string(k)) + ": more than 10^9 particles of phase \"" +
+                     fill.phase + "\"; expected a larger spacing or a smaller shape");
+  if (const AvailableMemory there = available_memory(); cells * sizeof(Vec3) > there.bytes)
+    throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
+                     std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
+                     memory_text(cells * sizeof(Vec3)) + " at least, " + there.of + " leaves " +
+                     memory_text(there.bytes) + "; expected a larger spacing or a smaller shape");
+}
+
+/// Cells between two corners.
+double cells_between(const Scene& scene, const Vec3& lower, const Vec3& upper, double dx) {
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+    cells *= std::max(0.0, upper[axis] - lower[axis]) / dx;
+  return cells;
 }
 
 /// Random sequential addition.
@@ -229,6 +239,10 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
       std::erase_if(places,
                     [&](const Vec3& x) { return occupied.inside.owner_near(x, dx, rest_distance, below) >= 0; });
     }
+  } else if (fill.packing == Packing::relaxed) {
+    const Solid region = region_of_fill(scene, k, 0.0);
+    check_room(scene, k, cells_between(scene, region.lower, region.upper, dx));
+    places = relaxed_places(scene, k);
   } else if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
     places = points->at;
   } else if (const auto* cube = std::get_if<CubeShape>(&fill.shape)) {
@@ -240,24 +254,16 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     RegionOf region_of(scene, fill);
     std::visit(region_of, fill.shape);
     const Region region = region_of.take();
-    double cells = 1.0;
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
-      cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / dx;
-    if (!(cells <= 1e9))
-      throw SceneError(located(scene, "fill." + std::to_string(k)) + ": more than 10^9 particles of phase \"" +
-                       fill.phase + "\"; expected a larger spacing or a smaller shape");
-    if (const AvailableMemory there = available_memory(); cells * sizeof(Vec3) > there.bytes)
-      throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
-                       std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
-                       memory_text(cells * sizeof(Vec3)) + " at least, " + there.of + " leaves " +
-                       memory_text(there.bytes) + "; expected a larger spacing or a smaller shape");
+    const double cells = cells_between(scene, region.lower, region.upper, dx);
+    check_room(scene, k, cells);
     if (fill.packing == Packing::random) {
       places = random_places(scene, region, cells, fill.seed, dx, occupied);
     } else {
       places = stretched_lattice(scene, fill, region, dx);
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
     }
-    if (std::holds_alternative<TheRestShape>(fill.shape)) keep_the_rest(places, scene, k, dx, occupied);
+    if (std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills)
+      keep_the_rest(places, scene, k, dx, occupied);
   }
   const PeriodicSpace space(scene.domain);
   for (Vec3& x : places) x = space.wrapped(x);

@@ -539,6 +539,23 @@ TEST(SceneReader, ReadsTheKeysOfBodies) {
   EXPECT_FALSE(s.markers.at(0).box.has_value());
 }
 
+TEST(SceneReader, TakesZonesAndForces) {
+  const Scene s = parse_scene(with(square_text, "[time]",
+                                   "[[forcing]]\nphase = \"air\"\nrate = \"x\"\nvelocity = [1, \"t\"]\n"
+                                   "box = { min = [0.5, 0], max = [1, 1] }\n[time]"),
+                              "s.toml");
+  EXPECT_TRUE(s.forcings.at(0).relaxes());
+  EXPECT_EQ(s.forcings.at(0).rate.formula, "x");
+  EXPECT_EQ(s.forcings.at(0).velocity[0].value, 1);
+  EXPECT_EQ(s.forcings.at(0).velocity[1].formula, "t");
+  EXPECT_EQ(s.forcings.at(0).box->min[0], 0.5);
+  const Scene b =
+      parse_scene(std::string(body_keys) + "[[force]]\nname = \"left\"\nphase = \"a\"\nabout = [1, 2]\n", "s.toml");
+  EXPECT_EQ(b.force_meters.at(0).name, "left");
+  EXPECT_EQ(b.force_meters.at(0).about, (Vec3{1, 2, 0}));
+  EXPECT_FALSE(b.force_meters.at(0).box.has_value());
+}
+
 /// Of every key of a phase: the kinds that have it have a member for it, and no two keys have the same member. That a
 /// document's value arrives there and counts is what tests/cli/key_consumers.cpp shows of every key.
 TEST(SceneReader, EveryKeyOfAPhaseHasAMemberOfItsOwn) {
@@ -576,6 +593,11 @@ TEST(SceneReader, TakesEveryShape) {
   EXPECT_EQ(std::get<RingShape>(shape("{ ring = { centre = [0.5, 0.4], inner = 0.2, outer = 0.3 } }")).outer, 0.3);
   EXPECT_EQ(std::get<PolygonShape>(shape("{ polygon = [[0, 0], [1, 0], [0, 1]] }")).corners.at(2),
             (std::array<double, 2>{0, 1}));
+  const auto moved = std::get<PolygonShape>(
+      shape("{ polygon = [[0, 0], [1, 0], [0, 1]], scale = 0.5, turn = 30, move = [0.25, 0.125] }"));
+  EXPECT_EQ(moved.placement.scale, 0.5);
+  EXPECT_EQ(moved.placement.turn, 30);
+  EXPECT_EQ(moved.placement.move, (Vec3{0.25, 0.125, 0}));
   EXPECT_EQ(std::get<CubeShape>(shape("{ cube = { centre = [0.5, 0.5], count = 3 } }")).count, 3);
   EXPECT_EQ(std::get<PointsShape>(shape("{ points = [[0.5, 0.5]] }")).at.size(), 1u);
   EXPECT_EQ(std::get<FormulaShape>(shape("{ formula = \"x - y\" }")).inside.formula, "x - y");
