@@ -44,6 +44,9 @@ void check_walls(const Scene& scene, const Report& report);
 /// Of elastic bodies: keys of another formulation, contacts, sets of particles.
 void check_bodies(const Scene& scene, const Report& report);
 
+/// Of rigid bodies: what may touch them, and what turns.
+void check_rigid(const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

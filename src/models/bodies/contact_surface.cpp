@@ -1,0 +1,230 @@
+#include "models/bodies/contact_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace barchan {
+
+namespace {
+
+double area_of(const std::vector<Vec3>& corners) {
+  double twice = 0.0;
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++)
+    twice += corners[j][0] * corners[i][1] - corners[i][0] * corners[j][1];
+  return 0.5 * twice;
+}
+
+/// A unit vector, or `otherwise` where it has no length.
+Vec3 unit(const Vec3& v, const Vec3& otherwise) {
+  const double size = norm(v);
+  return size > 0.0 ? 1.0 / size * v : otherwise;
+}
+
+}  // namespace
+
+PolygonOutline::PolygonOutline(std::vector<Vec3> corners, double reach, double spacing) : corners_(std::move(corners)) {
+  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  if (corners_.size() > 1 && corners_.front() == corners_.back()) corners_.pop_back();
+  if (area_of(corners_) < 0.0) std::reverse(corners_.begin(), corners_.end());
+  make_cells(reach, spacing);
+}
+
+PolygonOutline::Foot PolygonOutline::foot_on(std::size_t edge, const Vec3& x) const {
+  const Vec3 &a = corners_[edge], &b = corners_[edge + 1 == corners_.size() ? 0 : edge + 1];
+  const Vec3 along = b - a;
+  const double share = std::clamp(dot(x - a, along) / dot(along, along), 0.0, 1.0);
+  const Vec3 at = a + share * along, r = x - at;
+  return {dot(r, r), at, share};
+}
+
+Vec3 PolygonOutline::normal_of(std::size_t edge) const {
+  const Vec3 &a = corners_[edge], &b = corners_[edge + 1 == corners_.size() ? 0 : edge + 1];
+  const Vec3 along = b - a;
+  return 1.0 / norm(along) * Vec3{along[1], -along[0], 0.0};
+}
+
+bool PolygonOutline::holds(const Vec3& x) const {
+  bool inside = false;
+  for (std::size_t i = 0, j = corners_.size() - 1; i < corners_.size(); j = i++) {
+    const Vec3 &a = corners_[i], &b = corners_[j];
+    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
+  }
+  return inside;
+}
+
+/// A cell knows the edges that can be the nearest one of any place in it.
+void PolygonOutline::make_cells(double reach, double spacing) {
+  double size[2];
+  for (std::size_t d = 0; d < 2; ++d) {
+    double low = 1e300, high = -1e300;
+    for (const Vec3& c : corners_) {
+      low = std::min(low, c[d]);
+      high = std::max(high, c[d]);
+    }
+    low_[d] = low - reach;
+    size[d] = high - low + 2.0 * reach;
+  }
+  width_ = std::max(0.5 * spacing, std::max(size[0], size[1]) / 512.0);
+  for (std::size_t d = 0; d < 2; ++d) count_[d] = static_cast<std::size_t>(size[d] / width_) + 1;
+  const double half = width_ * std::sqrt(0.5);
+  std::vector<double> distance(corners_.size());
+  for (std::size_t j = 0; j < count_[1]; ++j)
+    for (std::size_t i = 0; i < count_[0]; ++i) {
+      const Vec3 middle{low_[0] + (static_cast<double>(i) + 0.5) * width_,
+                        low_[1] + (static_cast<double>(j) + 0.5) * width_, 0.0};
+      double nearest = 1e300;
+      for (std::size_t e = 0; e < corners_.size(); ++e) {
+        distance[e] = std::sqrt(foot_on(e, middle).distance2);
+        nearest = std::min(nearest, distance[e]);
+      }
+      begin_.push_back(static_cast<std::uint32_t>(edges_.size()));
+      const bool far = nearest > reach + half;
+      deep_.push_back(far && holds(middle) ? 1 : 0);
+      for (std::size_t e = 0; e < corners_.size() && !far; ++e)
+        if (distance[e] <= nearest + 2.0 * half) edges_.push_back(static_cast<std::uint32_t>(e));
+    }
+  begin_.push_back(static_cast<std::uint32_t>(edges_.size()));
+}
+
+std::optional<Gap> PolygonOutline::gap(const Vec3& x) const {
+  std::size_t cell[2];
+  for (std::size_t d = 0; d < 2; ++d) {
+    const double at = (x[d] - low_[d]) / width_;
+    if (!(at >= 0.0) || !(at < static_cast<double>(count_[d]))) return std::nullopt;
+    cell[d] = static_cast<std::size_t>(at);
+  }
+  const std::size_t k = cell[1] * count_[0] + cell[0];
+  if (begin_[k] == begin_[k + 1]) {
+    if (deep_[k] == 0) return std::nullopt;
+    return Gap{-std::numeric_limits<double>::infinity(), {}};
+  }
+  Foot best{1e300, {}, 0.0};
+  std::size_t edge = 0;
+  for (std::uint32_t q = begin_[k]; q < begin_[k + 1]; ++q)
+    if (const Foot foot = foot_on(edges_[q], x); foot.distance2 < best.distance2) {
+      best = foot;
+      edge = edges_[q];
+    }
+  // At a corner the mean of both normals decides on which side the place is (Baerentzen & Aanaes 2005).
+  Vec3 normal = normal_of(edge);
+  const std::size_t n = corners_.size();
+  const bool corner = best.share == 0.0 || best.share == 1.0;
+  if (best.share == 0.0) normal = normal + normal_of((edge + n - 1) % n);
+  if (best.share == 1.0) normal = normal + normal_of((edge + 1) % n);
+  const Vec3 out = x - best.at;
+  const double side = dot(out, normal) < 0.0 ? -1.0 : 1.0;
+  return Gap{side * std::sqrt(best.distance2), corner ? unit(side * out, unit(normal, normal)) : normal};
+}
+
+ContactSurface ContactSurface::plane(const Vec3& at, const Vec3& outwards) {
+  ContactSurface s;
+  s.form_ = Form::plane;
+  s.at_ = at;
+  s.other_ = outwards;
+  return s;
+}
+
+ContactSurface ContactSurface::round(const Vec3& centre, double radius) {
+  ContactSurface s;
+  s.form_ = Form::round;
+  s.at_ = centre;
+  s.radius_ = radius;
+  s.probes_ = {{centre, radius}};
+  return s;
+}
+
+ContactSurface ContactSurface::ring(const Vec3& centre, double inner, double outer) {
+  ContactSurface s = round(centre, outer);
+  s.form_ = Form::ring;
+  s.inner_ = inner;
+  s.probes_.front().deepest = 0.5 * (outer - inner);
+  return s;
+}
+
+ContactSurface ContactSurface::box(const Vec3& low, const Vec3& high) {
+  ContactSurface s;
+  s.form_ = Form::box;
+  s.at_ = low;
+  s.other_ = high;
+  for (int corner = 0; corner < 8; ++corner)
+    s.probes_.push_back({{(corner & 1) != 0 ? high[0] : low[0], (corner & 2) != 0 ? high[1] : low[1],
+                          (corner & 4) != 0 ? high[2] : low[2]},
+                         0.0});
+  return s;
+}
+
+ContactSurface ContactSurface::polygon(PolygonOutline outline) {
+  ContactSurface s;
+  s.form_ = Form::polygon;
+  for (const Vec3& corner : outline.corners()) s.probes_.push_back({corner, 0.0});
+  s.outline_.push_back(std::move(outline));
+  return s;
+}
+
+namespace {
+
+Gap gap_of_box(const Vec3& low, const Vec3& high, const Vec3& x) {
+  Vec3 out{};
+  double least = 1e300;
+  std::size_t face = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    out[d] = x[d] < low[d] ? x[d] - low[d] : x[d] > high[d] ? x[d] - high[d] : 0.0;
+    const double depth = std::min(x[d] - low[d], high[d] - x[d]);
+    if (depth >= least) continue;
+    least = depth;
+    face = d;
+  }
+  const double distance = norm(out);
+  if (distance > 0.0) return {distance, 1.0 / distance * out};
+  Vec3 normal{};
+  normal[face] = x[face] - low[face] < high[face] - x[face] ? -1.0 : 1.0;
+  return {-least, normal};
+}
+
+}  // namespace
+
+std::optional<Gap> ContactSurface::gap(const Vec3& x) const {
+  const Vec3 r = x - at_;
+  switch (form_) {
+    case Form::plane: return Gap{dot(r, other_), other_};
+    case Form::round: return Gap{norm(r) - radius_, unit(r, {1, 0, 0})};
+    case Form::ring: {
+      const double distance = norm(r), outer = distance - radius_, inner = inner_ - distance;
+      return outer > inner ? Gap{outer, unit(r, {1, 0, 0})} : Gap{inner, unit(-1.0 * r, {1, 0, 0})};
+    }
+    case Form::box: return gap_of_box(at_, other_, x);
+    case Form::polygon: return outline_.front().gap(x);
+  }
+  return std::nullopt;
+}
+
+std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing, double reach) {
+  const bool flat = scene.dimensions == 2;
+  const auto rectangle = [&](const Vec3& low, const Vec3& high) {
+    if (!flat) return ContactSurface::box(low, high);
+    return ContactSurface::polygon(PolygonOutline(
+        {{low[0], low[1], 0}, {high[0], low[1], 0}, {high[0], high[1], 0}, {low[0], high[1], 0}}, reach, spacing));
+  };
+  if (const auto* box = std::get_if<BoxShape>(&shape)) return {rectangle(box->min, box->max)};
+  if (const auto* cube = std::get_if<CubeShape>(&shape)) {
+    const double half = 0.5 * cube->count * spacing;
+    const Vec3 corner{half, half, half};
+    return {rectangle(cube->centre - corner, cube->centre + corner)};
+  }
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return {ContactSurface::round(sphere->centre, sphere->radius)};
+  if (const auto* disc = std::get_if<DiscShape>(&shape)) return {ContactSurface::round(disc->centre, disc->radius)};
+  if (const auto* ring = std::get_if<RingShape>(&shape)) {
+    if (ring->inner > 0.0) return {ContactSurface::ring(ring->centre, ring->inner, ring->outer)};
+    return {ContactSurface::round(ring->centre, ring->outer)};
+  }
+  if (const auto* polygon = std::get_if<PolygonShape>(&shape)) {
+    std::vector<Vec3> corners;
+    for (const auto& corner : polygon->corners) corners.push_back({corner[0], corner[1], 0.0});
+    return {ContactSurface::polygon(PolygonOutline(std::move(corners), reach, spacing))};
+  }
+  return {};
+}
+
+}  // namespace barchan

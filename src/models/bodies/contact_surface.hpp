@@ -1,0 +1,83 @@
+// Outlines of rigid bodies and walls, as contacts see them: distances to them, and the places of theirs that reach
+// farthest.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/vec3.hpp"
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+/// How far a place is outside of a surface (m; negative inside), and the normal of the nearest place, outwards.
+struct Gap {
+  double distance;
+  Vec3 normal;
+};
+
+/// A ball that belongs to a body: what touches a surface first. Corners have no radius.
+struct TouchPoint {
+  Vec3 at;                 // m
+  double radius;           // m
+  double deepest = 1e300;  // m, overlaps beyond it mean that the other lies on the inner side of a ring
+};
+
+/// A closed polygon, by a grid of cells that know their nearest edges.
+class PolygonOutline {
+ public:
+  /// Corners in order, either way round. `reach` (m): how far outside distances are wanted. `spacing` (m): that of the
+  /// particles.
+  PolygonOutline(std::vector<Vec3> corners, double reach, double spacing);
+  /// Nothing farther outside than the reach. Farther inside than it: -infinity.
+  std::optional<Gap> gap(const Vec3& x) const;
+  const std::vector<Vec3>& corners() const { return corners_; }
+
+ private:
+  struct Foot {
+    double distance2;
+    Vec3 at;
+    double share;  // of the edge
+  };
+  Foot foot_on(std::size_t edge, const Vec3& x) const;
+  Vec3 normal_of(std::size_t edge) const;
+  bool holds(const Vec3& x) const;
+  void make_cells(double reach, double spacing);
+
+  std::vector<Vec3> corners_;  // anticlockwise
+  double low_[2]{}, width_ = 1.0;
+  std::size_t count_[2]{};
+  std::vector<std::uint32_t> begin_, edges_;  // by cell
+  std::vector<char> deep_;                    // cells that lie inside, beyond the reach
+};
+
+/// The outline of a body or a wall, or a part of it: a plane, a disc or sphere, a ring, a box in 3D, a polygon.
+class ContactSurface {
+ public:
+  enum class Form { plane, round, ring, box, polygon };
+  static ContactSurface plane(const Vec3& at, const Vec3& outwards);
+  static ContactSurface round(const Vec3& centre, double radius);
+  static ContactSurface ring(const Vec3& centre, double inner, double outer);
+  static ContactSurface box(const Vec3& low, const Vec3& high);
+  static ContactSurface polygon(PolygonOutline outline);
+
+  Form form() const { return form_; }
+  /// Nothing: too far away to matter.
+  std::optional<Gap> gap(const Vec3& x) const;
+  /// Places that may touch another surface. Of a plane none: what touches it has some.
+  const std::vector<TouchPoint>& probes() const { return probes_; }
+
+ private:
+  Form form_ = Form::plane;
+  Vec3 at_{}, other_{};                // m: centre, or low and high corner; of a plane the normal
+  double radius_ = 0.0, inner_ = 0.0;  // m
+  std::vector<PolygonOutline> outline_;
+  std::vector<TouchPoint> probes_;
+};
+
+/// The parts of a fill's shape, in space at the start; `reach` (m) as of a polygon. Shapes that has_surface() says have
+/// none have no parts; sides neither.
+std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing, double reach);
+
+}  // namespace barchan
