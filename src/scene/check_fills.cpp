@@ -5,12 +5,13 @@
 
 #include "scene/checks.hpp"
 #include "scene/fitted.hpp"
+#include "scene/outline.hpp"
 
 namespace barchan {
 namespace {
 
-const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring",
-                                   "polygon", "cube", "points", "formula", "sides"};
+const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring", "polygon",
+                                   "surface", "cube", "points", "formula", "sides"};
 
 /// The shape must be one, and companions (dune, layers) need the shape that they belong to.
 void check_shape_keys(const std::string& shape, bool fitted, const Report& report) {
@@ -37,8 +38,42 @@ void check_shape_keys(const std::string& shape, bool fitted, const Report& repor
       first.empty() && !report.has(shape + ".dune") && !report.has(shape + ".from") && !report.has(shape + ".layers");
   if (nothing && !report.touched(shape))
     report(shape,
-           "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, cube, points, formula, "
+           "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, surface, cube, points, "
+           "formula, "
            "sides");
+}
+
+/// Polygons and surfaces: closed, not crossing themselves, of the scene's dimensions, not too thin.
+void check_outline(const Fill& fill, double spacing, const std::string& shape, const Scene& scene,
+                   const Report& report) {
+  const auto* surface = std::get_if<SurfaceShape>(&fill.shape);
+  if (!surface && !std::holds_alternative<PolygonShape>(fill.shape)) {
+    for (const char* key : {"scale", "turn", "move"})
+      if (report.has(shape + "." + key) && report.is_section(shape))
+        report(shape + "." + key, "this shape says itself where it is; expected polygon or surface beside it");
+    return;
+  }
+  const std::string key = shape + (surface ? ".surface" : ".polygon");
+  if (report.touched(shape) || report.touched("spacing") || !(spacing > 0.0)) return;
+  if (surface && surface->triangles && scene.dimensions == 2)
+    return report(key, "a surface of triangles in two dimensions; expected a file of lines, or dimensions = 3");
+  const std::string misfit = misfit_of_outline(facets_of(fill.shape), facet_dimensions(fill.shape), spacing);
+  if (!misfit.empty()) report(key, misfit);
+}
+
+/// What is left out by itself, and what has no places to leave out.
+void check_leave_out(const Fill& fill, const std::string& dotted, const Report& report) {
+  if (fill.leave_out == LeaveOut::nothing || report.touched(dotted)) return;
+  const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
+                      std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
+  const bool always = std::holds_alternative<TheRestShape>(fill.shape) || fill.packing == Packing::random;
+  if (always)
+    report(dotted + ".leave-out",
+           "\"the-rest\" and random places leave out earlier fills by themselves; expected no such key");
+  else if (placed || fill.packing == Packing::settled || fill.packing == Packing::fitted)
+    report(dotted + ".leave-out",
+           "these places are not chosen from a shape; expected a box, disc, sphere, ring, polygon, "
+           "surface, bed or formula with packing = \"rows\" or \"staggered\"");
 }
 
 void check_dune(const DuneShape& dune, const std::string& dotted, const Scene& scene, const Report& report) {
@@ -188,6 +223,8 @@ void check_fills(const Scene& scene, const Report& report) {
     if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
       check_sides(*sides, phase, shape + ".sides", scene, report);
     check_sizes(fill, shape, scene, report);
+    check_outline(fill, spacing_of(scene, fill), shape, scene, report);
+    check_leave_out(fill, dotted, report);
     if (phase && fill.packing == Packing::settled && !(scene.domain.gravity[1] < 0.0) &&
         !report.touched("domain.gravity"))
       report(dotted + ".packing", "nothing makes the grains fall; expected domain.gravity with a negative y component");

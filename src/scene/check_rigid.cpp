@@ -52,7 +52,7 @@ void check_surfaces(const Scene& scene, const Interaction& pair, const Report& r
     if (!has_surface(fill.shape, scene.dimensions))
       report(shape, "the entry " + pair.a + "-" + pair.b +
                         " acts between surfaces, and this shape has none; expected " +
-                        (scene.dimensions == 2 ? "box, cube, disc, ring or polygon" : "box, cube or sphere") +
+                        (scene.dimensions == 2 ? "box, cube, disc, ring, polygon or surface" : "box, cube or sphere") +
                         (phase->if_wall() ? ", or sides" : ""));
     const bool box = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<CubeShape>(fill.shape);
     if (scene.dimensions == 2 || !box) continue;

@@ -45,6 +45,7 @@ struct SameAlong {
   bool operator()(const DiscShape&) const { return axis == 2; }
   bool operator()(const RingShape&) const { return axis == 2; }
   bool operator()(const PolygonShape&) const { return axis == 2; }
+  bool operator()(const SurfaceShape& surface) const { return axis == 2 && !surface.triangles; }
   bool operator()(const SphereShape&) const { return false; }
   bool operator()(const CubeShape&) const { return false; }
   bool operator()(const PointsShape&) const { return false; }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/outline.hpp"
+
 namespace barchan {
 
 const Phase* find_phase(const Scene& scene, const std::string& name) {
@@ -60,7 +62,7 @@ bool has_surface(const Shape& shape, int dimensions) {
              sides = std::holds_alternative<SidesShape>(shape);
   if (dimensions == 3) return box || sides || std::holds_alternative<SphereShape>(shape);
   return box || sides || std::holds_alternative<DiscShape>(shape) || std::holds_alternative<RingShape>(shape) ||
-         std::holds_alternative<PolygonShape>(shape);
+         facet_dimensions(shape) == 2;
 }
 
 bool is_total(const Phase& phase) {

@@ -37,7 +37,15 @@ Values values_of(const std::string& text) {
 
 }  // namespace
 
-std::string identity_of(toml::table document) {
+std::map<std::string, std::string> checksums_of_surfaces(const Scene& scene) {
+  std::map<std::string, std::string> checksums;
+  for (std::size_t k = 0; k < scene.fills.size(); ++k)
+    if (const auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape))
+      checksums["fill " + std::to_string(k) + ", checksum of the surface"] = surface->checksum;
+  return checksums;
+}
+
+std::string identity_of(toml::table document, const std::map<std::string, std::string>& checksums) {
   for (const char* key : {"title", "state"}) document.erase(key);
   if (toml::table* time = document["time"].as_table()) time->erase("end");
   if (toml::table* output = document["output"].as_table()) {
@@ -46,6 +54,7 @@ std::string identity_of(toml::table document) {
     if (format) output->insert("format", *format);
     else document.erase("output");
   }
+  for (const auto& [name, checksum] : checksums) document.insert(name, checksum);
   std::ostringstream text;
   text << document;
   return text.str();

@@ -27,7 +27,8 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   validate(document, problems);
   Scene scene = read_document(document, file);
   scene.places = places_of_keys(document, file);
-  scene.identity = identity_of(document);
+  read_surfaces(scene, Report(document, problems));
+  scene.identity = identity_of(document, checksums_of_surfaces(scene));
   check(document, scene, problems);
   problems.throw_if_any();
   return scene;

@@ -154,6 +154,8 @@ constexpr Key table[] = {
     {"fill", "packing", at<&Fill::packing>(Packing::square), "",
      "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
      "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell and came to rest before the run. Fluids and elastic bodies take rows or fitted."},
+    {"fill", "leave-out", at<&Fill::leave_out>(LeaveOut::nothing), "",
+     "What the shape leaves free: places nearer than 0.75 spacings to particles of earlier fills, as \"the-rest\" does, so that a fluid goes round a body."},
     {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
      "Every coordinate is moved by a random number of at most this size.", {.at_least = 0.0, .at_most = 0.5}},
     {"fill", "seed", at<&Fill::seed>(1), "",
@@ -171,6 +173,12 @@ constexpr Key table[] = {
     {"fill.shape", "sphere", shape<SphereShape>(), "", "Sphere; in 2D a disc."},
     {"fill.shape", "ring", shape<RingShape>(), "", "Ring; in 3D a tube along z."},
     {"fill.shape", "polygon", in_shape<&PolygonShape::corners>(), "m", "Corners [x, y]; in 3D a prism along z."},
+    {"fill.shape", "surface", in_shape<&SurfaceShape::file>(), "",
+     "File with a closed surface of triangles (.stl .obj .ply .vtp .vtu .vtk), or with a closed outline in x, y: lines (.vtp .vtu .vtk) or corners "
+     "(.csv). In 3D an outline is a prism along z. Its place is relative to the scene's file."},
+    {"fill.shape", "scale", placed<&Placement::scale>(1.0), "", "Only with polygon or surface: factor on all lengths, as 1e-3 for a file in millimetres.", positive},
+    {"fill.shape", "turn", placed<&Placement::turn>(0.0), "degrees", "Only with polygon or surface: turned about z through the origin, anticlockwise, after scale."},
+    {"fill.shape", "move", placed<&Placement::move>("zero"), "m", "Only with polygon or surface: moved by this, after turn."},
     {"fill.shape", "cube", shape<CubeShape>(), "", "Square or cube of so many particles along each side."},
     {"fill.shape", "points", in_shape<&PointsShape::at>(), "m", "Single particles."},
     {"fill.shape", "formula", in_shape<&FormulaShape::inside>(), "", "Particles where the formula is above zero.", {}, "x y z"},

@@ -200,9 +200,24 @@ struct RingShape {
   Vec3 centre{};
   double inner{}, outer{};
 };  // 2D ring (tube along z in 3D)
+/// Of what stands in numbers or in a file: scaled about the origin, turned about z through it, then moved.
+struct Placement {
+  double scale{};
+  double turn{};  // degrees, anticlockwise
+  Vec3 move{};    // m
+};
 struct PolygonShape {
   std::vector<std::array<double, 2>> corners;
-};  // in x, y; at least three corners
+  Placement placement;
+};                                  // in x, y; at least three corners
+using Facet = std::array<Vec3, 3>;  // corners of a triangle; a segment has its end twice
+struct SurfaceShape {
+  std::string file;  // as written: relative to the scene's file
+  Placement placement;
+  std::vector<Facet> facets;  // as the file has them; read with the scene
+  bool triangles{};           // else segments in x, y
+  std::string checksum;       // of the file
+};
 struct CubeShape {
   Vec3 centre{};
   int count{};
@@ -235,12 +250,13 @@ struct BedShape {
 };
 
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
-                           FormulaShape, SidesShape, BedShape, TheRestShape>;
+                           FormulaShape, SidesShape, BedShape, TheRestShape, SurfaceShape>;
 
 struct Fill {
   std::string phase;
   Shape shape = TheRestShape{};
   Packing packing{};
+  LeaveOut leave_out{};
   double perturb{};  // spacings of its phase: each coordinate moved by a uniform number in +-perturb
   unsigned seed{};
   VectorExpression velocity;                        // m/s, formulas in x, y, z

@@ -147,6 +147,22 @@ constexpr Slot layers(const char* in_words) {
           }};
 }
 
+/// Of the shapes that come from numbers or a file.
+inline Placement* placement_of(void* object) {
+  if (auto* polygon = shape_of<PolygonShape>(object, belongs)) return &polygon->placement;
+  auto* surface = shape_of<SurfaceShape>(object, belongs);
+  return surface ? &surface->placement : nullptr;
+}
+template <auto member, class... Otherwise>
+constexpr Slot placed(Otherwise... text) {
+  using Member = decltype(type_of(member));
+  constexpr auto find = [](void* shape) -> Member* {
+    Placement* placement = placement_of(shape);
+    return placement ? &(placement->*member) : nullptr;
+  };
+  return slot_of<Member, find>(otherwise(text...));
+}
+
 constexpr Slot hold(const char* in_words) {
   return {.accepts = as_word, .otherwise = otherwise(in_words), .words = bulk_speed, .choose = [](void* forcing, int) {
             static_cast<Forcing*>(forcing)->hold_bulk_speed = true;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
@@ -13,6 +12,7 @@
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
 #include "scene/located.hpp"
+#include "scene/outline.hpp"
 #include "scene/random.hpp"
 
 namespace barchan {
@@ -25,16 +25,6 @@ struct Region {
   Vec3 anchor{};          // m, a place of the lattice
   Inside inside;
 };
-
-bool in_polygon(const std::vector<std::array<double, 2>>& corners, double x, double y) {
-  bool inside = false;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const auto& [xi, yi] = corners[i];
-    const auto& [xj, yj] = corners[j];
-    if ((yi > y) != (yj > y) && x < (xj - xi) * (y - yi) / (yj - yi) + xi) inside = !inside;
-  }
-  return inside;
-}
 
 /// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other
 /// packings keep half a spacing from sides that are not periodic.
@@ -82,17 +72,8 @@ class RegionOf {
   void operator()(const DiscShape& disc) { round(disc.centre, -1.0, disc.radius, 2); }
   void operator()(const RingShape& ring) { round(ring.centre, ring.inner, ring.outer, 2); }
   void operator()(const SphereShape& sphere) { round(sphere.centre, -1.0, sphere.radius, 3); }
-  void operator()(const PolygonShape& polygon) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3 lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity};
-    for (const auto& corner : polygon.corners)
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        lower[axis] = std::min(lower[axis], corner[axis]);
-        upper[axis] = std::max(upper[axis], corner[axis]);
-      }
-    bound(region_, scene_, lower, upper, 2);
-    region_.inside = [corners = polygon.corners](const Vec3& x) { return in_polygon(corners, x[0], x[1]); };
-  }
+  void operator()(const PolygonShape& polygon) { closed(polygon); }
+  void operator()(const SurfaceShape& surface) { closed(surface); }
   void operator()(const FormulaShape& shape) {
     region_.inside = [formula = std::make_shared<Formula>(shape.inside)](const Vec3& x) { return (*formula)(x) > 0.0; };
   }
@@ -110,6 +91,12 @@ class RegionOf {
   void operator()(const SidesShape&) {}
 
  private:
+  void closed(const Shape& shape) {
+    const int dimensions = facet_dimensions(shape);
+    const auto outline = std::make_shared<const Outline>(facets_of(shape), dimensions);
+    bound(region_, scene_, outline->lower(), outline->upper(), static_cast<std::size_t>(dimensions));
+    region_.inside = [outline](const Vec3& x) { return outline->inside(x); };
+  }
   void round(const Vec3& centre, double inner, double outer, std::size_t axes) {
     if (scene_.dimensions == 2) axes = 2;
     const double slack = 1e-9 * spacing_;
@@ -257,7 +244,8 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
       places = stretched_lattice(scene, fill, region, dx);
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
     }
-    if (std::holds_alternative<TheRestShape>(fill.shape)) keep_the_rest(places, scene, k, dx, occupied);
+    if (std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills)
+      keep_the_rest(places, scene, k, dx, occupied);
   }
   const PeriodicSpace space(scene.domain);
   for (Vec3& x : places) x = space.wrapped(x);

@@ -86,6 +86,12 @@ inline constexpr std::array words_of<Packing>{word("rows", Packing::square), wor
                                               word("random", Packing::random), word("fitted", Packing::fitted),
                                               word("settled", Packing::settled)};
 
+/// What a shape leaves free besides its outside.
+enum class LeaveOut { nothing, earlier_fills };
+template <>
+inline constexpr std::array words_of<LeaveOut>{word("nothing", LeaveOut::nothing),
+                                               word("earlier-fills", LeaveOut::earlier_fills)};
+
 enum class DuneForm { cosine, gaussian, asymmetric, rushil, formula };
 template <>
 inline constexpr std::array words_of<DuneForm>{word("cosine", DuneForm::cosine), word("gaussian", DuneForm::gaussian),

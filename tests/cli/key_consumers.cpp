@@ -82,6 +82,8 @@ Outcome outcome_of(const std::string& base, const std::string& overrides, bool k
   fs::create_directories(place);
   const fs::path scene = place / "scene.toml", out = place / "out", said = place / "said";
   std::ofstream(scene) << scene_texts().at(base);
+  std::ofstream(place / "small.csv") << "0.2,0.7\n0.8,0.7\n0.5,0.9\n";  // for fill.shape.surface
+  std::ofstream(place / "large.csv") << "0.2,0.7\n0.8,0.7\n0.5,0.95\n";
   std::string command = std::string(killed ? "timeout -s KILL 3 " : "") + "'" BARCHAN_PROGRAM "' run '" +
                         scene.string() + "' --quiet --threads 1 --out '" + out.string() + "'";
   std::istringstream list(overrides);

@@ -576,6 +576,11 @@ TEST(SceneReader, TakesEveryShape) {
   EXPECT_EQ(std::get<RingShape>(shape("{ ring = { centre = [0.5, 0.4], inner = 0.2, outer = 0.3 } }")).outer, 0.3);
   EXPECT_EQ(std::get<PolygonShape>(shape("{ polygon = [[0, 0], [1, 0], [0, 1]] }")).corners.at(2),
             (std::array<double, 2>{0, 1}));
+  const auto moved = std::get<PolygonShape>(
+      shape("{ polygon = [[0, 0], [1, 0], [0, 1]], scale = 0.5, turn = 30, move = [0.25, 0.125] }"));
+  EXPECT_EQ(moved.placement.scale, 0.5);
+  EXPECT_EQ(moved.placement.turn, 30);
+  EXPECT_EQ(moved.placement.move, (Vec3{0.25, 0.125, 0}));
   EXPECT_EQ(std::get<CubeShape>(shape("{ cube = { centre = [0.5, 0.5], count = 3 } }")).count, 3);
   EXPECT_EQ(std::get<PointsShape>(shape("{ points = [[0.5, 0.5]] }")).at.size(), 1u);
   EXPECT_EQ(std::get<FormulaShape>(shape("{ formula = \"x - y\" }")).inside.formula, "x - y");

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
+
+#include "scene/outline.hpp"
 
 namespace barchan {
 
 namespace {
-
-double area_of(const std::vector<Vec3>& corners) {
-  double twice = 0.0;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++)
-    twice += corners[j][0] * corners[i][1] - corners[i][0] * corners[j][1];
-  return 0.5 * twice;
-}
 
 /// A unit vector, or `otherwise` where it has no length.
 Vec3 unit(const Vec3& v, const Vec3& otherwise) {
@@ -23,31 +20,48 @@ Vec3 unit(const Vec3& v, const Vec3& otherwise) {
 
 }  // namespace
 
-PolygonOutline::PolygonOutline(std::vector<Vec3> corners, double reach, double spacing) : corners_(std::move(corners)) {
-  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-  if (corners_.size() > 1 && corners_.front() == corners_.back()) corners_.pop_back();
-  if (area_of(corners_) < 0.0) std::reverse(corners_.begin(), corners_.end());
+PolygonOutline::PolygonOutline(const std::vector<Facet>& segments, double reach, double spacing) {
+  for (const Facet& segment : segments)
+    if (segment[0] != segment[1]) edges_.push_back({segment[0], segment[1], {}, {}});
+  turn_outwards();
   make_cells(reach, spacing);
 }
 
-PolygonOutline::Foot PolygonOutline::foot_on(std::size_t edge, const Vec3& x) const {
-  const Vec3 &a = corners_[edge], &b = corners_[edge + 1 == corners_.size() ? 0 : edge + 1];
-  const Vec3 along = b - a;
-  const double share = std::clamp(dot(x - a, along) / dot(along, along), 0.0, 1.0);
-  const Vec3 at = a + share * along, r = x - at;
-  return {dot(r, r), at, share};
+/// Normals of the edges; at a corner the mean of both decides on which side a place is (Baerentzen & Aanaes 2005).
+void PolygonOutline::turn_outwards() {
+  std::map<Vec3, Vec3> at_corners;
+  for (Edge& edge : edges_) {
+    const Vec3 along = edge.to - edge.from, middle = edge.from + 0.5 * along;
+    edge.normal = 1.0 / norm(along) * Vec3{along[1], -along[0], 0.0};
+    if (holds(middle + 1e-6 * norm(along) * edge.normal)) edge.normal = -1.0 * edge.normal;
+    for (const Vec3& end : {edge.from, edge.to}) {
+      Vec3& sum = at_corners[end];
+      sum = sum + edge.normal;
+    }
+  }
+  for (Edge& edge : edges_) edge.end_normals = {at_corners[edge.from], at_corners[edge.to]};
 }
 
-Vec3 PolygonOutline::normal_of(std::size_t edge) const {
-  const Vec3 &a = corners_[edge], &b = corners_[edge + 1 == corners_.size() ? 0 : edge + 1];
-  const Vec3 along = b - a;
-  return 1.0 / norm(along) * Vec3{along[1], -along[0], 0.0};
+std::vector<Vec3> PolygonOutline::corners() const {
+  std::set<Vec3> all;
+  for (const Edge& edge : edges_) {
+    all.insert(edge.from);
+    all.insert(edge.to);
+  }
+  return {all.begin(), all.end()};
+}
+
+PolygonOutline::Foot PolygonOutline::foot_on(const Edge& edge, const Vec3& x) {
+  const Vec3 along = edge.to - edge.from;
+  const double share = std::clamp(dot(x - edge.from, along) / dot(along, along), 0.0, 1.0);
+  const Vec3 at = edge.from + share * along, r = x - at;
+  return {r[0] * r[0] + r[1] * r[1], at, share};
 }
 
 bool PolygonOutline::holds(const Vec3& x) const {
   bool inside = false;
-  for (std::size_t i = 0, j = corners_.size() - 1; i < corners_.size(); j = i++) {
-    const Vec3 &a = corners_[i], &b = corners_[j];
+  for (const Edge& edge : edges_) {
+    const Vec3 &a = edge.from, &b = edge.to;
     if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
   }
   return inside;
@@ -55,12 +69,12 @@ bool PolygonOutline::holds(const Vec3& x) const {
 
 /// A cell knows the edges that can be the nearest one of any place in it.
 void PolygonOutline::make_cells(double reach, double spacing) {
-  double size[2];
+  std::array<double, 2> size{};
   for (std::size_t d = 0; d < 2; ++d) {
     double low = 1e300, high = -1e300;
-    for (const Vec3& c : corners_) {
-      low = std::min(low, c[d]);
-      high = std::max(high, c[d]);
+    for (const Edge& edge : edges_) {
+      low = std::min({low, edge.from[d], edge.to[d]});
+      high = std::max({high, edge.from[d], edge.to[d]});
     }
     low_[d] = low - reach;
     size[d] = high - low + 2.0 * reach;
@@ -68,27 +82,27 @@ void PolygonOutline::make_cells(double reach, double spacing) {
   width_ = std::max(0.5 * spacing, std::max(size[0], size[1]) / 512.0);
   for (std::size_t d = 0; d < 2; ++d) count_[d] = static_cast<std::size_t>(size[d] / width_) + 1;
   const double half = width_ * std::sqrt(0.5);
-  std::vector<double> distance(corners_.size());
+  std::vector<double> distance(edges_.size());
   for (std::size_t j = 0; j < count_[1]; ++j)
     for (std::size_t i = 0; i < count_[0]; ++i) {
       const Vec3 middle{low_[0] + (static_cast<double>(i) + 0.5) * width_,
                         low_[1] + (static_cast<double>(j) + 0.5) * width_, 0.0};
       double nearest = 1e300;
-      for (std::size_t e = 0; e < corners_.size(); ++e) {
-        distance[e] = std::sqrt(foot_on(e, middle).distance2);
+      for (std::size_t e = 0; e < edges_.size(); ++e) {
+        distance[e] = std::sqrt(foot_on(edges_[e], middle).distance2);
         nearest = std::min(nearest, distance[e]);
       }
-      begin_.push_back(static_cast<std::uint32_t>(edges_.size()));
+      begin_.push_back(static_cast<std::uint32_t>(near_.size()));
       const bool far = nearest > reach + half;
       deep_.push_back(far && holds(middle) ? 1 : 0);
-      for (std::size_t e = 0; e < corners_.size() && !far; ++e)
-        if (distance[e] <= nearest + 2.0 * half) edges_.push_back(static_cast<std::uint32_t>(e));
+      for (std::size_t e = 0; e < edges_.size() && !far; ++e)
+        if (distance[e] <= nearest + 2.0 * half) near_.push_back(static_cast<std::uint32_t>(e));
     }
-  begin_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  begin_.push_back(static_cast<std::uint32_t>(near_.size()));
 }
 
 std::optional<Gap> PolygonOutline::gap(const Vec3& x) const {
-  std::size_t cell[2];
+  std::array<std::size_t, 2> cell{};
   for (std::size_t d = 0; d < 2; ++d) {
     const double at = (x[d] - low_[d]) / width_;
     if (!(at >= 0.0) || !(at < static_cast<double>(count_[d]))) return std::nullopt;
@@ -100,21 +114,17 @@ std::optional<Gap> PolygonOutline::gap(const Vec3& x) const {
     return Gap{-std::numeric_limits<double>::infinity(), {}};
   }
   Foot best{1e300, {}, 0.0};
-  std::size_t edge = 0;
+  const Edge* edge = nullptr;
   for (std::uint32_t q = begin_[k]; q < begin_[k + 1]; ++q)
-    if (const Foot foot = foot_on(edges_[q], x); foot.distance2 < best.distance2) {
+    if (const Foot foot = foot_on(edges_[near_[q]], x); foot.distance2 < best.distance2) {
       best = foot;
-      edge = edges_[q];
+      edge = &edges_[near_[q]];
     }
-  // At a corner the mean of both normals decides on which side the place is (Baerentzen & Aanaes 2005).
-  Vec3 normal = normal_of(edge);
-  const std::size_t n = corners_.size();
   const bool corner = best.share == 0.0 || best.share == 1.0;
-  if (best.share == 0.0) normal = normal + normal_of((edge + n - 1) % n);
-  if (best.share == 1.0) normal = normal + normal_of((edge + 1) % n);
-  const Vec3 out = x - best.at;
+  const Vec3& normal = corner ? edge->end_normals[best.share == 1.0 ? 1 : 0] : edge->normal;
+  const Vec3 out{x[0] - best.at[0], x[1] - best.at[1], 0.0};
   const double side = dot(out, normal) < 0.0 ? -1.0 : 1.0;
-  return Gap{side * std::sqrt(best.distance2), corner ? unit(side * out, unit(normal, normal)) : normal};
+  return Gap{side * std::sqrt(best.distance2), corner ? unit(side * out, unit(normal, edge->normal)) : normal};
 }
 
 ContactSurface ContactSurface::plane(const Vec3& at, const Vec3& outwards) {
@@ -203,8 +213,9 @@ std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, 
   const bool flat = scene.dimensions == 2;
   const auto rectangle = [&](const Vec3& low, const Vec3& high) {
     if (!flat) return ContactSurface::box(low, high);
-    return ContactSurface::polygon(PolygonOutline(
-        {{low[0], low[1], 0}, {high[0], low[1], 0}, {high[0], high[1], 0}, {low[0], high[1], 0}}, reach, spacing));
+    const PolygonShape corners{{{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}},
+                               {1.0, 0.0, {}}};
+    return ContactSurface::polygon(PolygonOutline(facets_of(corners), reach, spacing));
   };
   if (const auto* box = std::get_if<BoxShape>(&shape)) return {rectangle(box->min, box->max)};
   if (const auto* cube = std::get_if<CubeShape>(&shape)) {
@@ -219,11 +230,8 @@ std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, 
     if (ring->inner > 0.0) return {ContactSurface::ring(ring->centre, ring->inner, ring->outer)};
     return {ContactSurface::round(ring->centre, ring->outer)};
   }
-  if (const auto* polygon = std::get_if<PolygonShape>(&shape)) {
-    std::vector<Vec3> corners;
-    for (const auto& corner : polygon->corners) corners.push_back({corner[0], corner[1], 0.0});
-    return {ContactSurface::polygon(PolygonOutline(std::move(corners), reach, spacing))};
-  }
+  if (flat && facet_dimensions(shape) == 2)
+    return {ContactSurface::polygon(PolygonOutline(facets_of(shape), reach, spacing))};
   return {};
 }
 

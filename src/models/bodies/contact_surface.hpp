@@ -24,32 +24,37 @@ struct TouchPoint {
   double deepest = 1e300;  // m, overlaps beyond it mean that the other lies on the inner side of a ring
 };
 
-/// A closed polygon, by a grid of cells that know their nearest edges.
+/// Closed lines in x, y, by a grid of cells that know their nearest edges.
 class PolygonOutline {
  public:
-  /// Corners in order, either way round. `reach` (m): how far outside distances are wanted. `spacing` (m): that of the
-  /// particles.
-  PolygonOutline(std::vector<Vec3> corners, double reach, double spacing);
+  /// Segments in any order, either way round. `reach` (m): how far outside distances are wanted. `spacing` (m): that of
+  /// the particles.
+  PolygonOutline(const std::vector<Facet>& segments, double reach, double spacing);
   /// Nothing farther outside than the reach. Farther inside than it: -infinity.
   std::optional<Gap> gap(const Vec3& x) const;
-  const std::vector<Vec3>& corners() const { return corners_; }
+  std::vector<Vec3> corners() const;
 
  private:
+  struct Edge {
+    Vec3 from, to, normal;            // the normal points outwards
+    std::array<Vec3, 2> end_normals;  // at its ends the mean with that of the next edge
+  };
   struct Foot {
     double distance2;
     Vec3 at;
     double share;  // of the edge
   };
-  Foot foot_on(std::size_t edge, const Vec3& x) const;
-  Vec3 normal_of(std::size_t edge) const;
+  static Foot foot_on(const Edge& edge, const Vec3& x);
   bool holds(const Vec3& x) const;
+  void turn_outwards();
   void make_cells(double reach, double spacing);
 
-  std::vector<Vec3> corners_;  // anticlockwise
-  double low_[2]{}, width_ = 1.0;
-  std::size_t count_[2]{};
-  std::vector<std::uint32_t> begin_, edges_;  // by cell
-  std::vector<char> deep_;                    // cells that lie inside, beyond the reach
+  std::vector<Edge> edges_;
+  std::array<double, 2> low_{};
+  double width_ = 1.0;
+  std::array<std::size_t, 2> count_{};
+  std::vector<std::uint32_t> begin_, near_;  // by cell
+  std::vector<char> deep_;                   // cells that lie inside, beyond the reach
 };
 
 /// The outline of a body or a wall, or a part of it: a plane, a disc or sphere, a ring, a box in 3D, a polygon.

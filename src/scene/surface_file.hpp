@@ -1,0 +1,23 @@
+// Files of outlines and surfaces. Internal to src/scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace barchan {
+
+struct SurfaceFile {
+  std::vector<Facet> facets;  // in the file's unit
+  bool triangles = false;     // else segments
+  std::string checksum;       // of the file's bytes
+  std::string problem;        // why nothing was read; empty when it was
+};
+
+/// Reads triangles and other flat cells (.stl, .obj, .ply, .vtp, .vtu, .vtk) or, where a file has none, lines of x, y.
+/// A .csv has the corners of a polygon, x, y a line; an empty line begins another one. Points nearer than 1e-7 of the
+/// file's size are one.
+SurfaceFile read_surface(const std::string& path);
+
+}  // namespace barchan
