@@ -10,8 +10,9 @@ namespace barchan {
 
 namespace {
 
-constexpr double largest_turn = 0.1;  // rad a step: turn_freely() then keeps the energy within 1e-8
-constexpr double largest_way = 0.2;   // spacings a step, of any particle of a body
+constexpr double largest_turn = 0.1;   // rad a step: turn_freely() then keeps the energy within 1e-8
+constexpr double largest_way = 0.2;    // spacings a step, of any particle of a body
+constexpr double out_of_scale = 10.0;  // of the largest speed of the scene: a body that fast is a fault
 
 /// s; 1e300 where the body is at rest.
 double step_of(const RigidBody& body, double spacing) {
@@ -22,20 +23,20 @@ double step_of(const RigidBody& body, double spacing) {
   return step;
 }
 
-PhaseRules rules_of(const PlanPhase& p, double heaviest, const std::string& step_key) {
+PhaseRules rules_of(const PlanPhase& p, double largest_speed, const std::string& step_key) {
   const std::string key = "phases." + p.name + ".stiffness";
   PhaseRules r;
   r.way = 0.5 * p.spacing;
-  // What a contact can stop within half a spacing.
-  r.signal_speed = p.contact_stiffness > 0.0 ? 0.5 * p.spacing * std::sqrt(p.contact_stiffness / heaviest) : 1e300;
+  r.signal_speed = largest_speed > 0.0 ? out_of_scale * largest_speed : 1e300;
   r.idle = 0.0;
-  r.stops_at_sides = r.solid = true;
+  r.solid = true;  // that outlines stop at walls is what RigidContact looks at
   r.one = "particle of a rigid body";
   r.if_not_finite = key;
   r.if_passed = "raise " + key + " or time.largest-speed";
   r.if_dense = "is impossible";
   r.if_fast = [](double, double bound) {
-    return "what a contact of its body can stop (" + brief(bound) + " m/s): raise time.largest-speed";
+    return "ten times the largest speed of the scene, from which the stiffness of contacts follows (the bound is " +
+           brief(bound) + " m/s): raise time.largest-speed";
   };
   r.if_far = [step_key](double) { return "lower " + step_key; };
   r.stiffness_key = key;
@@ -55,7 +56,7 @@ void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks
   // A body that comes with the largest speed v is stopped within the overlap d: K d^2 = M v^2.
   p.contact_stiffness =
       keys.stiffness.value_or(heaviest * std::pow(layout.largest_speed / (keys.largest_overlap * p.spacing), 2));
-  p.rules = rules_of(p, heaviest, scene.time.fixed_step ? "time.step" : "time.safety");
+  p.rules = rules_of(p, layout.largest_speed, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
 RigidHold::RigidHold(const Motion& motion)
