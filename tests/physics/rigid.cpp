@@ -216,6 +216,21 @@ TEST(RigidBodies, AWheelFollowsItsTorqueItsFrictionAndItsDrive) {
   EXPECT_NEAR(turned["a_y [m]"], 1.25 - 0.25 * std::cos(1.0), 1e-6);
 }
 
+/// Bodies of one phase, a fill each, touch by the entry of the phase with itself.
+TEST(RigidBodies, OfOnePhaseHandOnTheirMomentum) {
+  std::string text =
+      "spacing = 0.02\n[domain]\nsize = [4, 1]\n[phases.a]\nkind = \"rigid\"\ndensity = 1000\nlargest-overlap = 0.1\n"
+      "[interactions]\na-a = { restitution = 1 }\n";
+  for (const char* x : {"0.5", "1.0", "1.5"})
+    text += "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [" + std::string(x) + ", 0.5], radius = 0.2 } }\n" +
+            (std::string(x) == "0.5" ? "velocity = [1, 0]\n" : "");
+  Course course(text + "[time]\nend = 1\n");
+  course.to(0.4);
+  EXPECT_NEAR(course["a_1_velocity_x"], 0.0, 1e-3);
+  EXPECT_NEAR(course["a_2_velocity_x"], 0.0, 1e-3);
+  EXPECT_NEAR(course["a_3_velocity_x"], 1.0, 1e-3);
+}
+
 /// A body on a periodic axis comes out on the other side and strikes what stands there.
 TEST(RigidBodies, GoRoundAPeriodicDomain) {
   std::string text = meeting(disc, "disc = { centre = [0.5, 1], radius = 0.15 }", 1.0);

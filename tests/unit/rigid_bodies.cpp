@@ -124,7 +124,8 @@ TEST(ContactSurfaces, APolygonKnowsItsDistanceAndItsNormal) {
   // Not convex, given clockwise, with sharp and blunt corners.
   const PolygonShape star{{{0, 0}, {0.1, 1}, {0.5, 0.3}, {1, 1}, {0.95, 0}, {0.5, 0.1}}, {1.0, 0.0, {}}};
   const auto edges = facets_of(star);
-  const PolygonOutline outline(edges, 0.2, 0.05);
+  PolygonOutline outline(edges);
+  outline.prepare(0.2, 0.01);
   EXPECT_EQ(outline.corners().size(), 6u);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(-0.5, 1.5);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "scene/outline.hpp"
@@ -20,11 +21,10 @@ Vec3 unit(const Vec3& v, const Vec3& otherwise) {
 
 }  // namespace
 
-PolygonOutline::PolygonOutline(const std::vector<Facet>& segments, double reach, double spacing) {
+PolygonOutline::PolygonOutline(const std::vector<Facet>& segments) {
   for (const Facet& segment : segments)
     if (segment[0] != segment[1]) edges_.push_back({segment[0], segment[1], {}, {}});
   turn_outwards();
-  make_cells(reach, spacing);
 }
 
 /// Normals of the edges; at a corner the mean of both decides on which side a place is (Baerentzen & Aanaes 2005).
@@ -67,8 +67,24 @@ bool PolygonOutline::holds(const Vec3& x) const {
   return inside;
 }
 
-/// A cell knows the edges that can be the nearest one of any place in it.
-void PolygonOutline::make_cells(double reach, double spacing) {
+double PolygonOutline::nearest_among(const Vec3& x, const std::vector<std::uint32_t>& edges) const {
+  double nearest = 1e300;
+  for (const std::uint32_t e : edges) nearest = std::min(nearest, foot_on(edges_[e], x).distance2);
+  return std::sqrt(nearest);
+}
+
+/// A cell knows the edges that can be the nearest one of any place in it; `edges` holds those at least.
+void PolygonOutline::make_cell(const Vec3& middle, double reach, const std::vector<std::uint32_t>& edges) {
+  const double half = width_ * std::sqrt(0.5), nearest = nearest_among(middle, edges);
+  begin_.push_back(static_cast<std::uint32_t>(near_.size()));
+  const bool far = nearest > reach + half;
+  deep_.push_back(far && holds(middle) ? 1 : 0);
+  if (far) return;
+  for (const std::uint32_t e : edges)
+    if (std::sqrt(foot_on(edges_[e], middle).distance2) <= nearest + 2.0 * half) near_.push_back(e);
+}
+
+void PolygonOutline::prepare(double reach, double spacing) {
   std::array<double, 2> size{};
   for (std::size_t d = 0; d < 2; ++d) {
     double low = 1e300, high = -1e300;
@@ -81,23 +97,23 @@ void PolygonOutline::make_cells(double reach, double spacing) {
   }
   width_ = std::max(0.5 * spacing, std::max(size[0], size[1]) / 512.0);
   for (std::size_t d = 0; d < 2; ++d) count_[d] = static_cast<std::size_t>(size[d] / width_) + 1;
-  const double half = width_ * std::sqrt(0.5);
-  std::vector<double> distance(edges_.size());
-  for (std::size_t j = 0; j < count_[1]; ++j)
-    for (std::size_t i = 0; i < count_[0]; ++i) {
-      const Vec3 middle{low_[0] + (static_cast<double>(i) + 0.5) * width_,
-                        low_[1] + (static_cast<double>(j) + 0.5) * width_, 0.0};
-      double nearest = 1e300;
-      for (std::size_t e = 0; e < edges_.size(); ++e) {
-        distance[e] = std::sqrt(foot_on(edges_[e], middle).distance2);
-        nearest = std::min(nearest, distance[e]);
-      }
-      begin_.push_back(static_cast<std::uint32_t>(near_.size()));
-      const bool far = nearest > reach + half;
-      deep_.push_back(far && holds(middle) ? 1 : 0);
-      for (std::size_t e = 0; e < edges_.size() && !far; ++e)
-        if (distance[e] <= nearest + 2.0 * half) near_.push_back(static_cast<std::uint32_t>(e));
+  // Of a row of cells first those of blocks of `side` cells, so that a cell looks at few edges.
+  constexpr std::size_t side = 16;
+  const auto middle = [&](double i, double j) { return Vec3{low_[0] + i * width_, low_[1] + j * width_, 0.0}; };
+  std::vector<std::uint32_t> all(edges_.size());
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<std::vector<std::uint32_t>> blocks(count_[0] / side + 1);
+  for (std::size_t j = 0; j < count_[1]; ++j) {
+    for (std::size_t b = 0; b < blocks.size() && j % side == 0; ++b) {
+      const Vec3 centre = middle((static_cast<double>(b) + 0.5) * side, static_cast<double>(j) + 0.5 * side);
+      const double nearest = nearest_among(centre, all), across = width_ * side * std::sqrt(2.0);
+      blocks[b].clear();
+      for (const std::uint32_t e : all)
+        if (std::sqrt(foot_on(edges_[e], centre).distance2) <= nearest + across) blocks[b].push_back(e);
     }
+    for (std::size_t i = 0; i < count_[0]; ++i)
+      make_cell(middle(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5), reach, blocks[i / side]);
+  }
   begin_.push_back(static_cast<std::uint32_t>(near_.size()));
 }
 
@@ -172,6 +188,10 @@ ContactSurface ContactSurface::polygon(PolygonOutline outline) {
   return s;
 }
 
+void ContactSurface::prepare(double reach, double spacing) {
+  for (PolygonOutline& outline : outline_) outline.prepare(reach, spacing);
+}
+
 namespace {
 
 Gap gap_of_box(const Vec3& low, const Vec3& high, const Vec3& x) {
@@ -209,13 +229,13 @@ std::optional<Gap> ContactSurface::gap(const Vec3& x) const {
   return std::nullopt;
 }
 
-std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing, double reach) {
+std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing) {
   const bool flat = scene.dimensions == 2;
   const auto rectangle = [&](const Vec3& low, const Vec3& high) {
     if (!flat) return ContactSurface::box(low, high);
     const PolygonShape corners{{{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}},
                                {1.0, 0.0, {}}};
-    return ContactSurface::polygon(PolygonOutline(facets_of(corners), reach, spacing));
+    return ContactSurface::polygon(PolygonOutline(facets_of(corners)));
   };
   if (const auto* box = std::get_if<BoxShape>(&shape)) return {rectangle(box->min, box->max)};
   if (const auto* cube = std::get_if<CubeShape>(&shape)) {
@@ -230,8 +250,7 @@ std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, 
     if (ring->inner > 0.0) return {ContactSurface::ring(ring->centre, ring->inner, ring->outer)};
     return {ContactSurface::round(ring->centre, ring->outer)};
   }
-  if (flat && facet_dimensions(shape) == 2)
-    return {ContactSurface::polygon(PolygonOutline(facets_of(shape), reach, spacing))};
+  if (flat && facet_dimensions(shape) == 2) return {ContactSurface::polygon(PolygonOutline(facets_of(shape)))};
   return {};
 }
 

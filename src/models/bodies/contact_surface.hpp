@@ -27,9 +27,11 @@ struct TouchPoint {
 /// Closed lines in x, y, by a grid of cells that know their nearest edges.
 class PolygonOutline {
  public:
-  /// Segments in any order, either way round. `reach` (m): how far outside distances are wanted. `spacing` (m): that of
-  /// the particles.
-  PolygonOutline(const std::vector<Facet>& segments, double reach, double spacing);
+  /// Segments in any order, either way round.
+  explicit PolygonOutline(const std::vector<Facet>& segments);
+  /// Makes the cells; before gap(). `reach` (m): how far outside distances are wanted. `spacing` (m): that of the
+  /// particles.
+  void prepare(double reach, double spacing);
   /// Nothing farther outside than the reach. Farther inside than it: -infinity.
   std::optional<Gap> gap(const Vec3& x) const;
   std::vector<Vec3> corners() const;
@@ -47,7 +49,8 @@ class PolygonOutline {
   static Foot foot_on(const Edge& edge, const Vec3& x);
   bool holds(const Vec3& x) const;
   void turn_outwards();
-  void make_cells(double reach, double spacing);
+  void make_cell(const Vec3& middle, double reach, const std::vector<std::uint32_t>& edges);
+  double nearest_among(const Vec3& x, const std::vector<std::uint32_t>& edges) const;
 
   std::vector<Edge> edges_;
   std::array<double, 2> low_{};
@@ -67,6 +70,8 @@ class ContactSurface {
   static ContactSurface box(const Vec3& low, const Vec3& high);
   static ContactSurface polygon(PolygonOutline outline);
 
+  /// Before gap(), as of a polygon.
+  void prepare(double reach, double spacing);
   Form form() const { return form_; }
   /// Nothing: too far away to matter.
   std::optional<Gap> gap(const Vec3& x) const;
@@ -81,8 +86,8 @@ class ContactSurface {
   std::vector<TouchPoint> probes_;
 };
 
-/// The parts of a fill's shape, in space at the start; `reach` (m) as of a polygon. Shapes that has_surface() says have
-/// none have no parts; sides neither.
-std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing, double reach);
+/// The parts of a fill's shape, in space at the start; not yet prepared. Shapes that has_surface() says have none have
+/// no parts; sides neither. `spacing` (m): of the particles.
+std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing);
 
 }  // namespace barchan

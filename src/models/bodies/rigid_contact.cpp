@@ -67,15 +67,15 @@ void RigidContact::attach(Workspace& w) {
   for (const std::size_t k : {entry_.a, entry_.b})
     for (const Fill& fill : scene_.fills)
       if (fill.phase == layout_.phases[k].name)
-        for (const ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[k].spacing, 0.0))
+        for (const ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[k].spacing))
           for (const TouchPoint& probe : surface.probes()) widest = std::max(widest, probe.radius);
   const double reach = widest + std::max(layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing);
-  for (const std::size_t k : {entry_.a, entry_.b}) {
-    if (k == entry_.b && entry_.a == entry_.b) continue;
-    std::vector<Side>& sides = k == entry_.a ? a_ : b_;
-    if (layout_.phases[k].moves) add_bodies(k, reach, sides);
-    else add_wall(k, reach, sides);
-  }
+  const auto add = [&](std::size_t phase, std::vector<Side>& sides) {
+    if (layout_.phases[phase].moves) add_bodies(phase, reach, sides);
+    else add_wall(phase, reach, sides);
+  };
+  add(entry_.a, a_);
+  if (entry_.a != entry_.b) add(entry_.b, b_);
   for (std::size_t i = 0; i < a_.size(); ++i)
     for (std::size_t j = entry_.a == entry_.b ? i + 1 : 0; j < (entry_.a == entry_.b ? a_ : b_).size(); ++j)
       refuse_wide(a_[i], (entry_.a == entry_.b ? a_ : b_)[j]);
@@ -85,7 +85,8 @@ void RigidContact::add_bodies(std::size_t phase, double reach, std::vector<Side>
   for (std::size_t k = 0; k < w_->state.bodies.size(); ++k) {
     const RigidBody& body = w_->state.bodies[k];
     if (body.phase != phase) continue;
-    auto surfaces = surfaces_of(scene_.fills[body.fill].shape, scene_, layout_.phases[phase].spacing, reach);
+    auto surfaces = surfaces_of(scene_.fills[body.fill].shape, scene_, layout_.phases[phase].spacing);
+    for (ContactSurface& surface : surfaces) surface.prepare(reach, layout_.phases[phase].spacing);
     const double farthest = reach_of(surfaces, body.first_place);
     sides.push_back({k, false, std::move(surfaces), farthest, OwnAxes(body), OwnAxes(body)});
   }
@@ -108,8 +109,10 @@ void RigidContact::add_wall(std::size_t phase, double reach, std::vector<Side>& 
   };
   for (const Fill& fill : scene_.fills) {
     if (fill.phase != layout_.phases[phase].name) continue;
-    for (const ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[phase].spacing, reach))
+    for (ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[phase].spacing)) {
+      surface.prepare(reach, layout_.phases[phase].spacing);
       add(surface);
+    }
     const auto* planes = std::get_if<SidesShape>(&fill.shape);
     for (std::size_t axis = 0; planes && axis < static_cast<std::size_t>(layout_.dimensions); ++axis)
       for (const bool high : {false, true}) {
@@ -135,7 +138,7 @@ double RigidContact::largest_inverse_mass(std::size_t phase) const {
   double largest = 0.0;
   for (const RigidBody& body : layout_.phases[phase].rigid_bodies) {
     if (body.hold == RigidBody::Hold::driven) continue;
-    const auto surfaces = surfaces_of(scene_.fills[body.fill].shape, scene_, layout_.phases[phase].spacing, 0.0);
+    const auto surfaces = surfaces_of(scene_.fills[body.fill].shape, scene_, layout_.phases[phase].spacing);
     const bool round = std::all_of(surfaces.begin(), surfaces.end(), is_round);
     double inverse = body.hold == RigidBody::Hold::free ? 1.0 / body.mass : 0.0, least = body.inertia[2];
     if (body.dimensions == 3) least = std::min({body.inertia[0], body.inertia[1], body.inertia[2]});
