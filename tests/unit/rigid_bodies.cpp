@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/errors.hpp"
 #include "laws/surface_contact.hpp"
 #include "models/bodies/contact_surface.hpp"
 #include "plan/plan.hpp"
