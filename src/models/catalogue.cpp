@@ -14,6 +14,7 @@
 #include "models/coupling/drag_entry.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
+#include "models/force_meter.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_phase.hpp"
 #include "models/grains/saltation_layer.hpp"
@@ -100,6 +101,8 @@ void classify(const Scene& scene, PlanEntry& e) {
 Models make_models(const Scene& scene, const Layout& layout) {
   Models models;
   models.push_back(std::make_unique<CommonWork>(layout));
+  for (std::size_t k = 0; k < scene.force_meters.size(); ++k)  // they measure before driven sets go their way
+    models.push_back(std::make_unique<ForceOn>(scene, layout, k));
   for (std::size_t k = 0; k < scene.motions.size(); ++k)                        // they lead before their bodies move
     if (find_phase(scene, scene.motions[k].phase)->kind() != PhaseKind::rigid)  // these hold themselves
       models.push_back(std::make_unique<DrivenSet>(scene, layout, k));

@@ -1,41 +1,75 @@
 #include "models/forces.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace barchan {
+
+namespace {
+
+Vec3 place_of(const PhaseParticles& p, std::size_t k) {
+  Vec3 x{};
+  for (int d = 0; d < p.dimensions(); ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
+  return x;
+}
+
+bool holds(const std::optional<BoxShape>& box, const Vec3& x, int dimensions) {
+  for (std::size_t d = 0; box && d < static_cast<std::size_t>(dimensions); ++d)
+    if (!(x[d] >= box->min[d] && x[d] < box->max[d])) return false;
+  return true;
+}
+
+}  // namespace
 
 std::array<Formula, 3> compile(const VectorExpression& e) { return {Formula(e[0]), Formula(e[1]), Formula(e[2])}; }
 
 Forces::Forces(const Scene& scene, const std::string& phase) {
-  for (const auto& f : scene.forcings)
-    if (f.phase == phase && !f.hold_bulk_speed) forces_.push_back(compile(f.acceleration));
+  for (const auto& f : scene.forcings) {
+    if (f.phase != phase || f.hold_bulk_speed) continue;
+    if (f.relaxes()) zones_.push_back({compile(f.velocity), Formula(f.rate), f.box});
+    else forces_.push_back({compile(f.acceleration), f.box});
+  }
 }
 
 Vec3 Forces::uniform() const {
   Vec3 sum{0, 0, 0};
-  for (const auto& force : forces_)
+  for (const Force& force : forces_)
     for (std::size_t d = 0; d < 3; ++d)
-      if (force[d].is_constant()) sum[d] += force[d].constant();
+      if (force.acceleration[d].is_constant() && !force.box) sum[d] += force.acceleration[d].constant();
   return sum;
 }
 
 bool Forces::varies() const {
-  return std::any_of(forces_.begin(), forces_.end(), [](const auto& force) {
-    return std::any_of(force.begin(), force.end(), [](const Formula& f) { return !f.is_constant(); });
+  return !zones_.empty() || std::any_of(forces_.begin(), forces_.end(), [](const Force& force) {
+    return force.box || std::any_of(force.acceleration.begin(), force.acceleration.end(),
+                                    [](const Formula& f) { return !f.is_constant(); });
   });
 }
 
 void Forces::add(PhaseParticles& p, double time, bool numbers) const {
-  for (const auto& force : forces_)
+  for (const Force& force : forces_)
     for (int d = 0; d < p.dimensions(); ++d) {
-      const Formula& formula = force[static_cast<std::size_t>(d)];
-      if (formula.is_constant() && !numbers) continue;
+      const Formula& formula = force.acceleration[static_cast<std::size_t>(d)];
+      if (formula.is_constant() && !numbers && !force.box) continue;
       double* a = p.column(Field::acceleration, d);
       for (std::size_t k = 0; k < p.size(); ++k) {
-        Vec3 x{};
-        for (int e = 0; e < p.dimensions(); ++e) x[static_cast<std::size_t>(e)] = p.column(Field::position, e)[k];
-        a[k] += formula.is_constant() ? formula.constant() : formula(x, time);
+        const Vec3 x = place_of(p, k);
+        if (holds(force.box, x, p.dimensions())) a[k] += formula.is_constant() ? formula.constant() : formula(x, time);
       }
+    }
+}
+
+void Forces::relax(PhaseParticles& p, double time, double dt) const {
+  const PhaseParticles& seen = p;
+  for (const Zone& zone : zones_)
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const Vec3 x = place_of(seen, k);
+      if (!holds(zone.box, x, p.dimensions())) continue;
+      const double rate = std::clamp(zone.rate(x, time), 0.0, dt > 0.0 ? 0.5 / dt : 0.0);
+      if (rate <= 0.0) continue;  // what is not finite goes on to the watch
+      for (int d = 0; d < p.dimensions(); ++d)
+        p.column(Field::acceleration, d)[k] +=
+            rate * (zone.velocity[static_cast<std::size_t>(d)](x, time) - seen.column(Field::velocity, d)[k]);
     }
 }
 

@@ -21,11 +21,23 @@ class Forces {
   /// Adds to the accelerations the components that are formulas of place and time; `numbers`: those that are numbers
   /// too.
   void add(PhaseParticles& p, double time, bool numbers) const;
+  /// Adds what brings the phase to the velocities of its zones. dt (s): a step takes half of the difference at most.
+  void relax(PhaseParticles& p, double time, double dt) const;
   bool any() const { return !forces_.empty(); }
   bool varies() const;
 
  private:
-  std::vector<std::array<Formula, 3>> forces_;  // m/s2
+  struct Force {
+    std::array<Formula, 3> acceleration;  // m/s2
+    std::optional<BoxShape> box;          // empty: everywhere
+  };
+  struct Zone {
+    std::array<Formula, 3> velocity;  // m/s
+    Formula rate;                     // 1/s
+    std::optional<BoxShape> box;
+  };
+  std::vector<Force> forces_;
+  std::vector<Zone> zones_;
 };
 
 /// A vector of the scene, compiled.

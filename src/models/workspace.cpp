@@ -30,7 +30,7 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "reaction on solids",
                                                          "drag",
                                                          "rigid bodies",
-                                                         "driven sets",
+                                                         "driven and measured sets",
                                                          "bulk speed",
                                                          "kick",
                                                          "watch"};

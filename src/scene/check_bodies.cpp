@@ -38,11 +38,12 @@ void check_contact(const Interaction& pair, const Phase& a, const Phase& b, cons
              "restitution or a total Lagrangian body");
 }
 
-void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report) {
+void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report,
+               bool walls = false) {
   if (report.touched(dotted) || !report.has(dotted + ".phase")) return;
   const Phase* phase = find_phase(scene, set.phase);
   if (!phase) return report(dotted + ".phase", unknown_phase(set.phase, scene));
-  if (!report.touched("phases." + phase->name + ".kind") && phase->kind() != PhaseKind::elastic &&
+  if (!report.touched("phases." + phase->name + ".kind") && !walls && phase->kind() != PhaseKind::elastic &&
       phase->kind() != PhaseKind::rigid)
     return report(dotted + ".phase", "\"" + phase->name + "\" is no body; expected a phase of kind elastic or rigid");
   for (std::size_t d = 0; set.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
@@ -50,9 +51,44 @@ void check_set(const BodySet& set, const std::string& dotted, const Scene& scene
       return report(dotted + ".box", "its lower corner lies above its upper one; expected min <= max");
 }
 
+/// Walls count too, where only fluids act on them, by laws whose reaction is known.
+void check_force(const ForceMeter& meter, const std::string& dotted, const Scene& scene, const Report& report) {
+  const Phase* phase = find_phase(scene, meter.phase);
+  if (!phase || report.touched(dotted) || report.touched("phases")) return;
+  const auto refuse = [&](const std::string& what) { report(dotted + ".phase", what); };
+  if (phase->kind() != PhaseKind::wall && phase->kind() != PhaseKind::elastic)
+    return refuse("\"" + phase->name + "\" is neither wall nor body; expected a phase of kind wall or elastic");
+  if (phase->kind() != PhaseKind::wall) return;
+  if (phase->wall().law == WallLaw::repulsive)
+    return refuse("the force on a repulsive wall is not measured; expected law = \"adami\"");
+  for (const Phase& other : scene.phases) {
+    if (!entry_between(scene, *phase, other)) continue;
+    if (other.kind() != PhaseKind::fluid)
+      return refuse("the force of \"" + other.name + "\" on a wall is not measured; expected a wall with fluids only");
+    if (has_eddies(scene, other))
+      return refuse("the force of the turbulent fluid \"" + other.name +
+                    "\" is not measured; expected a laminar one (or [[wall-shear]])");
+  }
+}
+
 bool good_name(const std::string& name) {
   return !name.empty() &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+/// Names that become parts of columns' names: of letters, and each once.
+template <class Named>
+void check_names(const std::vector<Named>& all, const std::string& section, const Report& report) {
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::string dotted = section + std::to_string(k), &name = all[k].name;
+    if (!report.has(dotted + ".name") || report.touched(dotted + ".name")) continue;
+    if (!good_name(name))
+      report(dotted + ".name",
+             "\"" + name + "\" becomes a part of a column's name; expected letters, digits and underscores");
+    for (std::size_t other = 0; other < k; ++other)
+      if (all[other].name == name)
+        report(dotted + ".name", "\"" + name + "\" is given twice; expected a name of its own");
+  }
 }
 
 }  // namespace
@@ -68,16 +104,14 @@ void check_bodies(const Scene& scene, const Report& report) {
   }
   for (std::size_t k = 0; k < scene.motions.size(); ++k)
     check_set(scene.motions[k], "motion." + std::to_string(k), scene, report);
-  for (std::size_t k = 0; k < scene.markers.size(); ++k) {
-    const std::string dotted = "marker." + std::to_string(k), &name = scene.markers[k].name;
-    check_set(scene.markers[k], dotted, scene, report);
-    if (!report.has(dotted + ".name") || report.touched(dotted + ".name")) continue;
-    if (!good_name(name))
-      report(dotted + ".name",
-             "\"" + name + "\" becomes a part of a column's name; expected letters, digits and underscores");
-    for (std::size_t other = 0; other < k; ++other)
-      if (scene.markers[other].name == name)
-        report(dotted + ".name", "\"" + name + "\" is given twice; expected a name of its own");
+  check_names(scene.markers, "marker.", report);
+  for (std::size_t k = 0; k < scene.markers.size(); ++k)
+    check_set(scene.markers[k], "marker." + std::to_string(k), scene, report);
+  check_names(scene.force_meters, "force.", report);
+  for (std::size_t k = 0; k < scene.force_meters.size(); ++k) {
+    const std::string dotted = "force." + std::to_string(k);
+    check_set(scene.force_meters[k], dotted, scene, report, true);
+    check_force(scene.force_meters[k], dotted, scene, report);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "scene/checks.hpp"
 #include "scene/fitted.hpp"
 #include "scene/outline.hpp"
+#include "scene/region.hpp"
 
 namespace barchan {
 namespace {
@@ -167,7 +168,7 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
     report(dotted + ".angular-velocity", "only a rigid body turns as a whole; expected a phase of kind rigid");
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
-    report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
+    report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\" or \"relaxed\"");
   const bool box_or_bed = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
   if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !box_or_bed))
     report(dotted + ".packing",
@@ -229,6 +230,12 @@ void check_fills(const Scene& scene, const Report& report) {
         !report.touched("domain.gravity"))
       report(dotted + ".packing", "nothing makes the grains fall; expected domain.gravity with a negative y component");
     if (phase) check_phase_of(fill, *phase, dotted, report);
+    if (fill.packing == Packing::relaxed && !report.touched(dotted)) {
+      const std::string misfit = misfit_of_region(scene, k);
+      if (!misfit.empty()) report(dotted + ".packing", misfit);
+      else if (phase && phase->if_grains())
+        report(dotted + ".packing", "grains are loose; expected a phase of kind fluid, elastic or wall");
+    }
     if (phase && fill.packing == Packing::fitted) check_fitted(scene, k, *phase, dotted, report);
   }
 }

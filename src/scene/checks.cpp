@@ -169,8 +169,19 @@ void check_domain(const Scene& scene, const Report& report) {
 void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   const std::string dotted = "forcing." + std::to_string(number);
   const Forcing& forcing = scene.forcings[number];
-  if (report.has(dotted + ".hold") == report.has(dotted + ".acceleration"))
-    report(dotted, "expected either acceleration or hold");
+  int ways = 0;
+  for (const char* key : {".hold", ".acceleration", ".rate"}) ways += report.has(dotted + key);
+  if (ways != 1) report(dotted, "expected one of acceleration, hold and rate");
+  if (report.has(dotted + ".velocity") && !report.has(dotted + ".rate"))
+    report(dotted + ".velocity", "nothing brings the fluid to it; expected rate beside it");
+  if (report.has(dotted + ".box") && report.has(dotted + ".hold"))
+    report(dotted + ".box", "the mean velocity is that of the whole fluid; expected no such key beside hold");
+  if (const Phase* phase = find_phase(scene, forcing.phase);
+      phase && report.has(dotted + ".rate") && phase->kind() != PhaseKind::fluid)
+    report(dotted + ".rate", "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
+  for (std::size_t d = 0; forcing.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
+    if (!(forcing.box->min[d] < forcing.box->max[d]) && !report.touched(dotted))
+      report(dotted + ".box", "the box is empty; expected min < max");
   if (!forcing.hold_bulk_speed || report.touched(dotted + ".hold")) return;
   const Phase* phase = find_phase(scene, forcing.phase);
   if (phase && phase->kind() != PhaseKind::fluid)

@@ -14,6 +14,7 @@
 #include "scene/log_wind.hpp"
 #include "scene/places.hpp"
 #include "scene/random.hpp"
+#include "scene/region.hpp"
 #include "scene/shapes.hpp"
 
 namespace barchan {
@@ -190,6 +191,18 @@ void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed
   }
 }
 
+/// The same of a wall with relaxed places: how deep they lie in its shape.
+void append_border(ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene, double spacing) {
+  const Solid region = region_of_fill(scene, k, 8.0 * spacing);
+  block.normal.resize(first, Vec3{});
+  block.depth.resize(first, 0.0);
+  for (std::size_t i = first; i < block.position.size(); ++i) {
+    const Vec3& x = block.position[i];
+    block.normal.push_back(way_out(region, x, 1e-3 * spacing, scene.dimensions));
+    block.depth.push_back(norm(block.normal[i]) > 0.0 ? std::max(0.0, region.depth(x)) : 0.0);
+  }
+}
+
 }  // namespace
 
 std::vector<double> fitted_heights(const Scene& scene, const std::array<int, 2>& counts) {
@@ -247,11 +260,13 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
       append_surface(block, first, *bed, scene, phase->spacing);
+    else if (phase->if_wall() && fill.packing == Packing::relaxed)
+      append_border(block, first, k, scene, phase->spacing);
     else if (!block.depth.empty()) {
       block.normal.resize(block.position.size(), Vec3{});
       block.depth.resize(block.position.size(), 0.0);
-      block.bend.resize(block.position.size(), {});
     }
+    if (!block.bend.empty()) block.bend.resize(block.position.size(), {});
   }
   return blocks;
 }

@@ -29,9 +29,10 @@ constexpr Key table[] = {
      "The matrix of kernel radii, Halik et al. 2015 eq. (15)-(17): one entry a pair of phases, as in air-sand = 2.5. "
      "A pair without an entry does not interact."},
     {"", "fill", at<&Scene::fills>(required), "", "What is where at the beginning; fills are carried out in order."},
-    {"", "forcing", at<&Scene::forcings>("none"), "", "Body forces on single phases."},
+    {"", "forcing", at<&Scene::forcings>("none"), "", "Body forces on single phases, and zones in which a fluid is brought to a velocity."},
     {"", "motion", at<&Scene::motions>("none"), "", "Sets of particles of bodies that are clamped or driven; rigid bodies that are, or that turn about a place."},
     {"", "marker", at<&Scene::markers>("none"), "", "Sets of particles of bodies whose mean place is written to history.csv."},
+    {"", "force", at<&Scene::force_meters>("none"), "", "Walls and bodies, or parts of them, whose force and torque are written to history.csv."},
     {"", "probe", measured<&Measuring::probes>("none"), "", "Places at which a fluid is followed in time."},
     {"", "profile", measured<&Measuring::profiles>("none"), "", "Averages over time along a line."},
     {"", "grid", measured<&Measuring::grids>("none"), "", "Averages over time on a regular grid."},
@@ -153,7 +154,9 @@ constexpr Key table[] = {
     {"fill", "shape", fill_shape(), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
     {"fill", "packing", at<&Fill::packing>(Packing::square), "",
      "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
-     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell and came to rest before the run. Fluids and elastic bodies take rows or fitted."},
+     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell and came to rest before the run. relaxed: the outermost layer follows the border of a box, disc, sphere, "
+     "ring, polygon or surface, half a spacing inside, and the volumes are even; \"the-rest\" goes round such shapes. Fluids and elastic bodies take rows, "
+     "fitted or relaxed."},
     {"fill", "leave-out", at<&Fill::leave_out>(LeaveOut::nothing), "",
      "What the shape leaves free: places nearer than 0.75 spacings to particles of earlier fills, as \"the-rest\" does, so that a fluid goes round a body."},
     {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
@@ -212,10 +215,17 @@ constexpr Key table[] = {
      "Count the height from the ground (bed and dune) rather than from the bottom of the domain."},
 
     {"forcing", "phase", at<&Forcing::phase>(required), "", "Phase that feels the force."},
-    {"forcing", "acceleration", at<&Forcing::acceleration>("none"), "m/s2", "Acceleration; this or hold.", {}, "x y z t"},
+    {"forcing", "acceleration", at<&Forcing::acceleration>("none"), "m/s2", "Acceleration; this, hold or rate.", {}, "x y z t"},
     {"forcing", "hold", hold("none"), "",
      "bulk-speed: the uniform acceleration that keeps the fluid's initial mean velocity along the periodic axes, as in a channel of "
      "constant mass flux. history.csv has it."},
+
+    {"forcing", "velocity", at<&Forcing::velocity>("zero"), "m/s", "Only with rate: the velocity that a fluid is brought to.", {}, "x y z t"},
+    {"forcing", "rate", at<&Forcing::rate>("none"), "1/s",
+     "A fluid of velocity v gets the acceleration rate (velocity - v); at most half of the difference a step.", not_negative, "x y z t"},
+    {"forcing", "box", at<&Forcing::box>("everywhere"), "", "Where the phase feels the force; not with hold."},
+    {"forcing.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
+    {"forcing.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
 
     {"motion", "phase", at<&Motion::phase, Motion>(required), "", "Elastic or rigid phase."},
     {"motion", "box", at<&Motion::box, Motion>("all of it"), "", "Particles that stand in this box at the start; rigid bodies whose centre stands there."},
@@ -237,6 +247,16 @@ constexpr Key table[] = {
     {"marker", "box", at<&Marker::box, Marker>("all of it"), "", "Particles that stand in this box at the start."},
     {"marker.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
     {"marker.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
+
+    {"force", "name", at<&ForceMeter::name>(required), "",
+     "Letters, digits and underscores: of the columns NAME_force_x, NAME_force_y (and NAME_force_z) and NAME_torque_z (in 3D also _x, _y) in "
+     "history.csv."},
+    {"force", "phase", at<&ForceMeter::phase, ForceMeter>(required), "",
+     "Wall: what its fluids do to it. Elastic phase: all forces on it but gravity, of a part also those of the rest of the body."},
+    {"force", "box", at<&ForceMeter::box, ForceMeter>("all of it"), "", "Particles that stand in this box at the start."},
+    {"force", "about", at<&ForceMeter::about>("zero"), "m", "Point of the torque."},
+    {"force.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
+    {"force.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
 
     {"probe", "name", at<&Probe::name, Probe>(required), "", "Letters, digits and underscores: it is written to probe_NAME.csv."},
     {"probe", "phase", at<&Probe::phase, Probe>(required), "", "Fluid that is followed."},

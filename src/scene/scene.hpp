@@ -279,6 +279,10 @@ struct Forcing {
   std::string phase;              // body force on this phase
   VectorExpression acceleration;  // m/s2, formulas in x, y, z, t
   bool hold_bulk_speed{};         // instead: what keeps the initial mean velocity along periodic axes
+  VectorExpression velocity;      // m/s, instead: a fluid is brought to it,
+  Expression rate;                // 1/s: dv/dt = rate (velocity - v); both formulas in x, y, z, t
+  std::optional<BoxShape> box;    // where the phase feels it; empty: everywhere
+  bool relaxes() const { return rate.is_formula() || rate.value > 0.0; }
 };
 
 /// A set of particles of an elastic body, by their places at the start; or the rigid bodies whose centres stand there.
@@ -294,6 +298,11 @@ struct Motion : BodySet {
   std::optional<AxialExpression> angular_velocity;  // 1/s, formulas in t; beside `about`: empty: they turn freely
   std::optional<AxialExpression> torque;            // N m, formulas in t, on bodies that turn freely about a place
   double friction{};                                // N m, the largest torque of the dry friction there
+};
+/// A wall, a body or a part of one, whose force and torque are written to history.csv.
+struct ForceMeter : BodySet {
+  std::string name;
+  Vec3 about{};  // m, of the torque
 };
 /// A set whose mean place is written to history.csv.
 struct Marker : BodySet {
@@ -374,6 +383,7 @@ struct Scene {
   std::vector<Forcing> forcings;
   std::vector<Motion> motions;
   std::vector<Marker> markers;
+  std::vector<ForceMeter> force_meters;
   Measuring measuring;
   TimeControl time;
   OutputControl output;

@@ -14,6 +14,8 @@
 #include "scene/located.hpp"
 #include "scene/outline.hpp"
 #include "scene/random.hpp"
+#include "scene/region.hpp"
+#include "scene/relaxed.hpp"
 
 namespace barchan {
 namespace {
@@ -151,6 +153,27 @@ std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const 
   return places;
 }
 
+/// Refuses what no memory holds. cells: places that a lattice of the spacing has in the fill's bounds.
+void check_room(const Scene& scene, std::size_t k, double cells) {
+  const Fill& fill = scene.fills[k];
+  if (!(cells <= 1e9))
+    throw SceneError(located(scene, "fill." + std::to_string(k)) + ": more than 10^9 particles of phase \"" +
+                     fill.phase + "\"; expected a larger spacing or a smaller shape");
+  if (const AvailableMemory there = available_memory(); cells * sizeof(Vec3) > there.bytes)
+    throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
+                     std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
+                     memory_text(cells * sizeof(Vec3)) + " at least, " + there.of + " leaves " +
+                     memory_text(there.bytes) + "; expected a larger spacing or a smaller shape");
+}
+
+/// Cells between two corners.
+double cells_between(const Scene& scene, const Vec3& lower, const Vec3& upper, double dx) {
+  double cells = 1.0;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+    cells *= std::max(0.0, upper[axis] - lower[axis]) / dx;
+  return cells;
+}
+
 /// Random sequential addition.
 std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, double dx,
                                 const Occupied& occupied) {
@@ -216,6 +239,10 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
       std::erase_if(places,
                     [&](const Vec3& x) { return occupied.inside.owner_near(x, dx, rest_distance, below) >= 0; });
     }
+  } else if (fill.packing == Packing::relaxed) {
+    const Solid region = region_of_fill(scene, k, 0.0);
+    check_room(scene, k, cells_between(scene, region.lower, region.upper, dx));
+    places = relaxed_places(scene, k);
   } else if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
     places = points->at;
   } else if (const auto* cube = std::get_if<CubeShape>(&fill.shape)) {
@@ -227,17 +254,8 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     RegionOf region_of(scene, fill);
     std::visit(region_of, fill.shape);
     const Region region = region_of.take();
-    double cells = 1.0;
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
-      cells *= std::max(0.0, region.upper[axis] - region.lower[axis]) / dx;
-    if (!(cells <= 1e9))
-      throw SceneError(located(scene, "fill." + std::to_string(k)) + ": more than 10^9 particles of phase \"" +
-                       fill.phase + "\"; expected a larger spacing or a smaller shape");
-    if (const AvailableMemory there = available_memory(); cells * sizeof(Vec3) > there.bytes)
-      throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
-                       std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
-                       memory_text(cells * sizeof(Vec3)) + " at least, " + there.of + " leaves " +
-                       memory_text(there.bytes) + "; expected a larger spacing or a smaller shape");
+    const double cells = cells_between(scene, region.lower, region.upper, dx);
+    check_room(scene, k, cells);
     if (fill.packing == Packing::random) {
       places = random_places(scene, region, cells, fill.seed, dx, occupied);
     } else {

@@ -79,12 +79,12 @@ enum class Slip { no_slip, free_slip };
 template <>
 inline constexpr std::array words_of<Slip>{word("no-slip", Slip::no_slip), word("free-slip", Slip::free_slip)};
 
-/// Rows, staggered rows, without overlap, along the ground, fallen and at rest.
-enum class Packing { square, hexagonal, random, fitted, settled };
+/// Rows, staggered rows, without overlap, along the ground, fallen and at rest, along the border.
+enum class Packing { square, hexagonal, random, fitted, settled, relaxed };
 template <>
-inline constexpr std::array words_of<Packing>{word("rows", Packing::square), word("staggered", Packing::hexagonal),
-                                              word("random", Packing::random), word("fitted", Packing::fitted),
-                                              word("settled", Packing::settled)};
+inline constexpr std::array words_of<Packing>{word("rows", Packing::square),     word("staggered", Packing::hexagonal),
+                                              word("random", Packing::random),   word("fitted", Packing::fitted),
+                                              word("settled", Packing::settled), word("relaxed", Packing::relaxed)};
 
 /// What a shape leaves free besides its outside.
 enum class LeaveOut { nothing, earlier_fills };

@@ -585,6 +585,23 @@ TEST(SceneReader, ReadsTheKeysOfRigidBodies) {
   EXPECT_FALSE(s.motions.at(1).about.has_value());
 }
 
+TEST(SceneReader, TakesZonesAndForces) {
+  const Scene s = parse_scene(with(square_text, "[time]",
+                                   "[[forcing]]\nphase = \"air\"\nrate = \"x\"\nvelocity = [1, \"t\"]\n"
+                                   "box = { min = [0.5, 0], max = [1, 1] }\n[time]"),
+                              "s.toml");
+  EXPECT_TRUE(s.forcings.at(0).relaxes());
+  EXPECT_EQ(s.forcings.at(0).rate.formula, "x");
+  EXPECT_EQ(s.forcings.at(0).velocity[0].value, 1);
+  EXPECT_EQ(s.forcings.at(0).velocity[1].formula, "t");
+  EXPECT_EQ(s.forcings.at(0).box->min[0], 0.5);
+  const Scene b =
+      parse_scene(std::string(body_keys) + "[[force]]\nname = \"left\"\nphase = \"a\"\nabout = [1, 2]\n", "s.toml");
+  EXPECT_EQ(b.force_meters.at(0).name, "left");
+  EXPECT_EQ(b.force_meters.at(0).about, (Vec3{1, 2, 0}));
+  EXPECT_FALSE(b.force_meters.at(0).box.has_value());
+}
+
 /// Of every key of a phase: the kinds that have it have a member for it, and no two keys have the same member. That a
 /// document's value arrives there and counts is what tests/cli/key_consumers.cpp shows of every key.
 TEST(SceneReader, EveryKeyOfAPhaseHasAMemberOfItsOwn) {

@@ -95,6 +95,7 @@ void Air::rate() {
   else rates(w_->motion[number_]);
   if (plan_.enclosed) keep_mean_density(*particles_, mean_);
   forces_.add(*particles_, w_->state.time, false);
+  forces_.relax(*particles_, w_->state.time, w_->state.dt);
 }
 
 void Air::find_surface() {

@@ -18,6 +18,9 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
                : keys.roughness               ? Friction::rough
                                               : Friction::smooth;
   p.fields = {position, velocity, wall_normal, wall_depth};
+  if (std::any_of(scene.force_meters.begin(), scene.force_meters.end(),
+                  [&](const ForceMeter& meter) { return meter.phase == scene.phases[number].name; }))
+    p.fields.push_back(acceleration);
 }
 
 Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)

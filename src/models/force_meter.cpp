@@ -1,0 +1,102 @@
+#include "models/force_meter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/means.hpp"
+#include "models/air/air.hpp"
+
+namespace barchan {
+
+namespace {
+
+const char* const axes[] = {"x", "y", "z"};
+
+}  // namespace
+
+ForceOn::ForceOn(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      meter_(scene.force_meters[number]),
+      number_(number),
+      set_(layout, meter_),
+      wall_(scene.phases[set_.phase()].if_wall() != nullptr) {
+  phase_ = set_.phase();
+}
+
+void ForceOn::begin(State&, const std::vector<ParticleBlock>& blocks) { set_.find(blocks); }
+
+void ForceOn::attach(Workspace& w) {
+  w_ = &w;
+  set_.attach(w, "force." + std::to_string(number_));
+  for (const auto& e : layout_.entries) {
+    if (!wall_ || e.law != Law::boundary || e.other != phase_) continue;
+    w.need_motion(e.fluid);
+    fluids_.push_back({{&w.list(e.direction(phase_)), &w.motion[e.fluid], e.kernel, e.radius,
+                        pair_viscosity(scene_, layout_, phase_, e.fluid), false},
+                       e.corrected ? 1.0 / e.consistency.gradient_sum : 1.0});
+  }
+}
+
+void ForceOn::schedule(Schedule& s) {
+  using enum Field;
+  const FieldSet reads = wall_ ? FieldSet{position, velocity} : FieldSet{position, acceleration};
+  const FieldSet writes = wall_ ? FieldSet{acceleration} : FieldSet{};
+  s.add({wall_ ? stage::reaction : stage::motion, layout_.phases[phase_].name + ", force", reads, writes,
+         [this] { measure(); }});
+}
+
+void ForceOn::measure() {
+  force_ = torque_ = {};
+  if (!wall_) return add_sums(1.0, scene_.domain.gravity);
+  PhaseParticles& wall = w_->particles(phase_);
+  for (const Felt& felt : fluids_) {
+    for (int d = 0; d < layout_.dimensions; ++d) std::fill_n(wall.column(Field::acceleration, d), wall.size(), 0.0);
+    fluid_reaction(wall, w_->extended[phase_], felt.fluid, false);
+    add_sums(felt.share, {0, 0, 0});
+  }
+}
+
+/// Adds `share` of mass times (acceleration - less), and its moment.
+void ForceOn::add_sums(double share, const Vec3& less) {
+  const PhaseParticles& p = set_.particles();
+  const auto& places = set_.places();
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  std::array<const double*, 3> x{}, a{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    x[d] = p.column(Field::position, static_cast<int>(d));
+    a[d] = p.column(Field::acceleration, static_cast<int>(d));
+  }
+  const double mass = share * p.mass();
+  const auto push = [&](std::size_t d, std::size_t k) { return d < dimensions ? a[d][k] - less[d] : 0.0; };
+  const auto lever = [&](std::size_t d, std::size_t k) {
+    if (d >= dimensions) return 0.0;
+    double r = x[d][k] - meter_.about[d];
+    if (const double size = layout_.bounds.high[d] - layout_.bounds.low[d]; layout_.bounds.periodic[d])
+      r -= size * std::round(r / size);
+    return r;
+  };
+  for (std::size_t d = 0; d < 3; ++d) {
+    const std::size_t e = (d + 1) % 3, f = (d + 2) % 3;
+    force_[d] += mass * ordered_sum(places.size(), [&](std::size_t q) { return push(d, places[q]); });
+    torque_[d] += mass * ordered_sum(places.size(), [&](std::size_t q) {
+                    const std::size_t k = places[q];
+                    return lever(e, k) * push(f, k) - lever(f, k) * push(e, k);
+                  });
+  }
+}
+
+void ForceOn::history(HistoryRow& row) const {
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+    row.add(meter_.name + "_force_" + axes[d] + " [N]", force_[d]);
+  for (std::size_t d = layout_.dimensions == 2 ? 2 : 0; d < 3; ++d)
+    row.add(meter_.name + "_torque_" + axes[d] + " [N m]", torque_[d]);
+}
+
+void ForceOn::archive(Archive& a) {
+  a.number("force on " + meter_.name, force_);
+  a.number("torque on " + meter_.name, torque_);
+  if (a.loads()) set_.set_places();
+}
+
+}  // namespace barchan

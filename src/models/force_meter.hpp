@@ -1,0 +1,43 @@
+// Force and torque on a wall, a body, or a part of one.
+#pragma once
+
+#include <vector>
+
+#include "models/air/fluid.hpp"
+#include "models/bodies/sets.hpp"
+
+namespace barchan {
+
+/// Of a wall: the sum over its pairs with fluid particles of the forces of the plain scheme, with the pressure and the
+/// velocity that are continued into the wall (Adami et al. 2012); of a fluid of the consistent scheme over the sum of
+/// the gradient on a lattice, which that scheme divides by too. Of a body: mass times acceleration of its particles,
+/// less gravity. The torque counts periodic images nearest to its point.
+class ForceOn : public Model {
+ public:
+  ForceOn(const Scene& scene, const Layout& layout, std::size_t number);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void history(HistoryRow& row) const override;
+  void archive(Archive& a) override;
+
+ private:
+  void measure();
+  void add_sums(double share, const Vec3& less);
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const ForceMeter& meter_;
+  std::size_t number_, phase_;
+  SetOfBody set_;
+  bool wall_;
+  struct Felt {
+    FluidNeighbour fluid;
+    double share;  // of the sums
+  };
+  std::vector<Felt> fluids_;  // of a wall
+  Vec3 force_{}, torque_{};   // N, N m (per metre of depth in 2D), in the last step
+  Workspace* w_ = nullptr;
+};
+
+}  // namespace barchan

@@ -1,0 +1,271 @@
+// [[force]]: force and torque on walls and bodies against exact values.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+#include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::report;
+
+/// The column of history.csv with this name, now.
+double history(const Simulation& run, const std::string& name) {
+  const auto names = run.history_columns();
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) throw std::runtime_error("no column " + name);
+  return run.history_row()[static_cast<std::size_t>(at - names.begin())];
+}
+
+std::string meter(const std::string& name, const std::string& phase, const std::string& more = "") {
+  return "\n[[force]]\nname = \"" + name + "\"\nphase = \"" + phase + "\"\n" + more;
+}
+
+// Pairs of the plain scheme are antisymmetric: what the fluid gains beyond its weight is what the wall does to it.
+TEST(ForceMeters, ForceOnAWallIsWhatTheFluidLoses) {
+  const auto run = small::simulation("precision = \"double\"\n" + small::channel + meter("floor", "floor"));
+  double worst = 0.0;
+  for (int step = 0; step < 50; ++step) {
+    run->step(1.0);
+    const PhaseParticles& water = run->phases()[0];
+    for (int d = 0; d < 2; ++d) {
+      const double weight = d == 0 ? 0.1 : -9.81;
+      double gain = 0.0, size = 0.0;
+      for (std::size_t k = 0; k < water.size(); ++k) {
+        const double push = water.mass() * (water.column(Field::acceleration, d)[k] - weight);
+        gain += push;
+        size += std::abs(push);
+      }
+      const double force = history(*run, d == 0 ? "floor_force_x [N]" : "floor_force_y [N]");
+      if (step > 10) { EXPECT_GT(std::abs(force), 1e-6 * size) << "there is a force"; }
+      worst = std::max(worst, std::abs(gain + force) / size);
+    }
+  }
+  report("force on the wall and on the fluid, sum/size", worst, 1e-10);
+  EXPECT_LE(worst, 1e-10);
+}
+
+/// Water at rest in an open tank, 1 m wide and 0.8 m deep.
+const std::string tank = R"toml(
+spacing = 0.04
+[domain]
+size = [1, 1.2]
+gravity = [0, -10]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-3
+sound-speed = 40
+[phases.floor]
+kind = "wall"
+[phases.left]
+kind = "wall"
+[phases.right]
+kind = "wall"
+[interactions]
+water-water = {}
+water-floor = {}
+water-left = {}
+water-right = {}
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "left"
+shape = { sides = ["left"] }
+[[fill]]
+phase = "right"
+shape = { sides = ["right"] }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [1, 0.8] } }
+pressure = "hydrostatic"
+[time]
+end = 10
+largest-speed = 4
+)toml";
+
+TEST(ForceMeters, HydrostaticForceAndMoment) {
+  const auto run = small::simulation(tank + meter("floor", "floor") + meter("left", "left") +
+                                     meter("right", "right", "about = [1, 0]\n"));
+  double floor = 0.0, left = 0.0, right = 0.0, moment = 0.0;
+  constexpr int rest = 100, mean = 100;
+  for (int step = 0; step < rest + mean; ++step) {
+    run->step(1.0);
+    if (step < rest) continue;
+    floor += history(*run, "floor_force_y [N]") / mean;
+    left += history(*run, "left_force_x [N]") / mean;
+    right += history(*run, "right_force_x [N]") / mean;
+    moment += history(*run, "right_torque_z [N m]") / mean;
+  }
+  const double weight = 1000.0 * 10.0 * 0.8, side = 0.5 * weight * 0.8;
+  report("force on the floor/weight - 1", floor / -weight - 1.0, 0.005);
+  report("force on the left wall/(rho g H2/2) - 1", left / -side - 1.0, 0.005);
+  report("force on the right wall/(rho g H2/2) - 1", right / side - 1.0, 0.005);
+  report("its moment about the corner/(rho g H3/6) - 1", moment / (-side * 0.8 / 3.0) - 1.0, 0.005);
+  EXPECT_NEAR(floor / -weight, 1.0, 0.005);
+  EXPECT_NEAR(left / -side, 1.0, 0.005);
+  EXPECT_NEAR(right / side, 1.0, 0.005);
+  EXPECT_NEAR(moment / (-side * 0.8 / 3.0), 1.0, 0.005) << "it turns the wall outwards";
+}
+
+/// Plane Poiseuille flow at its end, 20 spacings across, disturbed.
+const std::string channel = R"toml(
+spacing = 0.05
+[domain]
+size = [1, 1]
+periodic = ["x"]
+[phases.water]
+kind = "fluid"
+density = 2
+viscosity = 0.1
+sound-speed = 15
+[phases.floor]
+kind = "wall"
+[phases.lid]
+kind = "wall"
+[interactions]
+water-water = {}
+water-floor = {}
+water-lid = {}
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "lid"
+shape = { sides = ["top"] }
+[[fill]]
+phase = "water"
+shape = "the-rest"
+perturb = 0.1
+velocity = ["4*y*(1 - y)", 0]
+[[forcing]]
+phase = "water"
+acceleration = [0.8, 0]
+[time]
+end = 10
+largest-speed = 1
+)toml";
+
+TEST(ForceMeters, ShearOnTheWallsOfAChannel) {
+  const auto run = small::simulation(channel + meter("floor", "floor") + meter("lid", "lid"));
+  double floor = 0.0, lid = 0.0;
+  int count = 0;
+  while (run->time() < 4.0) {
+    run->step(1.0);
+    if (run->time() < 2.0) continue;
+    floor += history(*run, "floor_force_x [N]");
+    lid += history(*run, "lid_force_x [N]");
+    ++count;
+  }
+  const double exact = 2.0 * 0.8 * 0.5;  // rho F L/2 a metre
+  report("shear on the floor/(rho F L/2) - 1", floor / count / exact - 1.0, 0.005);
+  report("shear on the lid/(rho F L/2) - 1", lid / count / exact - 1.0, 0.005);
+  EXPECT_NEAR(floor / count / exact, 1.0, 0.005);
+  EXPECT_NEAR(lid / count / exact, 1.0, 0.005);
+}
+
+// A body that falls freely feels nothing; one that is pushed feels its push, about any point.
+TEST(ForceMeters, BodyThatIsPushed) {
+  const std::string body = R"toml(
+spacing = 0.1
+[domain]
+size = [10, 10]
+gravity = [0, -10]
+[phases.block]
+kind = "elastic"
+density = 1000
+young = 1e6
+[interactions]
+block-block = 1.6
+[[fill]]
+phase = "block"
+shape = { box = { min = [4, 4], max = [5, 6] } }
+[[forcing]]
+phase = "block"
+acceleration = [3, 0]
+[time]
+end = 1
+)toml" + meter("block", "block", "about = [4.5, 3]\n") +
+                           meter("half", "block", "box = { min = [4, 4], max = [5, 5] }\n");
+  const auto run = small::simulation(body);
+  for (int step = 0; step < 5; ++step) run->step(1.0);
+  const double mass = 2000.0;
+  EXPECT_NEAR(history(*run, "block_force_x [N]"), 3.0 * mass, 1e-6 * mass);
+  EXPECT_NEAR(history(*run, "block_force_y [N]"), 0.0, 1e-6 * mass);
+  EXPECT_NEAR(history(*run, "block_torque_z [N m]"), -2.0 * 3.0 * mass, 1e-4 * mass);
+  EXPECT_NEAR(history(*run, "half_force_x [N]"), 1.5 * mass, 0.01 * mass) << "the whole moves as one";
+}
+
+TEST(ForceMeters, WhatIsNotMeasuredIsRefused) {
+  const auto refusal = [](const std::string& text) {
+    try {
+      parse_scene(text, "s.toml");
+    } catch (const SceneError& error) { return std::string(error.what()); }
+    return std::string();
+  };
+  EXPECT_NE(refusal(tank + meter("a", "water")).find("force.0.phase: \"water\" is neither wall nor body"),
+            std::string::npos);
+  EXPECT_NE(refusal(tank + meter("a", "flor")).find("there is no phase \"flor\""), std::string::npos);
+  EXPECT_NE(refusal(tank + meter("a", "floor") + meter("a", "left")).find("force.1.name: \"a\" is given twice"),
+            std::string::npos);
+  EXPECT_NE(refusal(tank + meter("a b", "floor")).find("expected letters, digits and underscores"), std::string::npos);
+  EXPECT_NE(refusal(small::dune + meter("a", "floor")).find("on a wall is not measured"), std::string::npos);
+  EXPECT_EQ(refusal(tank + meter("a", "floor")), "");
+}
+
+// A zone brings a stream to its velocity as its rate says.
+TEST(Zones, BringAFluidToAVelocity) {
+  const std::string stream = R"toml(
+spacing = 0.1
+[domain]
+size = [1, 1]
+periodic = ["x", "y"]
+[phases.water]
+kind = "fluid"
+density = 1
+sound-speed = 20
+[interactions]
+water-water = {}
+[[fill]]
+phase = "water"
+shape = "the-rest"
+velocity = [1, 0]
+[[forcing]]
+phase = "water"
+velocity = [0, "0.5"]
+rate = 2
+[time]
+end = 1
+largest-speed = 1
+)toml";
+  const auto run = small::simulation(stream);
+  while (run->time() < 0.5 * (1 - 1e-12)) run->step(0.5 - run->time());
+  const PhaseParticles& water = run->phases()[0];
+  for (std::size_t k = 0; k < water.size(); ++k) {
+    EXPECT_NEAR(water.column(Field::velocity, 0)[k], std::exp(-1.0), 0.01);
+    EXPECT_NEAR(water.column(Field::velocity, 1)[k], 0.5 * (1.0 - std::exp(-1.0)), 0.01);
+  }
+  // Where its box ends, so does the zone: a fluid that moves across it is reached in part.
+  std::string boxed = stream;
+  boxed.replace(boxed.find("rate = 2"), 8, "rate = 2\nbox = { min = [0, 0], max = [1, 0.5] }");
+  const auto part = small::simulation(boxed);
+  for (int step = 0; step < 5; ++step) part->step(1.0);
+  double below = 0.0, above = 0.0;
+  for (std::size_t k = 0; k < 100; ++k) {
+    const PhaseParticles& p = part->phases()[0];
+    const double y = p.column(Field::position, 1)[k], lost = 1.0 - p.column(Field::velocity, 0)[k];
+    if (y < 0.3) below += lost;
+    if (y > 0.7) above += lost;
+  }
+  EXPECT_GT(below, 0.5);
+  EXPECT_LT(std::abs(above), 0.02 * below);
+}
+
+}  // namespace
+}  // namespace barchan
