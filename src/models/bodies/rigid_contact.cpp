@@ -151,9 +151,7 @@ double RigidContact::largest_inverse_mass(std::size_t phase) const {
 }
 
 void RigidContact::limits(std::vector<StepLimit>& limits) const {
-  const double inverse = largest_inverse_mass(entry_.a) +
-                         (entry_.a == entry_.b ? 1.0 : 0.0) * largest_inverse_mass(entry_.a) +
-                         (entry_.a == entry_.b ? 0.0 : largest_inverse_mass(entry_.b));
+  const double inverse = largest_inverse_mass(entry_.a) + largest_inverse_mass(entry_.b);
   if (inverse > 0.0)
     limits.push_back({"contact " + entry_.name,
                       scene_.time.safety * StepConstants::restitution / std::sqrt(law_.stiffness * inverse),
