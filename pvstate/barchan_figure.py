@@ -48,7 +48,7 @@ class Figure(Marks):
 
     def _size(self, window, walls):
         series = self.series
-        self.box = series.bounds(series.phases("fluid", "grains", "elastic", *(["wall"] if walls else [])) or [0])
+        self.box = series.bounds(series.phases("fluid", "grains", "elastic", "rigid", *(["wall"] if walls else [])) or [0])
         window = series.wanted_window(self.box) or window
         if window is not None:
             self.box[:4] = window

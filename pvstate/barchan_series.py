@@ -340,7 +340,7 @@ class Series:
     def close_up(self, rows_below=9, rows_high=34, columns=96):
         """A window [x0, x1, y0, y1] on the surface of the grains, about its highest place; all of the scene without grains."""
         grains = self.phases("grains") or [k for k, kind in enumerate(self.phase_kinds) if kind == "grains"]
-        everything = self.bounds(self.phases("fluid", "grains", "elastic") or [0])
+        everything = self.bounds(self.phases("fluid", "grains", "elastic", "rigid") or [0])
         first = self._samples[0]
         bed = first["points"][np.isin(first["phase"], grains)]
         if not len(bed) or not self.two_dimensional:

@@ -9,7 +9,7 @@ A state opens in ParaView (File > Load State) and runs in pvpython alike. It tak
     BARCHAN_HIDE     phases not to draw, "air,wall"
 
 Of a frame it reads the point arrays phase, velocity and smoothing_length and the field data phase_names and, where there is
-one, phase_kinds (fluid, grains, elastic, wall for each phase) and domain (bounds, m).
+one, phase_kinds (fluid, grains, elastic, rigid, wall for each phase) and domain (bounds, m).
 
 barchan_series.py holds the series and its ranges, barchan_figure.py the layout, barchan_marks.py what is drawn.
 """

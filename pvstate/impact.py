@@ -13,7 +13,7 @@ from barchan_view import *  # noqa: E402,F403
 series = start(__file__)
 flat = series.two_dimensional
 figure = Figure(series, series.title)
-bodies = series.phases("elastic") or series.phases("grains") or series.phases("fluid")
+bodies = series.phases("elastic", "rigid") or series.phases("grains") or series.phases("fluid")
 
 
 def motion_axis(velocity, first):

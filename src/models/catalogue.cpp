@@ -6,6 +6,8 @@
 #include "models/air/air.hpp"
 #include "models/bodies/body_contact.hpp"
 #include "models/bodies/elastic_phase.hpp"
+#include "models/bodies/rigid_contact.hpp"
+#include "models/bodies/rigid_phase.hpp"
 #include "models/bodies/sets.hpp"
 #include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
@@ -41,6 +43,7 @@ Kind kind_of(const Phase& phase) {
     case PhaseKind::fluid: return {true, true, describe_air, make<Air>};
     case PhaseKind::elastic:
       return {true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
+    case PhaseKind::rigid: return {true, false, describe_rigid, make<RigidPhase>};
     case PhaseKind::grains: return {true, false, describe_grains, make<GrainPhase>};
     case PhaseKind::wall: return {false, false, describe_wall, make<Wall>};
     case PhaseKind::column: return {false, false, describe_column, make<ColumnPhase>};
@@ -58,7 +61,9 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(column, grains)) return Law::column;
   if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
-  const auto touches = [](const Phase& p) { return p.kind() == elastic || p.kind() == grains || p.kind() == wall; };
+  const auto touches = [](const Phase& p) {
+    return p.kind() == elastic || p.kind() == rigid || p.kind() == grains || p.kind() == wall;
+  };
   if (touches(a) && touches(b)) return Law::contact;
   throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + a.kind_word() + ", and \"" + b.name +
                    "\", of kind " + b.kind_word() + "; expected no such entry");
@@ -98,8 +103,9 @@ Models make_models(const Scene& scene, const Layout& layout) {
   models.push_back(std::make_unique<CommonWork>(layout));
   for (std::size_t k = 0; k < scene.force_meters.size(); ++k)  // they measure before driven sets go their way
     models.push_back(std::make_unique<ForceOn>(scene, layout, k));
-  for (std::size_t k = 0; k < scene.motions.size(); ++k)  // they lead before their bodies move
-    models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)                        // they lead before their bodies move
+    if (find_phase(scene, scene.motions[k].phase)->kind() != PhaseKind::rigid)  // these hold themselves
+      models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
@@ -111,7 +117,8 @@ Models make_models(const Scene& scene, const Layout& layout) {
   for (const auto& e : layout.entries) {
     if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
     if (e.drag > 0) models.push_back(make_drag_entry(scene, layout, e));
-    if (e.of_bodies) models.push_back(std::make_unique<BodyContact>(scene, layout, e));
+    if (e.of_surfaces) models.push_back(std::make_unique<RigidContact>(scene, layout, e));
+    else if (e.of_bodies) models.push_back(std::make_unique<BodyContact>(scene, layout, e));
     else if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(make_contact_entry(scene, layout, e));
   }

@@ -10,6 +10,7 @@
 #include "base/fields.hpp"
 #include "engine/neighbours.hpp"
 #include "scene/scene.hpp"
+#include "state/rigid_body.hpp"
 
 namespace barchan {
 
@@ -72,6 +73,7 @@ struct PlanEntry {
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
   bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
+  bool of_surfaces = false;          // of these: their outlines touch, not their particles
   double restitution = 1, friction = 0;  // of such
   int forward = -1, backward = -1;       // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }
@@ -125,6 +127,8 @@ struct PlanPhase {
   double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
   std::string physics = "";              // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
+  std::vector<RigidBody> rigid_bodies;   // at the start; none of a phase of another kind
+  double contact_stiffness = 0;          // N/m, of a rigid body with another (2D: N/m a metre)
   std::vector<Field> fields;
   PhaseRules rules;
 };

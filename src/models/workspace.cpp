@@ -25,9 +25,11 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "wall repulsion",
                                                          "elastic forces",
                                                          "weight of grains",
+                                                         "loads on rigid bodies",
                                                          "contacts",
                                                          "reaction on solids",
                                                          "drag",
+                                                         "rigid bodies",
                                                          "driven and measured sets",
                                                          "bulk speed",
                                                          "kick",
@@ -207,8 +209,9 @@ void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
     if (layout_.phases[k].moves) {
-      // Spheres were kicked in the steps of their contacts.
-      const double time = layout_.phases[k].diameter > 0 ? 0.0 : w_->kick_time;
+      // Spheres were kicked in the steps of their contacts; rigid bodies are kicked as a whole.
+      const bool elsewhere = layout_.phases[k].diameter > 0 || !layout_.phases[k].rigid_bodies.empty();
+      const double time = elsewhere ? 0.0 : w_->kick_time;
       largest = std::max(largest, barchan::kick(w_->particles(k), time));
     }
   w_->state.largest_acceleration = largest;

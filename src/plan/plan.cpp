@@ -22,15 +22,27 @@ double Plan::step() const {
 
 namespace {
 
-/// m/s, the largest of a driven set at 65 times.
-double driven_speed(const Scene& scene, const Motion& motion) {
-  const Formula u(motion.velocity[0]), v(motion.velocity[1]), w(motion.velocity[2]);
-  double speed = 0.0;
+/// m/s or 1/s, the largest size of a vector of time at 65 times.
+double largest_in_time(const Scene& scene, const VectorExpression& vector) {
+  const Formula u(vector[0]), v(vector[1]), w(vector[2]);
+  double largest = 0.0;
   for (int k = 0; k <= 64; ++k) {
     const double t = scene.time.end * k / 64.0;
-    speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
+    largest = std::max(largest, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
   }
-  return speed;
+  return largest;
+}
+
+/// m/s, of a driven set or rigid body.
+double driven_speed(const Scene& scene, const Motion& motion, const std::vector<ParticleBlock>& blocks) {
+  const double speed = largest_in_time(scene, motion.velocity);
+  if (!motion.angular_velocity) return speed;
+  double reach = 0.0;
+  for (std::size_t k = 0; k < scene.phases.size(); ++k)
+    if (scene.phases[k].name == motion.phase && !blocks[k].position.empty())
+      for (const Vec3& x : blocks[k].position)
+        reach = std::max(reach, norm(x - motion.about.value_or(blocks[k].position.front())));
+  return speed + reach * largest_in_time(scene, motion.angular_velocity->about);
 }
 
 double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
@@ -47,7 +59,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
       speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
     }
   }
-  for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion));
+  for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion, blocks));
   double height = 0;
   for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
@@ -56,6 +68,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 /// The first direction of an entry, and its opposite. A wall searches only the fluid that is extended into it.
 void add_directions(const Scene& scene, Plan& plan, PlanEntry& e) {
   if (e.law == Law::column || e.law == Law::drag) return;  // the wind is found by height: no search
+  if (e.of_surfaces) return;                               // models/bodies/rigid_contact.hpp looks at outlines
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
@@ -87,6 +100,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.contact = i.law;
     e.drag_law = i.drag_law;
     e.of_bodies = touch_as_bodies(i, scene.phases[e.a], scene.phases[e.b]);
+    e.of_surfaces = e.of_bodies && touch_by_surfaces(scene.phases[e.a], scene.phases[e.b]);
     e.restitution = i.restitution.value_or(1.0);
     e.friction = i.friction.value_or(0.0);
     classify(scene, e);

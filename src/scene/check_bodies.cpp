@@ -1,4 +1,4 @@
-// Elastic bodies: keys that their formulation does not read, contacts of bodies, sets of their particles.
+// Bodies: keys that their formulation does not read, contacts of bodies, sets of their particles.
 #include <algorithm>
 
 #include "scene/checks.hpp"
@@ -43,8 +43,9 @@ void check_set(const BodySet& set, const std::string& dotted, const Scene& scene
   if (report.touched(dotted) || !report.has(dotted + ".phase")) return;
   const Phase* phase = find_phase(scene, set.phase);
   if (!phase) return report(dotted + ".phase", unknown_phase(set.phase, scene));
-  if (!report.touched("phases." + phase->name + ".kind") && !walls && phase->kind() != PhaseKind::elastic)
-    return report(dotted + ".phase", "\"" + phase->name + "\" is no body; expected a phase of kind elastic");
+  if (!report.touched("phases." + phase->name + ".kind") && !walls && phase->kind() != PhaseKind::elastic &&
+      phase->kind() != PhaseKind::rigid)
+    return report(dotted + ".phase", "\"" + phase->name + "\" is no body; expected a phase of kind elastic or rigid");
   for (std::size_t d = 0; set.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
     if (!(set.box->min[d] <= set.box->max[d]))
       return report(dotted + ".box", "its lower corner lies above its upper one; expected min <= max");

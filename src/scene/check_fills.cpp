@@ -162,7 +162,10 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
            "spread");
   if (phase.kind() != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
-  const bool continuous = phase.kind() == PhaseKind::fluid || phase.kind() == PhaseKind::elastic;
+  const bool body = phase.kind() == PhaseKind::elastic || phase.kind() == PhaseKind::rigid;
+  const bool continuous = phase.kind() == PhaseKind::fluid || body;
+  if (phase.kind() != PhaseKind::rigid && report.has(dotted + ".angular-velocity"))
+    report(dotted + ".angular-velocity", "only a rigid body turns as a whole; expected a phase of kind rigid");
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\" or \"relaxed\"");

@@ -89,7 +89,9 @@ void check_phases(const Scene& scene, const Report& report) {
 }
 
 void check_interactions(const Scene& scene, const Report& report) {
-  if (scene.interactions.empty() && !report.touched("interactions"))
+  const bool rigid = std::any_of(scene.phases.begin(), scene.phases.end(),
+                                 [](const Phase& p) { return p.kind() == PhaseKind::rigid; });  // moves without others
+  if (scene.interactions.empty() && !rigid && !report.touched("interactions"))
     report("interactions", "no pair of phases; expected at least one, as in air-sand = 2.5");
   std::vector<const Interaction*> seen;
   for (const Interaction& pair : scene.interactions) {
@@ -221,6 +223,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_forcings(scene, report);
   check_physics(scene, report);
   check_bodies(scene, report);
+  check_rigid(scene, report);
   check_columns(scene, report);
   check_walls(scene, report);
   check_measuring(scene, report);

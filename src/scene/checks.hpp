@@ -44,6 +44,9 @@ void check_walls(const Scene& scene, const Report& report);
 /// Of elastic bodies: keys of another formulation, contacts, sets of particles.
 void check_bodies(const Scene& scene, const Report& report);
 
+/// Of rigid bodies: what may touch them, and what turns.
+void check_rigid(const Scene& scene, const Report& report);
+
 /// Reads the files of surfaces into the scene. What is wrong with a file is told where the scene names it.
 void read_surfaces(Scene& scene, const Report& report);
 

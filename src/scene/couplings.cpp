@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/outline.hpp"
+
 namespace barchan {
 
 const Phase* find_phase(const Scene& scene, const std::string& name) {
@@ -55,16 +57,28 @@ bool has_eddies(const Scene& scene, const Phase& fluid) {
          });
 }
 
+bool has_surface(const Shape& shape, int dimensions) {
+  const bool box = std::holds_alternative<BoxShape>(shape) || std::holds_alternative<CubeShape>(shape),
+             sides = std::holds_alternative<SidesShape>(shape);
+  if (dimensions == 3) return box || sides || std::holds_alternative<SphereShape>(shape);
+  return box || sides || std::holds_alternative<DiscShape>(shape) || std::holds_alternative<RingShape>(shape) ||
+         facet_dimensions(shape) == 2;
+}
+
 bool is_total(const Phase& phase) {
   return phase.kind() == PhaseKind::elastic && phase.elastic().formulation == Formulation::total_lagrangian;
 }
 
 bool bodies_may_touch(const Phase& a, const Phase& b) {
-  const auto body_or_wall = [](const Phase& p) {
-    return p.kind() == PhaseKind::elastic || p.kind() == PhaseKind::wall;
-  };
-  const bool body = a.kind() == PhaseKind::elastic || b.kind() == PhaseKind::elastic;
-  return a.name != b.name && body && body_or_wall(a) && body_or_wall(b);
+  const auto is_body = [](const Phase& p) { return p.kind() == PhaseKind::elastic || p.kind() == PhaseKind::rigid; };
+  const auto body_or_wall = [&](const Phase& p) { return is_body(p) || p.kind() == PhaseKind::wall; };
+  if (a.name == b.name) return a.kind() == PhaseKind::rigid;
+  return (is_body(a) || is_body(b)) && body_or_wall(a) && body_or_wall(b);
+}
+
+bool touch_by_surfaces(const Phase& a, const Phase& b) {
+  const auto rigid = [](const Phase& p) { return p.kind() == PhaseKind::rigid; };
+  return (rigid(a) && rigid(b)) || (rigid(a) && b.if_wall()) || (a.if_wall() && rigid(b));
 }
 
 bool only_sides(const Scene& scene, const Phase& wall) {
@@ -74,7 +88,8 @@ bool only_sides(const Scene& scene, const Phase& wall) {
 }
 
 bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b) {
-  return bodies_may_touch(a, b) && (pair.restitution || is_total(a) || is_total(b));
+  const bool rigid = a.kind() == PhaseKind::rigid || b.kind() == PhaseKind::rigid;
+  return bodies_may_touch(a, b) && (pair.restitution || is_total(a) || is_total(b) || rigid);
 }
 
 }  // namespace barchan

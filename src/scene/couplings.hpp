@@ -35,11 +35,15 @@ bool has_eddies(const Scene& scene, const Phase& fluid);
 
 /// An elastic body whose strain comes from its first shape.
 bool is_total(const Phase& phase);
-/// Whether the two can have a contact of bodies: a body with another body or a wall.
+/// Whether the two can have a contact of bodies: a body with another body or a wall; rigid bodies of one phase.
 bool bodies_may_touch(const Phase& a, const Phase& b);
+/// Whether they touch by their surfaces, not by their particles: rigid bodies with rigid bodies and walls.
+bool touch_by_surfaces(const Phase& a, const Phase& b);
+/// Whether the shape says where its surface lies.
+bool has_surface(const Shape& shape, int dimensions);
 /// Whether all particles of a wall stand behind sides of the domain: for a body it is those planes.
 bool only_sides(const Scene& scene, const Phase& wall);
-/// Whether this entry is one: it says restitution, or a total Lagrangian body has no other.
+/// Whether this entry is one: it says restitution, or a total Lagrangian or rigid body has no other.
 bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b);
 
 }  // namespace barchan

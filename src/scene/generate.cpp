@@ -158,6 +158,16 @@ void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& f
   }
 }
 
+/// Adds the rotation about the mean place of the new particles.
+void turn(ParticleBlock& block, std::size_t first, const AxialExpression& rate) {
+  const Vec3 w{Formula(rate.about[0])({}), Formula(rate.about[1])({}), Formula(rate.about[2])({})};
+  Vec3 centre{};
+  const std::size_t n = block.position.size();
+  for (std::size_t i = first; i < n; ++i) centre = centre + block.position[i];
+  centre = 1.0 / static_cast<double>(n - first) * centre;
+  for (std::size_t i = first; i < n; ++i) block.velocity[i] = block.velocity[i] + cross(w, block.position[i] - centre);
+}
+
 /// Radii of new spheres. The seed is another one than that of their places.
 void append_radii(ParticleBlock& block, const SphereSize& size, unsigned seed) {
   Random random(0x5eed00000000ull + seed);
@@ -242,7 +252,9 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
             .add(x, phase->spacing, static_cast<int>(k));
     ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
     const std::size_t first = block.position.size();
+    block.parts.push_back({k, first});
     append(block, places, fill, scene);
+    if (fill.angular_velocity) turn(block, first, *fill.angular_velocity);
     block.radius.insert(block.radius.end(), settled.radius.begin(), settled.radius.end());
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);

@@ -92,7 +92,11 @@ std::string expected(const Key& key, int dimensions) {
   const std::string count = std::to_string(dimensions);
   std::string variables;
   for (const char c : key.variables) variables += c == ' ' ? std::string(", ") : std::string(1, c);
+  const std::string formula = variables.empty() ? "a formula" : "a formula in " + variables;
   std::vector<std::string> ways;
+  if (key.slot.accepts & as_axial)
+    ways.push_back(dimensions == 2 ? "a number" + unit + " or " + formula
+                                   : "an array of 3 numbers" + unit + " or formulas");
   if (key.slot.accepts & as_number) ways.push_back("a number" + bounds + unit);
   if (key.slot.accepts & as_integer) ways.push_back("a whole number" + bounds + unit);
   if (key.slot.accepts & as_boolean) ways.emplace_back("true or false");

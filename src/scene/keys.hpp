@@ -30,6 +30,7 @@ enum Accepts : unsigned {
   as_section = 1u << 11,         // a table; its keys are those of the section SECTION.NAME
   as_sections = 1u << 12,        // an array of tables
   as_named_sections = 1u << 13,  // a table of tables whose names the user chooses
+  as_axial = 1u << 14,           // about an axis: in 2D a number or a formula, in 3D an array of three
 };
 
 /// Bounds of a number; `above` and `below` exclude the bound itself.
@@ -43,10 +44,10 @@ struct NumberBounds {
 
 /// The member of the scene that a value is written to. Monostate: the section that was read has no such member, as a
 /// disc has no layers.
-using Target =
-    std::variant<std::monostate, bool*, std::optional<bool>*, int*, unsigned*, double*, std::optional<double>*,
-                 std::string*, Vec3*, std::optional<Vec3>*, Expression*, VectorExpression*, std::vector<std::string>*,
-                 std::vector<Vec3>*, std::vector<std::array<double, 2>>*>;
+using Target = std::variant<std::monostate, bool*, std::optional<bool>*, int*, unsigned*, double*,
+                            std::optional<double>*, std::string*, Vec3*, std::optional<Vec3>*, Expression*,
+                            VectorExpression*, std::optional<AxialExpression>*, std::vector<std::string>*,
+                            std::vector<Vec3>*, std::vector<std::array<double, 2>>*>;
 
 /// What a key is when the document does not give it. Without a value the member stays empty or zero.
 struct Default {

@@ -7,10 +7,6 @@
 namespace barchan {
 namespace {
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Vec3 on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
   const Vec3 ab = b - a;
   const double length2 = dot(ab, ab);

@@ -62,6 +62,10 @@ struct Write {
     for (std::size_t k = 0; k < std::min<std::size_t>(array->size(), 3); ++k) Write{*array->get(k)}(&(*member)[k]);
     return true;
   }
+  bool operator()(std::optional<AxialExpression>* member) const {
+    VectorExpression& about = member->emplace().about;
+    return node.is_array() ? (*this)(&about) : (*this)(&about[2]);
+  }
   template <class Item>
   bool operator()(std::vector<Item>* member) const {
     const toml::array* array = node.as_array();

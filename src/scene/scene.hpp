@@ -24,10 +24,14 @@ struct Expression {
   bool is_formula() const { return !formula.empty(); }
 };
 using VectorExpression = std::array<Expression, 3>;
+/// What has an axis, as an angular velocity or a torque: in 2D a document gives the number about z alone.
+struct AxialExpression {
+  VectorExpression about;
+};
 
 // ---- phases ---------------------------------------------------------------------------------------------------------
 
-enum class PhaseKind { fluid, elastic, grains, wall, column };
+enum class PhaseKind { fluid, elastic, rigid, grains, wall, column };
 
 /// u(y) = (u*/kappa) ln(y/y0) above the ground, zero below y0; eq. (18) in SI units, kappa = 0.4.
 struct LogProfile {
@@ -81,6 +85,15 @@ struct ElasticKeys {
   bool energy{};                       // integrate the internal energy (eq. 13)
 };
 
+/// Each [[fill]] of such a phase is a body that moves as a whole.
+struct RigidKeys {
+  static constexpr PhaseKind kind = PhaseKind::rigid;
+  static constexpr const char* word = "rigid";
+  static constexpr bool has_particles = true;
+  std::optional<double> stiffness;  // N/m, of a contact (per metre of depth in 2D)
+  double largest_overlap{};         // of the spacing, at the largest speed of the scene: makes the stiffness
+};
+
 struct GrainsKeys {
   static constexpr PhaseKind kind = PhaseKind::grains;
   static constexpr const char* word = "grains";
@@ -128,9 +141,9 @@ struct ColumnKeys {
 
 struct Phase {
   std::string name;
-  double density{};                                                            // kg/m3, at rest
-  double spacing{};                                                            // m, of its particles
-  std::variant<FluidKeys, ElasticKeys, GrainsKeys, WallKeys, ColumnKeys> own;  // in the order of PhaseKind
+  double density{};                                                                       // kg/m3, at rest
+  double spacing{};                                                                       // m, of its particles
+  std::variant<FluidKeys, ElasticKeys, RigidKeys, GrainsKeys, WallKeys, ColumnKeys> own;  // in the order of PhaseKind
 
   PhaseKind kind() const { return static_cast<PhaseKind>(own.index()); }
   const char* kind_word() const {
@@ -142,6 +155,7 @@ struct Phase {
   // The keys of its kind; std::bad_variant_access when it is of another kind.
   const FluidKeys& fluid() const { return std::get<FluidKeys>(own); }
   const ElasticKeys& elastic() const { return std::get<ElasticKeys>(own); }
+  const RigidKeys& rigid() const { return std::get<RigidKeys>(own); }
   const GrainsKeys& grains() const { return std::get<GrainsKeys>(own); }
   const WallKeys& wall() const { return std::get<WallKeys>(own); }
   const ColumnKeys& column() const { return std::get<ColumnKeys>(own); }
@@ -245,10 +259,11 @@ struct Fill {
   LeaveOut leave_out{};
   double perturb{};  // spacings of its phase: each coordinate moved by a uniform number in +-perturb
   unsigned seed{};
-  VectorExpression velocity;              // m/s, formulas in x, y, z
-  std::optional<LogProfile> log_profile;  // added to `velocity`, along x
-  Expression pressure;                    // Pa, fluid phases: initial pressure
-  bool hydrostatic{};                     // fluid phases: start from the hydrostatic pressure instead
+  VectorExpression velocity;                        // m/s, formulas in x, y, z
+  std::optional<AxialExpression> angular_velocity;  // 1/s, of a rigid body about its centre; added to `velocity`
+  std::optional<LogProfile> log_profile;            // added to `velocity`, along x
+  Expression pressure;                              // Pa, fluid phases: initial pressure
+  bool hydrostatic{};                               // fluid phases: start from the hydrostatic pressure instead
 };
 
 // ---- the rest ------------------------------------------------------------------------------------------------------
@@ -270,7 +285,7 @@ struct Forcing {
   bool relaxes() const { return rate.is_formula() || rate.value > 0.0; }
 };
 
-/// A set of particles of an elastic body, by their places at the start.
+/// A set of particles of an elastic body, by their places at the start; or the rigid bodies whose centres stand there.
 struct BodySet {
   std::string phase;
   std::optional<BoxShape> box;  // empty: all of them
@@ -278,6 +293,11 @@ struct BodySet {
 /// A set that is held or driven.
 struct Motion : BodySet {
   VectorExpression velocity;  // m/s, formulas in t
+  // Of rigid bodies:
+  std::optional<Vec3> about;                        // m, the place about which they turn; empty: their centres
+  std::optional<AxialExpression> angular_velocity;  // 1/s, formulas in t; beside `about`: empty: they turn freely
+  std::optional<AxialExpression> torque;            // N m, formulas in t, on bodies that turn freely about a place
+  double friction{};                                // N m, the largest torque of the dry friction there
 };
 /// A wall, a body or a part of one, whose force and torque are written to history.csv.
 struct ForceMeter : BodySet {

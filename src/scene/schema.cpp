@@ -35,6 +35,10 @@ std::vector<Json> forms(const Key& key) {
   Json words{{"enum", choices(key)}};
   std::vector<Json> all;
   if (key.slot.accepts & as_number) all.push_back(number);
+  if (key.slot.accepts & as_axial) {
+    all.push_back(formula);
+    all.push_back(array_of(formula, 3, 3));
+  }
   if (key.slot.accepts & as_integer) {
     all.push_back(number);
     all.back()["type"] = "integer";

@@ -62,6 +62,7 @@ constexpr unsigned accepts_of() {
   else if constexpr (std::same_as<Value, Vec3>) return as_vector;
   else if constexpr (std::same_as<Value, Expression>) return as_formula;
   else if constexpr (std::same_as<Value, VectorExpression>) return as_formulas;
+  else if constexpr (std::same_as<Value, AxialExpression>) return as_axial;
   else if constexpr (std::same_as<Member, std::vector<Phase>>) return as_named_sections;
   else return Plain<Member>::list ? as_sections : as_section;
 }

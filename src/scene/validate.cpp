@@ -89,7 +89,8 @@ class Validator {
   /// True when the value has one of the forms that the key accepts; then its contents were checked too.
   void value(const Key& key, const toml::node& node, const std::string& here) {
     const std::string path = path_of(key);
-    const unsigned a = key.slot.accepts;
+    unsigned a = key.slot.accepts;
+    if (a & as_axial) a |= dimensions_ == 2 ? as_formula : as_formulas;
     if (const auto* table = node.as_table()) {
       if (a & as_section) return section(*table, path, here);
       if (a & as_named_sections) return named_sections(*table, path, here);
@@ -153,7 +154,8 @@ class Validator {
                                expected(key, dimensions_));
     for (const toml::node& node : array) {
       if (node.is_number()) number(key, node, here);
-      else if (const auto* text = node.as_string(); text && (key.slot.accepts & as_formulas)) formula(key, *text, here);
+      else if (const auto* text = node.as_string(); text && (key.slot.accepts & (as_formulas | as_axial)))
+        formula(key, *text, here);
       else problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
     }
   }

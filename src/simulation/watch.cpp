@@ -130,6 +130,8 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
   for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
   if (!see_.scene.motions.empty()) start_speed_ += see_.plan.largest_speed;  // what drives them feeds energy
+  torques_ =
+      std::any_of(see_.scene.motions.begin(), see_.scene.motions.end(), [](const Motion& m) { return m.torque; });
 }
 
 /// The bounds of each phase that moves.

@@ -231,6 +231,7 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
 void Watch::look_at_energy(const Moment& now) {
   forced_ += strongest_force(now) * std::max(now.time - last_time_, 0.0);
   last_time_ = now.time;
+  if (torques_) return;
   double speed = start_speed_ + forced_;
   for (std::size_t d = 0; d < static_cast<std::size_t>(see_.plan.dimensions); ++d) {
     const double g = std::abs(see_.scene.domain.gravity[d]);

@@ -25,6 +25,7 @@ void State::archive(Archive& a) {
   retreat.archive(a);
   for (auto& p : phases) p.archive(a);
   for (auto& profile : air) profile.archive(a);
+  for (auto& body : bodies) a.number("rigid body", body.now);
 }
 
 }  // namespace barchan

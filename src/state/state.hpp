@@ -11,6 +11,7 @@
 #include "state/air_profile.hpp"
 #include "state/archive.hpp"
 #include "state/particles.hpp"
+#include "state/rigid_body.hpp"
 
 namespace barchan {
 
@@ -32,8 +33,9 @@ struct Retreat {
 
 struct State {
   std::vector<PhaseParticles> phases;
-  std::deque<AirProfile> air;   // wind by height: of phases that are air without particles, of layers over sand
-  double time = 0.0, dt = 0.0;  // s
+  std::deque<AirProfile> air;     // wind by height: of phases that are air without particles, of layers over sand
+  std::vector<RigidBody> bodies;  // rigid, in the order of their phases and fills
+  double time = 0.0, dt = 0.0;    // s
   long steps = 0;
   double largest_acceleration = 0.0;         // m/s2, of the last kick
   std::string ruling_limit;                  // of the last step

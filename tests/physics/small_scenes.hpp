@@ -12,6 +12,52 @@
 
 namespace barchan::small {
 
+/// Rigid bodies on a floor, among grains.
+inline const std::string rigid = R"toml(
+spacing = 0.02
+[domain]
+size = [2, 1]
+gravity = [0, -9.81]
+[phases.a]
+kind = "rigid"
+density = 1000
+largest-overlap = 0.2
+[phases.sand]
+kind = "grains"
+density = 1000
+contact-speed = 20
+[phases.floor]
+kind = "wall"
+[interactions]
+a-a = { restitution = 0.5, friction = 0.5 }
+a-floor = { restitution = 0.5, friction = 0.5 }
+a-sand = {}
+sand-floor = {}
+[[fill]]
+phase = "a"
+shape = { polygon = [[0.5, 0.01], [0.7, 0.01], [0.6, 0.21]] }
+velocity = [3, 0]
+[[fill]]
+phase = "a"
+shape = { disc = { centre = [1.4, 0.11], radius = 0.1 } }
+velocity = [-2, 0]
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0.9, 0], max = [1.2, 0.1] } }
+velocity = ["5*sin(30*x)", 0]
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom", "left", "right"] }
+[[motion]]
+phase = "a"
+box = { min = [1.3, 0], max = [1.5, 0.3] }
+about = [1.4, 0.11]
+torque = "t"
+friction = 0.1
+[time]
+end = 1
+)toml";
+
 /// A fluid with a wall below, in wind; nothing else.
 inline const std::string channel = R"toml(
 spacing = 0.01

@@ -539,6 +539,52 @@ TEST(SceneReader, ReadsTheKeysOfBodies) {
   EXPECT_FALSE(s.markers.at(0).box.has_value());
 }
 
+const std::string rigid_keys = R"toml(
+spacing = 0.1
+[domain]
+size = [3, 2]
+[phases.a]
+kind = "rigid"
+density = 1000
+stiffness = 5e6
+[phases.b]
+kind = "rigid"
+density = 1000
+[interactions]
+a-b = { restitution = 0.5 }
+[[fill]]
+phase = "a"
+shape = { disc = { centre = [0.6, 1], radius = 0.5 } }
+angular-velocity = "2*pi"
+[[fill]]
+phase = "b"
+shape = { box = { min = [1.5, 0.5], max = [2.5, 1.5] } }
+[[motion]]
+phase = "a"
+about = [0.6, 1]
+torque = "sin(t)"
+friction = 0.25
+[[motion]]
+phase = "b"
+angular-velocity = 3
+[time]
+end = 1
+)toml";
+
+TEST(SceneReader, ReadsTheKeysOfRigidBodies) {
+  const Scene s = parse_scene(rigid_keys, "s.toml");
+  EXPECT_EQ(s.phases.at(0).rigid().stiffness, 5e6);
+  EXPECT_EQ(s.phases.at(1).rigid().largest_overlap, 0.02);
+  EXPECT_EQ(s.fills.at(0).angular_velocity->about[2].formula, "2*pi");
+  EXPECT_FALSE(s.fills.at(1).angular_velocity.has_value());
+  EXPECT_EQ((*s.motions.at(0).about)[1], 1.0);
+  EXPECT_EQ(s.motions.at(0).torque->about[2].formula, "sin(t)");
+  EXPECT_EQ(s.motions.at(0).friction, 0.25);
+  EXPECT_FALSE(s.motions.at(0).angular_velocity.has_value());
+  EXPECT_EQ(s.motions.at(1).angular_velocity->about[2].value, 3.0);
+  EXPECT_FALSE(s.motions.at(1).about.has_value());
+}
+
 TEST(SceneReader, TakesZonesAndForces) {
   const Scene s = parse_scene(with(square_text, "[time]",
                                    "[[forcing]]\nphase = \"air\"\nrate = \"x\"\nvelocity = [1, \"t\"]\n"
@@ -685,7 +731,7 @@ TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
   EXPECT_NE(schema["properties"]["spacing"]["description"].get<std::string>().find("Unit: m."), std::string::npos);
   EXPECT_EQ(schema["required"], (nlohmann::json{"spacing", "domain", "phases", "interactions", "fill", "time"}));
   const auto& phase = schema["properties"]["phases"]["additionalProperties"];
-  EXPECT_EQ(phase["properties"]["kind"]["enum"], (nlohmann::json{"fluid", "elastic", "grains", "wall", "column"}));
+  EXPECT_EQ(phase["properties"]["kind"]["enum"], (nlohmann::json{"fluid", "elastic", "rigid", "grains", "wall", "column"}));
   EXPECT_EQ(phase["additionalProperties"], false);
   for (const Key& key : all_keys()) {
     EXPECT_FALSE(key.meaning.empty()) << key.name;

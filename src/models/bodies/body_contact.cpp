@@ -18,7 +18,7 @@ BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry&
   double stiffness = 1e300, inverse_mass = 0.0;
   for (const std::size_t k : {e.a, e.b}) {
     const PlanPhase& p = layout.phases[k];
-    if (!p.moves) continue;
+    if (!p.moves || !p.rigid_bodies.empty()) continue;  // as hard and as heavy as a wall
     const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
     stiffness = std::min(stiffness, softness * modulus * std::pow(p.spacing, layout.dimensions - 2));
     inverse_mass += 1.0 / p.mass;
@@ -70,7 +70,7 @@ void BodyContact::schedule(Schedule& s) {
 bool BodyContact::of_single_particles() const {
   return std::any_of(layout_.phases.begin(), layout_.phases.end(), [&](const PlanPhase& p) {
     const auto k = static_cast<std::size_t>(&p - layout_.phases.data());
-    if (!entry_.has(k) || !p.moves) return false;
+    if (!entry_.has(k) || !p.moves || !p.rigid_bodies.empty()) return false;
     return p.count == 1 || std::none_of(layout_.entries.begin(), layout_.entries.end(),
                                         [&](const PlanEntry& e) { return e.a == k && e.b == k; });
   });

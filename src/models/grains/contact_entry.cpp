@@ -15,9 +15,11 @@ namespace {
 KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
   const auto stiffness_of = [](const PlanPhase& p) { return p.mass * std::pow(p.sound_speed, 2); };
-  const PlanPhase& soft = !b.moves || (a.moves && stiffness_of(a) <= stiffness_of(b)) ? a : b;
+  // A rigid body is as hard and as heavy as a wall.
+  const bool a_yields = a.moves && a.rigid_bodies.empty(), b_yields = b.moves && b.rigid_bodies.empty();
+  const PlanPhase& soft = !b_yields || (a_yields && stiffness_of(a) <= stiffness_of(b)) ? a : b;
   const double d = 0.5 * (a.spacing + b.spacing);  // m, of two that touch
-  const double reduced = a.moves && b.moves ? a.mass * b.mass / (a.mass + b.mass) : (a.moves ? a.mass : b.mass);
+  const double reduced = a_yields && b_yields ? a.mass * b.mass / (a.mass + b.mass) : (a_yields ? a.mass : b.mass);
   double restitution = 1.0;
   for (const std::size_t k : {e.a, e.b})
     if (layout.phases[k].rules.contacts_limit_speed)  // grains

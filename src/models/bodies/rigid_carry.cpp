@@ -1,0 +1,134 @@
+// What the particles of rigid bodies get from them, and what history.csv tells of the bodies.
+#include <cmath>
+
+#include "models/bodies/rigid_phase.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// m/s2 of its place and 1/s2.
+std::array<Vec3, 2> accelerations(const RigidBody& body) {
+  if (body.hold == RigidBody::Hold::driven) return {};
+  const Vec3 linear = body.hold == RigidBody::Hold::free ? 1.0 / body.mass * body.now.force : Vec3{};
+  if (body.dimensions == 2) return {linear, Vec3{0, 0, body.now.torque[2] / body.inertia[2]}};
+  const OwnAxes axes(body);
+  Vec3 turning = axes.to_own(body.now.torque) - cross(own_angular_velocity(body), body.now.spin);
+  for (std::size_t d = 0; d < 3; ++d) turning[d] /= body.inertia[d];
+  return {linear, axes.to_space(turning)};
+}
+
+}  // namespace
+
+RigidPhase::Carrier::Carrier(const RigidBody& body)
+    : axes(body), place(body.now.place), velocity(body.now.velocity), rate(axes.to_space(own_angular_velocity(body))) {
+  const auto gain = accelerations(body);
+  acceleration = gain[0];
+  turning = gain[1];
+}
+
+void RigidPhase::renew_carriers() {
+  carriers_.clear();
+  for (std::size_t k = 0; k < bodies(); ++k) carriers_.emplace_back(body(k));
+}
+
+std::size_t RigidPhase::id_of(std::size_t place) const {
+  const PhaseParticles& p = w_->particles(number_);
+  return static_cast<std::size_t>(p.id()[place] - p.first_id());
+}
+
+void RigidPhase::find_places() {
+  const PhaseParticles& p = w_->particles(number_);
+  for (std::size_t k = 0; k < p.size(); ++k) place_of_[id_of(k)] = static_cast<std::uint32_t>(k);
+}
+
+/// Places of the particles; along periodic axes the nearest images to where they are.
+void RigidPhase::carry_places() {
+  PhaseParticles& p = w_->particles(number_);
+  renew_carriers();
+  const Bounds& bounds = layout_.bounds;
+  std::array<double*, 3> x{};
+  std::array<double, 3> period{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    x[d] = p.column(Field::position, static_cast<int>(d));
+    if (bounds.periodic[d]) period[d] = bounds.high[d] - bounds.low[d];
+  }
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const std::size_t id = id_of(k);
+    const Carrier& c = carriers_[body_of_[id]];
+    const Vec3 at = c.place + c.axes.to_space(arms_[id]);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+      const double turns = period[d] > 0.0 ? std::round((at[d] - x[d][k]) / period[d]) : 0.0;
+      x[d][k] = at[d] - turns * period[d];
+    }
+  }
+}
+
+void RigidPhase::carry_velocities() {
+  PhaseParticles& p = w_->particles(number_);
+  renew_carriers();
+  std::array<double*, 3> v{};
+  for (int d = 0; d < layout_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const std::size_t id = id_of(k);
+    const Carrier& c = carriers_[body_of_[id]];
+    const Vec3 speed = c.velocity + cross(c.rate, c.axes.to_space(arms_[id]));
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) v[d][k] = speed[d];
+  }
+}
+
+void RigidPhase::carry_accelerations() {
+  PhaseParticles& p = w_->particles(number_);
+  renew_carriers();
+  std::array<double*, 3> a{};
+  for (int d = 0; d < layout_.dimensions; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const std::size_t id = id_of(k);
+    const Carrier& c = carriers_[body_of_[id]];
+    const Vec3 r = c.axes.to_space(arms_[id]);
+    const Vec3 total = c.acceleration + cross(c.turning, r) + cross(c.rate, cross(c.rate, r));
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) a[d][k] = total[d];
+  }
+}
+
+void RigidPhase::history(HistoryRow& row) const {
+  const bool flat = layout_.dimensions == 2;
+  const auto vector = [&](const std::string& name, const Vec3& v, const char* unit) {
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+      row.add(name + "_" + "xyz"[d] + " [" + unit + "]", v[d]);
+  };
+  const auto axial = [&](const std::string& name, const Vec3& v, const char* unit) {
+    if (flat) row.add(name + " [" + unit + "]", v[2]);
+    else vector(name, v, unit);
+  };
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    const RigidBody& b = body(k);
+    const OwnAxes axes(b);
+    const std::string name = plan_.name + (bodies() > 1 ? "_" + std::to_string(k + 1) : "");
+    const Vec3 arm = axes.to_space(b.centre), rate = axes.to_space(own_angular_velocity(b));
+    vector(name, b.now.place + arm, "m");
+    vector(name + "_velocity", b.now.velocity + cross(rate, arm), "m/s");
+    if (flat) row.add(name + "_angle [rad]", b.now.angle);
+    else
+      for (std::size_t c = 0; c < 4; ++c) row.add(name + "_turn_" + std::to_string(c), b.now.turn[c]);
+    axial(name + "_angular_velocity", rate, "1/s");
+    axial(name + "_angular_momentum", axes.to_space(b.now.spin), "kg m2/s");
+    vector(name + "_force", b.now.touch_force, "N");
+    axial(name + "_torque", b.now.touch_torque, "N m");
+  }
+}
+
+void RigidPhase::archive(Archive& a) {
+  if (a.loads()) find_places();
+}
+
+}  // namespace barchan

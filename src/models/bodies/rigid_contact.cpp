@@ -1,0 +1,248 @@
+#include "models/bodies/rigid_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "output/numbers.hpp"
+#include "scene/located.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr double deepest_overlap = 0.5;  // spacings
+
+/// 1/kg: how much a force at the arm (m, from the body's place) along a direction changes the velocity there along it.
+double inverse_mass(const RigidBody& body, const OwnAxes& axes, const Vec3& arm, const Vec3& direction) {
+  if (body.hold == RigidBody::Hold::driven) return 0.0;
+  const Vec3 lever = axes.to_own(cross(arm, direction));
+  double inverse = body.hold == RigidBody::Hold::free ? 1.0 / body.mass : 0.0;
+  if (body.dimensions == 2) return inverse + lever[2] * lever[2] / body.inertia[2];
+  for (std::size_t d = 0; d < 3; ++d) inverse += lever[d] * lever[d] / body.inertia[d];
+  return inverse;
+}
+
+Vec3 velocity_at(const RigidBody& body, const OwnAxes& axes, const Vec3& arm) {
+  return body.now.velocity + cross(axes.to_space(own_angular_velocity(body)), arm);
+}
+
+void load(RigidBody& body, const Vec3& arm, const Vec3& force) {
+  body.now.touch_force = body.now.touch_force + force;
+  body.now.touch_torque = body.now.touch_torque + cross(arm, force);
+}
+
+bool is_round(const ContactSurface& surface) { return surface.form() == ContactSurface::Form::round; }
+
+/// m, from a place to the farthest of the surfaces that have probes.
+double reach_of(const std::vector<ContactSurface>& surfaces, const Vec3& place) {
+  double reach = 0.0;
+  for (const ContactSurface& surface : surfaces)
+    for (const TouchPoint& probe : surface.probes()) reach = std::max(reach, norm(probe.at - place) + probe.radius);
+  return reach;
+}
+
+}  // namespace
+
+RigidContact::RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
+    : scene_(scene), layout_(layout), entry_(entry) {
+  double stiffness = 1e300;
+  for (const std::size_t k : {entry.a, entry.b})
+    if (layout.phases[k].moves) stiffness = std::min(stiffness, layout.phases[k].contact_stiffness);
+  if (!(stiffness > 0.0))
+    throw SceneError(located(scene, "interactions." + entry.name) +
+                     ": nothing in the scene moves or weighs, from which the stiffness of the contact could follow; "
+                     "expected time.largest-speed, or stiffness of both phases");
+  law_ = {stiffness, entry.restitution, entry.friction};
+}
+
+void RigidContact::schedule(Schedule& s) {
+  s.add({stage::contacts, entry_.name, {}, {}, [this] { touch(); }});
+}
+
+void RigidContact::attach(Workspace& w) {
+  w_ = &w;
+  // Probes reach into polygons by their radius.
+  double widest = 0.0;
+  for (const std::size_t k : {entry_.a, entry_.b})
+    for (const Fill& fill : scene_.fills)
+      if (fill.phase == layout_.phases[k].name)
+        for (const ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[k].spacing))
+          for (const TouchPoint& probe : surface.probes()) widest = std::max(widest, probe.radius);
+  const double reach = widest + std::max(layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing);
+  const auto add = [&](std::size_t phase, std::vector<Side>& sides) {
+    if (layout_.phases[phase].moves) add_bodies(phase, reach, sides);
+    else add_wall(phase, reach, sides);
+  };
+  add(entry_.a, a_);
+  if (entry_.a != entry_.b) add(entry_.b, b_);
+  for (std::size_t i = 0; i < a_.size(); ++i)
+    for (std::size_t j = entry_.a == entry_.b ? i + 1 : 0; j < (entry_.a == entry_.b ? a_ : b_).size(); ++j)
+      refuse_wide(a_[i], (entry_.a == entry_.b ? a_ : b_)[j]);
+}
+
+void RigidContact::add_bodies(std::size_t phase, double reach, std::vector<Side>& sides) {
+  for (std::size_t k = 0; k < w_->state.bodies.size(); ++k) {
+    const RigidBody& body = w_->state.bodies[k];
+    if (body.phase != phase) continue;
+    auto surfaces = surfaces_of(scene_.fills[body.fill].shape, scene_, layout_.phases[phase].spacing);
+    for (ContactSurface& surface : surfaces) surface.prepare(reach, layout_.phases[phase].spacing);
+    const double farthest = reach_of(surfaces, body.first_place);
+    sides.push_back({k, false, std::move(surfaces), farthest, OwnAxes(body), OwnAxes(body)});
+  }
+}
+
+void RigidContact::add_wall(std::size_t phase, double reach, std::vector<Side>& sides) {
+  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  const auto add = [&](const ContactSurface& surface) {
+    RigidBody still;
+    still.dimensions = layout_.dimensions;
+    still.hold = RigidBody::Hold::driven;
+    still.inertia = {1, 1, 1};  // of no use: it never turns
+    const auto& probes = surface.probes();
+    for (const TouchPoint& probe : probes)
+      still.first_place = still.first_place + 1.0 / static_cast<double>(probes.size()) * probe.at;
+    still.now.place = still.first_place;
+    const double farthest = probes.empty() ? 1e300 : reach_of({surface}, still.first_place);
+    still_.push_back(still);
+    sides.push_back({still_.size() - 1, true, {surface}, farthest, OwnAxes(still), OwnAxes(still)});
+  };
+  for (const Fill& fill : scene_.fills) {
+    if (fill.phase != layout_.phases[phase].name) continue;
+    for (ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[phase].spacing)) {
+      surface.prepare(reach, layout_.phases[phase].spacing);
+      add(surface);
+    }
+    const auto* planes = std::get_if<SidesShape>(&fill.shape);
+    for (std::size_t axis = 0; planes && axis < static_cast<std::size_t>(layout_.dimensions); ++axis)
+      for (const bool high : {false, true}) {
+        if (std::find(planes->sides.begin(), planes->sides.end(), names[axis][high]) == planes->sides.end()) continue;
+        Vec3 outwards{}, at{};
+        outwards[axis] = high ? -1.0 : 1.0;
+        at[axis] = high ? layout_.bounds.high[axis] : layout_.bounds.low[axis];
+        add(ContactSurface::plane(at, outwards));
+      }
+  }
+}
+
+void RigidContact::refuse_wide(const Side& a, const Side& b) {
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+    if (layout_.bounds.periodic[d] && std::max(a.reach, b.reach) < 1e300 &&
+        a.reach + b.reach > 0.5 * (layout_.bounds.high[d] - layout_.bounds.low[d]))
+      throw SceneError(located(scene_, "domain.size") +
+                       ": two that touch by their outlines are together wider than the periodic domain, so that they "
+                       "could touch on both sides; expected a longer one");
+}
+
+double RigidContact::largest_inverse_mass(std::size_t phase) const {
+  double largest = 0.0;
+  for (const RigidBody& body : layout_.phases[phase].rigid_bodies) {
+    if (body.hold == RigidBody::Hold::driven) continue;
+    const auto surfaces = surfaces_of(scene_.fills[body.fill].shape, scene_, layout_.phases[phase].spacing);
+    const bool round = std::all_of(surfaces.begin(), surfaces.end(), is_round);
+    double inverse = body.hold == RigidBody::Hold::free ? 1.0 / body.mass : 0.0, least = body.inertia[2];
+    if (body.dimensions == 3) least = std::min({body.inertia[0], body.inertia[1], body.inertia[2]});
+    // A push on a round body goes through its centre.
+    if (!round || body.hold != RigidBody::Hold::free)
+      inverse += std::pow(reach_of(surfaces, body.first_place), 2) / least;
+    largest = std::max(largest, inverse);
+  }
+  return largest;
+}
+
+void RigidContact::limits(std::vector<StepLimit>& limits) const {
+  const double inverse = largest_inverse_mass(entry_.a) + largest_inverse_mass(entry_.b);
+  if (inverse > 0.0)
+    limits.push_back({"contact " + entry_.name,
+                      scene_.time.safety * StepConstants::restitution / std::sqrt(law_.stiffness * inverse),
+                      "0.1 sqrt(m/K): keeps the restitution"});
+}
+
+void RigidContact::touch() {
+  overlap_ = 0.0;
+  for (Side& side : a_) side.now = OwnAxes(body_of(side));
+  for (Side& side : b_) side.now = OwnAxes(body_of(side));
+  if (entry_.a == entry_.b) {
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      for (std::size_t j = i + 1; j < a_.size(); ++j) touch(a_[i], a_[j]);
+    return;
+  }
+  for (const Side& a : a_)
+    for (const Side& b : b_) touch(a, b);
+}
+
+/// What must be added to places of a so that it lies in the image next to b.
+Vec3 RigidContact::image_between(const RigidBody& a, const RigidBody& b) const {
+  Vec3 image{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    const double period = layout_.bounds.high[d] - layout_.bounds.low[d];
+    if (layout_.bounds.periodic[d]) image[d] = -period * std::round((a.now.place[d] - b.now.place[d]) / period);
+  }
+  return image;
+}
+
+void RigidContact::touch(const Side& a, const Side& b) {
+  const RigidBody &first = body_of(a), &second = body_of(b);
+  const bool planes = !(std::max(a.reach, b.reach) < 1e300);
+  const Vec3 image = planes ? Vec3{} : image_between(first, second);
+  if (!planes && norm(first.now.place + image - second.now.place) > a.reach + b.reach) return;
+  for (const ContactSurface& of_a : a.surfaces)
+    for (const ContactSurface& of_b : b.surfaces) {
+      // A round body touches with the place that is nearest to the other; all others with their corners.
+      if (is_round(of_a) || !is_round(of_b)) touch(a, of_a, b, of_b, image);
+      if (!is_round(of_a)) touch(b, of_b, a, of_a, -1.0 * image);
+    }
+}
+
+/// The probes of a on the surface of b.
+void RigidContact::touch(const Side& a, const ContactSurface& of_a, const Side& b, const ContactSurface& on_b,
+                         const Vec3& image) {
+  RigidBody &first = body_of(a), &second = body_of(b);
+  for (const TouchPoint& probe : of_a.probes()) {
+    const Vec3 x = first.now.place + image + a.now.to_space(a.first.to_own(probe.at - first.first_place));
+    const Vec3 from_b = x - second.now.place;
+    if (b.reach < 1e300 && dot(from_b, from_b) > std::pow(b.reach + probe.radius, 2)) continue;
+    const auto gap = on_b.gap(second.first_place + b.first.to_space(b.now.to_own(from_b)));
+    if (!gap) continue;
+    const double overlap = probe.radius - gap->distance;
+    if (!(overlap > 0.0) || overlap > probe.deepest) continue;
+    overlap_ = std::max(overlap_, overlap);
+    if (!std::isfinite(overlap)) continue;  // trouble() tells
+    const Vec3 normal = b.now.to_space(b.first.to_own(gap->normal));
+    push(first, a, second, b, x - (probe.radius - 0.5 * overlap) * normal, image, overlap, normal);
+  }
+}
+
+/// Forces at the place `at` (m); `normal` points at a, whose places lie `image` away.
+void RigidContact::push(RigidBody& a, const Side& of_a, RigidBody& b, const Side& of_b, const Vec3& at,
+                        const Vec3& image, double overlap, const Vec3& normal) {
+  const Vec3 arm_a = at - image - a.now.place, arm_b = at - b.now.place;
+  const Vec3 v = velocity_at(a, of_a.now, arm_a) - velocity_at(b, of_b.now, arm_b);
+  const double dt = w_->state.dt, speed = dot(v, normal);
+  const auto inverse = [&](const Vec3& direction) {
+    return inverse_mass(a, of_a.now, arm_a, direction) + inverse_mass(b, of_b.now, arm_b, direction);
+  };
+  const double pressed = law_.push(overlap, speed, inverse(normal), dt);
+  Vec3 force = pressed * normal;
+  const Vec3 along = v - speed * normal;
+  if (const double sliding = norm(along); law_.friction > 0.0 && sliding > 0.0)
+    force = force - law_.grip(pressed, sliding, inverse(1.0 / sliding * along), dt) * along;
+  load(a, arm_a, force);
+  load(b, arm_b, -1.0 * force);
+}
+
+void RigidContact::history(HistoryRow& row) const {
+  row.add(layout_.phases[entry_.a].name + "_" + layout_.phases[entry_.b].name + "_overlap [m]", overlap_);
+}
+
+std::optional<std::string> RigidContact::trouble() const {
+  const double spacing = std::min(layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing);
+  if (!(overlap_ > deepest_overlap * spacing)) return std::nullopt;
+  const std::string& name = layout_.phases[layout_.phases[entry_.a].moves ? entry_.a : entry_.b].name;
+  return "the outlines of " + entry_.name + " overlap by " + brief(overlap_) + " m (bound " +
+         brief(deepest_overlap * spacing) +
+         " m); the contact could not keep them apart, or the fills overlap: raise phases." + name +
+         ".stiffness or time.largest-speed, or move the fills apart";
+}
+
+}  // namespace barchan

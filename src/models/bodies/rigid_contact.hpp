@@ -1,0 +1,53 @@
+// An entry between rigid bodies, or of rigid bodies with a wall: their outlines touch (laws/surface_contact.hpp).
+#pragma once
+
+#include <vector>
+
+#include "laws/surface_contact.hpp"
+#include "models/bodies/contact_surface.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+class RigidContact : public Model {
+ public:
+  RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry);
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void limits(std::vector<StepLimit>& limits) const override;
+  void history(HistoryRow& row) const override;
+  std::optional<std::string> trouble() const override;
+  void archive(Archive& a) override { a.number("overlap of " + entry_.name, overlap_); }
+
+ private:
+  /// A body with its outline, or a part of a wall, which is a body that never moves.
+  struct Side {
+    std::size_t body = 0;                  // of the state, or of still_
+    bool still = false;                    // a wall
+    std::vector<ContactSurface> surfaces;  // in space as the body lay at the start
+    double reach = 0.0;                    // m, of the surfaces from the body's place; 1e300: a plane
+    OwnAxes first, now;                    // axes at the start and now
+  };
+  void add_bodies(std::size_t phase, double reach, std::vector<Side>& sides);
+  void add_wall(std::size_t phase, double reach, std::vector<Side>& sides);
+  RigidBody& body_of(const Side& side) { return side.still ? still_[side.body] : w_->state.bodies[side.body]; }
+  void refuse_wide(const Side& a, const Side& b);
+  Vec3 image_between(const RigidBody& a, const RigidBody& b) const;
+  double largest_inverse_mass(std::size_t phase) const;
+  void touch();
+  void touch(const Side& a, const Side& b);
+  void touch(const Side& a, const ContactSurface& of_a, const Side& b, const ContactSurface& on_b, const Vec3& image);
+  void push(RigidBody& a, const Side& of_a, RigidBody& b, const Side& of_b, const Vec3& at, const Vec3& image,
+            double overlap, const Vec3& normal);
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const PlanEntry& entry_;
+  SurfaceContactLaw law_;
+  std::vector<Side> a_, b_;       // b_ is empty where both are of one phase
+  std::vector<RigidBody> still_;  // places of walls
+  double overlap_ = 0.0;          // m, the deepest of the last step
+  Workspace* w_ = nullptr;
+};
+
+}  // namespace barchan

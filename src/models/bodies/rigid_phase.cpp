@@ -1,0 +1,224 @@
+#include "models/bodies/rigid_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/means.hpp"
+#include "output/numbers.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr double largest_turn = 0.1;   // rad a step: turn_freely() then keeps the energy within 1e-8
+constexpr double largest_way = 0.2;    // spacings a step, of any particle of a body
+constexpr double out_of_scale = 10.0;  // of the largest speed of the scene: a body that fast is a fault
+
+/// s; 1e300 where the body is at rest.
+double step_of(const RigidBody& body, double spacing) {
+  const double turns = norm(own_angular_velocity(body)), speed = norm(body.now.velocity) + turns * body.reach;
+  double step = 1e300;
+  if (turns > 0.0) step = largest_turn / turns;
+  if (speed > 0.0) step = std::min(step, largest_way * spacing / speed);
+  return step;
+}
+
+PhaseRules rules_of(const PlanPhase& p, double largest_speed, const std::string& step_key) {
+  const std::string key = "phases." + p.name + ".stiffness";
+  PhaseRules r;
+  r.way = 0.5 * p.spacing;
+  r.signal_speed = largest_speed > 0.0 ? out_of_scale * largest_speed : 1e300;
+  r.idle = 0.0;
+  r.solid = true;  // that outlines stop at walls is what RigidContact looks at
+  r.one = "particle of a rigid body";
+  r.if_not_finite = key;
+  r.if_passed = "raise " + key + " or time.largest-speed";
+  r.if_dense = "is impossible";
+  r.if_fast = [](double, double bound) {
+    return "ten times the largest speed of the scene, from which the stiffness of contacts follows (the bound is " +
+           brief(bound) + " m/s): raise time.largest-speed";
+  };
+  r.if_far = [step_key](double) { return "lower " + step_key; };
+  r.stiffness_key = key;
+  return r;
+}
+
+}  // namespace
+
+void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                    std::vector<std::string>&) {
+  PlanPhase& p = layout.phases[number];
+  const RigidKeys& keys = scene.phases[number].rigid();
+  p.fields = {Field::position, Field::velocity, Field::acceleration};
+  p.rigid_bodies = rigid_bodies(scene, blocks[number], number, layout);
+  double heaviest = 0.0;
+  for (const RigidBody& body : p.rigid_bodies) heaviest = std::max(heaviest, body.mass);
+  // A body that comes with the largest speed v is stopped within the overlap d: K d^2 = M v^2.
+  p.contact_stiffness =
+      keys.stiffness.value_or(heaviest * std::pow(layout.largest_speed / (keys.largest_overlap * p.spacing), 2));
+  p.rules = rules_of(p, layout.largest_speed, scene.time.fixed_step ? "time.step" : "time.safety");
+}
+
+RigidHold::RigidHold(const Motion& motion)
+    : velocity(compile(motion.velocity)),
+      rate(compile(motion.angular_velocity.value_or(AxialExpression{}).about)),
+      torque(compile(motion.torque.value_or(AxialExpression{}).about)),
+      friction(motion.friction) {}
+
+RigidPhase::RigidPhase(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      plan_(layout.phases[number]),
+      number_(number),
+      forces_(scene, plan_.name),
+      limit_{"motion " + plan_.name, 1e300, "a tenth of a radian, a fifth of a spacing"} {
+  for (const Motion& motion : scene.motions) holds_.emplace_back(motion);
+  felt_ = forces_.any() || std::any_of(layout.entries.begin(), layout.entries.end(),
+                                       [&](const PlanEntry& e) { return e.has(number) && !e.of_surfaces; });
+}
+
+void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  first_body_ = state.bodies.size();
+  const std::vector<Vec3>& x = blocks[number_].position;
+  for (const RigidBody& body : plan_.rigid_bodies) {
+    const OwnAxes axes(body);
+    for (std::size_t k = 0; k < body.count; ++k) {
+      arms_.push_back(axes.to_own(x[body.first + k] - body.now.place));
+      body_of_.push_back(static_cast<std::uint32_t>(state.bodies.size() - first_body_));
+    }
+    state.bodies.push_back(body);
+  }
+}
+
+void RigidPhase::attach(Workspace& w) {
+  w_ = &w;
+  carriers_.reserve(bodies());
+  place_of_.resize(arms_.size());
+  find_places();
+  w.when_sorted.push_back([this] { find_places(); });
+  for (std::size_t k = 0; k < bodies(); ++k) drive(body(k), w.state.time);
+  carry_velocities();
+}
+
+void RigidPhase::schedule(Schedule& s) {
+  using enum Field;
+  s.add({stage::kick_and_drift, plan_.name, {position}, {position, velocity}, [this] { kick_and_drift(); }});
+  s.add({stage::rigid_loads, plan_.name, {position}, {acceleration}, [this] { clear_loads(); }});
+  s.add({stage::rigid, plan_.name, {position, acceleration}, {acceleration}, [this] { sum_loads(); }});
+  s.add({stage::kick, plan_.name, {}, {velocity}, [this] { finish_kick(); }});
+}
+
+void RigidPhase::limits(std::vector<StepLimit>& limits) const {
+  double step = layout_.largest_speed > 0.0 ? largest_way * plan_.spacing / layout_.largest_speed : 1e300;
+  for (const RigidBody& body : plan_.rigid_bodies) step = std::min(step, step_of(body, plan_.spacing));
+  if (step < 1e300)
+    limits.push_back({"rigid " + plan_.name, scene_.time.safety * step,
+                      "a fifth of a spacing at the largest speed, a tenth of a radian at the start"});
+}
+
+const StepLimit* RigidPhase::moving_limit() {
+  limit_.value = 1e300;
+  for (std::size_t k = 0; k < bodies(); ++k)
+    limit_.value = std::min(limit_.value, scene_.time.safety * step_of(body(k), plan_.spacing));
+  return &limit_;
+}
+
+void RigidPhase::kick(RigidBody& body, double time) const {
+  if (body.hold == RigidBody::Hold::driven) return;
+  if (body.hold == RigidBody::Hold::free) body.now.velocity = body.now.velocity + time / body.mass * body.now.force;
+  body.now.spin = body.now.spin + time * OwnAxes(body).to_own(body.now.torque);
+}
+
+/// Gives a driven body the velocities of its motion at a time (s).
+void RigidPhase::drive(RigidBody& body, double time) {
+  if (body.hold != RigidBody::Hold::driven) return;
+  const RigidHold& hold = holds_[body.motion];
+  const auto at = [&](const std::array<Formula, 3>& f) { return Vec3{f[0]({}, time), f[1]({}, time), f[2]({}, time)}; };
+  body.now.velocity = at(hold.velocity);
+  body.now.spin = spin_of(body, OwnAxes(body).to_own(at(hold.rate)));
+}
+
+/// Half a kick, and a step of the way; driven bodies go with their velocities in the middle of the step.
+void RigidPhase::kick_and_drift() {
+  const double dt = w_->state.dt;
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    RigidBody& b = body(k);
+    kick(b, 0.5 * dt);
+    drive(b, w_->state.time + 0.5 * dt);
+    if (b.hold != RigidBody::Hold::pinned) b.now.place = b.now.place + dt * b.now.velocity;
+    if (b.hold == RigidBody::Hold::driven) {
+      const Vec3 rate = OwnAxes(b).to_space(own_angular_velocity(b));
+      turn_by(b, rate, dt);
+      b.now.spin = spin_of(b, OwnAxes(b).to_own(rate));
+    } else {
+      turn_freely(b, dt);
+    }
+  }
+  carry_places();
+  carry_velocities();
+}
+
+void RigidPhase::clear_loads() {
+  PhaseParticles& p = w_->particles(number_);
+  for (int d = 0; d < layout_.dimensions; ++d) std::fill_n(p.column(Field::acceleration, d), p.size(), 0.0);
+  forces_.add(p, w_->state.time, true);
+  for (std::size_t k = 0; k < bodies(); ++k) body(k).now.touch_force = body(k).now.touch_torque = Vec3{};
+}
+
+/// What its particles feel by themselves, by id.
+void RigidPhase::add_particles(RigidBody& body) const {
+  const PhaseParticles& p = w_->particles(number_);
+  const OwnAxes axes(body);
+  const auto force_on = [&](std::size_t id) {
+    Vec3 f{};
+    for (int d = 0; d < layout_.dimensions; ++d)
+      f[static_cast<std::size_t>(d)] = p.mass() * p.column(Field::acceleration, d)[place_of_[id]];
+    return f;
+  };
+  for (std::size_t d = 0; d < 3; ++d) {
+    body.now.touch_force[d] += ordered_sum(body.count, [&](std::size_t k) { return force_on(body.first + k)[d]; });
+    body.now.touch_torque[d] += ordered_sum(body.count, [&](std::size_t k) {
+      return cross(axes.to_space(arms_[body.first + k]), force_on(body.first + k))[d];
+    });
+  }
+}
+
+/// Torque of the motion that holds a body which turns freely about a place. Friction stops it within a step, and
+/// holds it against as much as it can.
+void RigidPhase::hold_torque(RigidBody& body) {
+  if (body.hold != RigidBody::Hold::pinned) return;
+  const RigidHold& hold = holds_[body.motion];
+  const double time = w_->state.time;
+  body.now.torque =
+      body.now.torque + Vec3{hold.torque[0]({}, time), hold.torque[1]({}, time), hold.torque[2]({}, time)};
+  if (!(hold.friction > 0.0)) return;
+  const Vec3 stopping = -1.0 / w_->state.dt * OwnAxes(body).to_space(body.now.spin) - body.now.torque;
+  const double needed = norm(stopping);
+  body.now.torque = body.now.torque + (needed > hold.friction ? hold.friction / needed : 1.0) * stopping;
+}
+
+/// Forces and torques on the bodies, and the accelerations of their particles.
+void RigidPhase::sum_loads() {
+  const Vec3& gravity = scene_.domain.gravity;
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    RigidBody& b = body(k);
+    if (felt_) add_particles(b);
+    const Vec3 weight = b.mass * gravity;
+    b.now.force = b.now.touch_force + weight;
+    b.now.torque = b.now.touch_torque;
+    if (b.hold == RigidBody::Hold::pinned) b.now.torque = b.now.torque + cross(OwnAxes(b).to_space(b.centre), weight);
+    if (layout_.dimensions == 2) b.now.torque[0] = b.now.torque[1] = 0.0;
+    hold_torque(b);
+  }
+  carry_accelerations();
+}
+
+void RigidPhase::finish_kick() {
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    kick(body(k), w_->kick_time);
+    drive(body(k), w_->state.time);
+  }
+  carry_velocities();
+}
+
+}  // namespace barchan

@@ -1,0 +1,75 @@
+// A phase of rigid bodies, one a [[fill]]: they move as wholes and carry their particles along (docs/method.md).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "models/bodies/rigid_start.hpp"
+#include "models/forces.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                    std::vector<std::string>& warnings);
+
+/// How a [[motion]] holds bodies: of driven ones the velocity of their places and the angular velocity; of those that
+/// turn freely about a place the torque and the friction there.
+struct RigidHold {
+  RigidHold(const Motion& motion);
+  std::array<Formula, 3> velocity, rate, torque;  // m/s, 1/s, N m
+  double friction;                                // N m
+};
+
+class RigidPhase : public Model {
+ public:
+  RigidPhase(const Scene& scene, const Layout& layout, std::size_t number);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void limits(std::vector<StepLimit>& limits) const override;
+  const StepLimit* moving_limit() override;
+  int phase() const override { return static_cast<int>(number_); }
+  void history(HistoryRow& row) const override;
+  void archive(Archive& a) override;
+
+ private:
+  void kick_and_drift();
+  void clear_loads();
+  void sum_loads();
+  void finish_kick();
+  void kick(RigidBody& body, double time) const;
+  void drive(RigidBody& body, double time);
+  void add_particles(RigidBody& body) const;
+  void hold_torque(RigidBody& body);
+  /// A body as its particles see it, in space.
+  struct Carrier {
+    explicit Carrier(const RigidBody& body);
+    OwnAxes axes;
+    Vec3 place, velocity, rate, acceleration, turning;  // m, m/s, 1/s, m/s2, 1/s2
+  };
+  void renew_carriers();
+  void find_places();
+  void carry_places();
+  void carry_velocities();
+  void carry_accelerations();
+  std::size_t bodies() const { return plan_.rigid_bodies.size(); }
+  RigidBody& body(std::size_t k) const { return w_->state.bodies[first_body_ + k]; }
+  std::size_t id_of(std::size_t place) const;
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const PlanPhase& plan_;
+  std::size_t number_, first_body_ = 0;
+  Forces forces_;
+  bool felt_ = false;                    // particles feel something by themselves
+  std::vector<Carrier> carriers_;        // by body, of the task that runs
+  std::vector<RigidHold> holds_;         // by [[motion]]
+  std::vector<Vec3> arms_;               // m, from the body's place along its own axes, by id
+  std::vector<std::uint32_t> body_of_;   // by id
+  std::vector<std::uint32_t> place_of_;  // by id
+  StepLimit limit_;
+  Workspace* w_ = nullptr;
+};
+
+}  // namespace barchan

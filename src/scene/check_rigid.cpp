@@ -1,0 +1,98 @@
+// Rigid bodies: what may touch them and by which surface, keys that nothing reads, and what turns.
+#include <algorithm>
+
+#include "scene/checks.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+namespace {
+
+bool rigid(const Phase& phase) { return phase.kind() == PhaseKind::rigid; }
+
+/// Keys of a motion that only rigid bodies have, and of those that turn freely.
+void check_turning(const Motion& motion, const std::string& dotted, const Scene& scene, const Report& report) {
+  const Phase* phase = find_phase(scene, motion.phase);
+  if (!phase || report.touched(dotted + ".phase") || report.touched("phases." + phase->name + ".kind")) return;
+  const bool rigid = phase->kind() == PhaseKind::rigid, free = motion.about && !motion.angular_velocity;
+  for (const char* key : {".about", ".angular-velocity", ".torque", ".friction"})
+    if (!rigid && report.has(dotted + key))
+      report(dotted + key, "only rigid bodies turn as a whole; expected a phase of kind rigid");
+  if (!rigid) return;
+  for (const char* key : {".torque", ".friction"})
+    if (!free && report.has(dotted + key))
+      report(dotted + key,
+             "acts on bodies that turn freely about a place; expected about = [...] and no angular-velocity beside it");
+  if (free && report.has(dotted + ".velocity"))
+    report(
+        dotted + ".velocity",
+        "the place about which bodies turn freely stays where it is; expected angular-velocity beside it, or no such "
+        "key");
+}
+
+/// The entries that a rigid phase cannot have.
+void check_partner(const Interaction& pair, const Phase& a, const Phase& b, const Report& report) {
+  const std::string dotted = "interactions." + pair.a + "-" + pair.b;
+  if (report.touched(dotted)) return;
+  const Phase& other = rigid(a) ? b : a;
+  if (other.kind() == PhaseKind::fluid || other.kind() == PhaseKind::column)
+    report(dotted,
+           "a rigid body feels no fluid yet; expected an entry with bodies, walls or grains without a diameter");
+  if (other.if_grains() && other.diameter())
+    report(dotted, "spheres do not touch rigid bodies yet; expected grains without a diameter, or no such entry");
+}
+
+/// All fills of two phases that touch by surfaces must have one.
+void check_surfaces(const Scene& scene, const Interaction& pair, const Report& report) {
+  bool flat = false, edges = false;  // boxes in 3D
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const Fill& fill = scene.fills[k];
+    const std::string shape = "fill." + std::to_string(k) + ".shape";
+    const Phase* phase = find_phase(scene, fill.phase);
+    if (!phase || (fill.phase != pair.a && fill.phase != pair.b) || report.touched(shape)) continue;
+    if (!has_surface(fill.shape, scene.dimensions))
+      report(shape, "the entry " + pair.a + "-" + pair.b +
+                        " acts between surfaces, and this shape has none; expected " +
+                        (scene.dimensions == 2 ? "box, cube, disc, ring, polygon or surface" : "box, cube or sphere") +
+                        (phase->if_wall() ? ", or sides" : ""));
+    const bool box = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<CubeShape>(fill.shape);
+    if (scene.dimensions == 2 || !box) continue;
+    (fill.phase == pair.a ? flat : edges) = true;
+    if (pair.a == pair.b) edges = true;
+  }
+  if (flat && edges)
+    report(
+        "interactions." + pair.a + "-" + pair.b,
+        "boxes in three dimensions may touch along their edges, which is not there yet; expected spheres on one side");
+}
+
+/// Keys of contacts that nothing reads.
+void check_stiffness(const Scene& scene, const Phase& phase, const Report& report) {
+  const std::string dotted = "phases." + phase.name;
+  const bool touches = std::any_of(scene.phases.begin(), scene.phases.end(), [&](const Phase& other) {
+    return touch_by_surfaces(phase, other) && entry_between(scene, phase, other);
+  });
+  for (const char* key : {".stiffness", ".largest-overlap"})
+    if (!touches && report.has(dotted + key) && !report.touched(dotted + key))
+      report(dotted + key, "nothing reads it; expected an entry with a rigid phase or a wall");
+  if (report.has(dotted + ".stiffness") && report.has(dotted + ".largest-overlap") &&
+      !report.touched(dotted + ".largest-overlap"))
+    report(dotted + ".largest-overlap", "stiffness says how stiff contacts are; expected no such key beside it");
+}
+
+}  // namespace
+
+void check_rigid(const Scene& scene, const Report& report) {
+  const auto known = [&](const Phase& phase) { return !report.touched("phases." + phase.name + ".kind"); };
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)
+    check_turning(scene.motions[k], "motion." + std::to_string(k), scene, report);
+  for (const Interaction& pair : scene.interactions) {
+    const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
+    if (!a || !b || !known(*a) || !known(*b) || (!rigid(*a) && !rigid(*b))) continue;
+    check_partner(pair, *a, *b, report);
+    if (touch_by_surfaces(*a, *b)) check_surfaces(scene, pair, report);
+  }
+  for (const Phase& phase : scene.phases)
+    if (known(phase) && rigid(phase) && !report.touched("interactions")) check_stiffness(scene, phase, report);
+}
+
+}  // namespace barchan
