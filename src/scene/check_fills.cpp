@@ -36,9 +36,10 @@ void check_shape_keys(const std::string& shape, bool fitted, const Report& repor
   const bool nothing =
       first.empty() && !report.has(shape + ".dune") && !report.has(shape + ".from") && !report.has(shape + ".layers");
   if (nothing && !report.touched(shape))
-    report(shape,
-           "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, cube, points, formula, "
-           "sides");
+    report(
+        shape,
+        "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, cube, points, file, formula, "
+        "sides");
 }
 
 void check_dune(const DuneShape& dune, const std::string& dotted, const Scene& scene, const Report& report) {
@@ -136,6 +137,12 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
            "only spheres settle, in a box or a bed; expected grains with a diameter, and such a shape");
   if (fill.packing == Packing::settled && fill.perturb > 0.0)
     report(dotted + ".perturb", "grains at rest stay where they are; expected no such key");
+  if (std::holds_alternative<FileShape>(fill.shape)) {
+    if (!phase.if_grains() || !phase.diameter())
+      report(dotted + ".shape.file", "only spheres are read from a file; expected grains with a diameter");
+    for (const char* key : {".packing", ".perturb", ".seed"})
+      if (report.has(dotted + key)) report(dotted + key, "the file says where the grains are; expected no such key");
+  }
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   if (close && !continuous && placed)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -17,9 +19,28 @@ namespace barchan {
 
 namespace {
 
+/// A line of the scene's identity that changes with what a file holds (FNV-1a, 64 bits).
+std::string digest_of_file(const std::string& path, std::size_t fill) {
+  std::ifstream stream(path, std::ios::binary);
+  std::uint64_t hash = 14695981039346656037ull;
+  char bytes[65536];
+  while (stream.read(bytes, sizeof bytes), stream.gcount() > 0)
+    for (std::streamsize k = 0; k < stream.gcount(); ++k)
+      hash = (hash ^ static_cast<unsigned char>(bytes[k])) * 1099511628211ull;
+  char text[96];
+  std::snprintf(text, sizeof text, "\n[file-of-fill-%zu]\ndigest = \"%016llx\"\n", fill,
+                static_cast<unsigned long long>(hash));
+  return text;
+}
+
 constexpr std::size_t most_of_a_scene = std::size_t{16} << 20;  // bytes; a person writes some thousand
 
 }  // namespace
+
+std::string path_of_file(const Scene& scene, const std::string& file) {
+  const std::filesystem::path path(file);
+  return path.is_absolute() ? file : (std::filesystem::path(scene.file).parent_path() / path).string();
+}
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   Problems problems(file);
@@ -28,6 +49,9 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   Scene scene = read_document(document, file);
   scene.places = places_of_keys(document, file);
   scene.identity = identity_of(document);
+  for (std::size_t k = 0; k < scene.fills.size(); ++k)
+    if (const auto* shape = std::get_if<FileShape>(&scene.fills[k].shape); shape && !shape->file.empty())
+      scene.identity += digest_of_file(path_of_file(scene, shape->file), k);
   check(document, scene, problems);
   problems.throw_if_any();
   return scene;

@@ -170,6 +170,8 @@ constexpr Key table[] = {
     {"fill.shape", "polygon", in_shape<&PolygonShape::corners>(), "m", "Corners [x, y]; in 3D a prism along z."},
     {"fill.shape", "cube", shape<CubeShape>(), "", "Square or cube of so many particles along each side."},
     {"fill.shape", "points", in_shape<&PointsShape::at>(), "m", "Single particles."},
+    {"fill.shape", "file", in_shape<&FileShape::file>(), "",
+     "Grains with a diameter, where a .vtp or .vtu of Barchan has those of the phase of that name (with the field radius if they differ); from the folder of the scene."},
     {"fill.shape", "formula", in_shape<&FormulaShape::inside>(), "", "Particles where the formula is above zero.", {}, "x y z"},
     {"fill.shape", "sides", sides(), "",
      "Layers of wall particles outside the domain. bottom and top: y; left and right: x; back and front: z."},

@@ -196,6 +196,9 @@ struct CubeShape {
 struct PointsShape {
   std::vector<Vec3> at;
 };  // single particles
+struct FileShape {
+  std::string file;
+};  // spheres where a frame of an earlier run has them
 struct FormulaShape {
   Expression inside;
 };                                 // particles where it is > 0
@@ -221,7 +224,7 @@ struct BedShape {
 };
 
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
-                           FormulaShape, SidesShape, BedShape, TheRestShape>;
+                           FormulaShape, SidesShape, BedShape, FileShape, TheRestShape>;
 
 struct Fill {
   std::string phase;

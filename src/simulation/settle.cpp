@@ -10,6 +10,7 @@
 #include "scene/ground.hpp"
 #include "scene/places.hpp"
 #include "scene/shapes.hpp"
+#include "simulation/grains_file.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -312,6 +313,10 @@ SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<Partic
   return {blocks[0].position, blocks[0].radius};
 }
 
-std::vector<ParticleBlock> make_particles(const Scene& scene) { return generate(scene, settle); }
+std::vector<ParticleBlock> make_particles(const Scene& scene) {
+  return generate(scene, [](const Scene& s, std::size_t k, const std::vector<ParticleBlock>& before) {
+    return std::holds_alternative<FileShape>(s.fills[k].shape) ? grains_of_file(s, k) : settle(s, k, before);
+  });
+}
 
 }  // namespace barchan

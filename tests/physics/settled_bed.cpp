@@ -2,9 +2,14 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
+#include "base/errors.hpp"
+#include "output/series.hpp"
 #include "physics/small_scenes.hpp"
 
 namespace barchan {
@@ -119,12 +124,51 @@ TEST_P(SettledBed, StaysAtRest) {
   EXPECT_LT(area / room, 0.92);
 }
 
+/// Writes the settled bed and gives a scene that reads it.
+Scene from_file(const std::filesystem::path& file, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides{"fill.1={ phase = \"sand\", shape = { file = \"" + file.string() + "\" } }"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return parse_scene(flat, "bed.toml", overrides);
+}
+
+TEST(BedOfAFile, IsThatOfTheFrame) {
+  const Scene made = parse_scene(flat, "bed.toml", {"fill.1.shape={ bed = 0.003 }", "output.fields=[\"radius\"]"});
+  const auto blocks = make_particles(made);
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("barchan_bed_" + std::to_string(getpid()) + ".vtp");
+  write_frame(file, Simulation(made, make_plan(made, blocks), blocks).frame(0), FrameFormat::vtp, true);
+  const auto read = make_particles(from_file(file));
+  ASSERT_EQ(read[0].position.size(), blocks[0].position.size());
+  for (std::size_t i = 0; i < blocks[0].position.size(); ++i) {
+    EXPECT_EQ(read[0].position[i], blocks[0].position[i]);
+    EXPECT_EQ(read[0].radius[i], blocks[0].radius[i]);
+  }
+  const std::string identity = from_file(file).identity;
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& word) {
+    try {
+      make_particles(from_file(file, more));
+      ADD_FAILURE() << "taken: " << word;
+    } catch (const SceneError& e) { EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what(); }
+  };
+  refused({"phases.sand.diameter={ mean = 1e-3, spread = 0.01 }"}, "the diameters of the phase");
+  refused({"domain.size=[0.02, 0.03]", "domain.periodic=[]"}, "outside the domain");
+  refused({"fill.1.shape={ file = \"nowhere.vtp\" }"}, "cannot be read");
+  refused({"fill.1.packing=settled"}, "the file says where the grains are");
+  refused({"fill.1.phase=floor"}, "only spheres are read from a file");
+  Scene bare = made;
+  bare.output.fields.clear();
+  write_frame(file, Simulation(bare, make_plan(bare, blocks), blocks).frame(0), FrameFormat::vtp, true);
+  refused({}, "no field radius");
+  EXPECT_NE(from_file(file).identity, identity) << "another file is another scene to a checkpoint";
+  std::filesystem::remove(file);
+}
+
 TEST(SettledBed, IsTheSameOnAnyNumberOfThreads) {
-  const Scene scene = parse_scene(flat, "bed.toml", {"fill.1.shape={ bed = 0.004 }"});
+  const Scene scene = parse_scene(flat, "bed.toml", {"fill.1.shape={ bed = 0.003 }"});
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
   const auto one = make_particles(scene);
-  omp_set_num_threads(3);
+  omp_set_num_threads(2);
   const auto three = make_particles(scene);
   omp_set_num_threads(threads);
   ASSERT_EQ(one[0].position.size(), three[0].position.size());
