@@ -9,8 +9,8 @@
 namespace barchan {
 namespace {
 
-const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring",
-                                   "polygon", "cube", "points", "formula", "sides"};
+const char* const shape_names[] = {"bed",  "box",    "disc", "sphere",  "ring", "polygon",
+                                   "cube", "points", "file", "formula", "sides"};
 
 /// The shape must be one, and companions (dune, layers) need the shape that they belong to.
 void check_shape_keys(const std::string& shape, bool fitted, const Report& report) {
@@ -131,17 +131,20 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
     report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\"");
-  const bool box_or_bed = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
-  if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !box_or_bed))
+  const bool from_file = std::holds_alternative<FileShape>(fill.shape);
+  const bool may_settle =
+      from_file || std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
+  if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !may_settle))
     report(dotted + ".packing",
-           "only spheres settle, in a box or a bed; expected grains with a diameter, and such a shape");
+           "only spheres settle, in a box or a bed or from a file; expected grains with a diameter, and such a shape");
   if (fill.packing == Packing::settled && fill.perturb > 0.0)
     report(dotted + ".perturb", "grains at rest stay where they are; expected no such key");
-  if (std::holds_alternative<FileShape>(fill.shape)) {
+  if (from_file) {
     if (!phase.if_grains() || !phase.diameter())
       report(dotted + ".shape.file", "only spheres are read from a file; expected grains with a diameter");
     for (const char* key : {".packing", ".perturb", ".seed"})
-      if (report.has(dotted + key)) report(dotted + key, "the file says where the grains are; expected no such key");
+      if (report.has(dotted + key) && fill.packing != Packing::settled)
+        report(dotted + key, "the file says where the grains are; expected no such key, or packing = \"settled\"");
   }
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);

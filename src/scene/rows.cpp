@@ -152,7 +152,7 @@ constexpr Key table[] = {
     {"fill", "shape", fill_shape(), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
     {"fill", "packing", at<&Fill::packing>(Packing::square), "",
      "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
-     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell and came to rest before the run. Fluids and elastic bodies take rows or fitted."},
+     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell, or spheres of a file, that came to rest before the run. Fluids and elastic bodies take rows or fitted."},
     {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
      "Every coordinate is moved by a random number of at most this size.", {.at_least = 0.0, .at_most = 0.5}},
     {"fill", "seed", at<&Fill::seed>(1), "",
@@ -171,7 +171,7 @@ constexpr Key table[] = {
     {"fill.shape", "cube", shape<CubeShape>(), "", "Square or cube of so many particles along each side."},
     {"fill.shape", "points", in_shape<&PointsShape::at>(), "m", "Single particles."},
     {"fill.shape", "file", in_shape<&FileShape::file>(), "",
-     "Grains with a diameter, where a .vtp or .vtu of Barchan has those of the phase of that name (with the field radius if they differ); from the folder of the scene."},
+     "Grains with a diameter, where a frame of another run (.vtp or .vtu) has the grains of the phase of that name; if diameters differ, that run needs output.fields = [\"radius\"]. A path from the folder of the scene."},
     {"fill.shape", "formula", in_shape<&FormulaShape::inside>(), "", "Particles where the formula is above zero.", {}, "x y z"},
     {"fill.shape", "sides", sides(), "",
      "Layers of wall particles outside the domain. bottom and top: y; left and right: x; back and front: z."},

@@ -1,17 +1,40 @@
 #include "simulation/grains_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "base/errors.hpp"
+#include "laws/sphere_contact.hpp"
 #include "output/numbers.hpp"
 #include "output/series.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "scene/places.hpp"
 #include "scene/reader.hpp"
 
 namespace barchan {
+
+namespace {
+
+/// Two grains that overlap so much that a run would end at once; each is asked against those before it.
+std::optional<std::array<std::size_t, 2>> first_overlap(const Scene& scene, const SettledGrains& grains,
+                                                        double widest) {
+  const PeriodicSpace space(scene.domain);
+  Places before(space, widest);
+  for (std::size_t i = 0; i < grains.position.size(); ++i) {
+    const Vec3 x = space.wrapped(grains.position[i]);
+    const double diameter = 2.0 * grains.radius[i];
+    if (const int k = before.owner_near(x, diameter, 1.0 - most_sphere_overlap); k >= 0)
+      return std::array{static_cast<std::size_t>(k), i};
+    before.add(x, diameter, static_cast<int>(i));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
   const Fill& f = scene.fills[fill];
@@ -31,15 +54,16 @@ SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
   const SphereSize size = *find_phase(scene, f.phase)->diameter();
   const FrameField* radii = nullptr;
   for (const FrameField& field : frame.fields)
-    if (field.name == "radius") radii = &field;
+    if (field.name == "radius" && field.components == 1) radii = &field;
   if (size.spread > 0.0 && !radii)
     refuse("has no field radius, and the grains of \"" + f.phase +
            "\" differ; expected a frame with output.fields = [\"radius\"]");
   SettledGrains grains;
+  std::vector<std::int64_t> ids;
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (frame.phase[i] != number) continue;
     const Vec3 x{frame.points[3 * i], frame.points[3 * i + 1], frame.points[3 * i + 2]};
-    const double radius = size.spread > 0.0 ? radii->values[i] : 0.5 * size.mean;
+    const double radius = radii ? radii->values[i] : 0.5 * size.mean;
     const std::string which = "has particle " + std::to_string(frame.id[i]);
     if (!std::isfinite(x[0] + x[1] + x[2])) refuse(which + " at no finite place");
     if (scene.dimensions == 2 && x[2] != 0.0)
@@ -50,7 +74,12 @@ SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
              " m, the diameters of the phase");
     grains.position.push_back(x);
     grains.radius.push_back(radius);
+    ids.push_back(frame.id[i]);
   }
+  if (const auto pair = first_overlap(scene, grains, size.largest()))
+    refuse("has particles " + std::to_string(ids[(*pair)[0]]) + " and " + std::to_string(ids[(*pair)[1]]) +
+           " that overlap by more than " + brief(100.0 * most_sphere_overlap) +
+           " % of their mean diameter; expected grains beside each other");
   return grains;
 }
 

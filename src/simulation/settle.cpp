@@ -194,6 +194,16 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
   return blocks;
 }
 
+/// Walls as they are, and the grains of the fill's file.
+std::vector<ParticleBlock> begin_with_file(const Scene& scene, std::size_t k, const Scene& s) {
+  std::vector<ParticleBlock> blocks = generate(s);
+  SettledGrains grains = grains_of_file(scene, k);
+  blocks[0].velocity.assign(grains.position.size(), Vec3{});
+  blocks[0].position = std::move(grains.position);
+  if (s.phases[0].diameter()->spread > 0.0) blocks[0].radius = std::move(grains.radius);
+  return blocks;
+}
+
 /// The farthest way of a grain since its place was told last, which is told anew (m).
 double way_of(const PhaseParticles& p, std::vector<Vec3>& place) {
   double most = 0.0;
@@ -254,7 +264,7 @@ void cut(const Scene& scene, std::size_t k, const Scene& s, ParticleBlock& block
     for (std::size_t a = 0; a < 3; ++a)
       if (s.domain.periodic[a]) x[a] -= s.domain.size[a] * std::floor((x[a] - s.domain.origin[a]) / s.domain.size[a]);
   if (block.radius.empty()) block.radius.assign(block.position.size(), 0.5 * s.phases[0].diameter()->mean);
-  keep_inside(scene, k, block.position, block.radius);
+  if (!std::holds_alternative<FileShape>(scene.fills[k].shape)) keep_inside(scene, k, block.position, block.radius);
   block.velocity.assign(block.position.size(), Vec3{});
 }
 
@@ -289,17 +299,21 @@ SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<Partic
   const Container c = container_of(scene, scene.fills[k], k);
   const Scene s = settling_scene(scene, k, c);
   double thickness = 0.0;
-  std::vector<ParticleBlock> blocks = begin_loosely(scene, scene.fills[k], s, c, thickness);
+  const bool from_file = std::holds_alternative<FileShape>(scene.fills[k].shape);
+  std::vector<ParticleBlock> blocks =
+      from_file ? begin_with_file(scene, k, s) : begin_loosely(scene, scene.fills[k], s, c, thickness);
   const double unit = std::sqrt(s.phases[0].diameter()->mean / norm(scene.domain.gravity)),
                fall = std::sqrt(2.0 * thickness / norm(scene.domain.gravity)) / unit;
   std::vector<Scene> stages;
-  for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
+  if (!from_file)
+    for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
   int trials = 0;
   for (std::size_t stage = 0; stage < stages.size();) {
     const bool last = stage + 1 == stages.size();
-    const auto way = rest(stages[stage], blocks, stage > 0, stage == 0 ? fall : 2.0 * push, latest);
+    const auto way =
+        rest(stages[stage], blocks, from_file || stage > 0, stage == 0 && !from_file ? fall : 2.0 * push, latest);
     if (!way)
       throw SceneError(
           scene.file + ": fill." + std::to_string(k) +
@@ -315,7 +329,7 @@ SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<Partic
 
 std::vector<ParticleBlock> make_particles(const Scene& scene) {
   return generate(scene, [](const Scene& s, std::size_t k, const std::vector<ParticleBlock>& before) {
-    return std::holds_alternative<FileShape>(s.fills[k].shape) ? grains_of_file(s, k) : settle(s, k, before);
+    return s.fills[k].packing == Packing::settled ? settle(s, k, before) : grains_of_file(s, k);
   });
 }
 

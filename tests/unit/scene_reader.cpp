@@ -578,6 +578,9 @@ TEST(SceneReader, TakesEveryShape) {
             (std::array<double, 2>{0, 1}));
   EXPECT_EQ(std::get<CubeShape>(shape("{ cube = { centre = [0.5, 0.5], count = 3 } }")).count, 3);
   EXPECT_EQ(std::get<PointsShape>(shape("{ points = [[0.5, 0.5]] }")).at.size(), 1u);
+  const std::string bed =
+      with(sphere_keys, "{ bed = 0.01, from = 0.004 }\npacking = \"settled\"", "{ file = \"bed.vtp\" }");
+  EXPECT_EQ(std::get<FileShape>(parse_scene(bed, "s.toml").fills.at(1).shape).file, "bed.vtp");
   EXPECT_EQ(std::get<FormulaShape>(shape("{ formula = \"x - y\" }")).inside.formula, "x - y");
   EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25 }")).depth, 0.25);
   EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25, from = 0.125 }")).from, 0.125);

@@ -318,9 +318,9 @@ void Spheres::history(HistoryRow& row) const {
 }
 
 std::optional<std::string> Spheres::trouble() const {
-  if (deepest_ <= most_overlap) return std::nullopt;
+  if (deepest_ <= most_sphere_overlap) return std::nullopt;
   return "two grains overlap by " + brief(100.0 * deepest_) + " % of their mean diameter (the bound is " +
-         brief(100.0 * most_overlap) +
+         brief(100.0 * most_sphere_overlap) +
          " %): contacts are too soft for what presses them, or fills overlap; raise stiffness, young or "
          "time.largest-speed, or lower "
          "largest-overlap";

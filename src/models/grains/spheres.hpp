@@ -74,7 +74,6 @@ class Spheres : public Model {
   SphereSet set() const;
   double slack() const { return slack_ * laws_.reach(); }
 
-  static constexpr double most_overlap = 0.3;  // of the sum of radii: beyond it a law means nothing
   static constexpr long searches_a_sort = 32;
 
   const Scene& scene_;
