@@ -100,6 +100,9 @@ constexpr Key table[] = {
     {"phases", "largest-overlap", of<&GrainsKeys::largest_overlap>(0.02), "",
      "Overlap of two spheres that meet with the largest speed of the scene (time.largest-speed), in mean diameters: makes the stiffness.",
      {.at_most = 0.2, .above = 0.0}},
+    {"phases", "sleep", of<&GrainsKeys::sleep>(false), "",
+     "Spheres that nothing disturbs sleep: they stay where they are and cost nothing until forces on them change by 0.3 of their weight. "
+     "Needs gravity."},
     {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
      "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
     {"phases", "slip", of<&WallKeys::slip, &ColumnKeys::slip>(Slip::no_slip), "",

@@ -94,6 +94,7 @@ struct GrainsKeys {
   std::optional<double> stiffness;      // N/m, of a linear contact of two grains of the phase
   double largest_overlap{};             // of the mean diameter, at the largest speed of the scene
   double young{};                       // Pa, of a Hertzian contact; 0: from largest_overlap
+  bool sleep{};                         // spheres that nothing disturbs are left out of the steps
   double poisson{};
 };
 

@@ -67,6 +67,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
   Scene s = scene;
   s.phases = {phase};
   std::get<GrainsKeys>(s.phases[0].own).restitution = std::min(restitution, phase.grains().restitution);
+  std::get<GrainsKeys>(s.phases[0].own).sleep = false;
   s.interactions.clear();
   s.fills.clear();
   s.forcings.clear();

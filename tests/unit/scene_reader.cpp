@@ -364,6 +364,7 @@ density = 2650
 diameter = { mean = 1e-3, spread = 0.2 }
 friction = 0.5
 rolling-friction = 0.1
+sleep = true
 stiffness = 300
 [phases.stones]
 kind = "grains"
@@ -398,6 +399,8 @@ TEST(SceneReader, ReadsTheKeysOfSpheres) {
   EXPECT_EQ(sand.diameter->spread, 0.2);
   EXPECT_EQ(sand.friction, 0.5);
   EXPECT_EQ(sand.rolling_friction, 0.1);
+  EXPECT_TRUE(sand.sleep);
+  EXPECT_FALSE(stones.sleep);
   EXPECT_EQ(sand.stiffness, 300);
   EXPECT_EQ(stones.diameter->mean, 2e-3);
   EXPECT_EQ(stones.diameter->spread, 0.0);
