@@ -21,7 +21,7 @@ struct RunOptions {
 
 /// Sets the number of threads: `wanted`, or for 0 one for every two thousand particles, as far as the machine has them.
 /// Below that, waiting for each other costs more than it brings. The result does not depend on it.
-void use_threads(int wanted, const Plan& plan);
+void use_threads(int wanted, double particles);
 
 int run(const RunOptions& options);
 int plan(const std::string& scene, const std::vector<std::string>& overrides, int threads, bool json);

@@ -16,9 +16,10 @@ namespace barchan {
 
 int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = make_particles(scene);
+  if (threads > 0) use_threads(threads, 0);
+  const auto blocks = make_particles(scene, json ? nullptr : &std::cout);
   Plan plan = make_plan(scene, blocks);
-  use_threads(threads, plan);
+  use_threads(threads, plan.particles());
   const MemoryNeed memory = memory_need(scene, plan, !scene.time.fixed_step);
   if (!json) std::cout << to_text(plan, scene) << to_text(memory) << std::flush;  // before anything is allocated
   Estimate estimate;
@@ -37,12 +38,12 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
 
 int generate(const std::string& file, const std::string& output, const std::vector<std::string>& overrides) {
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = make_particles(scene);
+  const auto blocks = make_particles(scene, &std::cout);
   const Plan plan = make_plan(scene, blocks);
   const bool vtu = std::filesystem::path(output).extension() == ".vtu";
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
-  use_threads(0, plan);
+  use_threads(0, plan.particles());
   write_frame(output, Simulation(scene, plan, blocks).frame(0), vtu ? FrameFormat::vtu : FrameFormat::vtp,
               scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";

@@ -151,10 +151,11 @@ int run(const RunOptions& options) {
   outlive_readers();
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
-  const auto blocks = make_particles(scene);
+  if (options.threads > 0) use_threads(options.threads, 0);
+  const auto blocks = make_particles(scene, options.quiet ? nullptr : &std::cout);
   const Plan plan = make_plan(scene, blocks);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
-  use_threads(options.threads, plan);
+  use_threads(options.threads, plan.particles());
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   std::optional<FolderLock> lock;
   std::error_code unseen;

@@ -34,8 +34,8 @@ void make_sure_of(int threads) {
 
 }  // namespace
 
-void use_threads(int wanted, const Plan& plan) {
-  const int useful = 1 + static_cast<int>(std::min(plan.particles() / 2000.0, 4095.0));
+void use_threads(int wanted, double particles) {
+  const int useful = 1 + static_cast<int>(std::min(particles / 2000.0, 4095.0));
   const int threads = wanted > 0 ? wanted : std::min(omp_get_max_threads(), useful);
   make_sure_of(threads);  // all but the one that is there, and the writer of frames
   omp_set_num_threads(threads);

@@ -1,5 +1,7 @@
 #include "simulation/settle.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -294,9 +296,23 @@ Scene softened(Scene s, double stiffness) {
   return s;
 }
 
+/// So few threads as these grains are worth, until the end of the block.
+class FewThreads {
+ public:
+  explicit FewThreads(std::size_t grains) : before_(omp_get_max_threads()) {
+    omp_set_num_threads(std::min(before_, 1 + static_cast<int>(std::min<std::size_t>(grains / 2000, 4095))));
+  }
+  ~FewThreads() { omp_set_num_threads(before_); }
+  FewThreads(const FewThreads&) = delete;
+  FewThreads& operator=(const FewThreads&) = delete;
+
+ private:
+  int before_;
+};
+
 }  // namespace
 
-SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<ParticleBlock>&) {
+SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   const Container c = container_of(scene, scene.fills[k], k);
   const Scene s = settling_scene(scene, k, c);
   double thickness = 0.0;
@@ -310,9 +326,13 @@ SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<Partic
     for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
+  const FewThreads team(blocks[0].position.size());
   int trials = 0;
   for (std::size_t stage = 0; stage < stages.size();) {
     const bool last = stage + 1 == stages.size();
+    if (words != nullptr)
+      *words << "settling  " << scene.fills[k].phase << ": " << blocks[0].position.size() << " grains, contacts "
+             << stage + 1 << " of " << stages.size() << (trials > 0 ? ", once more" : "") << std::endl;
     const auto way =
         rest(stages[stage], blocks, from_file || stage > 0, stage == 0 && !from_file ? fall : 2.0 * push, latest);
     if (!way)
@@ -328,9 +348,9 @@ SettledGrains settle(const Scene& scene, std::size_t k, const std::vector<Partic
   return {blocks[0].position, blocks[0].radius};
 }
 
-std::vector<ParticleBlock> make_particles(const Scene& scene) {
-  return generate(scene, [](const Scene& s, std::size_t k, const std::vector<ParticleBlock>& before) {
-    return s.fills[k].packing == Packing::settled ? settle(s, k, before) : grains_of_file(s, k);
+std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words) {
+  return generate(scene, [words](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
+    return of.fills[fill].packing == Packing::settled ? settle(of, fill, words) : grains_of_file(of, fill);
   });
 }
 

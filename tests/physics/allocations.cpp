@@ -12,10 +12,14 @@ namespace {
 
 std::atomic<long> allocations{0};
 
-void* counted(std::size_t size, std::size_t alignment) {
+void* tried(std::size_t size, std::size_t alignment) {
   ++allocations;
-  void* p =
-      alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment) : std::malloc(size);
+  return alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                       : std::malloc(size);
+}
+
+void* counted(std::size_t size, std::size_t alignment) {
+  void* p = tried(size, alignment);
   if (p == nullptr && size > 0) throw std::bad_alloc();
   return p;
 }
@@ -23,7 +27,8 @@ void* counted(std::size_t size, std::size_t alignment) {
 }  // namespace
 
 // NOLINTBEGIN: the program's own allocation functions. They are not inlined: g++ 12 warns (mismatched-new-delete) where
-// it sees std::malloc in one of them and operator delete in its caller.
+// it sees std::malloc in one of them and operator delete in its caller. The nothrow forms stand here too
+// (std::stable_sort calls them): the address sanitizer's own would not fit these operators delete.
 [[gnu::noinline]] void* operator new(std::size_t size) { return counted(size, 0); }
 [[gnu::noinline]] void* operator new[](std::size_t size) { return counted(size, 0); }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t a) {
@@ -32,6 +37,8 @@ void* counted(std::size_t size, std::size_t alignment) {
 [[gnu::noinline]] void* operator new[](std::size_t size, std::align_val_t a) {
   return counted(size, static_cast<std::size_t>(a));
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return tried(size, 0); }
+[[gnu::noinline]] void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return tried(size, 0); }
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete[](void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
