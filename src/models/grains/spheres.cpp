@@ -214,7 +214,7 @@ void Spheres::pack(double dt) {
     for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
     const double inverse_mass = 1.0 / (p.mass() * layout_.slab);
     const auto n = static_cast<std::int64_t>(part.count);
-    const bool fresh = must_search_, all = must_search_ || others_sleep_;
+    const bool fresh = must_search_, all = must_search_ || others_sleep_ || loaded_;
     double* others = records_[1 - now_].data();
 #pragma omp parallel for schedule(static) reduction(max : farthest2, fastest2)
     for (std::int64_t i = 0; i < n; ++i) {
@@ -253,6 +253,7 @@ void Spheres::pack(double dt) {
       fastest2 = std::max(fastest2, v2);
     }
   }
+  loaded_ = false;
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
   if (!(static_cast<double>(farthest2) < 0.24 * slack() * slack())) must_search_ = true;
   if (must_search_ || others_sleep_) search();

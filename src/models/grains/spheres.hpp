@@ -98,6 +98,7 @@ class Spheres : public Model {
   SphereSleep sleep_;
   SphereChunk sleeping_;  // pairs of spheres that sleep; no sphere of its own
   bool must_search_ = true;
+  bool loaded_ = false;                        // records of those that sleep are to be made again
   bool others_sleep_ = false, fresh_ = false;  // than when the pairs were listed; and no step was made since
   double slack_ = 0.1;                         // of the reach
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;

@@ -72,7 +72,7 @@ void Spheres::archive(Archive& a) {
   a.number("others sleep", others_sleep_);
   sleep_.archive(a);
   if (a.loads() && sleep_.on()) {
-    records_[1 - now_] = records_[now_];
+    loaded_ = true;
     numbers_ = listed_numbers_;
     sleep_.by_sphere(numbers_.data());
   }
