@@ -243,10 +243,10 @@ def two_phase_column(ratio, perturb):
 # ---- a bed without wind ----------------------------------------------------------------------------------------------
 
 def bed_at_rest(turbulence):
-    """The farthest way of a grain of scenes/flat_bed.toml in 0.2 s without wind."""
+    """The farthest way of a grain of scenes/paper/flat_bed.toml in 0.2 s without wind."""
     overrides = ["fill.3.velocity.log-profile.friction-velocity=0", "phases.lid.shear-stress=[0, 0]", "time.end=0.2",
                  "output.every=0.001", f"phases.air.turbulence={turbulence}"]
-    frames, seconds = run("flat_bed", overrides, "sand")
+    frames, seconds = run("paper/flat_bed", overrides, "sand")
     order = [numpy.argsort(f["id"]) for f in frames]
     start, farthest = frames[0].x[order[0]], 0
     for f, k in zip(frames, order):

@@ -87,10 +87,10 @@ def profile(name, scheme, wind, frames, history, middle, width, seconds):
 
 def flat_bed():
     """The flat bed with every grain held."""
-    wind, name, scheme = Wind(document("flat_bed")), "flat bed held fixed", document("flat_bed")["phases"]["air"].get("scheme", "consistent")
+    wind, name, scheme = Wind(document("paper/flat_bed")), "flat bed held fixed", document("paper/flat_bed")["phases"]["air"].get("scheme", "consistent")
 
     def case():
-        frames, (history,), seconds = run(toml(held_fixed(document("flat_bed"))), ["output.every=5e-4", "output.walls=false"], "air",
+        frames, (history,), seconds = run(toml(held_fixed(document("paper/flat_bed"))), ["output.every=5e-4", "output.walls=false"], "air",
                                           keep=lambda t: t > .5 * wind.end, also=("history.csv",))
         profile(name, scheme, wind, frames, history, 0, wind.size[0], seconds)
     attempt(name, scheme, "", case)
@@ -108,14 +108,14 @@ def slow_ground(frame, wind):
 
 
 def dune():
-    """Upstream profile, speed-up at the crest, lee, and what the grains take, over the second half of dune.toml."""
-    scene = document("dune")
+    """Upstream profile, speed-up at the crest, lee, and what the grains take, over the second half of paper/dune.toml."""
+    scene = document("paper/dune")
     wind, name, scheme = Wind(scene), "dune", scene["phases"]["air"].get("scheme", "consistent")
     height, length, at = (wind.dune[k] for k in ("height", "length", "at"))
     toe, half_width = at - length / 2, length / 4  # a cosine has half its height a quarter of its length from the crest
 
     def case():
-        everything, (history,), seconds = run("dune", ["output.every=1e-3", "output.walls=false"], keep=lambda t: t > .5 * wind.end or t == 0,
+        everything, (history,), seconds = run("paper/dune", ["output.every=1e-3", "output.walls=false"], keep=lambda t: t > .5 * wind.end or t == 0,
                                               also=("history.csv",))
         late = everything[1:]
         air = [only(f, "air") for f in late]
@@ -147,11 +147,11 @@ def grains(name, scheme, wind, frames, seconds):
     flying = numpy.mean([(only(f, "sand").x[:, 1] > first.x[:, 1].max() + wind.dx).sum() for f in frames[1:]])
     tell(name, scheme, "", "grains higher than the crest of the start, mean", f"{flying:.1f} of {len(last.x)}", "", seconds)
     start, end = first["velocity"][:, 0].sum(), last["velocity"][:, 0].sum()
-    mass = document("dune")["phases"]["sand"]["density"] * wind.dx**2
+    mass = document("paper/dune")["phases"]["sand"]["density"] * wind.dx**2
     stress = mass * (end - start) / (wind.size[0] * (frames[-1].time - frames[0].time))
     tell(name, scheme, "", "momentum that grains hold at the end/(rho u*2 L t)", f"{stress / (wind.density * wind.friction**2):.2f}", "", seconds)
 
 
 CASES = {
-    "wind": (lambda: [flat_bed(), dune()], "The wind of flat_bed.toml (bed held fixed) and dune.toml, second half of the run"),
+    "wind": (lambda: [flat_bed(), dune()], "The wind of paper/flat_bed.toml (bed held fixed) and paper/dune.toml, second half of the run"),
 }

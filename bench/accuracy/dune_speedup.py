@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Speed of the air within three spacings over the ground, upstream, at the crest and in the lee of scenes/dune.toml.
+"""Speed of the air within three spacings over the ground, upstream, at the crest and in the lee of scenes/paper/dune.toml.
 
     /usr/bin/python3 bench/accuracy/dune_speedup.py out/dune/dune.pvd [TIME]
 
@@ -32,7 +32,7 @@ def read(path):
 def main():
     series = pathlib.Path(sys.argv[1])
     root = pathlib.Path(__file__).resolve().parents[2]
-    scene = tomllib.loads((root / "scenes/dune.toml").read_text())
+    scene = tomllib.loads((root / "scenes/paper/dune.toml").read_text())
     dx, length = scene["spacing"], scene["domain"]["size"][0]
     dune = next(f for f in scene["fill"] if f["phase"] == "sand")["shape"]["dune"]
     entries = [(float(e.get("timestep")), series.parent / e.get("file"))

@@ -181,7 +181,7 @@ def families():
                 Direction("spread of diameters", (0., .1, .2, .3, .5), key("phases.sand.diameter.spread"), .2),
                 Direction("density, kg/m3", (10., 100., 1000., 2650., 8000., 2e4), key("phases.sand.density"), 2650)],
                seeds=1, rule="spheres"),
-        Family("wind over a bed", "flat_bed", ["time.end=1e-3", "output.every=1e-3", "fill.3.perturb=0.02"], "fill.3.seed={seed}",
+        Family("wind over a bed", "paper/flat_bed", ["time.end=1e-3", "output.every=1e-3", "fill.3.perturb=0.02"], "fill.3.seed={seed}",
                [safety((.5, .75, 1, 1.25, 1.5, 2, 3, 5, 10)),
                 Direction("sound speed / wind speed", (1.5, 3, 5, 7.8, 12, 18, 30), lambda v: [f"phases.air.sound-speed={33.3 * v:.10g}"], 12),
                 Direction("friction velocity, m/s", (0., .5, 1., 1.33, 2., 3., 5., 10.),
@@ -270,8 +270,6 @@ def trouble(out, name, scene, family):
 def carry_out(program, family, overrides, limit):
     """One run; its word and what was said."""
     path = ROOT / f"scenes/{family.scene}.toml"
-    if not path.exists():
-        path = ROOT / f"scenes/paper/{family.scene}.toml"
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch) / "run"
         command = [program, "run", str(path), "--threads", "1", "--quiet", "--retreats", "0", "--out", str(out)]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Is a scene stable, or was it luck? Many runs of it that differ by less than anybody can know.
 
-    /usr/bin/python3 bench/stability/ensemble.py build/barchan dune.toml flat_bed.toml --write
+    /usr/bin/python3 bench/stability/ensemble.py build/barchan paper/dune.toml paper/flat_bed.toml --write
 
 Between instruction sets bits differ, and a loosened bed is chaos, so one good run says nothing. Each scene runs --runs times (24): the air
 disturbed by 0.01 spacings with another seed in each, u* times 0.98, 1 and 1.02 in turn, mixed and double precision, and all
@@ -40,6 +40,11 @@ BEGIN, END = "<!-- measured: begin -->\n", "<!-- measured: end -->\n"
 DENSITY_BOUND = .02
 HEAD = ("| run | seed | u* | precision | instructions | status | ended at, ms | steps | largest density error of the air | fastest grain, m/s | "
         "bulk speed, second half/start | u 1 mm over the bed upstream, end/start | user CPU s | message |\n" + "| --- " * 14 + "|")
+
+
+def label(path):
+    """A scene as the pages name it: its path from scenes/."""
+    return str(path.relative_to(ROOT / "scenes")) if path.is_relative_to(ROOT / "scenes") else path.name
 
 
 def available(program):
@@ -162,24 +167,24 @@ def ensemble(path, program, options, folder):
     scene = tomllib.loads(path.read_text())
     variant = "".join(f"-{name}-{value:g}" for name, value in (("ustar", options.ustar_factor), ("density", options.density_factor)) if value != 1)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        jobs = [pool.submit(carry_out, member, program, instructions, sets, path, folder / f"{path.stem}{variant}" / f"{member['run']:02d}")
+        jobs = [pool.submit(carry_out, member, program, instructions, sets, path, folder / f"{label(path)[:-5].replace('/', '-')}{variant}" / f"{member['run']:02d}")
                 for member, instructions, sets in members(scene, options.instructions or available(program), options)]
         runs = []
         for job in jobs:
             runs.append(job.result())
             print(row(runs[-1]), flush=True)
-    command = f"ensemble.py build/barchan {path.name} --runs {options.runs}"
+    command = f"ensemble.py build/barchan {label(path)} --runs {options.runs}"
     command += f" --instructions {' '.join(options.instructions)}" if options.instructions else ""
     command += f" --ustar-factor {options.ustar_factor:g}" * (options.ustar_factor != 1)
     command += f" --density-factor {options.density_factor:g}" * (options.density_factor != 1)
     command += "".join(f" --set {s}" for s in options.set)
-    result = {"scene": path.name, "ustar_factor": options.ustar_factor, "density_factor": options.density_factor, "command": command,
+    result = {"scene": label(path), "ustar_factor": options.ustar_factor, "density_factor": options.density_factor, "command": command,
               "processor": processor(), "runs": runs}
     lines, good = verdict(result)
     print(f"{title(result)}: " + " ".join(lines), flush=True)
     if options.write:
         RESULTS.mkdir(exist_ok=True)
-        (RESULTS / f"{path.stem}{variant}.json").write_text(json.dumps(result, indent=1) + "\n")
+        (RESULTS / f"{label(path)[:-5].replace('/', '-')}{variant}.json").write_text(json.dumps(result, indent=1) + "\n")
     return good
 
 

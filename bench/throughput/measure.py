@@ -31,7 +31,7 @@ CASES = {  # name: options of throughput
     "elastic 2D, total Lagrangian, 2.6 dx, double": ["--case", "elastic2d-total", "--n", "100000", "--warm", "150"],
     "elastic 2D, total Lagrangian, 2.6 dx, mixed": ["--case", "elastic2d-total", "--precision", "mixed", "--n", "100000", "--warm", "150"],
     "grains 2D, 1.1 d": ["--case", "grains2d", "--n", "100000"],
-    "dune.toml": ["--case", str(ROOT / "scenes/dune.toml"), "--steps", "100"],
+    "paper/dune.toml": ["--case", str(ROOT / "scenes/paper/dune.toml"), "--steps", "100"],
 }
 GROWTH = {"2D": ("air2d", [1e4, 1e5, 1e6, 4e6]), "3D": ("air3d", [1e5, 1e6])}
 

@@ -44,6 +44,9 @@
 
 namespace barchan {
 
+/// Of the sum of radii: beyond this overlap a law of contact means nothing.
+inline constexpr double most_sphere_overlap = 0.3;
+
 struct SphereContact {
   bool hertz = false;
   double stiffness = 0;   // N/m: K; of Hertz Pa: 4/3 E*

@@ -11,8 +11,8 @@
 namespace barchan {
 namespace {
 
-const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere",  "ring", "polygon",
-                                   "surface", "cube", "points", "formula", "sides"};
+const char* const shape_names[] = {"bed",     "box",  "disc",   "sphere", "ring",    "polygon",
+                                   "surface", "cube", "points", "file",   "formula", "sides"};
 
 /// The shape must be one, and companions (dune, layers) need the shape that they belong to.
 void check_shape_keys(const std::string& shape, bool fitted, const Report& report) {
@@ -40,8 +40,7 @@ void check_shape_keys(const std::string& shape, bool fitted, const Report& repor
   if (nothing && !report.touched(shape))
     report(shape,
            "no shape; expected \"the-rest\" or one of bed, box, disc, sphere, ring, polygon, surface, cube, points, "
-           "formula, "
-           "sides");
+           "file, formula, sides");
 }
 
 /// Polygons and surfaces: closed, not crossing themselves, of the scene's dimensions, not too thin.
@@ -66,7 +65,8 @@ void check_outline(const Fill& fill, double spacing, const std::string& shape, c
 void check_leave_out(const Fill& fill, const std::string& dotted, const Report& report) {
   if (fill.leave_out == LeaveOut::nothing || report.touched(dotted)) return;
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
-                      std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
+                      std::holds_alternative<PointsShape>(fill.shape) ||
+                      std::holds_alternative<FileShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   const bool always = std::holds_alternative<TheRestShape>(fill.shape) || fill.packing == Packing::random;
   if (always)
     report(dotted + ".leave-out",
@@ -168,13 +168,23 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
     report(dotted + ".angular-velocity", "only a rigid body turns as a whole; expected a phase of kind rigid");
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
-    report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\" or \"relaxed\"");
-  const bool box_or_bed = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
-  if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !box_or_bed))
     report(dotted + ".packing",
-           "only spheres settle, in a box or a bed; expected grains with a diameter, and such a shape");
+           "a continuous phase needs one particle a square of side dx; expected \"rows\" or \"relaxed\"");
+  const bool from_file = std::holds_alternative<FileShape>(fill.shape);
+  const bool may_settle =
+      from_file || std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
+  if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !may_settle))
+    report(dotted + ".packing",
+           "only spheres settle, in a box or a bed or from a file; expected grains with a diameter, and such a shape");
   if (fill.packing == Packing::settled && fill.perturb > 0.0)
     report(dotted + ".perturb", "grains at rest stay where they are; expected no such key");
+  if (from_file) {
+    if (!phase.if_grains() || !phase.diameter())
+      report(dotted + ".shape.file", "only spheres are read from a file; expected grains with a diameter");
+    for (const char* key : {".packing", ".perturb", ".seed"})
+      if (report.has(dotted + key) && fill.packing != Packing::settled)
+        report(dotted + key, "the file says where the grains are; expected no such key, or packing = \"settled\"");
+  }
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
   if (close && !continuous && placed)

@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "scene/checks.hpp"
 #include "scene/outline.hpp"
+#include "scene/reader.hpp"
 #include "scene/surface_file.hpp"
 
 namespace barchan {
@@ -105,9 +106,7 @@ void read_surfaces(Scene& scene, const Report& report) {
     auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape);
     const std::string dotted = "fill." + std::to_string(k) + ".shape.surface";
     if (!surface || report.touched(dotted)) continue;
-    const std::filesystem::path place(surface->file);
-    const std::string path =
-        (place.is_absolute() ? place : std::filesystem::path(scene.file).parent_path() / place).string();
+    const std::string path = path_of_file(scene, surface->file);
     SurfaceFile file = read_surface(path);
     if (!file.problem.empty())
       report(dotted, "\"" + shortened(path) + "\": " + file.problem +
@@ -115,7 +114,6 @@ void read_surfaces(Scene& scene, const Report& report) {
                          "converts others)");
     surface->facets = std::move(file.facets);
     surface->triangles = file.triangles;
-    surface->checksum = file.checksum;
   }
 }
 

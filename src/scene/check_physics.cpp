@@ -73,7 +73,7 @@ class PhysicsChecker {
       if (report_.has(dotted + "." + key)) tell(dotted + "." + key, "nothing reads it; expected " + needs);
     };
     if (!phase.diameter()) {
-      for (const char* key : {"friction", "rolling-friction", "stiffness", "largest-overlap"})
+      for (const char* key : {"friction", "rolling-friction", "stiffness", "largest-overlap", "sleep"})
         without(key, "diameter beside it");
       if (phase.kind() == PhaseKind::grains)
         for (const char* key : {"young", "poisson"}) without(key, "diameter beside it");
@@ -95,6 +95,8 @@ class PhysicsChecker {
     const GrainsKeys& own = *phase.if_grains();
     if ((!linear || own.stiffness) && (!hertz || own.young > 0.0) && (linear || hertz))
       without("largest-overlap", "no such key: stiffness or young says how stiff contacts are");
+    if (own.sleep && norm(scene_.domain.gravity) == 0.0)
+      tell(dotted + ".sleep", "nothing holds grains in place without weight; expected gravity, or no such key");
     without("contact-speed", "stiffness, young or largest-overlap, which spheres have");
     if (own.restitution < 0.1 && !report_.touched(dotted + ".restitution"))
       tell(dotted + ".restitution", "the dashpot of spheres cannot take that much; expected at least 0.1");

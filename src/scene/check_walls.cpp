@@ -49,6 +49,7 @@ struct SameAlong {
   bool operator()(const SphereShape&) const { return false; }
   bool operator()(const CubeShape&) const { return false; }
   bool operator()(const PointsShape&) const { return false; }
+  bool operator()(const FileShape&) const { return false; }
   bool operator()(const TheRestShape&) const { return false; }
 };
 

@@ -235,10 +235,11 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
     std::vector<Vec3> places;
     SettledGrains settled;
-    if (fill.packing == Packing::settled) {
-      if (!settle) fail(scene, k, "a settled packing cannot be made here");
+    const bool from_file = std::holds_alternative<FileShape>(fill.shape);
+    if (fill.packing == Packing::settled || from_file) {
+      if (!settle) fail(scene, k, "a settled packing or a file cannot be made here");
       settled = settle(scene, k, blocks);
-      keep_inside(scene, k, settled.position, settled.radius);
+      if (!from_file) keep_inside(scene, k, settled.position, settled.radius);
       places = settled.position;
     } else {
       places = places_of(scene, k, occupied);

@@ -27,8 +27,8 @@ struct ParticleBlock {
 /// counted through the blocks in order; the same scene gives the same particles bit for bit.
 /// Throws SceneError when a periodic bed's rows do not fit the domain (and names the nearest size that does), when a
 /// fill makes no particle, or when particles of different fills overlap (closer than 0.5 spacings).
-/// Fills with packing = "settled" take their places from `settle`, which gets the number of the fill and what is there;
-/// without one they are refused (simulation/settle.hpp).
+/// Fills with packing = "settled" and those of a file take their places from `settle`, which gets the number of the
+/// fill and what is there; without one they are refused (simulation/settle.hpp).
 struct SettledGrains {
   std::vector<Vec3> position;  // m; those outside the fill's shape are left out
   std::vector<double> radius;  // m

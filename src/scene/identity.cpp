@@ -1,14 +1,36 @@
 #include "scene/identity.hpp"
 
+#include <zlib.h>
+
+#include <cstdio>
+#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
+#include <vector>
+
+#include "scene/reader.hpp"
 
 namespace barchan {
 
 namespace {
 
 using Values = std::map<std::string, std::string>;
+
+std::string checksum_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> bytes(65536);
+  unsigned long sum = crc32_z(0, nullptr, 0);
+  std::size_t size = 0;
+  while (stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), stream.gcount() > 0) {
+    const auto count = static_cast<std::size_t>(stream.gcount());
+    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(bytes.data()), count);
+    size += count;
+  }
+  char text[48];
+  std::snprintf(text, sizeof text, "%08lx-%zu", sum, size);
+  return text;
+}
 
 /// Every value of the document by its dotted key.
 void flatten(const toml::node& node, const std::string& dotted, Values& values) {
@@ -37,11 +59,15 @@ Values values_of(const std::string& text) {
 
 }  // namespace
 
-std::map<std::string, std::string> checksums_of_surfaces(const Scene& scene) {
+std::map<std::string, std::string> checksums_of_files(const Scene& scene) {
   std::map<std::string, std::string> checksums;
-  for (std::size_t k = 0; k < scene.fills.size(); ++k)
-    if (const auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape))
-      checksums["fill " + std::to_string(k) + ", checksum of the surface"] = surface->checksum;
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    std::string file;
+    if (const auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape)) file = surface->file;
+    if (const auto* grains = std::get_if<FileShape>(&scene.fills[k].shape)) file = grains->file;
+    if (!file.empty())
+      checksums["fill " + std::to_string(k) + ", checksum of its file"] = checksum_of(path_of_file(scene, file));
+  }
   return checksums;
 }
 

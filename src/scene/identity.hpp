@@ -13,8 +13,8 @@ namespace barchan {
 /// The files that it names count by their checksums.
 std::string identity_of(toml::table document, const std::map<std::string, std::string>& checksums = {});
 
-/// Of the files of surfaces, by what names them: "fill 2, surface".
-std::map<std::string, std::string> checksums_of_surfaces(const Scene& scene);
+/// CRC-32 and size of the files of surfaces and grains, by what names them: "fill 2, checksum of its file".
+std::map<std::string, std::string> checksums_of_files(const Scene& scene);
 
 /// One line a key that differs, "  time.safety: 0.5 then, 0.6 now\n"; empty when none does.
 std::string difference(const std::string& then, const std::string& now);

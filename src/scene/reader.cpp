@@ -21,6 +21,11 @@ constexpr std::size_t most_of_a_scene = std::size_t{16} << 20;  // bytes; a pers
 
 }  // namespace
 
+std::string path_of_file(const Scene& scene, const std::string& file) {
+  const std::filesystem::path path(file);
+  return path.is_absolute() ? file : (std::filesystem::path(scene.file).parent_path() / path).string();
+}
+
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   Problems problems(file);
   const toml::table document = parse_document(text, file, overrides, problems);
@@ -28,7 +33,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   Scene scene = read_document(document, file);
   scene.places = places_of_keys(document, file);
   read_surfaces(scene, Report(document, problems));
-  scene.identity = identity_of(document, checksums_of_surfaces(scene));
+  scene.identity = identity_of(document, checksums_of_files(scene));
   check(document, scene, problems);
   problems.throw_if_any();
   return scene;

@@ -16,6 +16,9 @@ Scene read_scene(const std::string& file, const std::vector<std::string>& overri
 /// The same from a string (for tests); `file` is the name used in messages.
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides = {});
 
+/// The path of a file that a scene names: from the folder of the scene.
+std::string path_of_file(const Scene& scene, const std::string& file);
+
 /// JSON schema (draft 2020-12) of a scene file, from the same table of keys that the reader checks against.
 std::string scene_schema();
 

@@ -102,6 +102,9 @@ constexpr Key table[] = {
      "Overlap of two that meet with the largest speed of the scene (time.largest-speed): of spheres in mean diameters, of rigid bodies in "
      "spacings. It makes the stiffness.",
      {.at_most = 0.2, .above = 0.0}},
+    {"phases", "sleep", of<&GrainsKeys::sleep>(false), "",
+     "Spheres that nothing disturbs sleep: they stay where they are and cost nothing until forces on them change by 0.3 of their weight. "
+     "Needs gravity."},
     {"phases", "law", of<&WallKeys::law>(WallLaw::adami), "",
      "How the wall acts: Adami et al. 2012, or one row of ghosts that repel (Halik et al. 2015)."},
     {"phases", "slip", of<&WallKeys::slip, &ColumnKeys::slip>(Slip::no_slip), "",
@@ -154,9 +157,9 @@ constexpr Key table[] = {
     {"fill", "shape", fill_shape(), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
     {"fill", "packing", at<&Fill::packing>(Packing::square), "",
      "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
-     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell and came to rest before the run. relaxed: the outermost layer follows the border of a box, disc, sphere, "
-     "ring, polygon or surface, half a spacing inside, and the volumes are even; \"the-rest\" goes round such shapes. Fluids and elastic bodies take rows, "
-     "fitted or relaxed."},
+     "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell, or spheres of a file, that came to rest before the run. "
+     "relaxed: the outermost layer follows the border of a box, disc, sphere, ring, polygon or surface, half a spacing inside, and the volumes are even; "
+     "\"the-rest\" goes round such shapes. Fluids and elastic bodies take rows, fitted or relaxed."},
     {"fill", "leave-out", at<&Fill::leave_out>(LeaveOut::nothing), "",
      "What the shape leaves free: places nearer than 0.75 spacings to particles of earlier fills, as \"the-rest\" does, so that a fluid goes round a body."},
     {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
@@ -184,6 +187,8 @@ constexpr Key table[] = {
     {"fill.shape", "move", placed<&Placement::move>("zero"), "m", "Only with polygon or surface: moved by this, after turn."},
     {"fill.shape", "cube", shape<CubeShape>(), "", "Square or cube of so many particles along each side."},
     {"fill.shape", "points", in_shape<&PointsShape::at>(), "m", "Single particles."},
+    {"fill.shape", "file", in_shape<&FileShape::file>(), "",
+     "Grains with a diameter, where a frame of another run (.vtp or .vtu) has the grains of the phase of that name; if diameters differ, that run needs output.fields = [\"radius\"]. A path from the folder of the scene."},
     {"fill.shape", "formula", in_shape<&FormulaShape::inside>(), "", "Particles where the formula is above zero.", {}, "x y z"},
     {"fill.shape", "sides", sides(), "",
      "Layers of wall particles outside the domain. bottom and top: y; left and right: x; back and front: z."},

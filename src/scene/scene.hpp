@@ -107,6 +107,7 @@ struct GrainsKeys {
   std::optional<double> stiffness;      // N/m, of a linear contact of two grains of the phase
   double largest_overlap{};             // of the mean diameter, at the largest speed of the scene
   double young{};                       // Pa, of a Hertzian contact; 0: from largest_overlap
+  bool sleep{};                         // spheres that nothing disturbs are left out of the steps
   double poisson{};
 };
 
@@ -216,7 +217,6 @@ struct SurfaceShape {
   Placement placement;
   std::vector<Facet> facets;  // as the file has them; read with the scene
   bool triangles{};           // else segments in x, y
-  std::string checksum;       // of the file
 };
 struct CubeShape {
   Vec3 centre{};
@@ -225,6 +225,9 @@ struct CubeShape {
 struct PointsShape {
   std::vector<Vec3> at;
 };  // single particles
+struct FileShape {
+  std::string file;
+};  // spheres where a frame of an earlier run has them
 struct FormulaShape {
   Expression inside;
 };                                 // particles where it is > 0
@@ -250,7 +253,7 @@ struct BedShape {
 };
 
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
-                           FormulaShape, SidesShape, BedShape, TheRestShape, SurfaceShape>;
+                           FormulaShape, SidesShape, BedShape, FileShape, TheRestShape, SurfaceShape>;
 
 struct Fill {
   std::string phase;

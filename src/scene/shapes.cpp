@@ -90,6 +90,7 @@ class RegionOf {
   void operator()(const TheRestShape&) {}
   void operator()(const CubeShape&) {}
   void operator()(const PointsShape&) {}
+  void operator()(const FileShape&) {}
   void operator()(const SidesShape&) {}
 
  private:

@@ -11,7 +11,6 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -124,15 +123,6 @@ void merge_points(std::vector<Facet>& facets) {
     for (Vec3& x : f) x = first_near(x);
 }
 
-std::string checksum_of(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  const unsigned long sum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  char text[32];
-  std::snprintf(text, sizeof text, "%08lx-%zu", sum, bytes.size());
-  return text;
-}
-
 }  // namespace
 
 SurfaceFile read_surface(const std::string& path) {
@@ -166,7 +156,6 @@ SurfaceFile read_surface(const std::string& path) {
       if (!std::isfinite(norm(x))) file.problem = "has a point that is not finite";
   if (file.facets.empty()) file.problem = "has neither triangles nor lines";
   if (file.problem.empty()) merge_points(file.facets);
-  file.checksum = checksum_of(path);
   return file;
 }
 

@@ -11,7 +11,6 @@ namespace barchan {
 struct SurfaceFile {
   std::vector<Facet> facets;  // in the file's unit
   bool triangles = false;     // else segments
-  std::string checksum;       // of the file's bytes
   std::string problem;        // why nothing was read; empty when it was
 };
 

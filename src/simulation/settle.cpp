@@ -12,6 +12,7 @@
 #include "scene/ground.hpp"
 #include "scene/places.hpp"
 #include "scene/shapes.hpp"
+#include "simulation/grains_file.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -68,6 +69,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
   Scene s = scene;
   s.phases = {phase};
   std::get<GrainsKeys>(s.phases[0].own).restitution = std::min(restitution, phase.grains().restitution);
+  std::get<GrainsKeys>(s.phases[0].own).sleep = false;
   s.interactions.clear();
   s.fills.clear();
   s.forcings.clear();
@@ -195,6 +197,16 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
   return blocks;
 }
 
+/// Walls as they are, and the grains of the fill's file.
+std::vector<ParticleBlock> begin_with_file(const Scene& scene, std::size_t k, const Scene& s) {
+  std::vector<ParticleBlock> blocks = generate(s);
+  SettledGrains grains = grains_of_file(scene, k);
+  blocks[0].velocity.assign(grains.position.size(), Vec3{});
+  blocks[0].position = std::move(grains.position);
+  if (s.phases[0].diameter()->spread > 0.0) blocks[0].radius = std::move(grains.radius);
+  return blocks;
+}
+
 /// The farthest way of a grain since its place was told last, which is told anew (m).
 double way_of(const PhaseParticles& p, std::vector<Vec3>& place) {
   double most = 0.0;
@@ -255,7 +267,7 @@ void cut(const Scene& scene, std::size_t k, const Scene& s, ParticleBlock& block
     for (std::size_t a = 0; a < 3; ++a)
       if (s.domain.periodic[a]) x[a] -= s.domain.size[a] * std::floor((x[a] - s.domain.origin[a]) / s.domain.size[a]);
   if (block.radius.empty()) block.radius.assign(block.position.size(), 0.5 * s.phases[0].diameter()->mean);
-  keep_inside(scene, k, block.position, block.radius);
+  if (!std::holds_alternative<FileShape>(scene.fills[k].shape)) keep_inside(scene, k, block.position, block.radius);
   block.velocity.assign(block.position.size(), Vec3{});
 }
 
@@ -304,11 +316,14 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   const Container c = container_of(scene, scene.fills[k], k);
   const Scene s = settling_scene(scene, k, c);
   double thickness = 0.0;
-  std::vector<ParticleBlock> blocks = begin_loosely(scene, scene.fills[k], s, c, thickness);
+  const bool from_file = std::holds_alternative<FileShape>(scene.fills[k].shape);
+  std::vector<ParticleBlock> blocks =
+      from_file ? begin_with_file(scene, k, s) : begin_loosely(scene, scene.fills[k], s, c, thickness);
   const double unit = std::sqrt(s.phases[0].diameter()->mean / norm(scene.domain.gravity)),
                fall = std::sqrt(2.0 * thickness / norm(scene.domain.gravity)) / unit;
   std::vector<Scene> stages;
-  for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
+  if (!from_file)
+    for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
   const FewThreads team(blocks[0].position.size());
@@ -318,7 +333,8 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
     if (words != nullptr)
       *words << "settling  " << scene.fills[k].phase << ": " << blocks[0].position.size() << " grains, contacts "
              << stage + 1 << " of " << stages.size() << (trials > 0 ? ", once more" : "") << std::endl;
-    const auto way = rest(stages[stage], blocks, stage > 0, stage == 0 ? fall : 2.0 * push, latest);
+    const auto way =
+        rest(stages[stage], blocks, from_file || stage > 0, stage == 0 && !from_file ? fall : 2.0 * push, latest);
     if (!way)
       throw SceneError(
           scene.file + ": fill." + std::to_string(k) +
@@ -334,7 +350,7 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
 
 std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words) {
   return generate(scene, [words](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
-    return settle(of, fill, words);
+    return of.fills[fill].packing == Packing::settled ? settle(of, fill, words) : grains_of_file(of, fill);
   });
 }
 

@@ -14,6 +14,7 @@ std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* word
 /// Lets the grains of a fill fall into the box about its shape, over the walls that are there, with the contact laws of
 /// the scene and a restitution of 0.2, until they rest; keeps those whose centres are inside the shape. The box is as
 /// wide as the shape and stays periodic where the shape fills a periodic axis; its other sides hold the grains.
+/// Those of a file rest where it has them; all are kept.
 /// Uses at most the threads that OpenMP is set to. Throws SceneError when they do not come to rest.
 SettledGrains settle(const Scene& scene, std::size_t fill, std::ostream* words = nullptr);
 

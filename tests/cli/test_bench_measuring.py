@@ -107,7 +107,7 @@ class Wind(unittest.TestCase):
         self.assertAlmostEqual(got, math.log(820), delta=.01)
 
     def test_a_scene_survives_being_written(self):
-        for name in ("dune", "flat_bed"):
+        for name in ("paper/dune", "paper/flat_bed"):
             self.assertEqual(harness.tomllib.loads(harness.toml(harness.document(name))), harness.document(name))
             fixed = harness.tomllib.loads(harness.toml(cases_wind.held_fixed(harness.document(name))))
             self.assertEqual(fixed["phases"]["sand"]["kind"], "wall")

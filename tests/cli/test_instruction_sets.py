@@ -19,7 +19,7 @@ NAMES = {"avx2": "AVX2", "avx512": "AVX-512"}
 # Scene, what shortens it, and how far the figures of two instruction sets may be apart, relative to the field's largest
 # value: turbulent air over grains in mixed precision, 100 steps (found: 8e-8); water in three dimensions with a free
 # surface, 16 steps (found: 8e-8, of sums in single precision too).
-SCENES = [("scenes/dune.toml", ["time.end=3e-5", "output.every=3e-5"], 1e-5),
+SCENES = [("scenes/paper/dune.toml", ["time.end=3e-5", "output.every=3e-5"], 1e-5),
           ("scenes/verification/dam_break_3d.toml", ["time.end=0.002", "output.every=0.002"], 1e-5)]
 failures = []
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Drive;
 
-/// Names of all scenes, "flat_bed", "verification/couette", ...
+/// Names of all scenes, "paper/flat_bed", "verification/couette", ...
 std::vector<std::string> all_scenes() {
   std::vector<std::string> names;
   const fs::path top = BARCHAN_SOURCE_DIR "/scenes";
@@ -163,7 +163,7 @@ TEST(RunJson, AirAloneHasNoContactsNoStressNoExtension) {
 /// The other way round: bodies have no fluid's passes, and a bed has all that it needs.
 TEST(RunJson, BodiesHaveNoFluidAndTheBedHasBoth) {
   const Folder folder;
-  const std::string impact = "verification/two_particle_impact", bed = "flat_bed";
+  const std::string impact = "verification/two_particle_impact", bed = "paper/flat_bed";
   ASSERT_EQ(run_program(impact, folder.path() / "a", {ending_after(impact, 3)}), 0);
   auto passes = report_of(folder.path() / "a")["passes"].get<std::set<std::string>>();
   EXPECT_TRUE(passes.contains("elastic forces"));

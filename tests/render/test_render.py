@@ -50,8 +50,8 @@ time = { end = 1e-6, largest-speed = 15 }
 
 
 def run(scene, out, end):
-    """The command that makes a short series of a scene."""
-    return [PROGRAM, "run", next((SOURCE / "scenes").rglob(f"{scene}.toml")), "--out", out, "--quiet", "--set", f"time.end={end}"]
+    """The command that makes a short series of a scene of the paper."""
+    return [PROGRAM, "run", SOURCE / "scenes/paper" / f"{scene}.toml", "--out", out, "--quiet", "--set", f"time.end={end}"]
 
 
 def changed_series(series, out, change):

@@ -364,6 +364,7 @@ density = 2650
 diameter = { mean = 1e-3, spread = 0.2 }
 friction = 0.5
 rolling-friction = 0.1
+sleep = true
 stiffness = 300
 [phases.stones]
 kind = "grains"
@@ -398,6 +399,8 @@ TEST(SceneReader, ReadsTheKeysOfSpheres) {
   EXPECT_EQ(sand.diameter->spread, 0.2);
   EXPECT_EQ(sand.friction, 0.5);
   EXPECT_EQ(sand.rolling_friction, 0.1);
+  EXPECT_TRUE(sand.sleep);
+  EXPECT_FALSE(stones.sleep);
   EXPECT_EQ(sand.stiffness, 300);
   EXPECT_EQ(stones.diameter->mean, 2e-3);
   EXPECT_EQ(stones.diameter->spread, 0.0);
@@ -646,6 +649,9 @@ TEST(SceneReader, TakesEveryShape) {
   EXPECT_EQ(moved.placement.move, (Vec3{0.25, 0.125, 0}));
   EXPECT_EQ(std::get<CubeShape>(shape("{ cube = { centre = [0.5, 0.5], count = 3 } }")).count, 3);
   EXPECT_EQ(std::get<PointsShape>(shape("{ points = [[0.5, 0.5]] }")).at.size(), 1u);
+  const std::string bed =
+      with(sphere_keys, "{ bed = 0.01, from = 0.004 }\npacking = \"settled\"", "{ file = \"bed.vtp\" }");
+  EXPECT_EQ(std::get<FileShape>(parse_scene(bed, "s.toml").fills.at(1).shape).file, "bed.vtp");
   EXPECT_EQ(std::get<FormulaShape>(shape("{ formula = \"x - y\" }")).inside.formula, "x - y");
   EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25 }")).depth, 0.25);
   EXPECT_EQ(std::get<BedShape>(shape("{ bed = 0.25, from = 0.125 }")).from, 0.125);

@@ -212,7 +212,9 @@ void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at
   for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(at.memory[k]);
   const auto f = touch<Hertz, Rubs, Rolls>(sphere_contact::Constants<One>(law, step.dt), s, slip);
   for (std::size_t k = 0; k < numbers; ++k) at.memory[k] = slip[k].v;
-  double* to = sums.of + (at.sphere - chunk.begin) * Sums<Dim>::size;
+  // Who sleeps feels no force of a side: it is as constant as those of others that sleep.
+  const bool sleeps = step.sleep && step.sleep->asleep[at.sphere];
+  double* to = sums.of + (sleeps ? chunk.end - chunk.begin : at.sphere - chunk.begin) * Sums<Dim>::size;
   for (std::size_t d = 0; d < Dim; ++d) to[d] += f.force[d].v;
   for (std::size_t d = 0; d < spins; ++d) to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
   chunk.lost += f.lost.v;
@@ -228,7 +230,7 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
   const double dt = step.dt;
   float farthest2 = 0.0f;
   double fastest2 = 0.0;
-  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
+  chunk.each_moving([&](std::size_t k) {
     const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
     const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
     double* to = step.next + k * R::size;
@@ -250,7 +252,7 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
     for (std::size_t d = 0; d < R::spins; ++d)
       to[R::spin + d] = from[R::spin + d] + dt * inverse_inertia * force[(Dim == 2 ? 2 : 4) + d];
     farthest2 = std::max(farthest2, way2);
-  }
+  });
   chunk.farthest2 = static_cast<double>(farthest2);
   chunk.fastest = std::sqrt(fastest2);
 }
@@ -260,7 +262,7 @@ void leave(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
   using R = SphereRecord<Dim>;
   const SphereColumns& c = step.columns[chunk.phase];
   const double half = 0.5 * step.dt;
-  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
+  chunk.each_moving([&](std::size_t k) {
     const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
     const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
     const double inverse_mass = passive[passive_mass], radius = from[R::radius];
@@ -271,12 +273,35 @@ void leave(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
       c.position[d][at] = from[d];
       c.velocity[d][at] = from[R::velocity + d] + half * (passive[d] + a);
     }
-    if (!c.spin[0]) continue;
+    if (!c.spin[0]) return;
     for (std::size_t d = 0; d < R::spins; ++d) {
       const double rate = 2.5 * inverse_mass / (radius * radius) * force[(Dim == 2 ? 2 : 4) + d];
       c.spin_rate[d][at] = rate;
       c.spin[d][at] = from[R::spin + d] + half * rate;
     }
+  });
+}
+
+/// How far the forces on the border's spheres are out of the balance in which they fell asleep: those of spheres that
+/// are awake, which alone change. Who feels more than `tolerance` wakes.
+template <int Dim>
+void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
+  constexpr std::size_t spins = SphereRecord<Dim>::spins, numbers = Dim + spins, torque = Dim == 2 ? 2 : 4;
+  for (const std::uint32_t k : chunk.border) {
+    const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
+    double *offset = sleep.offset + sleep.numbers[k] * numbers, *unrest = sleep.unrest + sleep.numbers[k] * numbers;
+    double push2 = 0.0, turn2 = 0.0;
+    for (std::size_t d = 0; d < numbers; ++d) {
+      const double now = force[d < Dim ? d : torque + d - Dim];
+      if (sleep.fresh) offset[d] -= now;
+      unrest[d] = now + offset[d];
+      (d < Dim ? push2 : turn2) += unrest[d] * unrest[d];
+    }
+    const double most = sleep.tolerance / step.passive[k * passive_size + passive_mass],
+                 lever = step.records[k * SphereRecord<Dim>::size + SphereRecord<Dim>::radius];
+    if (push2 <= most * most && turn2 <= most * most * lever * lever) continue;
+    sleep.wakes[sleep.numbers[k]] = 1;
+    chunk.wakes = true;
   }
 }
 
@@ -297,11 +322,15 @@ void side_by_friction(const SphereStep& step, SphereChunk& chunk, SphereChunk::A
 
 template <int Dim>
 void step_chunk(const SphereStep& step, SphereChunk& chunk) {
+  chunk.lost = chunk.stored = chunk.deepest = chunk.contacts = 0.0;
+  chunk.wakes = false;
+  if (chunk.idle()) {
+    chunk.farthest2 = chunk.fastest = 0.0;
+    return;
+  }
   Sums<Dim> sums;  // 16 or 32 kB
   sums.clear(chunk.end - chunk.begin);
   Tally tally;
-  chunk.lost = chunk.stored = chunk.deepest = 0.0;
-  chunk.contacts = 0.0;
   for (const auto& group : chunk.groups)
     step.laws[group.law].hertz ? group_by_friction<Dim, true>(step, chunk, group, sums, tally)
                                : group_by_friction<Dim, false>(step, chunk, group, sums, tally);
@@ -312,6 +341,7 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
   chunk.stored += simd::sum(tally.stored);
   for (std::size_t k = 0; k < width; ++k) chunk.deepest = std::max(chunk.deepest, tally.deepest[static_cast<int>(k)]);
   chunk.contacts += tally.contacts;
+  if (step.sleep) watch_border<Dim>(*step.sleep, step, chunk, sums);
   step.last ? leave<Dim>(step, chunk, sums) : move_on<Dim>(step, chunk, sums);
 }
 

@@ -45,17 +45,29 @@ void SphereSearch::prepare(const Bounds& bounds, double reach, std::size_t kinds
   found_.resize(static_cast<std::size_t>(std::max(omp_get_max_threads(), omp_get_num_procs())));
 }
 
-void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks) {
+void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, SphereChunk* sleeping) {
   constexpr std::size_t batch = SphereChunk::batch;
   const std::size_t pairs = bounds_.dimensions == 2 ? 6 : 11;  // of a sphere, of two in different chunks both
-  for (SphereChunk& chunk : chunks) {
-    const std::size_t spheres = chunk.end - chunk.begin, room = pairs * spheres + 64;
+  const auto reserve_pairs = [&](SphereChunk& chunk, std::size_t room) {
     chunk.a.reserve(room);
     chunk.b.reserve(room);
     chunk.memory.reserve(room * numbers_);
     chunk.touches.reserve(room / batch);
     chunk.groups.reserve(2 * kinds_ * kinds_ + 2);
+  };
+  for (SphereChunk& chunk : chunks) {
+    const std::size_t spheres = chunk.end - chunk.begin, room = pairs * spheres + 64;
+    reserve_pairs(chunk, room);
     if (!sides_.empty()) chunk.sides.reserve(spheres);
+    if (!sleeping) continue;
+    chunk.awake.reserve(spheres);
+    chunk.border.reserve(2 * room);
+  }
+  if (sleeping) {
+    reserve_pairs(*sleeping, pairs * all / 2 + 64);
+    lively_.reserve(8 * all + 65536);
+    sphere_of_.reserve(all);
+    found_[0].reserve(pairs * all / 2 + 64);
   }
   for (auto& sorted : sorted_) sorted.reserve(all + SphereCells::padding);
   for (auto& found : found_) found.reserve(pairs * SphereChunk::most + 64);
@@ -106,29 +118,38 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
   }
   for (std::size_t c = cells; c > 0; --c) begin_[c] = begin_[c - 1];
   begin_[0] = 0;
+  lively_.assign(s.asleep ? cells : 0, 0);
+  for (std::size_t k = 0; s.asleep && k < s.moving; ++k)
+    if (!s.asleep[k]) lively_[cell_of_[k]] = 1;
+  cells_.lively = lively_.data();
   cells_.begin = begin_.data();
   cells_.order = order_.data();
   for (std::size_t d = 0; d < 4; ++d) cells_.sorted[d] = sorted_[d].data();
 }
 
 /// The memory of all pairs that touch, by the number of the first.
-void SphereSearch::keep(const SphereSet& s, const std::vector<SphereChunk>& chunks, const std::uint32_t* before) {
+void SphereSearch::keep(const SphereSet& s, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
+                        const SphereChunk* sleeping) {
   fit(kept_begin_, s.all + 1);
   std::fill(kept_begin_.begin(), kept_begin_.end(), 0u);
   // Both chunks of a pair have the same bits: that of the first counts, or the only one.
+  const auto pairs_of = [&](const SphereChunk& chunk, bool all, auto&& call) {
+    for (std::size_t q = 0; q < chunk.touches.size(); ++q)
+      for (unsigned bits = chunk.touches[q]; bits != 0; bits &= bits - 1) {
+        const std::size_t lane = static_cast<std::size_t>(__builtin_ctz(bits)), at = q * SphereChunk::batch + lane;
+        const std::uint32_t a = chunk.a[at];
+        if (!all && a < s.moving && (a < chunk.begin || a >= chunk.end)) continue;
+        call(before[a], before[chunk.b[at]], chunk.memory.data() + q * SphereChunk::batch * numbers_ + lane,
+             SphereChunk::batch);
+      }
+  };
   const auto each = [&](auto&& call) {
     for (const SphereChunk& chunk : chunks) {
-      for (std::size_t q = 0; q < chunk.touches.size(); ++q)
-        for (unsigned bits = chunk.touches[q]; bits != 0; bits &= bits - 1) {
-          const std::size_t lane = static_cast<std::size_t>(__builtin_ctz(bits)), at = q * SphereChunk::batch + lane;
-          const std::uint32_t a = chunk.a[at];
-          if (a < s.moving && (a < chunk.begin || a >= chunk.end)) continue;
-          call(before[a], before[chunk.b[at]], chunk.memory.data() + q * SphereChunk::batch * numbers_ + lane,
-               SphereChunk::batch);
-        }
+      pairs_of(chunk, false, call);
       for (const auto& at : chunk.sides)
         if (at.touches) call(before[at.sphere], side_number(at.axis, at.sign), at.memory, std::size_t{1});
     }
+    if (sleeping) pairs_of(*sleeping, true, call);
   };
   each([&](std::uint32_t number, std::uint32_t, const double*, std::size_t) { ++kept_begin_[number + 1]; });
   for (std::size_t k = 0; k < s.all; ++k) kept_begin_[k + 1] += kept_begin_[k];
@@ -212,9 +233,10 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
     }
 }
 
-void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks,
-                        const std::uint32_t* before) {
-  keep(s, chunks, before);
+void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before,
+                        SphereChunk* sleeping) {
+  keep(s, chunks, before, sleeping);
+  if (sleeping) place_sleeping(s, *sleeping);
   sort(s, slack);
   const auto n = static_cast<std::int64_t>(chunks.size());
 #pragma omp parallel for schedule(dynamic, 1)
@@ -224,7 +246,39 @@ void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChun
     find_sphere_pairs(cells_, s, slack, chunk, found);
     place(s, chunk, found);
     place_sides(s, slack, chunk);
+    list_sleepers(s, chunk, found);
   }
+}
+
+/// The pairs that were kept of spheres that both sleep, in the order of their numbers.
+void SphereSearch::place_sleeping(const SphereSet& s, SphereChunk& sleeping) {
+  fit(sphere_of_, s.all);
+  for (std::size_t k = 0; k < s.all; ++k) sphere_of_[s.numbers[k]] = static_cast<std::uint32_t>(k);
+  auto& found = found_[0];
+  found.clear();
+  for (const Kept& kept : kept_) {
+    if (kept.with >= s.all) continue;  // a side
+    const std::uint32_t a = sphere_of_[kept.number], b = sphere_of_[kept.with];
+    if (s.asleep && s.asleep[a] && s.asleep[b]) found.push_back({a, b, laws_[s.kinds[a] * kinds_ + s.kinds[b]] * 4});
+  }
+  place(s, sleeping, found);
+}
+
+/// Who of the chunk moves, and who sleeps beside somebody who does not.
+void SphereSearch::list_sleepers(const SphereSet& s, SphereChunk& chunk, const std::vector<FoundPair>& found) const {
+  chunk.all_awake = true;
+  chunk.awake.clear();
+  chunk.border.clear();
+  if (!s.asleep) return;
+  for (std::size_t k = chunk.begin; k < chunk.end; ++k)
+    if (!s.asleep[k]) chunk.awake.push_back(static_cast<std::uint32_t>(k));
+  chunk.all_awake = chunk.awake.size() == chunk.end - chunk.begin;
+  if (chunk.all_awake) return chunk.awake.clear();
+  for (const FoundPair& f : found)
+    for (const std::uint32_t k : {f.a, f.b})
+      if (k >= chunk.begin && k < chunk.end && s.asleep[k]) chunk.border.push_back(k);
+  std::sort(chunk.border.begin(), chunk.border.end());
+  chunk.border.erase(std::unique(chunk.border.begin(), chunk.border.end()), chunk.border.end());
 }
 
 void SphereSearch::order(const std::array<const double*, 3>& x, std::size_t count, std::vector<std::uint32_t>& order) {

@@ -25,11 +25,15 @@ class SphereSearch {
   void prepare(const Bounds& bounds, double reach, std::size_t kinds, std::vector<std::uint32_t> laws,
                std::vector<Side> sides, std::size_t numbers_of_a_pair);
   /// Room for what packings of `all` spheres need, so that later searches seldom allocate.
-  void reserve(std::size_t all, std::vector<SphereChunk>& chunks);
+  /// `sleeping`: the pairs of those that sleep; null where nobody may.
+  void reserve(std::size_t all, std::vector<SphereChunk>& chunks, SphereChunk* sleeping);
 
   /// Fills the chunks with the pairs nearer than `slack` (m), with the memory that they had. `before`: numbers of the
   /// spheres when the chunks were filled last. Allocates only to grow.
-  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before);
+  /// `sleeping`: all pairs of spheres that touch and sleep, which no chunk has; null: they are as they were, and so are
+  /// the spheres' places in memory.
+  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before,
+            SphereChunk* sleeping);
 
   /// An order of `count` spheres in which neighbours are near, in blocks of cells; x by axis.
   void order(const std::array<const double*, 3>& x, std::size_t count, std::vector<std::uint32_t>& order);
@@ -40,7 +44,10 @@ class SphereSearch {
     double memory[6];
   };
   void sort(const SphereSet& spheres, double slack);
-  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before);
+  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
+            const SphereChunk* sleeping);
+  void place_sleeping(const SphereSet& spheres, SphereChunk& sleeping);
+  void list_sleepers(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place_sides(const SphereSet& spheres, double slack, SphereChunk& chunk) const;
   const double* memory_of(std::uint32_t number, std::uint32_t with) const;
@@ -53,7 +60,9 @@ class SphereSearch {
 
   SphereCells cells_;
   std::vector<std::uint32_t> cell_of_, begin_, order_;
-  AlignedVector<double> sorted_[4];  // x y z r, in the order of cells
+  std::vector<std::uint8_t> lively_;      // by cell
+  std::vector<std::uint32_t> sphere_of_;  // by number
+  AlignedVector<double> sorted_[4];       // x y z r, in the order of cells
   std::vector<std::uint32_t> kept_begin_;
   std::vector<Kept> kept_;
   std::vector<std::vector<FoundPair>> found_;  // by thread

@@ -68,6 +68,9 @@ struct SphereChunk {
   AlignedVector<double> memory;         // by batch: of each number of the memory eight, a pair's beside the next one's
   AlignedVector<std::uint8_t> touches;  // by batch: a bit a pair
   std::vector<AtSide> sides;
+  bool all_awake = true;
+  std::vector<std::uint32_t> awake;   // spheres, where some of the chunk sleep
+  std::vector<std::uint32_t> border;  // spheres that sleep and have pairs with others that do not
 
   // of the last step
   double lost = 0.0, stored = 0.0;  // J
@@ -75,6 +78,28 @@ struct SphereChunk {
   double farthest2 = 0.0;           // m2, square of the longest way since the search, one step ahead
   double fastest = 0.0;             // m/s
   double contacts = 0.0;
+  bool wakes = false;  // somebody of the border
+
+  bool idle() const { return !all_awake && awake.empty() && groups.empty() && sides.empty(); }
+  /// Calls f with each sphere that moves.
+  template <class F>
+  void each_moving(F&& f) const {
+    if (all_awake)
+      for (std::size_t k = begin; k < end; ++k) f(k);
+    else
+      for (const std::uint32_t k : awake) f(std::size_t{k});
+  }
+};
+
+/// What a step needs to know of spheres that sleep (models/grains/sphere_sleep.hpp). Forces and torque of a sphere
+/// stand side by side: three numbers in 2D, six in 3D.
+struct SleepStep {
+  const std::uint8_t* asleep = nullptr;         // by sphere
+  const std::uint32_t* numbers = nullptr;       // by sphere, lasting
+  double *offset = nullptr, *unrest = nullptr;  // N, N m; by number
+  std::uint8_t* wakes = nullptr;                // by number
+  double tolerance = 0.0;                       // m/s2
+  bool fresh = false;                           // the first step after somebody fell asleep or woke
 };
 
 /// Where the last step of a bundle leaves the spheres of a phase. Null: the phase has no such field.
@@ -99,6 +124,7 @@ struct SphereStep {
   bool last = false;                       // of its bundle: half a kick, and into the columns
   bool rubs = false, rolls = false;        // some law does
   std::size_t numbers = 0;                 // of the memory of a pair
+  const SleepStep* sleep = nullptr;        // null: nobody sleeps
 };
 
 }  // namespace barchan

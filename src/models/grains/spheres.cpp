@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "engine/means.hpp"
 #include "models/grains/sphere_forces.hpp"
-#include "output/numbers.hpp"
 
 namespace barchan {
 
@@ -90,8 +87,13 @@ void Spheres::attach(Workspace& w) {
   step_.laws = laws_.laws().data();
   step_.inverse_densities = laws_.inverse_densities().data();
   step_.columns = columns_.data();
+  std::vector<SphereSleep::Part> sleepy;
+  for (const Part& part : parts_)
+    if (scene_.phases[part.phase].grains().sleep)
+      sleepy.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
+  sleep_.prepare(std::move(sleepy), moving_, all, layout_, norm(scene_.domain.gravity));
   search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), std::move(sides), step_.numbers);
-  search_.reserve(all, chunks_);
+  search_.reserve(all, chunks_, sleep_.on() ? &sleeping_ : nullptr);
   for (std::size_t d = 0; d < 3; ++d)
     step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
 }
@@ -158,6 +160,7 @@ void Spheres::advance() {
   const auto steps = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
   if (must_search_ || since_sort_ >= searches_a_sort) sort();
   point_at_columns();
+  if (sleep_.on() && sleep_.look(*w_, numbers_.data(), lost_)) others_sleep_ = true;
   const double each = dt / static_cast<double>(steps);
   layout_.dimensions == 2 ? pack<2>(each) : pack<3>(each);
   for (long k = 0; k < steps; ++k) go(k + 1 == steps, each);
@@ -181,6 +184,17 @@ void Spheres::sort() {
     p.permute(order_.data());
   }
   since_sort_ = 0;
+  number();
+}
+
+/// Lasting numbers of the spheres, by their present places.
+void Spheres::number() {
+  for (const Part& part : parts_) {
+    const auto& id = w_->particles(part.phase).id();
+    const std::int64_t lowest = w_->particles(part.phase).first_id();
+    for (std::size_t k = 0; k < part.count; ++k)
+      numbers_[part.first + k] = static_cast<std::uint32_t>(part.first + static_cast<std::size_t>(id[k] - lowest));
+  }
 }
 
 /// The state into the records; half a kick and the first drift.
@@ -200,12 +214,24 @@ void Spheres::pack(double dt) {
     for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
     const double inverse_mass = 1.0 / (p.mass() * layout_.slab);
     const auto n = static_cast<std::int64_t>(part.count);
-    const bool fresh = must_search_;
+    const bool fresh = must_search_, all = must_search_ || others_sleep_ || loaded_;
+    double* others = records_[1 - now_].data();
 #pragma omp parallel for schedule(static) reduction(max : farthest2, fastest2)
     for (std::int64_t i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
       double* r = records + (part.first + k) * R::size;
       double* q = passive + (part.first + k) * passive_size;
+      if (sleep_.sleeps(numbers_[part.first + k])) {
+        for (std::size_t d = 0; d < Dim; ++d) q[d] = a[d][k];
+        for (double* record : {r, others + (part.first + k) * R::size}) {
+          if (!all) break;
+          std::fill_n(record, R::size, 0.0);
+          for (std::size_t d = 0; d < Dim; ++d) record[d] = c.position[d][k];
+          record[R::radius] = radius ? radius[k] : part.mean_radius;
+          q[passive_mass] = inverse_mass * std::pow(part.mean_radius / record[R::radius], 3);
+        }
+        continue;
+      }
       float way2 = 0.0f;
       double v2 = 0.0;
       for (std::size_t d = 0; d < Dim; ++d) {
@@ -227,32 +253,35 @@ void Spheres::pack(double dt) {
       fastest2 = std::max(fastest2, v2);
     }
   }
+  loaded_ = false;
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
   if (!(static_cast<double>(farthest2) < 0.24 * slack() * slack())) must_search_ = true;
-  if (must_search_) search();
+  if (must_search_ || others_sleep_) search();
 }
 
-SphereSet Spheres::set() const {
-  return {layout_.dimensions,           records_[now_].data(), moving_,
-          moving_ + fixed_kind_.size(), numbers_.data(),       kinds_.data()};
+SphereSet Spheres::set() {
+  return {layout_.dimensions,
+          records_[now_].data(),
+          moving_,
+          moving_ + fixed_kind_.size(),
+          numbers_.data(),
+          kinds_.data(),
+          sleep_.by_sphere(numbers_.data())};
 }
 
 /// Fills the lists from the present records.
 void Spheres::search() {
-  for (const Part& part : parts_) {
-    const auto& id = w_->particles(part.phase).id();
-    const std::int64_t lowest = w_->particles(part.phase).first_id();
-    for (std::size_t k = 0; k < part.count; ++k)
-      numbers_[part.first + k] = static_cast<std::uint32_t>(part.first + static_cast<std::size_t>(id[k] - lowest));
-  }
   // A search costs about four steps of all pairs and a step (1 + s)^D pairs of the slack s (see
   // Neighbours::choose_skin).
-  if (searches_ > 0) {
+  if (searches_ > 0 && !others_sleep_) {
     const double per_slack = static_cast<double>(kept_ + 1) / slack_;
     slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.01, 0.5 * slack_),
                         std::min(0.4, 1.5 * slack_));
   }
-  search_.find(set(), slack(), chunks_, listed_numbers_.data());
+  if (others_sleep_) sleep_.begin_again();
+  fresh_ = others_sleep_;
+  search_.find(set(), slack(), chunks_, listed_numbers_.data(), others_sleep_ || must_search_ ? &sleeping_ : nullptr);
+  others_sleep_ = false;
   listed_numbers_ = numbers_;
   for (auto& records : {&records_[0], &records_[1]})
     for (std::size_t k = 0; k < moving_; ++k)
@@ -275,94 +304,31 @@ void Spheres::go(bool last, double dt) {
   step_.last = last;
   step_.fastest = 0.0;
   for (const SphereChunk& chunk : chunks_) step_.fastest = std::max(step_.fastest, chunk.fastest);
+  step_.sleep = sleep_.step(numbers_.data(), fresh_);
   const auto n = static_cast<std::int64_t>(chunks_.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t c = 0; c < n; ++c) step_spheres(step_, chunks_[static_cast<std::size_t>(c)]);
-  stored_ = 0.0;
-  contacts_ = 0.0;
+  if (fresh_) step_spheres(step_, sleeping_);
+  fresh_ = false;
+  stored_ = sleeping_.stored;
+  contacts_ = sleeping_.contacts;
   double farthest2 = 0.0;
+  bool wakes = false;
   for (const SphereChunk& chunk : chunks_) {
     lost_ += chunk.lost;
     stored_ += chunk.stored;
     contacts_ += chunk.contacts;
     deepest_ = std::max(deepest_, chunk.deepest);
     farthest2 = std::max(farthest2, chunk.farthest2);
+    wakes = wakes || chunk.wakes;
   }
   ++kept_;
+  if (wakes) sleep_.wake();
+  others_sleep_ = wakes;
   if (last) return;
   now_ = 1 - now_;
   // Half of the slack, less what rounding in single precision may hide.
-  if (!(farthest2 < 0.24 * slack() * slack())) search();
-}
-
-void Spheres::history(HistoryRow& row) const {
-  double turning = 0.0;
-  for (const Part& part : parts_) {
-    const PhaseParticles& p = w_->particles(part.phase);
-    if (!p.has(Field::angular_velocity)) continue;
-    const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-    turning += ordered_sum(p.size(), [&](std::size_t k) {
-      const double r = radius ? radius[k] : part.mean_radius;
-      double w2 = 0.0;
-      for (int d = 0; d < p.components(Field::angular_velocity); ++d)
-        w2 += std::pow(p.column(Field::angular_velocity, d)[k], 2);
-      return 0.2 * p.mass_of(k) * r * r * w2;
-    });
-  }
-  const double depth = layout_.slab;  // energies are by metre of depth in 2D
-  row.add("contacts", contacts_);
-  row.add("contacts_deepest", deepest_);
-  row.add("contacts_stored_energy [J]", stored_ / depth);
-  row.add("contacts_lost_energy [J]", lost_ / depth);
-  row.add("rotation_energy [J]", turning);
-}
-
-std::optional<std::string> Spheres::trouble() const {
-  if (deepest_ <= most_overlap) return std::nullopt;
-  return "two grains overlap by " + brief(100.0 * deepest_) + " % of their mean diameter (the bound is " +
-         brief(100.0 * most_overlap) +
-         " %): contacts are too soft for what presses them, or fills overlap; raise stiffness, young or "
-         "time.largest-speed, or lower "
-         "largest-overlap";
-}
-
-std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
-  if (!entry.of_spheres()) return 0;
-  const std::uint32_t law = laws_.table()[entry.a * layout_.phases.size() + entry.b];
-  const auto far = static_cast<std::uint32_t>(moving_ + fixed_kind_.size());
-  std::uint64_t n = 0;
-  for (const SphereChunk& chunk : chunks_) {
-    for (const auto& group : chunk.groups)
-      for (std::size_t k = group.first * SphereChunk::batch; group.law == law && k < group.end * SphereChunk::batch;
-           ++k)
-        n += chunk.a[k] == far ? 0u : group.weight == 1.0 && chunk.b[k] < moving_ ? 2u : 1u;
-    n += static_cast<std::uint64_t>(
-        std::count_if(chunk.sides.begin(), chunk.sides.end(), [&](const auto& at) { return at.law == law; }));
-  }
-  return n;
-}
-
-void Spheres::archive(Archive& a) {
-  a.number("must search", must_search_);
-  a.number("slack", slack_);
-  a.number("steps of the pairs", kept_);
-  a.number("searches", searches_);
-  a.number("searches since sorting", since_sort_);
-  a.number("lost energy", lost_);
-  a.number("stored energy", stored_);
-  a.number("deepest", deepest_);
-  a.number("contacts", contacts_);
-  a.number("set of records", now_);
-  a.array("records of spheres", records_[now_]);
-  a.array("numbers of spheres", listed_numbers_);
-  for (SphereChunk& chunk : chunks_) {
-    a.array("groups", chunk.groups);
-    a.array("first of pairs", chunk.a);
-    a.array("second of pairs", chunk.b);
-    a.array("memory of pairs", chunk.memory);
-    a.array("pairs that touch", chunk.touches);
-    a.array("at sides", chunk.sides);
-  }
+  if (wakes || !(farthest2 < 0.24 * slack() * slack())) search();
 }
 
 }  // namespace barchan

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "models/grains/sphere_search.hpp"
+#include "models/grains/sphere_sleep.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -64,6 +65,7 @@ class Spheres : public Model {
 
   void advance();
   void sort();
+  void number();
   template <int Dim>
   void pack(double dt);
   void search();
@@ -71,10 +73,9 @@ class Spheres : public Model {
   void point_at_columns();
   template <int Dim>
   void make_records();
-  SphereSet set() const;
+  SphereSet set();
   double slack() const { return slack_ * laws_.reach(); }
 
-  static constexpr double most_overlap = 0.3;  // of the sum of radii: beyond it a law means nothing
   static constexpr long searches_a_sort = 32;
 
   const Scene& scene_;
@@ -94,8 +95,12 @@ class Spheres : public Model {
   std::vector<std::uint8_t> kinds_;
   SphereSearch search_;
   SphereStep step_;
+  SphereSleep sleep_;
+  SphereChunk sleeping_;  // pairs of spheres that sleep; no sphere of its own
   bool must_search_ = true;
-  double slack_ = 0.1;  // of the reach
+  bool loaded_ = false;                        // records of those that sleep are to be made again
+  bool others_sleep_ = false, fresh_ = false;  // than when the pairs were listed; and no step was made since
+  double slack_ = 0.1;                         // of the reach
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;
   double contacts_ = 0.0;

@@ -1,0 +1,136 @@
+#include "models/grains/sphere_sleep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace barchan {
+
+void SphereSleep::prepare(std::vector<Part> parts, std::size_t moving, std::size_t all, const Layout& layout,
+                          double gravity) {
+  parts_ = std::move(parts);
+  if (parts_.empty()) return;
+  layout_ = &layout;
+  moving_ = moving;
+  gravity_ = gravity;
+  dimensions_ = static_cast<std::size_t>(layout.dimensions);
+  numbers_ = dimensions_ == 2 ? 3 : 6;
+  double least = 1e300;
+  for (const Part& part : parts_) least = std::min(least, part.diameter);
+  interval_ = std::sqrt(least / gravity);
+  for (std::size_t d = 0; d < 3; ++d)
+    period_[d] = layout.bounds.periodic[d] ? layout.bounds.high[d] - layout.bounds.low[d] : 0.0;
+  for (auto* bytes : {&asleep_, &calm_, &wakes_}) bytes->assign(moving, 0);
+  for (auto* vectors : {&place_, &pull_}) vectors->assign(moving * dimensions_, 0.0);
+  for (auto* forces : {&offset_, &unrest_}) forces->assign(moving * numbers_, 0.0);
+  at_.assign(all, 1);
+}
+
+/// Wakes those whose acceleration by all but contacts is another than when they fell asleep.
+bool SphereSleep::pushed(Workspace& w, const std::uint32_t* numbers) {
+  const double most2 = std::pow(push * gravity_, 2);
+  std::size_t woken = 0;
+  for (const Part& part : parts_) {
+    const PhaseParticles& p = w.particles(part.phase);
+    for (std::size_t k = 0; k < part.count; ++k) {
+      const std::uint32_t n = numbers[part.first + k];
+      if (!asleep_[n]) continue;
+      double change2 = 0.0;
+      each_axis([&](std::size_t d) {
+        change2 += std::pow(p.column(Field::acceleration, static_cast<int>(d))[k] - pull_[n * dimensions_ + d], 2);
+      });
+      if (change2 <= most2) continue;
+      asleep_[n] = calm_[n] = 0;
+      ++woken;
+    }
+  }
+  sleeping_ -= woken;
+  return woken > 0;
+}
+
+bool SphereSleep::look(Workspace& w, const std::uint32_t* numbers, double& lost) {
+  bool changed = sleeping_ > 0 && pushed(w, numbers);
+  if (w.state.time < next_) return changed;
+  const bool first = next_ == 0.0;
+  next_ = w.state.time + interval_;
+  for (const Part& part : parts_) {
+    PhaseParticles& p = w.particles(part.phase);
+    const double way2 = std::pow(most_way * part.diameter, 2),
+                 speed2 = most_speed * most_speed * gravity_ * part.diameter, pull2 = std::pow(push * gravity_, 2);
+    const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+    const int spins = p.has(Field::angular_velocity) ? p.components(Field::angular_velocity) : 0;
+    for (std::size_t k = 0; k < part.count; ++k) {
+      const std::uint32_t n = numbers[part.first + k];
+      if (asleep_[n]) continue;
+      const double r = radius ? radius[k] : 0.5 * part.diameter;
+      double gone2 = 0.0, change2 = 0.0, v2 = 0.0, spin2 = 0.0;
+      each_axis([&](std::size_t d) {
+        const int axis = static_cast<int>(d);
+        const double x = p.column(Field::position, axis)[k], a = p.column(Field::acceleration, axis)[k];
+        double &place = place_[n * dimensions_ + d], &pull = pull_[n * dimensions_ + d];
+        double way = x - place;
+        if (period_[d] > 0.0) way -= period_[d] * std::round(way / period_[d]);
+        gone2 += way * way;
+        change2 += (a - pull) * (a - pull);
+        v2 += std::pow(p.column(Field::velocity, axis)[k], 2);
+        place = x;
+        pull = a;
+      });
+      for (int d = 0; d < spins; ++d) spin2 += std::pow(r * p.column(Field::angular_velocity, d)[k], 2);
+      const bool calm = !first && gone2 < way2 && v2 < speed2 && spin2 < speed2 && change2 < pull2;
+      calm_[n] = calm ? static_cast<std::uint8_t>(calm_[n] + 1) : std::uint8_t{0};
+      if (calm_[n] < looks) continue;
+      asleep_[n] = 1;
+      changed = true;
+      ++sleeping_;
+      lost += 0.5 * p.mass_of(k) * layout_->slab * (v2 + 0.4 * spin2);
+      each_axis([&](std::size_t d) {
+        p.column(Field::velocity, static_cast<int>(d))[k] = 0.0;
+        p.column(Field::contact_acceleration, static_cast<int>(d))[k] = -pull_[n * dimensions_ + d];
+      });
+      for (int d = 0; d < spins; ++d)
+        p.column(Field::angular_velocity, d)[k] = p.column(Field::angular_acceleration, d)[k] = 0.0;
+      std::fill_n(unrest_.begin() + static_cast<std::ptrdiff_t>(n * numbers_), numbers_, 0.0);
+    }
+  }
+  return changed;
+}
+
+void SphereSleep::wake() {
+  for (std::size_t n = 0; n < moving_; ++n) {
+    if (!wakes_[n]) continue;
+    wakes_[n] = 0;
+    sleeping_ -= asleep_[n];
+    asleep_[n] = calm_[n] = 0;
+  }
+}
+
+void SphereSleep::begin_again() {
+  for (std::size_t n = 0; n < moving_; ++n)
+    for (std::size_t d = 0; asleep_[n] && d < numbers_; ++d) offset_[n * numbers_ + d] = unrest_[n * numbers_ + d];
+}
+
+const std::uint8_t* SphereSleep::by_sphere(const std::uint32_t* numbers) {
+  if (sleeping_ == 0) return nullptr;
+  for (std::size_t k = 0; k < moving_; ++k) at_[k] = asleep_[numbers[k]];
+  return at_.data();
+}
+
+const SleepStep* SphereSleep::step(const std::uint32_t* numbers, bool fresh) {
+  if (sleeping_ == 0) return nullptr;
+  step_ = {at_.data(), numbers, offset_.data(), unrest_.data(), wakes_.data(), unrest * gravity_, fresh};
+  return &step_;
+}
+
+void SphereSleep::archive(Archive& a) {
+  if (!on()) return;
+  a.number("next look at sleepers", next_);
+  a.number("sleepers", sleeping_);
+  a.array("asleep", asleep_);
+  a.array("calm", calm_);
+  a.array("places of the last look", place_);
+  a.array("accelerations of the last look", pull_);
+  a.array("balance of sleepers", offset_);
+  a.array("unrest of sleepers", unrest_);
+}
+
+}  // namespace barchan

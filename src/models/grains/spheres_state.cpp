@@ -1,0 +1,100 @@
+// What a run tells of its spheres, and what a checkpoint keeps of them.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/means.hpp"
+#include "models/grains/spheres.hpp"
+#include "output/numbers.hpp"
+
+namespace barchan {
+
+void Spheres::history(HistoryRow& row) const {
+  double turning = 0.0;
+  for (const Part& part : parts_) {
+    const PhaseParticles& p = w_->particles(part.phase);
+    if (!p.has(Field::angular_velocity)) continue;
+    const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+    turning += ordered_sum(p.size(), [&](std::size_t k) {
+      const double r = radius ? radius[k] : part.mean_radius;
+      double w2 = 0.0;
+      for (int d = 0; d < p.components(Field::angular_velocity); ++d)
+        w2 += std::pow(p.column(Field::angular_velocity, d)[k], 2);
+      return 0.2 * p.mass_of(k) * r * r * w2;
+    });
+  }
+  const double depth = layout_.slab;  // energies are by metre of depth in 2D
+  row.add("contacts", contacts_);
+  row.add("contacts_deepest", deepest_);
+  row.add("contacts_stored_energy [J]", stored_ / depth);
+  row.add("contacts_lost_energy [J]", lost_ / depth);
+  row.add("rotation_energy [J]", turning);
+  if (sleep_.on()) row.add("asleep", static_cast<double>(sleep_.sleeping()));
+}
+
+std::optional<std::string> Spheres::trouble() const {
+  if (deepest_ <= most_sphere_overlap) return std::nullopt;
+  return "two grains overlap by " + brief(100.0 * deepest_) + " % of their mean diameter (the bound is " +
+         brief(100.0 * most_sphere_overlap) +
+         " %): contacts are too soft for what presses them, or fills overlap; raise stiffness, young or "
+         "time.largest-speed, or lower "
+         "largest-overlap";
+}
+
+std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
+  if (!entry.of_spheres()) return 0;
+  const std::uint32_t law = laws_.table()[entry.a * layout_.phases.size() + entry.b];
+  const auto far = static_cast<std::uint32_t>(moving_ + fixed_kind_.size());
+  std::uint64_t n = 0;
+  for (const SphereChunk& chunk : chunks_) {
+    for (const auto& group : chunk.groups)
+      for (std::size_t k = group.first * SphereChunk::batch; group.law == law && k < group.end * SphereChunk::batch;
+           ++k)
+        n += chunk.a[k] == far ? 0u : group.weight == 1.0 && chunk.b[k] < moving_ ? 2u : 1u;
+    n += static_cast<std::uint64_t>(
+        std::count_if(chunk.sides.begin(), chunk.sides.end(), [&](const auto& at) { return at.law == law; }));
+  }
+  return n;
+}
+
+void Spheres::archive(Archive& a) {
+  a.number("must search", must_search_);
+  a.number("slack", slack_);
+  a.number("steps of the pairs", kept_);
+  a.number("searches", searches_);
+  a.number("searches since sorting", since_sort_);
+  a.number("lost energy", lost_);
+  a.number("stored energy", stored_);
+  a.number("deepest", deepest_);
+  a.number("contacts", contacts_);
+  a.number("set of records", now_);
+  a.array("records of spheres", records_[now_]);
+  a.array("numbers of spheres", listed_numbers_);
+  a.number("others sleep", others_sleep_);
+  sleep_.archive(a);
+  if (a.loads() && sleep_.on()) {
+    loaded_ = true;
+    numbers_ = listed_numbers_;
+    sleep_.by_sphere(numbers_.data());
+  }
+  const auto pairs = [&a](SphereChunk& chunk) {
+    a.array("groups", chunk.groups);
+    a.array("first of pairs", chunk.a);
+    a.array("second of pairs", chunk.b);
+    a.array("memory of pairs", chunk.memory);
+    a.array("pairs that touch", chunk.touches);
+  };
+  for (SphereChunk& chunk : chunks_) {
+    pairs(chunk);
+    a.array("at sides", chunk.sides);
+    if (!sleep_.on()) continue;
+    a.number("all awake", chunk.all_awake);
+    a.array("awake", chunk.awake);
+    a.array("border", chunk.border);
+  }
+  if (!sleep_.on()) return;
+  pairs(sleeping_);
+  a.number("energy of sleepers", sleeping_.stored);
+  a.number("contacts of sleepers", sleeping_.contacts);
+}
+
+}  // namespace barchan

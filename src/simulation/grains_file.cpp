@@ -1,0 +1,86 @@
+#include "simulation/grains_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "base/errors.hpp"
+#include "laws/sphere_contact.hpp"
+#include "output/numbers.hpp"
+#include "output/series.hpp"
+#include "scene/couplings.hpp"
+#include "scene/located.hpp"
+#include "scene/places.hpp"
+#include "scene/reader.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// Two grains that overlap so much that a run would end at once; each is asked against those before it.
+std::optional<std::array<std::size_t, 2>> first_overlap(const Scene& scene, const SettledGrains& grains,
+                                                        double widest) {
+  const PeriodicSpace space(scene.domain);
+  Places before(space, widest);
+  for (std::size_t i = 0; i < grains.position.size(); ++i) {
+    const Vec3 x = space.wrapped(grains.position[i]);
+    const double diameter = 2.0 * grains.radius[i];
+    if (const int k = before.owner_near(x, diameter, 1.0 - most_sphere_overlap); k >= 0)
+      return std::array{static_cast<std::size_t>(k), i};
+    before.add(x, diameter, static_cast<int>(i));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
+  const Fill& f = scene.fills[fill];
+  const std::string file = std::get<FileShape>(f.shape).file, path = path_of_file(scene, file);
+  const auto refuse = [&](const std::string& what) {
+    throw SceneError(located(scene, "fill." + std::to_string(fill) + ".shape.file") + ": \"" + file + "\" " + what);
+  };
+  Frame frame;
+  try {
+    frame = read_frame(path);
+  } catch (const OutputError& e) {
+    refuse(std::string("cannot be read: ") + e.what() + "; expected a .vtp of Barchan");
+  }
+  const auto name = std::find(frame.phase_names.begin(), frame.phase_names.end(), f.phase);
+  if (name == frame.phase_names.end()) refuse("has no phase \"" + f.phase + "\"; expected a frame of a run with it");
+  const auto number = static_cast<std::int32_t>(name - frame.phase_names.begin());
+  const SphereSize size = *find_phase(scene, f.phase)->diameter();
+  const FrameField* radii = nullptr;
+  for (const FrameField& field : frame.fields)
+    if (field.name == "radius" && field.components == 1) radii = &field;
+  if (size.spread > 0.0 && !radii)
+    refuse("has no field radius, and the grains of \"" + f.phase +
+           "\" differ; expected a frame with output.fields = [\"radius\"]");
+  SettledGrains grains;
+  std::vector<std::int64_t> ids;
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    if (frame.phase[i] != number) continue;
+    const Vec3 x{frame.points[3 * i], frame.points[3 * i + 1], frame.points[3 * i + 2]};
+    const double radius = radii ? radii->values[i] : 0.5 * size.mean;
+    const std::string which = "has particle " + std::to_string(frame.id[i]);
+    if (!std::isfinite(x[0] + x[1] + x[2])) refuse(which + " at no finite place");
+    if (scene.dimensions == 2 && x[2] != 0.0)
+      refuse(which + " at z = " + brief(x[2]) + " m; expected z = 0 in two dimensions");
+    if (!(std::abs(2.0 * radius - size.mean) <= size.mean * (size.spread + 1e-6)))
+      refuse(which + " with the diameter " + brief(2.0 * radius) + " m; expected " +
+             brief(size.mean * (1.0 - size.spread)) + " to " + brief(size.mean * (1.0 + size.spread)) +
+             " m, the diameters of the phase");
+    grains.position.push_back(x);
+    grains.radius.push_back(radius);
+    ids.push_back(frame.id[i]);
+  }
+  if (const auto pair = first_overlap(scene, grains, size.largest()))
+    refuse("has particles " + std::to_string(ids[(*pair)[0]]) + " and " + std::to_string(ids[(*pair)[1]]) +
+           " that overlap by more than " + brief(100.0 * most_sphere_overlap) +
+           " % of their mean diameter; expected grains beside each other");
+  return grains;
+}
+
+}  // namespace barchan
