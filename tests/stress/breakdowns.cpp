@@ -65,7 +65,7 @@ const std::vector<Case>& broken_on_the_way() {
       {"PilePressedThroughItsFloor",
        &pile,
        {"phases.sand.contact-speed=0.1"},
-       {"phase \"sand\"", "deep in the wall \"floor\"", "raise phases.sand.contact-speed"}},
+       {"phase \"sand\"", "the wall \"floor\"", "raise phases.sand.contact-speed"}},
       {"NoWall",
        &over_a_floor,
        {"domain.gravity=[0, 9.81]", "fill.1.velocity=[0, 1]"},
