@@ -165,7 +165,8 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   const bool continuous = phase.kind() == PhaseKind::fluid || phase.kind() == PhaseKind::elastic;
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;
   if (close && continuous)
-    report(dotted + ".packing", "a continuous phase needs one particle a square of side dx; expected \"rows\" or \"relaxed\"");
+    report(dotted + ".packing",
+           "a continuous phase needs one particle a square of side dx; expected \"rows\" or \"relaxed\"");
   const bool box_or_bed = std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<BedShape>(fill.shape);
   if (fill.packing == Packing::settled && (!phase.if_grains() || !phase.diameter() || !box_or_bed))
     report(dotted + ".packing",

@@ -13,9 +13,10 @@ struct ParticleBlock {
   std::vector<Vec3> velocity;      // m/s
   std::vector<double> pressure{};  // Pa, initial; empty when no fill of the phase gives one
   std::vector<double> radius{};    // m, of spheres; empty when the phase gives no diameter
-  std::vector<Vec3> normal{};      // of fitted and relaxed walls: towards the nearest place of the surface; zero: not known
-  std::vector<double> depth{};     // m, the distance to it; both empty when no fill of the phase is such a wall
-  std::vector<std::array<double, 3>> bend{};  // 1/m, of fitted walls: second derivatives of the height, over sqrt(1 + slope^2)
+  std::vector<Vec3> normal{};  // of fitted and relaxed walls: towards the nearest place of the surface; zero: not known
+  std::vector<double> depth{};  // m, the distance to it; both empty when no fill of the phase is such a wall
+  std::vector<std::array<double, 3>>
+      bend{};  // 1/m, of fitted walls: second derivatives of the height, over sqrt(1 + slope^2)
 };
 
 /// Carries out the fills of the scene in order. Two-dimensional scenes have z = 0. Particle k of the scene gets id k,
