@@ -293,7 +293,7 @@ def cylinder(re, blockage=1 / 18):
     if true_strouhal:
         report(name, "consistent", 12.5, "Strouhal number, corrected, beyond the literature's range", beyond(strouhal / faster, true_strouhal), .02, seconds)
         tell(name, "consistent", 12.5, "St as measured, corrected, literature", f"{strouhal:.4f}, {strouhal / faster:.4f}, {true_strouhal[0]} to {true_strouhal[1]}", "", seconds)
-        tell(name, "consistent", 12.5, "amplitude of the lift coefficient", f"{(smooth.max() - smooth.min()) / 2:.3f}", "0.32 to 0.34", seconds)
+        tell(name, "consistent", 12.5, "amplitude of the lift coefficient", f"{math.sqrt(2) * smooth[whole].std():.3f}", "0.32 to 0.34", seconds)
 
 
 CASES = {
