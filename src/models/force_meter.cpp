@@ -34,13 +34,25 @@ void ForceOn::attach(Workspace& w) {
     w.need_motion(e.fluid);
     fluids_.push_back({{&w.list(e.direction(phase_)), &w.motion[e.fluid], e.kernel, e.radius,
                         pair_viscosity(scene_, layout_, phase_, e.fluid), false},
-                       e.corrected ? 1.0 / e.consistency.gradient_sum : 1.0});
+                       e.corrected ? 1.0 / e.consistency.gradient_sum : 1.0,
+                       e.fluid,
+                       Forces(scene_, layout_.phases[e.fluid].name)});
   }
+  balance_ = !meter_.box && std::all_of(fluids_.begin(), fluids_.end(),
+                                        [&](const Felt& felt) { return touches_nothing_else(felt.phase); });
+}
+
+/// A fluid of the consistent scheme whose entries are those with itself and with this wall.
+bool ForceOn::touches_nothing_else(std::size_t fluid) const {
+  return scene_.phases[fluid].fluid().scheme == FluidScheme::consistent &&
+         std::all_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+           return !e.has(fluid) || e.partner(fluid) == fluid || e.partner(fluid) == phase_;
+         });
 }
 
 void ForceOn::schedule(Schedule& s) {
   using enum Field;
-  const FieldSet reads = wall_ ? FieldSet{position, velocity} : FieldSet{position, acceleration};
+  const FieldSet reads = FieldSet{position, velocity, acceleration};
   const FieldSet writes = wall_ ? FieldSet{acceleration} : FieldSet{};
   s.add({wall_ ? stage::reaction : stage::motion, layout_.phases[phase_].name + ", force", reads, writes,
          [this] { measure(); }});
@@ -54,6 +66,17 @@ void ForceOn::measure() {
     for (int d = 0; d < layout_.dimensions; ++d) std::fill_n(wall.column(Field::acceleration, d), wall.size(), 0.0);
     fluid_reaction(wall, w_->extended[phase_], felt.fluid, false);
     add_sums(felt.share, {0, 0, 0});
+  }
+  if (!balance_) return;
+  force_ = {};
+  for (const Felt& felt : fluids_) {
+    const PhaseParticles& fluid = w_->particles(felt.phase);
+    const Vec3 given = felt.forces.sum(fluid, w_->state.time, w_->state.dt);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+      const double* a = fluid.column(Field::acceleration, static_cast<int>(d));
+      const double weight = scene_.domain.gravity[d];
+      force_[d] -= fluid.mass() * (ordered_sum(fluid.size(), [&](std::size_t k) { return a[k] - weight; }) - given[d]);
+    }
   }
 }
 

@@ -10,8 +10,10 @@ namespace barchan {
 
 /// Of a wall: the sum over its pairs with fluid particles of the forces of the plain scheme, with the pressure and the
 /// velocity that are continued into the wall (Adami et al. 2012); of a fluid of the consistent scheme over the sum of
-/// the gradient on a lattice, which that scheme divides by too. Of a body: mass times acceleration of its particles,
-/// less gravity. The torque counts periodic images nearest to its point.
+/// the gradient on a lattice, which that scheme divides by too. Such pairs miss what a curved wall does by about dx/(2
+/// R) (docs/method.md). So of a whole wall that is all that its fluids of that scheme touch, the force is what the
+/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of a body: mass times acceleration of its
+/// particles, less gravity. The torque counts periodic images nearest to its point.
 class ForceOn : public Model {
  public:
   ForceOn(const Scene& scene, const Layout& layout, std::size_t number);
@@ -24,6 +26,7 @@ class ForceOn : public Model {
  private:
   void measure();
   void add_sums(double share, const Vec3& less);
+  bool touches_nothing_else(std::size_t fluid) const;
 
   const Scene& scene_;
   const Layout& layout_;
@@ -34,8 +37,11 @@ class ForceOn : public Model {
   struct Felt {
     FluidNeighbour fluid;
     double share;  // of the sums
+    std::size_t phase;
+    Forces forces;
   };
   std::vector<Felt> fluids_;  // of a wall
+  bool balance_ = false;      // the force is what the fluids lose
   Vec3 force_{}, torque_{};   // N, N m (per metre of depth in 2D), in the last step
   Workspace* w_ = nullptr;
 };

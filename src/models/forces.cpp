@@ -59,18 +59,45 @@ void Forces::add(PhaseParticles& p, double time, bool numbers) const {
     }
 }
 
+namespace {
+
+/// Rate of a zone at a place (1/s); what is not finite goes on to the watch.
+double rate_of(const Formula& rate, const Vec3& x, double time, double dt) {
+  return std::clamp(rate(x, time), 0.0, dt > 0.0 ? 0.5 / dt : 0.0);
+}
+
+}  // namespace
+
 void Forces::relax(PhaseParticles& p, double time, double dt) const {
   const PhaseParticles& seen = p;
   for (const Zone& zone : zones_)
     for (std::size_t k = 0; k < p.size(); ++k) {
       const Vec3 x = place_of(seen, k);
       if (!holds(zone.box, x, p.dimensions())) continue;
-      const double rate = std::clamp(zone.rate(x, time), 0.0, dt > 0.0 ? 0.5 / dt : 0.0);
-      if (rate <= 0.0) continue;  // what is not finite goes on to the watch
+      const double rate = rate_of(zone.rate, x, time, dt);
+      if (rate <= 0.0) continue;
       for (int d = 0; d < p.dimensions(); ++d)
         p.column(Field::acceleration, d)[k] +=
             rate * (zone.velocity[static_cast<std::size_t>(d)](x, time) - seen.column(Field::velocity, d)[k]);
     }
+}
+
+Vec3 Forces::sum(const PhaseParticles& p, double time, double dt) const {
+  Vec3 total = static_cast<double>(p.size()) * uniform();
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    if (!varies()) break;
+    const Vec3 x = place_of(p, k);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(p.dimensions()); ++d) {
+      for (const Force& force : forces_)
+        if ((force.box || !force.acceleration[d].is_constant()) && holds(force.box, x, p.dimensions()))
+          total[d] += force.acceleration[d](x, time);
+      for (const Zone& zone : zones_)
+        if (holds(zone.box, x, p.dimensions()))
+          total[d] += rate_of(zone.rate, x, time, dt) *
+                      (zone.velocity[d](x, time) - p.column(Field::velocity, static_cast<int>(d))[k]);
+    }
+  }
+  return total;
 }
 
 }  // namespace barchan

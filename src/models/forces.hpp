@@ -23,6 +23,8 @@ class Forces {
   void add(PhaseParticles& p, double time, bool numbers) const;
   /// Adds what brings the phase to the velocities of its zones. dt (s): a step takes half of the difference at most.
   void relax(PhaseParticles& p, double time, double dt) const;
+  /// Sum over the particles of all that the [[forcing]] entries give them now, numbers too (m/s2).
+  Vec3 sum(const PhaseParticles& p, double time, double dt) const;
   bool any() const { return !forces_.empty(); }
   bool varies() const;
 

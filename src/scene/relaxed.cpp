@@ -1,5 +1,7 @@
 #include "scene/relaxed.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -115,7 +117,12 @@ class Relaxation {
         depth_(places_.size()),
         moves_(places_.size()),
         points_(border.space(), kernel_radius * border.spacing(), border.dimensions()) {
-    for (std::size_t i = 0; i < places_.size(); ++i) depth_[i] = border_.region().depth(places_[i]);
+    long moving = 0;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      depth_[i] = border_.region().depth(places_[i]);
+      moving += depth_[i] < band * border_.spacing();
+    }
+    threads_ = static_cast<int>(std::clamp(moving / 1000, 1l, static_cast<long>(omp_get_max_threads())));
   }
 
   std::vector<Vec3> take() { return std::move(places_); }
@@ -129,12 +136,12 @@ class Relaxation {
     // The layer forms in the first rounds, and then stands.
     const double hold = std::min(1.0, number / 100.0);
     double largest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : largest)
+#pragma omp parallel for num_threads(threads_) schedule(static) reduction(max : largest)
     for (std::size_t i = 0; i < places_.size(); ++i) {
       moves_[i] = depth_[i] < band * dx ? move_of(i, hold) : Vec3{};
       largest = std::max(largest, norm(moves_[i]));
     }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for num_threads(threads_) schedule(static)
     for (std::size_t i = 0; i < places_.size(); ++i) {
       if (!(depth_[i] < band * dx)) continue;
       places_[i] = border_.space().wrapped(places_[i] + moves_[i]);
@@ -170,6 +177,7 @@ class Relaxation {
   std::vector<double> depth_;  // m
   std::vector<Vec3> moves_;    // m
   PointCells points_;
+  int threads_ = 1;  // few for few places: more would wait for each other
 };
 
 }  // namespace
