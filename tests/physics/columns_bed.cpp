@@ -31,7 +31,7 @@ std::size_t number_of(const Drive& drive, const std::string& name) {
 /// A fifth of the scene's length; the bed, the air over it and the lid are as deep and as high as there.
 TEST(FlatBed, NoGrainMovesWithoutWind) {
   Drive drive("paper/flat_bed", {"fill.3.velocity.log-profile.friction-velocity=0", "phases.lid.shear-stress=[0, 0]",
-                           "domain.size=[0.012, 0.02]", "fill.0.shape.box.max=[0.012, 0.001]"});
+                                 "domain.size=[0.012, 0.02]", "fill.0.shape.box.max=[0.012, 0.001]"});
   const std::size_t sand = number_of(drive, "sand");
   const double d = drive.scene().spacing, width = drive.scene().domain.size[0];
   const auto before = places(drive.phase(sand));
