@@ -74,7 +74,7 @@ class Pages(unittest.TestCase):
     def test_tables_of_performance_are_those_of_the_results(self):
         root = self.copy()
         page = root / "docs/performance.md"
-        page.write_text(re.sub(r"(\| dune\.toml \| )\d+", r"\g<1>1", page.read_text(), count=1))
+        page.write_text(re.sub(r"(\| paper/dune\.toml \| )\d+", r"\g<1>1", page.read_text(), count=1))
         result = self.figures(root)
         self.assertEqual(result.returncode, 1)
         self.assertIn("docs/performance.md: the tables", result.stdout)
