@@ -106,10 +106,10 @@ class Marks:
     def particles(self, phase, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
         """One phase as discs (balls in 3D). `radius` in spacings (None: touching, or overlapping where they are a
         few pixels only; "whole": without gaps); `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
-        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity)
+        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity, self.series.size(phase))
 
-    def dots(self, source, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
-        """As particles(), of any source of points."""
+    def dots(self, source, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0, size=None):
+        """As particles(), of any source of points; `size` (m) stands for the spacing. What is finer than three pixels is drawn with three."""
         flat = self.series.two_dimensional
         if radius == "whole":   # a fluid looks like the continuum that it stands for, and stays off the axes
             radius = 1.0 if self.pixels_per_spacing < 9 else 0.85
@@ -118,7 +118,10 @@ class Marks:
         shown = Show(source, self.view)
         shown.SetRepresentationType("Point Gaussian")
         shown.ShaderPreset = "Plain circle" if flat else "Sphere"
-        shown.GaussianRadius = radius * self.series.spacing
+        if size is None or size == self.series.spacing:
+            shown.GaussianRadius = radius * self.series.spacing
+        else:
+            shown.GaussianRadius = max(0.5 * size, 1.5 * self.metres)
         shown.ScaleByArray = 0
         shown.Opacity = opacity
         if flat:

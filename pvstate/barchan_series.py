@@ -297,6 +297,18 @@ class Series:
         velocity = self.values("velocity", phases)
         return np.linalg.norm(velocity, axis=1) if len(velocity) else np.zeros(0)
 
+    def size(self, phase):
+        """The spacing (m) of a phase; of spheres much finer than the scene's spacing their largest diameter (their smoothing length
+        is a radius)."""
+        h = self.values("smoothing_length", [phase]) if self.phase_kinds[phase] == "grains" else np.zeros(0)
+        h = h[h > 0]
+        return float(2 * h.max()) if len(h) and h.max() < 0.3 * self.spacing else self.spacing
+
+    def moving_at_once(self, phases, speed):
+        """The most particles of these phases that are faster than `speed` (m/s) in one of the sampled frames."""
+        return max((sum(int((np.linalg.norm(s["velocity"][s["phase"] == p], axis=1) > speed).sum()) for p in phases)
+                    for s in self._samples if "velocity" in s), default=0)
+
     def top_speed(self, phases, share=99.5):
         """A speed (m/s) that `share` per cent of the particles of these phases do not exceed, rounded up."""
         return nice_ceiling(percentile(self.speeds(phases), share))
