@@ -110,7 +110,7 @@ void ForceOn::add_sums(double share, const Vec3& less) {
 }
 
 void ForceOn::history(HistoryRow& row) const {
-  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+  for (std::size_t d = 0; d < 3 && d < static_cast<std::size_t>(layout_.dimensions); ++d)
     row.add(meter_.name + "_force_" + axes[d] + " [N]", force_[d]);
   for (std::size_t d = layout_.dimensions == 2 ? 2 : 0; d < 3; ++d)
     row.add(meter_.name + "_torque_" + axes[d] + " [N m]", torque_[d]);

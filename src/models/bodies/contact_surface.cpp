@@ -136,6 +136,7 @@ std::optional<Gap> PolygonOutline::gap(const Vec3& x) const {
       best = foot;
       edge = &edges_[near_[q]];
     }
+  if (edge == nullptr) return std::nullopt;  // x is not a number
   const bool corner = best.share == 0.0 || best.share == 1.0;
   const Vec3& normal = corner ? edge->end_normals[best.share == 1.0 ? 1 : 0] : edge->normal;
   const Vec3 out{x[0] - best.at[0], x[1] - best.at[1], 0.0};

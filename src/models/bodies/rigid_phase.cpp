@@ -95,7 +95,7 @@ void RigidPhase::attach(Workspace& w) {
   carriers_.reserve(bodies());
   place_of_.resize(arms_.size());
   find_places();
-  w.when_sorted.push_back([this] { find_places(); });
+  w.when_sorted.emplace_back([this] { find_places(); });
   for (std::size_t k = 0; k < bodies(); ++k) drive(body(k), w.state.time);
   carry_velocities();
 }
