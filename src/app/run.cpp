@@ -119,6 +119,7 @@ int run_to_the_end(Course& course, const std::optional<Checkpoint>& from, int re
   std::optional<Run> run(std::in_place, course, from.has_value());
   if (from) {
     Archive archive(from->state);
+    course.beds.archive(archive, course.scene);
     simulation.archive(archive);
     if (run->measurements()) run->measurements()->archive(archive);
     archive.finish();
@@ -152,15 +153,20 @@ int run(const RunOptions& options) {
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   if (options.threads > 0) use_threads(options.threads, 0);
-  const auto blocks = make_particles(scene, options.quiet ? nullptr : &std::cout);
-  const Plan plan = make_plan(scene, blocks);
-  check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
-  use_threads(options.threads, plan.particles());
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   std::optional<FolderLock> lock;
   std::error_code unseen;
   if (fs::is_directory(directory, unseen)) lock.emplace(directory);
   const std::optional<Checkpoint> from = find_checkpoint(options.restart, directory, scene);
+  SettledBeds beds;
+  if (from) {
+    Archive archive(from->state);
+    beds.archive(archive, scene);
+  }
+  const auto blocks = make_particles(scene, options.quiet ? nullptr : &std::cout, &beds);
+  const Plan plan = make_plan(scene, blocks);
+  check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
+  use_threads(options.threads, plan.particles());
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
   simulation.check_start();
@@ -172,7 +178,7 @@ int run(const RunOptions& options) {
   if (!lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
   clear(directory, scene, plan, from.has_value());
-  Course course{scene, simulation, directory, Progress(scene.time.end, plan.particles(), options.quiet)};
+  Course course{scene, simulation, directory, Progress(scene.time.end, plan.particles(), options.quiet), beds};
   return run_to_the_end(course, from, options.retreats);
 }
 

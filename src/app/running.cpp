@@ -179,6 +179,7 @@ void Run::write_checkpoint() {
   simulation_.check();
   series_->finish();
   Archive archive;
+  course_.beds.archive(archive, scene_);
   simulation_.archive(archive);
   if (measurements_) measurements_->archive(archive);
   barchan::write_checkpoint(checkpoint_file(directory_, scene_),

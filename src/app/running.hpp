@@ -12,6 +12,7 @@
 #include "output/history.hpp"
 #include "output/run_report.hpp"
 #include "output/series.hpp"
+#include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -22,6 +23,7 @@ struct Course {
   Simulation& simulation;
   std::filesystem::path directory;
   Progress progress;
+  SettledBeds& beds;
   double last_checkpoint = 0.0;                       // s of the run's wall time
   long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
   std::vector<RunReport::Retreat> retreats{};

@@ -62,6 +62,16 @@ double lists(const Plan& plan) {
   return bytes;
 }
 
+/// What the contacts of a sphere take, as models/grains/sphere_search.cpp reserves it: its records and their copy, its
+/// pairs with the numbers that they remember, and the search.
+double contacts_of_a_sphere(int dimensions) {
+  const bool flat = dimensions == 2;
+  const double pairs = flat ? 6 : 11, remembered = flat ? 2 : 6, record = flat ? 8 : 12, passive = 4, cells = 8;
+  const double kept_pair = 2 * index + 6 * wide;
+  return (2 * record + passive) * wide + pairs * (2 * index + remembered * wide) + 0.5 * pairs * kept_pair +
+         cells * index + 4 * wide + 4 * index;
+}
+
 }  // namespace
 
 double MemoryNeed::bytes() const {
@@ -71,7 +81,7 @@ double MemoryNeed::bytes() const {
 }
 
 MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
-  double fields = 0, records = 0, grids = 0, frames = 0, past = 0, start = 0, kept = 0;
+  double fields = 0, records = 0, grids = 0, frames = 0, past = 0, start = 0, kept = 0, contacts = 0;
   const double dimensions = plan.dimensions;
   const double written = 3 + 3 + 3 + 2 * static_cast<double>(scene.output.fields.size()) + 2;  // numbers of a particle
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
@@ -97,11 +107,13 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     past += own + cells(plan, k) * 2.0 * index + search;
     frames += 3.0 * n * (written * wide + id + index);  // one that is copied, two that wait
     start += n * 2.0 * sizeof(Vec3);
+    if (scene.phases[k].diameter()) contacts += n * contacts_of_a_sphere(plan.dimensions);
     if (p.moves) kept += n * ((2.0 * dimensions + 2.0) * wide + id);
   }
   MemoryNeed need;
   need.parts = {{"fields", fields},           {"records", records},      {"cells", grids}, {"pair lists", lists(plan)},
                 {"frames that wait", frames}, {"last good state", kept}, {"start", start}, {"program", 6e7}};
+  need.parts.emplace_back("contacts of spheres", contacts);
   need.parts.emplace_back("checkpoint", 3.0 * past);  // the state, in its envelope, and as the bytes of a file
   if (retreats) need.parts.emplace_back("states to go back to", 2.0 * past);
   return need;

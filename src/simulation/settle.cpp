@@ -348,9 +348,21 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   return {blocks[0].position, blocks[0].radius};
 }
 
-std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words) {
-  return generate(scene, [words](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
-    return of.fills[fill].packing == Packing::settled ? settle(of, fill, words) : grains_of_file(of, fill);
+void SettledBeds::archive(Archive& a, const Scene& scene) {
+  for (std::size_t k = 0; k < scene.fills.size(); ++k)
+    if (scene.fills[k].packing == Packing::settled) {
+      a.array("places of a settled bed", of_fill[k].position);
+      a.array("radii of a settled bed", of_fill[k].radius);
+    }
+}
+
+std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words, SettledBeds* beds) {
+  return generate(scene, [&](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
+    if (of.fills[fill].packing != Packing::settled) return grains_of_file(of, fill);
+    if (!beds) return settle(of, fill, words);
+    const auto there = beds->of_fill.find(fill);
+    if (there == beds->of_fill.end()) return beds->of_fill[fill] = settle(of, fill, words);
+    return there->second;
   });
 }
 

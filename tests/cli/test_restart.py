@@ -78,6 +78,24 @@ class Restart(unittest.TestCase):
             self.assertEqual(files(out)[name], before[name])
         self.assertGreater(len(files(out)), len(before))
 
+    def test_a_settled_bed_is_taken_from_the_checkpoint(self):
+        bed = ["--set", "fill.2.shape.box.max=[0.015, 0.016]", "--set", "output.every=0.001", "--threads", "1"]
+
+        def go(out, end, *options):
+            made = subprocess.run([PROGRAM, "run", str(SOURCE / "scenes/repose.toml"), "--out", str(out), "--set", f"time.end={end}", *bed, *options],
+                                  capture_output=True, text=True)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            return made.stdout
+
+        whole, part = self.top / "whole", self.top / "part"
+        self.assertIn("settling", go(whole, .004))
+        go(part, .002)
+        self.assertNotIn("settling", go(part, .004, "--restart", "latest"))
+        self.assertEqual(sorted(files(part)), sorted(files(whole)))
+        for name, content in files(whole).items():
+            if name.endswith(".vtp"):
+                self.assertEqual(files(part)[name], content, name)
+
     def test_other_scenes_and_damaged_files_are_refused(self):
         out = self.top / "out"
         self.assertEqual(self.run_to_end(out, *SHORT).returncode, 0)

@@ -7,6 +7,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -39,6 +40,29 @@ shape = { box = { min = [14, 14], max = [14.005, 14.005] } }
 velocity = [1, 0]
 [time]
 end = 1e-4
+"""
+
+SPHERES = """
+dimensions = 3
+spacing = 0.001
+[domain]
+size = [0.05, 0.1, 0.05]
+periodic = ["x", "z"]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 0.001, spread = 0.2 }
+friction = 0.5
+young = 1e7
+poisson = 0.3
+[interactions]
+sand-sand = { law = "hertz" }
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0, 0, 0], max = [0.05, 0.1, 0.05] } }
+[time]
+end = 1e-4
+largest-speed = 1.0
 """
 
 
@@ -196,6 +220,19 @@ class Robust(unittest.TestCase):
         run.returncode = status
         self.assertEqual(status, 0)
         self.assertLess(usage.ru_maxrss, 250_000, "kB")
+
+    @unittest.skipIf(SANITIZED, "a sanitizer takes memory of its own")
+    def test_planned_memory_is_not_less_than_what_a_bed_of_spheres_takes(self):
+        scene = self.top / "spheres.toml"
+        scene.write_text(SPHERES)
+        plan = subprocess.run([PROGRAM, "plan", str(scene)], capture_output=True, text=True, check=True).stdout
+        planned = float(re.search(r"memory  about ([0-9.]+) MB", plan)[1]) * 1e3
+        run = subprocess.Popen(self.command("--quiet", scene=scene), stderr=subprocess.DEVNULL)
+        _, status, usage = os.wait4(run.pid, 0)
+        run.returncode = status
+        self.assertEqual(status, 0)
+        self.assertLess(usage.ru_maxrss, planned, "kB")
+        self.assertLess(planned, 2 * usage.ru_maxrss, "kB")
 
     def test_standard_output_that_is_full_is_an_error(self):
         for command in (["schema"], ["--version"], ["plan", str(SCENE), "--set", "time.end=1e-4"]):
