@@ -27,7 +27,8 @@ class FieldSet {
 };
 
 /// While one lives, PhaseParticles::column throws std::logic_error for a field that `allowed` does not have; the
-/// message names the task. One at a time; the threads of the task's loops are bound by it too.
+/// message names the task. It binds the thread that runs the task, so that two simulations may run side by side; the
+/// threads of a loop get their columns from that one.
 class AccessGuard {
  public:
   AccessGuard(const char* stage, const char* owner, const FieldSet& allowed) {
@@ -46,8 +47,8 @@ class AccessGuard {
 
  private:
   [[noreturn]] static void refuse(Field field);
-  inline static const FieldSet* allowed_ = nullptr;
-  inline static const char *stage_ = "", *owner_ = "";
+  inline static thread_local const FieldSet* allowed_ = nullptr;
+  inline static thread_local const char *stage_ = "", *owner_ = "";
 };
 
 }  // namespace barchan

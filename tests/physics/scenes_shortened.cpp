@@ -32,11 +32,18 @@ std::vector<std::string> all_scenes() {
   return names;
 }
 
+/// What the scene will do, without the minutes in which its beds settle: they stand as they were filled.
+Plan plan_of_filled(Scene scene) {
+  for (auto& fill : scene.fills)
+    if (fill.packing == Packing::settled) fill.packing = Packing::square;
+  return make_plan(scene, make_particles(scene));
+}
+
 /// A time of `steps` steps, as an override.
 std::string ending_after(const std::string& scene, double steps) {
   const Scene s = read_scene(testing::scene_file(scene));
   char text[64];
-  std::snprintf(text, sizeof text, "time.end=%.9g", steps * make_plan(s, make_particles(s)).step());
+  std::snprintf(text, sizeof text, "time.end=%.9g", steps * plan_of_filled(s).step());
   return text;
 }
 
@@ -130,7 +137,7 @@ TEST_P(EveryScene, RunsInTheProgram) {
   EXPECT_TRUE(report["warnings"].empty()) << report["warnings"];
   // What was executed is what the plan promised.
   const Scene scene = read_scene(testing::scene_file(GetParam()));
-  EXPECT_EQ(report["passes"].get<std::vector<std::string>>(), make_plan(scene, make_particles(scene)).passes);
+  EXPECT_EQ(report["passes"].get<std::vector<std::string>>(), plan_of_filled(scene).passes);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, ::testing::ValuesIn(all_scenes()), [](const auto& test) {
