@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "engine/integrate.hpp"
@@ -33,7 +34,7 @@ class BareAir {
     q_.shift_speed = 1.0;
     q_.shift_limit = 0.2;
     q_.smoothing_length = h;
-    viscosity_ = phase.density * phase.viscosity;
+    viscosity_ = phase.density * phase.fluid().viscosity;
     neighbours_.adapt_skin();
     rates(true);
   }
@@ -50,7 +51,7 @@ class BareAir {
     pack();
     const FluidNeighbour entry{&neighbours_.list(0), &records_,  KernelKind::wendland_c2,
                                neighbours_radius(),  viscosity_, true};
-    fluid_rates(particles_[0], records_, {&entry, 1}, q_, FluidScheme::plain);
+    fluid_rates(particles_[0], records_, std::span<const FluidNeighbour>(&entry, 1), q_, FluidScheme::plain);
   }
   double neighbours_radius() const { return 2.0 * q_.smoothing_length; }
   void pack() {
