@@ -246,7 +246,7 @@ void convert(const std::vector<char>& bytes, std::vector<To>& values) {
       constexpr double least = -9007199254740992.0;  // 2^53: what a double tells apart
       if (!(value >= From(least) && value <= From(-least))) refuse_file("a whole number is expected");
     }
-    values[k] = static_cast<To>(value);
+    values[k] = static_cast<To>(value);  // NOLINT(bugprone-signed-char-misuse): a number of eight bits, not a letter
   }
 }
 

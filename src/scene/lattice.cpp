@@ -88,10 +88,9 @@ std::string misfit_of_period(const Scene& scene, std::size_t axis) {
       if (!hangs_on_origin(fill.shape) || fill.packing == Packing::random || stretches(fill)) continue;
       const double dx = spacing_of(scene, fill);
       if (staggered != (fill.packing == Packing::hexagonal)) continue;
-      const std::string text =
-          staggered && axis != 0
-              ? misfit(period_of(Packing::hexagonal, scene.dimensions, axis, dx), "staggered double rows")
-              : misfit(dx, "spacings");
+      std::string text = staggered && axis != 0 ? misfit(period_of(Packing::hexagonal, scene.dimensions, axis, dx),
+                                                         "staggered double rows")
+                                                : misfit(dx, "spacings");
       if (!text.empty()) return text;
     }
   return "";

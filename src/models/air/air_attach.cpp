@@ -244,7 +244,7 @@ void Air::bind_eddies() {
   double cell = plan_.spacing;
   for (const auto& phase : ground_phases_) cell = std::max(cell, phase.spacing);
   ground_ = std::make_unique<GroundDistance>(layout_.bounds, sides, cell, particles);
-  w_->when_sorted.push_back([this] { ground_->refresh(ground_phases_); });
+  w_->when_sorted.emplace_back([this] { ground_->refresh(ground_phases_); });
 }
 
 /// How this fluid rubs on another phase, and whether that is ground.
