@@ -25,7 +25,8 @@ class BodyOf : public TotalBody {
     for (std::size_t d = 0; d < 3; ++d)
       if (parameters.period[d] > 0.0) work_.displaced[d].assign(reference_.size, 0.0);
     const std::size_t padded = reference_.groups.size() * reference_.width;
-    const auto numbers = static_cast<std::size_t>(reference_.dimensions * reference_.dimensions);
+    const auto numbers =
+        static_cast<std::size_t>(reference_.dimensions) * static_cast<std::size_t>(reference_.dimensions);
     for (std::size_t c = 0; c < numbers; ++c) detail_.gradient[c].assign(padded, 0.0);
     detail_.hourglass.assign(padded, 0.0);
   }
@@ -125,7 +126,7 @@ void TotalPhase::attach(Workspace& w) {
   start_.clear();
   start_.shrink_to_fit();
   body_->set_places(w.particles(number_));
-  w.when_sorted.push_back([this] { body_->set_places(w_->particles(number_)); });
+  w.when_sorted.emplace_back([this] { body_->set_places(w_->particles(number_)); });
 }
 
 void TotalPhase::schedule(Schedule& s) {
