@@ -23,9 +23,12 @@ std::string joined(const std::vector<std::string>& words) {
   return all.empty() ? "none" : all;
 }
 
+/// A contact with a law by name has this name.
 std::string law_of(const PlanEntry& e) {
-  if (!e.of_spheres()) return to_string(e.law);
-  return e.contact == ContactLaw::linear ? "linear" : "hertz";
+  if (e.law == Law::contact && e.contact != ContactLaw::kernel)
+    for (const Word& w : words_of<ContactLaw>)
+      if (w.meaning == static_cast<int>(e.contact)) return std::string(w.word);
+  return to_string(e.law);
 }
 
 /// What the kernel sums of an entry mean.

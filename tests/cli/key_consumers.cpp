@@ -296,9 +296,11 @@ TEST(KeyConsumers, AKeyWithoutACaseChangesTheResultsByItself) {
           path_of(key) == "phases.kind"
               ? kind_differs(named.kind)
               : std::any_of(places.begin(), places.end(), [&](const Place& place) { return differs(place, key); });
-      EXPECT_TRUE(found) << named.name
-                         << ": no value of it alone changes the results of a scene of key_consumers_scenes.inc; if it "
-                            "acts beside other keys only, add a case to key_consumers_cases.inc";
+      EXPECT_TRUE(found)
+          << named.name
+          << ": no value of it alone changes the results of a scene of key_consumers_scenes.inc; if it "
+             "acts beside other keys only, add a case to key_consumers_cases.inc; of a new kind of phase, add a "
+             "scene that has one";
     }
   }
 }

@@ -26,7 +26,7 @@ using testing::with;
 struct Malformed {
   const char* name;
   std::string text;
-  std::string message;  // FILE stands for the scene's file, FIELDS for the names of all fields
+  std::string message;  // FILE stands for the scene's file, FIELDS and KINDS for the names of all fields and kinds
 };
 void PrintTo(const Malformed& scene, std::ostream* out) { *out << scene.name; }
 
@@ -37,7 +37,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 std::string message_of(const Malformed& scene, const std::string& file) {
-  return replaced(replaced(scene.message, "FILE", file), "FIELDS", one_of(choices(*find_key("output", "fields"))));
+  const std::string kinds = one_of(choices(*find_key("phases", "kind")));
+  return replaced(
+      replaced(replaced(scene.message, "FILE", file), "FIELDS", one_of(choices(*find_key("output", "fields")))),
+      "KINDS", kinds);
 }
 
 /// The dune with one thing changed.

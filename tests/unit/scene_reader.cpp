@@ -737,8 +737,7 @@ TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
   EXPECT_NE(schema["properties"]["spacing"]["description"].get<std::string>().find("Unit: m."), std::string::npos);
   EXPECT_EQ(schema["required"], (nlohmann::json{"spacing", "domain", "phases", "interactions", "fill", "time"}));
   const auto& phase = schema["properties"]["phases"]["additionalProperties"];
-  EXPECT_EQ(phase["properties"]["kind"]["enum"],
-            (nlohmann::json{"fluid", "elastic", "rigid", "grains", "wall", "column"}));
+  EXPECT_EQ(phase["properties"]["kind"]["enum"], nlohmann::json(choices(*find_key("phases", "kind"))));
   EXPECT_EQ(phase["additionalProperties"], false);
   for (const Key& key : all_keys()) {
     EXPECT_FALSE(key.meaning.empty()) << key.name;
