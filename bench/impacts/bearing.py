@@ -19,7 +19,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "bench/impacts/results/impacts.json"
 INNER, OUTER, BALL, SMALL, DX = 1e-2, 1.78e-2, 3e-3, 6e-4, 3e-4  # m: the rings' surfaces, radii of balls and inclusion, spacing
-VISCOSITY = 900 * 2e-3  # Pa s
+VISCOSITY = 900 * 1.5e-3  # Pa s
 DENSITY = {"oil": 900, "inner": 7850, "balls": 1140, "inclusion": 2650}  # kg/m3
 
 
