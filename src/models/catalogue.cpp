@@ -83,6 +83,11 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (scene.phases[k].kind() == PhaseKind::rigid && meets(scene, scene.phases[k], PhaseKind::fluid))
+      for (const Field f :
+           {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
+        layout.phases[k].fields.push_back(f);
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if ((scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column)) ||
         drags_by_law(scene, scene.phases[k]))
       layout.phases[k].fields.push_back(Field::drag_acceleration);

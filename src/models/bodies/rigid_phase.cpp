@@ -5,7 +5,6 @@
 
 #include "engine/means.hpp"
 #include "output/numbers.hpp"
-#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -51,9 +50,6 @@ void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks
   PlanPhase& p = layout.phases[number];
   const RigidKeys& keys = scene.phases[number].rigid();
   p.fields = {Field::position, Field::velocity, Field::acceleration};
-  if (meets(scene, scene.phases[number], PhaseKind::fluid))
-    p.fields.insert(p.fields.end(),
-                    {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration});
   p.rigid_bodies = rigid_bodies(scene, blocks[number], number, layout);
   double heaviest = 0.0;
   for (const RigidBody& body : p.rigid_bodies) heaviest = std::max(heaviest, body.mass);
