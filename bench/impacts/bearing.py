@@ -104,7 +104,9 @@ def page(r):
             f"| work of the driving torque [J/m] = motion + oil's internal energy + friction at what turns + rest | {r['work']:.3f} = {r['kinetic']:.3f} + "
             f"{r['internal']:.3f} + {r['turned']:.3f} + {100 * r['left']:.2f} % | rest within 1 % |",
             f"| mean driving torque, second half [N m/m] | {r['torque']:.4f} | |",
-            f"| largest change of the oil's density | {100 * r['density']:.1f} % | |", ""]
+            f"| largest change of the oil's density | {100 * r['density']:.1f} % | |", "",
+            "A ball catches the inclusion, throws it against the outer ring and rolls over it; so do those that follow.", "",
+            "![Speed of the oil about the balls](gallery/bearing.png)", ""]
 
 
 def main():
