@@ -30,6 +30,8 @@ namespace barchan {
   row(ground_distance, "d", "m", scalar, derived, "distance to the surface of the nearest wall or grain at rest") \
   row(wall_normal, "n", "1", vector, state, "unit normal of a wall particle, into the fluid") \
   row(wall_depth, "phi", "m", scalar, state, "distance of a wall particle behind the wall's surface, 0: unknown") \
+  row(surface_velocity, "v_s", "m/s", vector, state, "of a particle of a rigid body in a fluid: velocity of the nearest place of the body's surface") \
+  row(surface_acceleration, "a_s", "m/s2", vector, state, "of a particle of a rigid body in a fluid: the acceleration that the fluid's pressure follows") \
   row(drag_acceleration, "a_d", "m/s2", vector, state, "acceleration of a grain by the drag of a column of air") \
   row(smoothing_length, "h", "m", scalar, derived, "half the kernel radius of the phase with itself") \
   row(radius, "r", "m", scalar, state, "of a sphere whose phase has sizes") \

@@ -12,6 +12,7 @@
 #include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
+#include "models/coupling/rigid_in_fluid.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/force_meter.hpp"
@@ -59,7 +60,7 @@ Law law_of(const Phase& a, const Phase& b) {
   if (is(fluid, fluid)) return Law::fluid;
   if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
   if (is(column, grains)) return Law::column;
-  if (is(fluid, grains) || is(fluid, elastic)) return Law::coupling;
+  if (is(fluid, grains) || is(fluid, elastic) || is(fluid, rigid)) return Law::coupling;
   if (is(elastic, elastic)) return Law::elastic;
   const auto touches = [](const Phase& p) {
     return p.kind() == elastic || p.kind() == rigid || p.kind() == grains || p.kind() == wall;
@@ -81,6 +82,11 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   }
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (scene.phases[k].kind() == PhaseKind::rigid && meets(scene, scene.phases[k], PhaseKind::fluid))
+      for (const Field f :
+           {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
+        layout.phases[k].fields.push_back(f);
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if ((scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column)) ||
         drags_by_law(scene, scene.phases[k]))
@@ -108,10 +114,14 @@ Models make_models(const Scene& scene, const Layout& layout) {
       models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
-  for (std::size_t k = 0; k < layout.phases.size(); ++k)
-    if (std::any_of(layout.entries.begin(), layout.entries.end(),
-                    [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))
-      models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
+  for (std::size_t k = 0; k < layout.phases.size(); ++k) {
+    if (std::none_of(layout.entries.begin(), layout.entries.end(),
+                     [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))
+      continue;
+    if (scene.phases[k].kind() == PhaseKind::rigid)  // its surface moves before the fluid is extended into it
+      models.push_back(std::make_unique<RigidInFluid>(scene, layout, k));
+    models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
+  }
   if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.diameter > 0; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {

@@ -34,9 +34,16 @@ void check_partner(const Interaction& pair, const Phase& a, const Phase& b, cons
   const std::string dotted = "interactions." + pair.a + "-" + pair.b;
   if (report.touched(dotted)) return;
   const Phase& other = rigid(a) ? b : a;
-  if (other.kind() == PhaseKind::fluid || other.kind() == PhaseKind::column)
+  if (other.kind() == PhaseKind::column)
     report(dotted,
-           "a rigid body feels no fluid yet; expected an entry with bodies, walls or grains without a diameter");
+           "a rigid body feels no column of air; expected an entry with fluids, bodies, walls or grains without a "
+           "diameter");
+  if (other.kind() == PhaseKind::fluid && other.fluid().scheme != FluidScheme::plain &&
+      !report.touched("phases." + other.name + ".scheme"))
+    report("phases." + other.name + ".scheme",
+           "a rigid body gets what the fluid loses, pair by pair, and the sums of the consistent scheme are not of "
+           "pairs; expected \"plain\", or no entry " +
+               pair.a + "-" + pair.b);
   if (other.if_grains() && other.diameter())
     report(dotted, "spheres do not touch rigid bodies yet; expected grains without a diameter, or no such entry");
 }

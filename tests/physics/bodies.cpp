@@ -188,5 +188,67 @@ TEST(TotalLagrangianBodies, APlateSwingsWithItsPeriodAndKeepsItsEnergy) {
   EXPECT_NEAR(energy() / start, 1.0, 1e-4);
 }
 
+/// The sum of the columns with these names.
+double sum_of(const Simulation& run, const std::vector<std::string>& wanted) {
+  const auto names = run.history_columns();
+  const auto row = run.history_row();
+  double sum = 0.0;
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (std::find(wanted.begin(), wanted.end(), names[k]) != wanted.end()) {
+      sum += row[k];
+      ++found;
+    }
+  EXPECT_EQ(found, wanted.size());
+  return sum;
+}
+
+std::vector<std::string> energies_of(const std::string& body) {
+  return {body + "_kinetic_energy [J]", body + "_strain_energy [J]", body + "_hourglass_energy [J]"};
+}
+
+TEST(TotalLagrangianBodies, RubberRingsBounceAndKeepMomentumAndEnergy) {
+  Drive drive("rings", {"spacing=2e-3"});
+  const Simulation& s = drive.simulation();
+  const auto energy = [&] { return sum_of(s, energies_of("a")) + sum_of(s, energies_of("b")); };
+  const auto momentum = [&] { return sum_of(s, {"momentum_x [kg m/s]"}); };
+  const double energy_before = energy(), momentum_before = momentum();
+  const double scale =
+      sum_of(s, {"a_mean_vx [m/s]"}) * drive.phase(0).mass() * static_cast<double>(drive.phase(0).size());
+  double drift = 0.0, stored = 0.0;
+  for (int k = 1; k <= 16; ++k) {
+    drive.to(1e-3 * k);
+    drift = std::max(drift, std::abs(momentum() - momentum_before) / scale);
+    stored = std::max(stored, sum_of(s, {"a_strain_energy [J]", "b_strain_energy [J]"}) / energy_before);
+  }
+  const double kept = sum_of(s, {"b_mean_vx [m/s]"}) / 6.95;
+  report("momentum over that of a ring", drift, 1e-12);
+  report("energy after the bounce over that before - 1", energy() / energy_before - 1.0, 0.01);
+  report("speed kept, the rest vibrates", kept, 0.7);
+  EXPECT_LT(drift, 1e-12);
+  EXPECT_NEAR(energy() / energy_before, 1.0, 0.01);
+  EXPECT_GT(stored, 0.5) << "they are strained";
+  EXPECT_GT(kept, 0.7) << "they bounce";
+  EXPECT_LT(kept, 0.95) << "and vibrate";
+}
+
+TEST(TotalLagrangianBodies, ABlockThatBouncesKeepsItsEnergy) {
+  Drive drive("bouncing_block");
+  const Simulation& s = drive.simulation();
+  const double mass = drive.phase(0).mass() * static_cast<double>(drive.phase(0).size());
+  const auto energy = [&] { return sum_of(s, energies_of("block")) + mass * 9.81 * sum_of(s, {"middle_y [m]"}); };
+  const double fall = mass * 9.81 * 0.2, before = energy();
+  drive.to(0.18);
+  const double analytic = 0.25 - 0.5 * 9.81 * 0.18 * 0.18;
+  EXPECT_NEAR(sum_of(s, {"middle_y [m]"}), analytic, 1e-6);
+  drive.to(0.372);  // at the top again
+  const double height = sum_of(s, {"middle_y [m]"}) - 0.05, change = std::abs(energy() - before) / fall;
+  report("energy after the bounce, change over that of the fall", change, 0.01);
+  report("height over that of the start, the rest vibrates", height / 0.2, 0.5);
+  EXPECT_LT(change, 0.01);
+  EXPECT_GT(height / 0.2, 0.5);
+  EXPECT_LT(height / 0.2, 0.95);
+}
+
 }  // namespace
 }  // namespace barchan

@@ -75,7 +75,8 @@ TEST_P(RestartOf, HasTheSameBitsOnAnotherNumberOfThreads) {
 
 TEST(Restart, BetweenAnyTwoOfManySteps) {
   // Far enough that lists are made anew many times between saving and the end.
-  for (const auto& text : {small::held_dune, small::dam, small::squares, small::spheres, small::hertzian_spheres}) {
+  for (const auto& text : {small::held_dune, small::dam, small::squares, small::spheres, small::hertzian_spheres,
+                           small::drowned, small::drowned_ball}) {
     const auto run = small::simulation(text), other = small::simulation(text);
     expect_restarts(*run, *other, 60, 1);
   }

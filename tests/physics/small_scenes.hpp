@@ -58,6 +58,84 @@ friction = 0.1
 end = 1
 )toml";
 
+/// Rigid bodies in a periodic fluid that whirls; two of them touch.
+inline const std::string drowned = R"toml(
+precision = "double"
+spacing = 0.05
+[domain]
+size = [2, 2]
+periodic = ["x", "y"]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-2
+sound-speed = 20
+scheme = "plain"
+[phases.ball]
+kind = "rigid"
+density = 1500
+largest-overlap = 0.2
+[phases.block]
+kind = "rigid"
+density = 700
+[interactions]
+water-water = 2.6
+water-ball = 2.6
+water-block = 2.6
+ball-block = { restitution = 0.5, friction = 0.3 }
+[[fill]]
+phase = "ball"
+shape = { disc = { centre = [0.5, 0.5], radius = 0.2 } }
+velocity = [1, 0]
+angular-velocity = 3
+[[fill]]
+phase = "ball"
+shape = { disc = { centre = [1.5, 1.6], radius = 0.15 } }
+[[fill]]
+phase = "block"
+shape = { box = { min = [0.75, 0.4], max = [1.05, 0.55] } }
+[[fill]]
+phase = "water"
+shape = "the-rest"
+velocity = ["sin(pi*x)*cos(pi*y)", "-cos(pi*x)*sin(pi*y)"]
+[time]
+end = 1
+largest-speed = 2
+)toml";
+
+/// A ball in a periodic fluid, in three dimensions.
+inline const std::string drowned_ball = R"toml(
+precision = "double"
+dimensions = 3
+spacing = 0.1
+[domain]
+size = [1.5, 1.5, 1.5]
+periodic = ["x", "y", "z"]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-2
+sound-speed = 20
+scheme = "plain"
+[phases.ball]
+kind = "rigid"
+density = 1500
+[interactions]
+water-water = 2.6
+water-ball = 2.6
+[[fill]]
+phase = "ball"
+shape = { sphere = { centre = [0.7, 0.7, 0.7], radius = 0.3 } }
+velocity = [0.3, 0.15, 0]
+angular-velocity = [0, 1, 0.3]
+[[fill]]
+phase = "water"
+shape = "the-rest"
+[time]
+end = 1
+largest-speed = 2
+)toml";
+
 /// A fluid with a wall below, in wind; nothing else.
 inline const std::string channel = R"toml(
 spacing = 0.01

@@ -234,7 +234,7 @@ TEST(RigidStart, RefusesWhatCannotBe) {
   expect_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]", "holds already");
   expect_refused(scene_text, "[interactions]",
                  "[phases.b]\nkind = \"fluid\"\ndensity = 1\n[interactions]\nb-b = 2.1\na-b = 2.1",
-                 "feels no fluid yet");
+                 "expected \"plain\", or no entry a-b");
   expect_refused(scene_text, first, first + "\npressure = 1", "only fluids");
   expect_refused(scene_text, "density = 1000", "density = 1000\nstiffness = 1e6", "nothing reads it");
   std::string boxes = scene_text;

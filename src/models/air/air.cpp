@@ -141,6 +141,11 @@ void Air::history(HistoryRow& row) const {
   row.add(plan_.name + "_mean_pressure [Pa]",
           n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
   row.add(plan_.name + "_density_error_rms", n > 0 ? std::sqrt(squares / count) : 0.0);
+  if (keys_.energy) {
+    const double* e = std::as_const(*particles_).column(Field::energy);
+    row.add(plan_.name + "_internal_energy [J]",
+            particles_->mass() * ordered_sum(n, [&](std::size_t i) { return e[i]; }));
+  }
   if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
 }
 

@@ -7,9 +7,8 @@ namespace barchan {
 
 namespace {
 
-/// m/s2 of its place and 1/s2.
+/// m/s2 of its place and 1/s2, of a body that its loads move.
 std::array<Vec3, 2> accelerations(const RigidBody& body) {
-  if (body.hold == RigidBody::Hold::driven) return {};
   const Vec3 linear = body.hold == RigidBody::Hold::free ? 1.0 / body.mass * body.now.force : Vec3{};
   if (body.dimensions == 2) return {linear, Vec3{0, 0, body.now.torque[2] / body.inertia[2]}};
   const OwnAxes axes(body);
@@ -21,11 +20,7 @@ std::array<Vec3, 2> accelerations(const RigidBody& body) {
 }  // namespace
 
 RigidPhase::Carrier::Carrier(const RigidBody& body)
-    : axes(body), place(body.now.place), velocity(body.now.velocity), rate(axes.to_space(own_angular_velocity(body))) {
-  const auto gain = accelerations(body);
-  acceleration = gain[0];
-  turning = gain[1];
-}
+    : axes(body), place(body.now.place), velocity(body.now.velocity), rate(axes.to_space(own_angular_velocity(body))) {}
 
 void RigidPhase::renew_carriers() {
   carriers_.clear();
@@ -86,6 +81,11 @@ void RigidPhase::carry_velocities() {
 void RigidPhase::carry_accelerations() {
   PhaseParticles& p = w_->particles(number_);
   renew_carriers();
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    const auto gain = body(k).hold == RigidBody::Hold::driven ? driven(body(k)) : accelerations(body(k));
+    carriers_[k].acceleration = gain[0];
+    carriers_[k].turning = gain[1];
+  }
   std::array<double*, 3> a{};
   for (int d = 0; d < layout_.dimensions; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
   const auto n = static_cast<std::int64_t>(p.size());

@@ -129,13 +129,28 @@ void RigidPhase::kick(RigidBody& body, double time) const {
   body.now.spin = body.now.spin + time * OwnAxes(body).to_own(body.now.torque);
 }
 
+namespace {
+
+Vec3 value(const std::array<Formula, 3>& f, double time) { return {f[0]({}, time), f[1]({}, time), f[2]({}, time)}; }
+
+}  // namespace
+
 /// Gives a driven body the velocities of its motion at a time (s).
 void RigidPhase::drive(RigidBody& body, double time) {
   if (body.hold != RigidBody::Hold::driven) return;
   const RigidHold& hold = holds_[body.motion];
-  const auto at = [&](const std::array<Formula, 3>& f) { return Vec3{f[0]({}, time), f[1]({}, time), f[2]({}, time)}; };
-  body.now.velocity = at(hold.velocity);
-  body.now.spin = spin_of(body, OwnAxes(body).to_own(at(hold.rate)));
+  body.now.velocity = value(hold.velocity, time);
+  body.now.spin = spin_of(body, OwnAxes(body).to_own(value(hold.rate, time)));
+}
+
+/// What a driven body gains in the next step: m/s2 of its place, and 1/s2.
+std::array<Vec3, 2> RigidPhase::driven(const RigidBody& body) const {
+  const RigidHold& hold = holds_[body.motion];
+  const double now = w_->state.time, per_step = 1.0 / w_->state.dt;
+  const auto gain = [&](const std::array<Formula, 3>& f) {
+    return per_step * (value(f, now + w_->state.dt) - value(f, now));
+  };
+  return {gain(hold.velocity), gain(hold.rate)};
 }
 
 /// Half a kick, and a step of the way; driven bodies go with their velocities in the middle of the step.
@@ -188,9 +203,7 @@ void RigidPhase::add_particles(RigidBody& body) const {
 void RigidPhase::hold_torque(RigidBody& body) {
   if (body.hold != RigidBody::Hold::pinned) return;
   const RigidHold& hold = holds_[body.motion];
-  const double time = w_->state.time;
-  body.now.torque =
-      body.now.torque + Vec3{hold.torque[0]({}, time), hold.torque[1]({}, time), hold.torque[2]({}, time)};
+  body.now.torque = body.now.torque + value(hold.torque, w_->state.time);
   if (!(hold.friction > 0.0)) return;
   const Vec3 stopping = -1.0 / w_->state.dt * OwnAxes(body).to_space(body.now.spin) - body.now.torque;
   const double needed = norm(stopping);

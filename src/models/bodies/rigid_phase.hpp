@@ -40,13 +40,15 @@ class RigidPhase : public Model {
   void finish_kick();
   void kick(RigidBody& body, double time) const;
   void drive(RigidBody& body, double time);
+  std::array<Vec3, 2> driven(const RigidBody& body) const;
   void add_particles(RigidBody& body) const;
   void hold_torque(RigidBody& body);
   /// A body as its particles see it, in space.
   struct Carrier {
     explicit Carrier(const RigidBody& body);
     OwnAxes axes;
-    Vec3 place, velocity, rate, acceleration, turning;  // m, m/s, 1/s, m/s2, 1/s2
+    Vec3 place, velocity, rate;      // m, m/s, 1/s
+    Vec3 acceleration{}, turning{};  // m/s2, 1/s2: where accelerations are carried
   };
   void renew_carriers();
   void find_places();

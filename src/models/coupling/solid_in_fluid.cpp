@@ -21,7 +21,10 @@ void SolidInFluid::attach(Workspace& w) {
 void SolidInFluid::schedule(Schedule& s) {
   using enum Field;
   const std::string& name = layout_.phases[solid_].name;
-  s.add({stage::extend_solids, name, {position, velocity, acceleration}, {}, [this] { extend(); }});
+  FieldSet reads{position, velocity, acceleration};
+  if (!layout_.phases[solid_].rigid_bodies.empty())
+    reads = reads | FieldSet{wall_depth, wall_normal, surface_velocity, surface_acceleration};
+  s.add({stage::extend_solids, name, reads, {}, [this] { extend(); }});
   s.add({stage::reaction, name, {position, velocity, density}, {acceleration}, [this] { react(); }});
 }
 

@@ -20,11 +20,13 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
   }
   const double* depth = solid.has(Field::wall_depth) ? solid.column(Field::wall_depth) : nullptr;
   std::array<const double*, Dim> velocity{}, normal{}, acceleration{};
+  const bool rigid = solid.has(Field::surface_velocity);
   for (std::size_t d = 0; d < Dim; ++d) {
     const int axis = static_cast<int>(d);
-    velocity[d] = solid.column(Field::velocity, axis);
+    velocity[d] = solid.column(rigid ? Field::surface_velocity : Field::velocity, axis);
     if (depth) normal[d] = solid.column(Field::wall_normal, axis);
-    if (rule.accelerates) acceleration[d] = solid.column(Field::acceleration, axis);
+    if (rule.accelerates)
+      acceleration[d] = solid.column(rigid ? Field::surface_acceleration : Field::acceleration, axis);
   }
   const auto prepare = [&](std::size_t k, typename Law::template Own<Dim, Lanes> & w) __attribute__((always_inline)) {
     for (std::size_t d = 0; d < Dim; ++d) {

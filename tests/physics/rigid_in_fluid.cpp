@@ -1,0 +1,135 @@
+// Rigid bodies in fluids: momentum, buoyancy, added mass, the torque of a turning cylinder.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
+
+namespace barchan {
+namespace {
+
+using std::numbers::pi;
+using testing::Drive;
+using testing::report;
+
+double value(const Simulation& s, const std::string& column) {
+  const auto columns = s.history_columns();
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
+  if (found == columns.end()) throw std::logic_error("no column " + column);
+  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
+}
+
+/// Momentum of all that moves, and mass times speed.
+std::pair<Vec3, double> momentum(Simulation& run) {
+  Vec3 sum{};
+  double size = 0.0;
+  for (const PhaseParticles& p : run.phases())
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      Vec3 v{};
+      for (int d = 0; d < p.dimensions(); ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d)[k];
+      sum = sum + p.mass() * v;
+      size += p.mass() * norm(v);
+    }
+  return {sum, size};
+}
+
+double momentum_drift(const std::string& text, int steps) {
+  const auto run = small::simulation(text);
+  const Vec3 start = momentum(*run).first;
+  double worst = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    run->step(1.0);
+    const auto [now, size] = momentum(*run);
+    worst = std::max(worst, norm(now - start) / size);
+  }
+  return worst;
+}
+
+TEST(RigidInFluid, TakesWhatTheFluidLoses) {
+  const double flat = momentum_drift(small::drowned, 200), solid = momentum_drift(small::drowned_ball, 50);
+  report("momentum over mass times speed, 2D", flat, 1e-12);
+  report("the same, 3D", solid, 1e-12);
+  EXPECT_LT(flat, 1e-12);
+  EXPECT_LT(solid, 1e-12);
+  const auto run = small::simulation(small::drowned_ball);
+  const double before = value(*run, "ball_velocity_x");
+  for (int k = 0; k < 50; ++k) run->step(1.0);
+  EXPECT_LT(value(*run, "ball_velocity_x"), 0.95 * before) << "the water holds it back";
+  EXPECT_GT(value(*run, "ball_velocity_x"), 0.3 * before);
+}
+
+void go(Simulation& run, double time) {
+  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
+}
+
+/// Mean of a column over a time (s), every step.
+double mean(Simulation& run, const std::string& column, double from, double to) {
+  go(run, from);
+  double sum = 0.0, before = run.time();
+  while (run.time() < to * (1.0 - 1e-12)) {
+    run.step(to - run.time());
+    sum += value(run, column) * (run.time() - before);
+    before = run.time();
+  }
+  return sum / (to - from);
+}
+
+TEST(RigidInFluid, ATurningCylinderFeelsTheTorqueOfCouetteFlow) {
+  Drive drive("verification/taylor_couette", {"spacing=0.0666666666666667"});
+  const double exact = 4.0 * pi * 4.0 / 3.0;
+  const double inner = std::abs(mean(drive.simulation(), "cylinder_torque", 0.9, 1.0) / -exact - 1.0);
+  const double outer = std::abs(value(drive.simulation(), "shell_torque") / exact - 1.0);
+  report("torque on the cylinder", inner, 0.02);
+  report("torque on the shell", outer, 0.02);
+  EXPECT_LT(inner, 0.02);
+  EXPECT_LT(outer, 0.02);
+}
+
+constexpr double displaced = pi * 0.4 * 0.4;  // kg/m, of the liquid
+
+TEST(RigidInFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
+  std::ifstream file(testing::scene_file("verification/sinking_disc"));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto run = small::simulation(text + "\n[[motion]]\nphase = \"disc\"\n");
+  const double lift = mean(*run, "disc_force_y", 0.05, 0.4);
+  const double error = std::abs(lift / displaced - 1.0);
+  report("lift over the weight of the liquid displaced", error, 0.02);
+  EXPECT_LT(error, 0.02);
+  EXPECT_LT(std::abs(value(*run, "disc_torque")), 1e-3 * displaced * 0.4);
+}
+
+TEST(RigidInFluid, ABodyOfTheFluidsDensityStays) {
+  Drive drive("verification/sinking_disc", {"phases.disc.density=1", "phases.water.viscosity=1e-3"});
+  const double start = value(drive.simulation(), "disc_y");
+  drive.to(0.4);
+  const double way = std::abs(value(drive.simulation(), "disc_y") - start), falls = 0.5 * 0.4 * 0.4;
+  report("way over that of a free fall", way / falls, 0.01);
+  EXPECT_LT(way / falls, 0.01);
+  EXPECT_GT(way, 0.0) << "it is not held";
+}
+
+TEST(RigidInFluid, AHeavyBodyStartsWithItsAddedMass) {
+  Drive drive("verification/sinking_disc");
+  const double start = value(drive.simulation(), "disc_y"), time = 0.4, added = (1.0 + 0.16) / (1.0 - 0.16);
+  drive.to(time);
+  const double found = 2.0 * (start - value(drive.simulation(), "disc_y")) / (time * time), exact = 1.0 / (2.0 + added);
+  report("acceleration over that with the added mass", std::abs(found / exact - 1.0), 0.06);
+  EXPECT_NEAR(found, exact, 0.06 * exact);
+}
+
+/// The body and the fluid turn as one: nothing rubs.
+TEST(RigidInFluid, ABodyThatTurnsWithTheFluidFeelsNoTorque) {
+  Drive drive("verification/taylor_couette",
+              {"motion.1.angular-velocity=1", "fill.2.velocity=[\"-y\", \"x\"]", "spacing=0.1"});
+  const double exact = 4.0 * pi * 4.0 / 3.0;
+  const double torque = std::abs(mean(drive.simulation(), "cylinder_torque", 0.1, 0.3)) / exact;
+  report("torque over that of a shell at rest", torque, 0.01);
+  EXPECT_LT(torque, 0.01);
+}
+
+}  // namespace
+}  // namespace barchan
