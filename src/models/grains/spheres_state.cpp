@@ -1,6 +1,7 @@
 // What a run tells of its spheres, and what a checkpoint keeps of them.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "engine/means.hpp"
 #include "models/grains/spheres.hpp"
@@ -70,6 +71,9 @@ void Spheres::archive(Archive& a) {
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
+  if (a.loads() && getenv("BARCHAN_OLD")) must_search_ = true;
+  else strays_.archive(a);
+  cells_loaded_ = cells_loaded_ || a.loads();
   sleep_.archive(a);
   if (a.loads() && sleep_.on()) {
     loaded_ = true;
