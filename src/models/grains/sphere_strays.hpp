@@ -28,7 +28,7 @@ class SphereStrays {
   void take_cells(const SphereCells& cells);
 
   /// Whether `strays` more are searched faster alone than with all others.
-  bool few(std::size_t strays) const { return strays + slow_ < least_strays + moving_ / 4; }
+  bool few(std::size_t strays) const { return strays + slow_ < least_strays + moving_ / 64; }
   /// Gives one a new place and its pairs. `step` (s): of the contacts.
   void renew(const SphereSet& spheres, std::uint32_t stray, double step, std::span<const SphereSearch::Side> sides,
              std::vector<SphereChunk>& chunks);

@@ -280,7 +280,7 @@ void Spheres::search() {
   // Neighbours::choose_skin).
   if (searches_ > 0 && !others_sleep_) {
     const double per_slack = static_cast<double>(kept_ + 1) / slack_;
-    slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.01, 0.5 * slack_),
+    slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.02, 0.5 * slack_),
                         std::min(0.4, 1.5 * slack_));
   }
   if (others_sleep_) sleep_.begin_again();
