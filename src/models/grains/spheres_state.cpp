@@ -1,7 +1,6 @@
 // What a run tells of its spheres, and what a checkpoint keeps of them.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "engine/means.hpp"
 #include "models/grains/spheres.hpp"
@@ -75,10 +74,10 @@ void Spheres::archive(Archive& a) {
   else strays_.archive(a);
   cells_loaded_ = cells_loaded_ || a.loads();
   sleep_.archive(a);
-  if (a.loads() && sleep_.on()) {
-    loaded_ = true;
+  if (a.loads()) {
     numbers_ = listed_numbers_;
-    sleep_.by_sphere(numbers_.data());
+    loaded_ = sleep_.on();
+    if (loaded_) sleep_.by_sphere(numbers_.data());
   }
   const auto pairs = [&a](SphereChunk& chunk) {
     a.array("groups", chunk.groups);
