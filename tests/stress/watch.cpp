@@ -41,12 +41,14 @@ poisson = 0.3
 artificial-viscosity = 0.5
 )toml",
                     floor = "[phases.floor]\nkind = \"wall\"\n";
-  return R"toml(spacing = 0.001
+  std::string text = R"toml(spacing = 0.001
 [domain]
 size = [0.03, 0.03]
 gravity = [0, -9.81]
-)toml" + (body_first ? body + floor : floor + body) +
-         R"toml([interactions]
+)toml";
+  text += body_first ? body : floor;
+  text += body_first ? floor : body;
+  return text + R"toml([interactions]
 body-body = 2.4
 body-floor = 1.1
 [[fill]]
