@@ -50,7 +50,6 @@ void Spheres::attach(Workspace& w) {
   });
   columns_.resize(n);
   numbers_.resize(all);
-  listed_numbers_.resize(all);
   kinds_.resize(all);
   passive_.assign((all + 2) * passive_size, 0.0);
   for (const Part& part : parts_) {
@@ -67,8 +66,32 @@ void Spheres::attach(Workspace& w) {
     kinds_[k] = fixed_kind_[k - moving_];
     numbers_[k] = static_cast<std::uint32_t>(k);
   }
+  listed_numbers_ = numbers_;
   layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
 
+  step_.dimensions = layout_.dimensions;
+  step_.rubs = laws_.rubs();
+  step_.rolls = laws_.rolls();
+  step_.numbers = (step_.rolls ? 2u : step_.rubs ? 1u : 0u) * (layout_.dimensions == 2 ? 1u : 3u);
+  step_.laws = laws_.laws().data();
+  step_.inverse_densities = laws_.inverse_densities().data();
+  step_.columns = columns_.data();
+  std::vector<SphereSleep::Part> sleepy;
+  for (const Part& part : parts_)
+    if (scene_.phases[part.phase].grains().sleep)
+      sleepy.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
+  sleep_.prepare(std::move(sleepy), moving_, all, layout_, norm(scene_.domain.gravity));
+  search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), sides_with_spheres(), step_.numbers);
+  search_.reserve(all, chunks_, sleep_.on() ? &sleeping_ : nullptr);
+  strays_.prepare(set(), laws_.reach(), chunks_, step_.numbers);
+  step_.tightness = strays_.tightness();
+  gone_.reserve(moving_);
+  for (std::size_t d = 0; d < 3; ++d)
+    step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
+}
+
+/// The sides of the domain that hold spheres.
+std::vector<SphereSearch::Side> Spheres::sides_with_spheres() const {
   std::vector<SphereSearch::Side> sides;
   for (const Fill& fill : scene_.fills) {
     const auto* shape = std::get_if<SidesShape>(&fill.shape);
@@ -83,25 +106,7 @@ void Spheres::attach(Workspace& w) {
                            high ? layout_.bounds.high[axis] : layout_.bounds.low[axis],
                            static_cast<std::uint8_t>(kind - layout_.phases.begin())});
   }
-  step_.dimensions = layout_.dimensions;
-  step_.rubs = laws_.rubs();
-  step_.rolls = laws_.rolls();
-  step_.numbers = (step_.rolls ? 2u : step_.rubs ? 1u : 0u) * (layout_.dimensions == 2 ? 1u : 3u);
-  step_.laws = laws_.laws().data();
-  step_.inverse_densities = laws_.inverse_densities().data();
-  step_.columns = columns_.data();
-  std::vector<SphereSleep::Part> sleepy;
-  for (const Part& part : parts_)
-    if (scene_.phases[part.phase].grains().sleep)
-      sleepy.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
-  sleep_.prepare(std::move(sleepy), moving_, all, layout_, norm(scene_.domain.gravity));
-  search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), std::move(sides), step_.numbers);
-  search_.reserve(all, chunks_, sleep_.on() ? &sleeping_ : nullptr);
-  strays_.prepare(set(), laws_.reach(), chunks_, step_.numbers);
-  step_.tightness = strays_.tightness();
-  gone_.reserve(moving_);
-  for (std::size_t d = 0; d < 3; ++d)
-    step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
+  return sides;
 }
 
 /// Both sets of records, with what never changes in them.

@@ -65,6 +65,7 @@ class Spheres : public Model {
     double mean_radius = 0.0;  // m
   };
 
+  std::vector<SphereSearch::Side> sides_with_spheres() const;
   void advance();
   void sort();
   void number();
