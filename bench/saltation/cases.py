@@ -191,7 +191,82 @@ def flux(bench):
     return {"block": BLOCK, "runs": runs, "notes": []}
 
 
-CASES = {"settling": settling, "hop": hop, "flux": flux}
+# --- splash -----------------------------------------------------------------------------------------------------------
+
+# Rice, Willetts & McEwan 1995, medium sand: speed (m/s) and angle of the impact; share of the speed and angle of the rebound; grains
+# ejected an impact, and their speed (m/s).
+RICE = {"speed": 3.30, "angle": 11.5, "rebound": 0.57, "rebound_angle": 30.2, "ejecta": 2.89, "ejection_speed": 0.266}
+SPLASH_RUNS, SPLASH_WIDTH, SPLASH_D, SPLASH_LEVELS = 20, 0.036, 3.0e-4, (1.0, 1.5, 2.0)
+
+
+def frames_of(folder, name, phase):
+    """Times, places and velocities of a phase in the order of its ids, frame by frame."""
+    import numpy
+    from vtk import vtkXMLPolyDataReader
+    from vtk.util.numpy_support import vtk_to_numpy
+    found = []
+    for file in sorted(folder.glob(f"{name}_0*.vtp")):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(file))
+        reader.Update()
+        data = reader.GetOutput()
+        names = data.GetFieldData().GetAbstractArray("phase_names")
+        number = [names.GetValue(k) for k in range(names.GetNumberOfValues())].index(phase)
+        mine = vtk_to_numpy(data.GetPointData().GetArray("phase")) == number
+        order = numpy.argsort(vtk_to_numpy(data.GetPointData().GetArray("id"))[mine])
+        time = vtk_to_numpy(data.GetFieldData().GetArray("TimeValue"))[0]
+        found.append((time, vtk_to_numpy(data.GetPoints().GetData())[mine][order].astype(float),
+                      vtk_to_numpy(data.GetPointData().GetArray("velocity"))[mine][order].astype(float)))
+    return found
+
+
+def risers(frames, height, above):
+    """Speed (m/s) and angle at the bed of each grain that is seen to rise over `height`, `above` metres over the bed: v^2 + 2 g above."""
+    found, done = [], set()
+    for _, x, v in frames:
+        for k in range(len(x)):
+            if x[k, 1] > height and v[k, 1] > 0 and k not in done:
+                done.add(k)
+                up = math.sqrt(v[k, 1] ** 2 + 2 * G * (x[k, 1] - height + above))
+                found.append((math.hypot(v[k, 0], up), math.degrees(math.atan2(up, v[k, 0]))))
+    return found
+
+
+def splash_of(folder, level):
+    """Rebounds and ejected grains of one run: those that rise over `level` diameters above the bed, whose surface is the mean over its
+    length of the highest centre in four diameters. A striker that does not rise so high stays in the bed."""
+    bed = frames_of(folder, "splash", "sand")
+    start = bed[0][1]
+    tops = [max(y for x, y, _ in start if a <= x < a + 4 * SPLASH_D) for a in (4 * SPLASH_D * k for k in range(round(SPLASH_WIDTH / SPLASH_D / 4)))]
+    above = level * SPLASH_D
+    height = sum(tops) / len(tops) + above
+    return risers(frames_of(folder, "splash", "striker"), height, above), risers(bed[1:], height, above)
+
+
+def splash(bench):
+    """Many impacts of scenes/splash.toml: the strikers of each run begin at other places of the same bed."""
+    folders, strikers = [], 3
+    for k in range(SPLASH_RUNS):
+        begin = [(0.001 + 0.012 * s + 0.012 * k / SPLASH_RUNS) % SPLASH_WIDTH for s in range(strikers)]
+        points = ", ".join(f"[{x:.6f}, 0.0045]" for x in begin)
+        folders.append(bench.run("splash", f"splash_{k}", f"fill.2.shape.points=[{points}]"))
+    rows = []
+    for level in SPLASH_LEVELS:
+        found = [splash_of(folder, level) for folder in folders]
+        rebounds, ejected = [r for f in found for r in f[0]], [e for f in found for e in f[1]]
+        impacts = SPLASH_RUNS * strikers
+        mean = lambda values: sum(values) / max(len(values), 1)  # noqa: E731
+        error = lambda values: math.sqrt(sum((v - mean(values)) ** 2 for v in values) / max(len(values) - 1, 1) / max(len(values), 1))  # noqa: E731
+        shares = [v / RICE["speed"] for v, _ in rebounds]
+        counts = [len(f[1]) / strikers for f in found]
+        rows.append({"level": level, "impacts": impacts, "rebounds": len(rebounds), "rebound": mean(shares), "rebound_error": error(shares),
+                     "rebound_angle": mean([a for _, a in rebounds]), "ejecta": mean(counts), "ejecta_error": error(counts),
+                     "ejection_speed": mean([v for v, _ in ejected]), "ejection_speed_error": error([v for v, _ in ejected]),
+                     "ejection_angle": mean([a for _, a in ejected])})
+    return {"rice": RICE, "levels": rows}
+
+
+CASES = {"settling": settling, "hop": hop, "splash": splash, "flux": flux}
 
 
 def main():

@@ -100,14 +100,14 @@ INSTANTIATE_TEST_SUITE_P(
                            "friction = 0.5, rolling-friction = 0.2, young = 2e7, poisson = 0.3 }"}},
                       Bed{"OverACore", &over_a_core, {}}));
 
-/// The farthest way of a grain of the first phase from its begin (m) after a time.
-double farthest_way(const Scene& scene, const std::vector<ParticleBlock>& blocks, double time) {
+/// The farthest way of a grain of a phase from its begin (m) after a time.
+double farthest_way(const Scene& scene, const std::vector<ParticleBlock>& blocks, double time, std::size_t phase = 0) {
   Simulation run(scene, make_plan(scene, blocks), blocks);
   while (run.time() < time) run.step(time - run.time());
-  const PhaseParticles& p = run.phases()[0];
+  const PhaseParticles& p = run.phases()[phase];
   double farthest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const auto from = blocks[0].position[static_cast<std::size_t>(p.id()[i] - p.first_id())];
+    const auto from = blocks[phase].position[static_cast<std::size_t>(p.id()[i] - p.first_id())];
     double dx = p.column(Field::position, 0)[i] - from[0];
     dx -= scene.domain.size[0] * std::round(dx / scene.domain.size[0]);
     farthest = std::max(farthest, std::hypot(dx, p.column(Field::position, 1)[i] - from[1]));
@@ -266,6 +266,18 @@ TEST_F(BedOfAFile, IsAnotherSceneToACheckpointWhenItChanges) {
   frame.points[3 * grain(frame, 3)] += 1e-9;
   write(frame);
   EXPECT_NE(from_file(file_).identity, identity);
+}
+
+/// The whole scene without its wind: its bed settled with half of the friction, so that no contact slips when the run
+/// begins without what contacts remember.
+TEST(SettledBed, OfTheFlatBedStaysAtRestWithoutWind) {
+  const Scene scene = read_scene(BARCHAN_SOURCE_DIR "/scenes/flat_bed.toml",
+                                 {"fill.4.velocity=[0, 0]", "phases.lid.shear-stress=[0, 0]"});
+  const auto blocks = make_particles(scene);
+  const auto sand = static_cast<std::size_t>(
+      std::find_if(scene.phases.begin(), scene.phases.end(), [](const Phase& p) { return p.name == "sand"; }) -
+      scene.phases.begin());
+  EXPECT_LT(farthest_way(scene, blocks, 0.005, sand), 1e-2 * 2.5e-4);
 }
 
 TEST(SettledBed, IsTheSameOnAnyNumberOfThreads) {

@@ -228,7 +228,7 @@ template <int Dim>
 void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
   using R = SphereRecord<Dim>;
   const double dt = step.dt;
-  float farthest2 = 0.0f;
+  float farthest = 0.0f;
   double fastest2 = 0.0;
   chunk.each_moving([&](std::size_t k) {
     const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
@@ -236,24 +236,21 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
     double* to = step.next + k * R::size;
     const double inverse_mass = passive[passive_mass], radius = from[R::radius];
     const double inverse_inertia = 2.5 * inverse_mass / (radius * radius);
-    float way2 = 0.0f;
     double v2 = 0.0;
     for (std::size_t d = 0; d < Dim; ++d) {
       const double v = from[R::velocity + d] + dt * (passive[d] + inverse_mass * force[d]);
       to[d] = from[d] + dt * v;
       to[R::velocity + d] = v;
       v2 += v * v;
-      const float go = static_cast<float>(dt * v), way = way_of<Dim>(from, d) + go;
-      set_way<Dim>(to, d, way);
-      way2 += (way + go) * (way + go);  // a contact sets in up to a step before the touch
+      set_way<Dim>(to, d, way_of<Dim>(from, d) + static_cast<float>(dt * v));
     }
     fastest2 = std::max(fastest2, v2);
     to[R::radius] = radius;
     for (std::size_t d = 0; d < R::spins; ++d)
       to[R::spin + d] = from[R::spin + d] + dt * inverse_inertia * force[(Dim == 2 ? 2 : 4) + d];
-    farthest2 = std::max(farthest2, way2);
+    farthest = std::max(farthest, next_way2<Dim>(to, dt) * step.tightness[k]);
   });
-  chunk.farthest2 = static_cast<double>(farthest2);
+  chunk.farthest = static_cast<double>(farthest);
   chunk.fastest = std::sqrt(fastest2);
 }
 
@@ -325,7 +322,7 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
   chunk.lost = chunk.stored = chunk.deepest = chunk.contacts = 0.0;
   chunk.wakes = false;
   if (chunk.idle()) {
-    chunk.farthest2 = chunk.fastest = 0.0;
+    chunk.farthest = chunk.fastest = 0.0;
     return;
   }
   Sums<Dim> sums;  // 16 or 32 kB

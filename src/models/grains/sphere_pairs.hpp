@@ -19,6 +19,7 @@ struct SphereSet {
   const std::uint32_t* numbers = nullptr;  // lasting, in the order of ids
   const std::uint8_t* kinds = nullptr;     // row and column in the table of laws
   const std::uint8_t* asleep = nullptr;    // 1: sleeps or is fixed; null: nobody sleeps
+  const double* places = nullptr;          // by sphere, of all axes; m, where the last search of it found it
 };
 
 /// All spheres by cells as wide as a search; cells of a row along x follow each other.

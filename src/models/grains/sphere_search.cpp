@@ -104,7 +104,7 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
     const auto k = static_cast<std::size_t>(i);
     std::size_t c = 0;
     for (std::size_t d = dimensions; d-- > 0;)
-      c = c * cells_.count[d] + cells_.coordinate(s.records[k * stride + d], d);
+      c = c * cells_.count[d] + cells_.coordinate(s.places[k * dimensions + d], d);
     cell_of_[k] = static_cast<std::uint32_t>(c);
   }
   for (std::size_t k = 0; k < s.all; ++k) ++begin_[cell_of_[k] + 1];
@@ -112,9 +112,8 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
   for (std::size_t k = 0; k < s.all; ++k) {
     const std::size_t at = begin_[cell_of_[k]]++;
     order_[at] = static_cast<std::uint32_t>(k);
-    const double* r = s.records + k * stride;
-    for (std::size_t d = 0; d < dimensions; ++d) sorted_[d][at] = r[d];
-    sorted_[3][at] = r[radius];
+    for (std::size_t d = 0; d < dimensions; ++d) sorted_[d][at] = s.places[k * dimensions + d];
+    sorted_[3][at] = s.records[k * stride + radius];
   }
   for (std::size_t c = cells; c > 0; --c) begin_[c] = begin_[c - 1];
   begin_[0] = 0;

@@ -35,6 +35,11 @@ class SphereSearch {
   void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before,
             SphereChunk* sleeping);
 
+  /// Sorts all spheres by their places into cells as wide as a search with `slack` (m): find() does, and loading must.
+  void sort(const SphereSet& spheres, double slack);
+  const SphereCells& cells() const { return cells_; }
+  std::span<const Side> sides() const { return sides_; }
+
   /// An order of `count` spheres in which neighbours are near, in blocks of cells; x by axis.
   void order(const std::array<const double*, 3>& x, std::size_t count, std::vector<std::uint32_t>& order);
 
@@ -43,7 +48,6 @@ class SphereSearch {
     std::uint32_t number, with;  // of both
     double memory[6];
   };
-  void sort(const SphereSet& spheres, double slack);
   void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
             const SphereChunk* sleeping);
   void place_sleeping(const SphereSet& spheres, SphereChunk& sleeping);

@@ -38,6 +38,18 @@ void set_way(double* record, std::size_t axis, float way) {
   std::memcpy(reinterpret_cast<char*>(record) + sizeof(float) * SphereRecord<Dim>::moved(axis), &way, sizeof way);
 }
 
+/// Square of the way that a sphere has gone after another step with its present velocity (m2): a contact sets in up to
+/// a step before the touch.
+template <int Dim>
+float next_way2(const double* record, double dt) {
+  float way2 = 0.0f;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    const float go = static_cast<float>(dt * record[SphereRecord<Dim>::velocity + d]), way = way_of<Dim>(record, d);
+    way2 += (way + go) * (way + go);
+  }
+  return way2;
+}
+
 inline constexpr std::size_t passive_size = 4, passive_mass = 3;
 
 /// Spheres that move together in one share of a step, and the pairs in which they are. A pair stands in the chunk of
@@ -75,7 +87,7 @@ struct SphereChunk {
   // of the last step
   double lost = 0.0, stored = 0.0;  // J
   double deepest = 0.0;             // overlap over the sum of radii
-  double farthest2 = 0.0;           // m2, square of the longest way since the search, one step ahead
+  double farthest = 0.0;            // square of the longest way since the search, one step ahead, over its allowance's
   double fastest = 0.0;             // m/s
   double contacts = 0.0;
   bool wakes = false;  // somebody of the border
@@ -118,6 +130,7 @@ struct SphereStep {
   const double* inverse_densities =
       nullptr;                             // by law, of the first and of the second: inverse mass times r^3 (1/kg m3)
   const SphereColumns* columns = nullptr;  // by phase
+  const float* tightness = nullptr;        // 1/m2, by sphere that moves (models/grains/sphere_strays.hpp)
   std::array<double, 3> period{};          // m, 0: not periodic
   double dt = 0.0;                         // s
   double fastest = 0.0;                    // m/s, of all chunks

@@ -44,10 +44,12 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 void Spheres::attach(Workspace& w) {
   w_ = &w;
   const std::size_t n = layout_.phases.size(), all = moving_ + fixed_kind_.size();
-  w.when_sorted.push_back([this] { must_search_ = true; });
+  // Particles of a fluid that have new places in memory say nothing of these.
+  w.when_sorted.push_back([this] {
+    for (const Part& part : parts_) must_search_ = must_search_ || w_->neighbours.has_grid(part.phase);
+  });
   columns_.resize(n);
   numbers_.resize(all);
-  listed_numbers_.resize(all);
   kinds_.resize(all);
   passive_.assign((all + 2) * passive_size, 0.0);
   for (const Part& part : parts_) {
@@ -64,8 +66,32 @@ void Spheres::attach(Workspace& w) {
     kinds_[k] = fixed_kind_[k - moving_];
     numbers_[k] = static_cast<std::uint32_t>(k);
   }
+  listed_numbers_ = numbers_;
   layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
 
+  step_.dimensions = layout_.dimensions;
+  step_.rubs = laws_.rubs();
+  step_.rolls = laws_.rolls();
+  step_.numbers = (step_.rolls ? 2u : step_.rubs ? 1u : 0u) * (layout_.dimensions == 2 ? 1u : 3u);
+  step_.laws = laws_.laws().data();
+  step_.inverse_densities = laws_.inverse_densities().data();
+  step_.columns = columns_.data();
+  std::vector<SphereSleep::Part> sleepy;
+  for (const Part& part : parts_)
+    if (scene_.phases[part.phase].grains().sleep)
+      sleepy.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
+  sleep_.prepare(std::move(sleepy), moving_, all, layout_, norm(scene_.domain.gravity));
+  search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), sides_with_spheres(), step_.numbers);
+  search_.reserve(all, chunks_, sleep_.on() ? &sleeping_ : nullptr);
+  strays_.prepare(set(), laws_.reach(), chunks_, step_.numbers);
+  step_.tightness = strays_.tightness();
+  gone_.reserve(moving_);
+  for (std::size_t d = 0; d < 3; ++d)
+    step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
+}
+
+/// The sides of the domain that hold spheres.
+std::vector<SphereSearch::Side> Spheres::sides_with_spheres() const {
   std::vector<SphereSearch::Side> sides;
   for (const Fill& fill : scene_.fills) {
     const auto* shape = std::get_if<SidesShape>(&fill.shape);
@@ -80,22 +106,7 @@ void Spheres::attach(Workspace& w) {
                            high ? layout_.bounds.high[axis] : layout_.bounds.low[axis],
                            static_cast<std::uint8_t>(kind - layout_.phases.begin())});
   }
-  step_.dimensions = layout_.dimensions;
-  step_.rubs = laws_.rubs();
-  step_.rolls = laws_.rolls();
-  step_.numbers = (step_.rolls ? 2u : step_.rubs ? 1u : 0u) * (layout_.dimensions == 2 ? 1u : 3u);
-  step_.laws = laws_.laws().data();
-  step_.inverse_densities = laws_.inverse_densities().data();
-  step_.columns = columns_.data();
-  std::vector<SphereSleep::Part> sleepy;
-  for (const Part& part : parts_)
-    if (scene_.phases[part.phase].grains().sleep)
-      sleepy.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
-  sleep_.prepare(std::move(sleepy), moving_, all, layout_, norm(scene_.domain.gravity));
-  search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), std::move(sides), step_.numbers);
-  search_.reserve(all, chunks_, sleep_.on() ? &sleeping_ : nullptr);
-  for (std::size_t d = 0; d < 3; ++d)
-    step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
+  return sides;
 }
 
 /// Both sets of records, with what never changes in them.
@@ -204,8 +215,9 @@ void Spheres::pack(double dt) {
   const double half = 0.5 * dt;
   double* records = records_[now_].data();
   double* passive = passive_.data();
-  float farthest2 = 0.0f;
+  float farthest = 0.0f;
   double fastest2 = 0.0;
+  const float* tightness = strays_.tightness();
   for (const Part& part : parts_) {
     const PhaseParticles& p = w_->particles(part.phase);
     const SphereColumns& c = columns_[part.phase];
@@ -216,7 +228,7 @@ void Spheres::pack(double dt) {
     const auto n = static_cast<std::int64_t>(part.count);
     const bool fresh = must_search_, all = must_search_ || others_sleep_ || loaded_;
     double* others = records_[1 - now_].data();
-#pragma omp parallel for schedule(static) reduction(max : farthest2, fastest2)
+#pragma omp parallel for schedule(static) reduction(max : farthest, fastest2)
     for (std::int64_t i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
       double* r = records + (part.first + k) * R::size;
@@ -232,16 +244,13 @@ void Spheres::pack(double dt) {
         }
         continue;
       }
-      float way2 = 0.0f;
       double v2 = 0.0;
       for (std::size_t d = 0; d < Dim; ++d) {
         const double v = c.velocity[d][k] + half * (c.acceleration[d][k] + a[d][k]);
         r[d] = c.position[d][k] + dt * v;
         r[R::velocity + d] = v;
         q[d] = a[d][k];
-        const float go = static_cast<float>(dt * v), way = fresh ? 0.0f : way_of<Dim>(r, d) + go;
-        set_way<Dim>(r, d, way);
-        way2 += (way + go) * (way + go);
+        set_way<Dim>(r, d, fresh ? 0.0f : way_of<Dim>(r, d) + static_cast<float>(dt * v));
         v2 += v * v;
       }
       r[R::radius] = radius ? radius[k] : part.mean_radius;
@@ -249,14 +258,14 @@ void Spheres::pack(double dt) {
       q[passive_mass] = inverse_mass * share * share * share;
       for (std::size_t d = 0; d < R::spins; ++d)
         r[R::spin + d] = c.spin[d] ? c.spin[d][k] + half * c.spin_rate[d][k] : 0.0;
-      farthest2 = std::max(farthest2, way2);
+      farthest = std::max(farthest, next_way2<Dim>(r, dt) * tightness[part.first + k]);
       fastest2 = std::max(fastest2, v2);
     }
   }
   loaded_ = false;
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
-  if (!(static_cast<double>(farthest2) < 0.24 * slack() * slack())) must_search_ = true;
   if (must_search_ || others_sleep_) search();
+  else if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt);
 }
 
 SphereSet Spheres::set() {
@@ -266,7 +275,8 @@ SphereSet Spheres::set() {
           moving_ + fixed_kind_.size(),
           numbers_.data(),
           kinds_.data(),
-          sleep_.by_sphere(numbers_.data())};
+          sleep_.by_sphere(numbers_.data()),
+          strays_.places()};
 }
 
 /// Fills the lists from the present records.
@@ -275,13 +285,15 @@ void Spheres::search() {
   // Neighbours::choose_skin).
   if (searches_ > 0 && !others_sleep_) {
     const double per_slack = static_cast<double>(kept_ + 1) / slack_;
-    slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.01, 0.5 * slack_),
+    slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.02, 0.5 * slack_),
                         std::min(0.4, 1.5 * slack_));
   }
   if (others_sleep_) sleep_.begin_again();
   fresh_ = others_sleep_;
+  strays_.begin(set(), slack());
   search_.find(set(), slack(), chunks_, listed_numbers_.data(), others_sleep_ || must_search_ ? &sleeping_ : nullptr);
-  others_sleep_ = false;
+  strays_.take_cells(search_.cells());
+  cells_loaded_ = others_sleep_ = false;
   listed_numbers_ = numbers_;
   for (auto& records : {&records_[0], &records_[1]})
     for (std::size_t k = 0; k < moving_; ++k)
@@ -293,6 +305,36 @@ void Spheres::search() {
   kept_ = 0;
   ++searches_;
   ++since_sort_;
+}
+
+/// Whose way is longer than its allowance.
+template <int Dim>
+void Spheres::list_strays(double dt) {
+  gone_.clear();
+  for (const SphereChunk& chunk : chunks_)
+    chunk.each_moving([&](std::size_t k) {
+      const float way2 = next_way2<Dim>(records_[now_].data() + k * SphereRecord<Dim>::size, dt);
+      if (static_cast<double>(way2 * strays_.tightness()[k]) >= SphereStrays::used_up)
+        gone_.push_back(static_cast<std::uint32_t>(k));
+    });
+}
+
+/// Searches those anew who have used up their allowances, or all.
+void Spheres::search_strays(double dt) {
+  layout_.dimensions == 2 ? list_strays<2>(dt) : list_strays<3>(dt);
+  if (!strays_.few(gone_.size())) return search();
+  const SphereSet s = set();
+  if (cells_loaded_) {
+    search_.sort(s, strays_.slack());
+    strays_.take_cells(search_.cells());
+    cells_loaded_ = false;
+  }
+  for (const std::uint32_t k : gone_) {
+    strays_.renew(s, k, dt, search_.sides(), chunks_);
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+      layout_.dimensions == 2 ? set_way<2>(records_[now_].data() + k * SphereRecord<2>::size, d, 0.0f)
+                              : set_way<3>(records_[now_].data() + k * SphereRecord<3>::size, d, 0.0f);
+  }
 }
 
 /// One step of the contacts; then searches if it must.
@@ -312,14 +354,14 @@ void Spheres::go(bool last, double dt) {
   fresh_ = false;
   stored_ = sleeping_.stored;
   contacts_ = sleeping_.contacts;
-  double farthest2 = 0.0;
+  double farthest = 0.0;
   bool wakes = false;
   for (const SphereChunk& chunk : chunks_) {
     lost_ += chunk.lost;
     stored_ += chunk.stored;
     contacts_ += chunk.contacts;
     deepest_ = std::max(deepest_, chunk.deepest);
-    farthest2 = std::max(farthest2, chunk.farthest2);
+    farthest = std::max(farthest, chunk.farthest);
     wakes = wakes || chunk.wakes;
   }
   ++kept_;
@@ -327,8 +369,8 @@ void Spheres::go(bool last, double dt) {
   others_sleep_ = wakes;
   if (last) return;
   now_ = 1 - now_;
-  // Half of the slack, less what rounding in single precision may hide.
-  if (wakes || !(farthest2 < 0.24 * slack() * slack())) search();
+  if (wakes) search();
+  else if (!(farthest < SphereStrays::used_up)) search_strays(dt);
 }
 
 }  // namespace barchan

@@ -2,13 +2,15 @@
 //
 // A step of the scene holds a bundle of steps of the contacts (velocity Verlet; the acceleration by all but contacts
 // stays what it was at the beginning). Between two searches no two spheres can touch that the lists do not hold: they
-// have all pairs nearer than a slack, and are made anew as soon as one sphere has gone half of it.
+// have all pairs nearer than a slack. A sphere that has gone half of it is searched anew alone (sphere_strays.hpp); all
+// are when that is less work.
 #pragma once
 
 #include <optional>
 
 #include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_sleep.hpp"
+#include "models/grains/sphere_strays.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -63,12 +65,16 @@ class Spheres : public Model {
     double mean_radius = 0.0;  // m
   };
 
+  std::vector<SphereSearch::Side> sides_with_spheres() const;
   void advance();
   void sort();
   void number();
   template <int Dim>
   void pack(double dt);
   void search();
+  void search_strays(double dt);
+  template <int Dim>
+  void list_strays(double dt);
   void go(bool last, double dt);
   void point_at_columns();
   template <int Dim>
@@ -94,11 +100,14 @@ class Spheres : public Model {
   std::vector<std::uint32_t> numbers_, listed_numbers_, order_;
   std::vector<std::uint8_t> kinds_;
   SphereSearch search_;
+  SphereStrays strays_;
+  std::vector<std::uint32_t> gone_;  // strays of a step
   SphereStep step_;
   SphereSleep sleep_;
   SphereChunk sleeping_;  // pairs of spheres that sleep; no sphere of its own
   bool must_search_ = true;
   bool loaded_ = false;                        // records of those that sleep are to be made again
+  bool cells_loaded_ = false;                  // the cells of the search are to be made again
   bool others_sleep_ = false, fresh_ = false;  // than when the pairs were listed; and no step was made since
   double slack_ = 0.1;                         // of the reach
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;

@@ -70,11 +70,14 @@ void Spheres::archive(Archive& a) {
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
+  if (a.loads() && getenv("BARCHAN_OLD")) must_search_ = true;
+  else strays_.archive(a);
+  cells_loaded_ = cells_loaded_ || a.loads();
   sleep_.archive(a);
-  if (a.loads() && sleep_.on()) {
-    loaded_ = true;
+  if (a.loads()) {
     numbers_ = listed_numbers_;
-    sleep_.by_sphere(numbers_.data());
+    loaded_ = sleep_.on();
+    if (loaded_) sleep_.by_sphere(numbers_.data());
   }
   const auto pairs = [&a](SphereChunk& chunk) {
     a.array("groups", chunk.groups);
