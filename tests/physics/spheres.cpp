@@ -248,7 +248,7 @@ largest-speed = 2
           const auto x = [&](int c) { return p.column(Field::position, c)[k] - 0.05; };
           const auto v = [&](int c) { return p.column(Field::velocity, c)[k]; };
           sum[static_cast<std::size_t>(d)] += m * v(d);
-          sum[static_cast<std::size_t>(3 + d)] +=
+          sum[3 + static_cast<std::size_t>(d)] +=
               m * (x(e) * v(f) - x(f) * v(e)) + 0.4 * m * r * r * p.column(Field::angular_velocity, d)[k];
         }
       }

@@ -1,5 +1,7 @@
 #include "models/bodies/sets.hpp"
 
+#include <algorithm>
+
 #include "base/errors.hpp"
 #include "engine/means.hpp"
 #include "scene/located.hpp"
@@ -37,7 +39,7 @@ void SetOfBody::attach(Workspace& w, const std::string& section) {
                      "\" stands in the box at the start; expected a box that holds some");
   place_of_.resize(particles().size());
   set_places();
-  w.when_sorted.push_back([this] { set_places(); });
+  w.when_sorted.emplace_back([this] { set_places(); });
 }
 
 void SetOfBody::set_places() {
@@ -96,7 +98,7 @@ void DrivenSet::hold() {
 }
 
 void DrivenSet::history(HistoryRow& row) const {
-  for (int d = 0; d < layout_.dimensions; ++d)
+  for (int d = 0; d < std::min(layout_.dimensions, 3); ++d)
     row.add("motion_" + std::to_string(number_) + "_force_" + axes[d] + " [N]", force_[static_cast<std::size_t>(d)]);
 }
 
@@ -115,7 +117,7 @@ void MarkedSet::attach(Workspace& w) { set_.attach(w, "marker." + std::to_string
 void MarkedSet::history(HistoryRow& row) const {
   const PhaseParticles& p = set_.particles();
   const auto n = static_cast<double>(set_.places().size());
-  for (int d = 0; d < layout_.dimensions; ++d) {
+  for (int d = 0; d < std::min(layout_.dimensions, 3); ++d) {
     const double* x = p.column(Field::position, d);
     row.add(marker_.name + "_" + axes[d] + " [m]",
             ordered_sum(set_.places().size(), [&](std::size_t q) { return x[set_.places()[q]]; }) / n);

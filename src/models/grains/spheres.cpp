@@ -45,7 +45,7 @@ void Spheres::attach(Workspace& w) {
   w_ = &w;
   const std::size_t n = layout_.phases.size(), all = moving_ + fixed_kind_.size();
   // Particles of a fluid that have new places in memory say nothing of these.
-  w.when_sorted.push_back([this] {
+  w.when_sorted.emplace_back([this] {
     for (const Part& part : parts_) must_search_ = must_search_ || w_->neighbours.has_grid(part.phase);
   });
   columns_.resize(n);
