@@ -351,7 +351,8 @@ struct Forms {
         const Centre<S> centre(s, i);
         S sums[D + 1] = {};
         for (const int offset : g.row_offset) {
-          const auto [jb, je] = g.range(c, offset);
+          const auto range = g.range(c, offset);
+          const Index jb = range.first, je = range.second;
           for (Index j = jb; j < je; ++j) {
             T r2 = 0;
             for (int d = 0; d < D; ++d) r2 += (centre.x[d].v - s.x(d)[j]) * (centre.x[d].v - s.x(d)[j]);
@@ -374,7 +375,8 @@ struct Forms {
       for (Index i = b; i < e; ++i) {
         T a0 = 0, a1 = 0, a2 = 0, a3 = 0;
         for (const int offset : g.row_offset) {
-          const auto [jb, je] = g.range(c, offset);
+          const auto range = g.range(c, offset);
+          const Index jb = range.first, je = range.second;
 #pragma omp simd reduction(+ : a0, a1, a2, a3)
           for (Index j = jb; j < je; ++j) {
             const T d0 = x0[i] - x0[j], d1 = x1[i] - x1[j], d2 = D == 3 ? x2[i] - x2[j] : T(0);
@@ -419,7 +421,8 @@ struct Forms {
         V sums[D + 1];
         std::fill(sums, sums + D + 1, V(T(0)));
         for (const int offset : g.row_offset) {
-          const auto [jb, je] = g.range(c, offset);
+          const auto range = g.range(c, offset);
+          const Index jb = range.first, je = range.second;
           Index j = jb;
           for (; j + W <= je; j += W) contiguous<V>(law, centre, s, j, sums);
           if (j < je) contiguous<V, true>(law, centre, s, j, sums, static_cast<int>(je - j));
@@ -475,7 +478,8 @@ struct Forms {
         if (b == e) continue;
         std::size_t most = 0;
         for (const int offset : g.row_offset) {
-          const auto [jb, je] = g.range(c, offset);
+          const auto range = g.range(c, offset);
+          const Index jb = range.first, je = range.second;
           most += je - jb;
         }
         tested += most * (e - b);
@@ -494,7 +498,8 @@ struct Forms {
             return r2;
           };
           for (const int offset : g.row_offset) {
-            const auto [jb, je] = g.range(c, offset);
+            const auto range = g.range(c, offset);
+            const Index jb = range.first, je = range.second;
             Index j = jb;
             Vec<std::int32_t, W> index = lanes + Vec<std::int32_t, W>(static_cast<std::int32_t>(j * Scale));
             for (; j + W <= je; j += W, index += Vec<std::int32_t, W>(W * Scale)) {
