@@ -1,4 +1,5 @@
 // barchan plan, generate, compare, schema.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -9,6 +10,7 @@
 #include "output/series.hpp"
 #include "scene/reader.hpp"
 #include "simulation/estimate.hpp"
+#include "simulation/grains_file.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
@@ -44,8 +46,16 @@ int generate(const std::string& file, const std::string& output, const std::vect
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
   use_threads(0, plan.particles());
-  write_frame(output, Simulation(scene, plan, blocks).frame(0), vtu ? FrameFormat::vtu : FrameFormat::vtp,
-              scene.output.compress);
+  Simulation start(scene, plan, blocks);
+  Frame frame = start.frame(0);
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    for (FrameField& array : contact_arrays_of(blocks[k].contacts, start.phases()[k].first_id())) {
+      const auto there = std::find_if(frame.contacts.begin(), frame.contacts.end(),
+                                      [&](const FrameField& f) { return f.name == array.name; });
+      if (there == frame.contacts.end()) frame.contacts.push_back(std::move(array));
+      else there->values.insert(there->values.end(), array.values.begin(), array.values.end());
+    }
+  write_frame(output, frame, vtu ? FrameFormat::vtu : FrameFormat::vtp, scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";
   return 0;
 }

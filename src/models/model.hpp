@@ -84,6 +84,8 @@ class Model {
   /// Directed pairs in its own lists of an entry, and how often it has searched them: for models that have such.
   virtual std::uint64_t pairs(const PlanEntry&) const { return 0; }
   virtual long searches() const { return 0; }
+  /// The contacts of the spheres of a phase, from which a bed that rests can begin again.
+  virtual std::vector<RestingContact> resting_contacts(std::size_t) const { return {}; }
   /// Its numbers that a step starts from.
   virtual void archive(Archive&) {}
 };

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "base/errors.hpp"
 #include "output/numbers.hpp"
@@ -169,6 +170,23 @@ std::string text_of(const FrameDifference& frame) {
   return text;
 }
 
+/// The contacts of settled beds, one after another; a difference is told of the number of a contact.
+void compare_contacts(const Frame& a, const Frame& b, double tolerance, FrameDifference& result) {
+  const auto shape = [](const FrameField& field) {
+    return std::tuple(field.name, field.components, field.values.size());
+  };
+  if (!std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(),
+                  [&](const FrameField& x, const FrameField& y) { return shape(x) == shape(y); }))
+    return result.remarks.emplace_back("the contacts are others, or more or fewer"), void();
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    const FrameField &x = a.contacts[k], &y = b.contacts[k];
+    const auto components = static_cast<std::size_t>(x.components);
+    std::vector<Match> matches(components > 0 ? x.values.size() / components : 0);
+    for (std::size_t i = 0; i < matches.size(); ++i) matches[i] = {static_cast<std::int64_t>(i), i, i};
+    result.fields.push_back(difference(x.name, x.values, y.values, components, matches, tolerance));
+  }
+}
+
 }  // namespace
 
 FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
@@ -203,6 +221,7 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
   for (const auto& field : b.fields)
     if (!find(a, field.name)) remarks.push_back("only B has the field '" + field.name + "'");
 
+  compare_contacts(a, b, tolerance, result);
   result.same = remarks.empty() && std::none_of(result.fields.begin(), result.fields.end(), above_tolerance);
   return result;
 }

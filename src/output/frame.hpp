@@ -26,6 +26,8 @@ struct Frame {
   std::vector<std::string> phase_names;  // phase number -> name
   std::vector<std::string> phase_kinds;  // phase number -> fluid, elastic, grains, wall
   std::vector<FrameField> fields;
+  std::vector<FrameField>
+      contacts;  // of a settled bed, by contact: contact_particle (an id), contact_branch, _force, _torque
   std::size_t size() const { return id.size(); }
 };
 

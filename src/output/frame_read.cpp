@@ -307,6 +307,7 @@ class FrameReader {
     if (frame_.points.size() != 3 * head_.points) refuse_file("it has no points");
     if (head_.points > 0 && !has_id_) refuse_file("no array 'id'");
     if (head_.points > 0 && !has_phase_) refuse_file("no array 'phase'");
+    for (FrameField& f : frame_.contacts) f.unit = unit_of(f.name, units_);
     if (head_.cells != head_.points) refuse_file("it has another number of vertices than of points");
     return std::move(frame_);
   }
@@ -331,6 +332,11 @@ class FrameReader {
     else if (array.name == "phase_names") frame_.phase_names = lines_of(array, data_.bytes(array));
     else if (array.name == "phase_kinds") frame_.phase_kinds = lines_of(array, data_.bytes(array));
     else if (array.name == "units") units_ = lines_of(array, data_.bytes(array));
+    else if (array.name.starts_with(contact_arrays)) {
+      if (!array.has_tuples) refuse_file("array '" + array.name + "' does not say its length");
+      frame_.contacts.push_back(
+          {array.name, "", static_cast<int>(array.components), take<double>(array, array.tuples, array.components)});
+    }
   }
 
   void field(const Array& array) {

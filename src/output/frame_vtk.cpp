@@ -145,8 +145,8 @@ void check_shape(const Frame& frame) {
 
 Lines unit_lines(const Frame& frame) {
   Lines lines{"position m", "TimeValue s"};
-  for (const auto& field : frame.fields)
-    lines.push_back(field.unit.empty() ? field.name : field.name + " " + field.unit);
+  for (const auto* fields : {&frame.fields, &frame.contacts})
+    for (const auto& field : *fields) lines.push_back(field.unit.empty() ? field.name : field.name + " " + field.unit);
   return lines;
 }
 
@@ -173,6 +173,8 @@ void fill(vtkPointSet* data, const Frame& frame, FrameFormat format) {
   add_value<vtkTypeInt64Array>(about, "step", static_cast<vtkTypeInt64>(frame.step));
   add_value<vtkIntArray>(about, "frame", frame.index);
   add_domain(about, frame.domain);
+  for (const auto& field : frame.contacts)
+    about->AddArray(view<vtkDoubleArray>(field.name.c_str(), field.values, field.components));
   add_lines(about, "phase_names", frame.phase_names, format);
   add_lines(about, "phase_kinds", frame.phase_kinds, format);
   add_lines(about, "units", unit_lines(frame), format);
@@ -275,6 +277,12 @@ Frame frame_of(vtkPointSet* data) {
   frame.phase_names = lines_of(about, "phase_names");
   frame.phase_kinds = lines_of(about, "phase_kinds");
   const Lines units = lines_of(about, "units");
+
+  for (int k = 0; k < about->GetNumberOfArrays(); ++k)
+    if (vtkDataArray* array = about->GetArray(k);
+        array && array->GetName() && std::string_view(array->GetName()).starts_with(contact_arrays))
+      frame.contacts.push_back({array->GetName(), unit_of(array->GetName(), units), array->GetNumberOfComponents(),
+                                values_of<double>(array)});
 
   const vtkIdType n = data->GetNumberOfPoints();
   if (n > 0) frame.points = values_of<double>(data->GetPoints()->GetData());

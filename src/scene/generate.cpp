@@ -239,7 +239,7 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     if (fill.packing == Packing::settled || from_file) {
       if (!settle) fail(scene, k, "a settled packing or a file cannot be made here");
       settled = settle(scene, k, blocks);
-      if (!from_file) keep_inside(scene, k, settled.position, settled.radius);
+      if (!from_file) keep_inside(scene, k, settled);
       places = settled.position;
     } else {
       places = places_of(scene, k, occupied);
@@ -257,6 +257,10 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     append(block, places, fill, scene);
     if (fill.angular_velocity) turn(block, first, *fill.angular_velocity);
     block.radius.insert(block.radius.end(), settled.radius.begin(), settled.radius.end());
+    for (RestingContact contact : settled.contacts) {
+      contact.sphere += first;
+      block.contacts.push_back(contact);
+    }
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)

@@ -1,12 +1,21 @@
 // Scene -> initial particles. One block a phase, in the order of scene.phases.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "scene/scene.hpp"
 
 namespace barchan {
+
+/// A contact of a sphere that rests: what its slips carry, and where the other is.
+struct RestingContact {
+  std::uint64_t sphere = 0;  // its number in its block
+  Vec3 branch{};             // m, from its centre to that of the other, or to the nearest place of a side of the domain
+  Vec3 force{};              // N, tangential, on it
+  Vec3 torque{};             // N m, of the rolling resistance, on it
+};
 
 struct ParticleBlock {
   std::vector<Vec3> position;      // m
@@ -15,8 +24,9 @@ struct ParticleBlock {
   struct Part {
     std::size_t fill, first;  // number of the fill; its first particle here, the others follow
   };
-  std::vector<Part> parts{};     // by fill of the phase, in order
-  std::vector<double> radius{};  // m, of spheres; empty when the phase gives no diameter
+  std::vector<Part> parts{};               // by fill of the phase, in order
+  std::vector<double> radius{};            // m, of spheres; empty when the phase gives no diameter
+  std::vector<RestingContact> contacts{};  // of spheres that settled; each once
   std::vector<Vec3> normal{};  // of fitted and relaxed walls: towards the nearest place of the surface; zero: not known
   std::vector<double> depth{};  // m, the distance to it; both empty when no fill of the phase is such a wall
   std::vector<std::array<double, 3>>
@@ -32,6 +42,7 @@ struct ParticleBlock {
 struct SettledGrains {
   std::vector<Vec3> position;  // m; those outside the fill's shape are left out
   std::vector<double> radius;  // m
+  std::vector<RestingContact> contacts{};
 };
 using Settle =
     std::function<SettledGrains(const Scene& scene, std::size_t fill, const std::vector<ParticleBlock>& before)>;

@@ -210,21 +210,27 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
 
 }  // namespace
 
-void keep_inside(const Scene& scene, std::size_t k, std::vector<Vec3>& places, std::vector<double>& radii) {
+void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains) {
   RegionOf region_of(scene, scene.fills[k]);
   std::visit(region_of, scene.fills[k].shape);
   const Region region = region_of.take();
+  std::vector<Vec3>& places = grains.position;
+  constexpr std::size_t gone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> number(places.size(), gone);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     bool inside = region.inside(places[i]);
     for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
       inside = inside && places[i][d] >= region.lower[d] - scene.spacing && places[i][d] <= region.upper[d];
     if (!inside) continue;
+    number[i] = kept;
     places[kept] = places[i];
-    radii[kept++] = radii[i];
+    grains.radius[kept++] = grains.radius[i];
   }
   places.resize(kept);
-  radii.resize(kept);
+  grains.radius.resize(kept);
+  std::erase_if(grains.contacts, [&](const RestingContact& c) { return number[c.sphere] == gone; });
+  for (RestingContact& c : grains.contacts) c.sphere = number[c.sphere];
 }
 
 std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {

@@ -1,6 +1,7 @@
 // Shape -> places of particles. Internal to src/scene.
 #pragma once
 
+#include "scene/generate.hpp"
 #include "scene/places.hpp"
 #include "scene/scene.hpp"
 
@@ -25,9 +26,9 @@ inline constexpr double overlap_distance = 0.5;
 ///   (2D, area) or
 ///           0.35 (3D, volume), close to the limits 0.547 and 0.384 (Feder 1980; Meakin and Jullien 1992).
 /// Throws SceneError when the shape would need more than 10^9 places.
-/// Leaves out the places that are outside the shape of the k-th fill; radii (or nothing) go with them.
-void keep_inside(const Scene& scene, std::size_t k, std::vector<Vec3>& places, std::vector<double>& radii);
-
 std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied);
+
+/// Leaves out the grains that are outside the shape of the k-th fill, and their contacts.
+void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains);
 
 }  // namespace barchan

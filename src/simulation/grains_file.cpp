@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "base/errors.hpp"
@@ -34,7 +35,60 @@ std::optional<std::array<std::size_t, 2>> first_overlap(const Scene& scene, cons
   return std::nullopt;
 }
 
+/// The array of contacts of that name; null: the file has none.
+const FrameField* contact_array(const Frame& frame, const char* name, int components) {
+  for (const FrameField& field : frame.contacts)
+    if (field.name == name && field.components == components) return &field;
+  return nullptr;
+}
+
+/// The contacts of the grains with these ids, in their order. Nothing where the file has contacts that are not whole.
+std::optional<std::vector<RestingContact>> contacts_of(const Frame& frame, const std::vector<std::int64_t>& ids) {
+  if (frame.contacts.empty()) return std::vector<RestingContact>{};
+  const FrameField *particle = contact_array(frame, "contact_particle", 1),
+                   *branch = contact_array(frame, "contact_branch", 3),
+                   *force = contact_array(frame, "contact_force", 3),
+                   *torque = contact_array(frame, "contact_torque", 3);
+  if (!particle || !branch || !force || !torque) return std::nullopt;
+  const std::size_t count = particle->values.size();
+  std::map<std::int64_t, std::uint64_t> place;
+  for (std::size_t k = 0; k < ids.size(); ++k) place[ids[k]] = k;
+  std::vector<RestingContact> contacts;
+  for (const FrameField* field : {branch, force, torque})
+    if (field->values.size() != 3 * count ||
+        !std::all_of(field->values.begin(), field->values.end(), [](double x) { return std::isfinite(x); }))
+      return std::nullopt;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double id = particle->values[k];
+    if (!(id >= 0.0 && id < 9007199254740992.0)) return std::nullopt;  // 2^53
+    const auto found = place.find(static_cast<std::int64_t>(id));
+    if (found == place.end()) continue;  // of another phase
+    const auto vector = [k](const FrameField& f) {
+      return Vec3{f.values[3 * k], f.values[3 * k + 1], f.values[3 * k + 2]};
+    };
+    contacts.push_back({found->second, vector(*branch), vector(*force), vector(*torque)});
+  }
+  return contacts;
+}
+
 }  // namespace
+
+std::vector<FrameField> contact_arrays_of(const std::vector<RestingContact>& contacts, std::int64_t first_id) {
+  if (contacts.empty()) return {};
+  std::vector<FrameField> arrays{{"contact_particle", "", 1, {}},
+                                 {"contact_branch", "m", 3, {}},
+                                 {"contact_force", "N", 3, {}},
+                                 {"contact_torque", "N m", 3, {}}};
+  for (const RestingContact& c : contacts) {
+    arrays[0].values.push_back(static_cast<double>(first_id + static_cast<std::int64_t>(c.sphere)));
+    for (std::size_t d = 0; d < 3; ++d) {
+      arrays[1].values.push_back(c.branch[d]);
+      arrays[2].values.push_back(c.force[d]);
+      arrays[3].values.push_back(c.torque[d]);
+    }
+  }
+  return arrays;
+}
 
 SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
   const Fill& f = scene.fills[fill];
@@ -76,6 +130,12 @@ SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
     grains.radius.push_back(radius);
     ids.push_back(frame.id[i]);
   }
+  auto contacts = contacts_of(frame, ids);
+  if (!contacts)
+    refuse(
+        "has contacts that are not whole; expected contact_particle, _branch, _force and _torque, as generate writes "
+        "them");
+  grains.contacts = std::move(*contacts);
   if (const auto pair = first_overlap(scene, grains, size.largest()))
     refuse("has particles " + std::to_string(ids[(*pair)[0]]) + " and " + std::to_string(ids[(*pair)[1]]) +
            " that overlap by more than " + brief(100.0 * most_sphere_overlap) +

@@ -1,6 +1,7 @@
 // Fills with shape = { file = ... }: spheres where a frame of an earlier run has them.
 #pragma once
 
+#include "output/frame.hpp"
 #include "scene/generate.hpp"
 
 namespace barchan {
@@ -9,5 +10,8 @@ namespace barchan {
 /// the key when the file cannot be read, has no such phase, no radii though they differ, or a grain that the phase
 /// cannot have.
 SettledGrains grains_of_file(const Scene& scene, std::size_t fill);
+
+/// Frame::contacts of particles whose first has the id `first_id`.
+std::vector<FrameField> contact_arrays_of(const std::vector<RestingContact>& contacts, std::int64_t first_id);
 
 }  // namespace barchan

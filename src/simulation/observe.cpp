@@ -21,6 +21,13 @@ long Simulation::searches() const {
   return n;
 }
 
+std::vector<RestingContact> Simulation::resting_contacts(std::size_t phase) const {
+  std::vector<RestingContact> all;
+  for (const auto& model : models_)
+    for (const RestingContact& contact : model->resting_contacts(phase)) all.push_back(contact);
+  return all;
+}
+
 std::size_t Simulation::bytes() const { return work_->bytes() + (watch_ ? watch_->bytes() : 0); }
 
 Frame Simulation::frame(int index) const {

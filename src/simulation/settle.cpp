@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "scene/couplings.hpp"
 #include "scene/ground.hpp"
 #include "scene/places.hpp"
 #include "scene/shapes.hpp"
@@ -19,10 +20,12 @@ namespace barchan {
 
 namespace {
 
-// A bed rests when its farthest grain goes less than this in sqrt(d/g), twice, and when contacts that begin without
-// memory, as those of the run do, let no grain go farther than `at_place` (diameters).
+// A bed rests when its farthest grain goes less than this in sqrt(d/g), twice, and when in a trial no grain goes
+// farther than `at_place` (diameters). A trial begins as the run does, with the contacts that were, and nothing slows
+// the grains.
 constexpr double at_rest = 2e-4, at_place = 5e-3;
-constexpr int most_trials = 5;       // of the last: deep beds may always find a grain that goes on a little
+constexpr double trial_time = 6.0;   // sqrt(d/g)
+constexpr int most_trials = 8;       // deep beds may always find a grain that goes on a little
 constexpr double restitution = 0.2;  // while they settle
 constexpr double loose = 1.35;       // height of the lattice over that of the bed, for equal grains
 // sqrt(d/g): in this time what slows the grains takes a speed to its e-th part; at the begin of a stage, when stiffer
@@ -203,6 +206,7 @@ std::vector<ParticleBlock> begin_with_file(const Scene& scene, std::size_t k, co
   SettledGrains grains = grains_of_file(scene, k);
   blocks[0].velocity.assign(grains.position.size(), Vec3{});
   blocks[0].position = std::move(grains.position);
+  blocks[0].contacts = std::move(grains.contacts);
   if (s.phases[0].diameter()->spread > 0.0) blocks[0].radius = std::move(grains.radius);
   return blocks;
 }
@@ -223,33 +227,45 @@ double way_of(const PhaseParticles& p, std::vector<Vec3>& place) {
   return std::sqrt(most);
 }
 
-/// Lets the grains of the first phase move until they rest; their places become those of the blocks. Returns the
-/// farthest way of a grain (m), nothing when they do not come to rest before `latest` (s).
-std::optional<double> rest(const Scene& s, std::vector<ParticleBlock>& blocks, bool pushed, double first_look,
-                           double latest) {
+/// How grains move while they settle.
+struct Rest {
+  bool pushed = false;      // slowed more at the begin
+  bool trial = false;       // not slowed, for `trial_time`; else until they rest
+  double first_look = 0.0;  // sqrt(d/g)
+  double latest = 0.0;      // s
+};
+/// Lets the grains of the first phase move. Their places and contacts become those of the blocks. Returns the farthest
+/// way of a grain (m), nothing when they do not come to rest before `latest`.
+std::optional<double> rest(const Scene& s, std::vector<ParticleBlock>& blocks, const Rest& how) {
   Simulation run(s, make_plan(s, blocks), blocks);
   PhaseParticles& p = run.phases()[0];
   const double d = s.phases[0].diameter()->mean, unit = std::sqrt(d / norm(s.domain.gravity));
   const auto damp = [&] {
-    const double slow = pushed && run.time() < push * unit ? slow_push : slow_fall;
+    const double slow = how.pushed && run.time() < push * unit ? slow_push : slow_fall;
     const double share = std::exp(-run.last_step() / (slow * unit));
     for (const Field f : {Field::velocity, Field::angular_velocity})
       for (int a = 0; p.has(f) && a < p.components(f); ++a)
         for (std::size_t i = 0; i < p.size(); ++i) p.column(f, a)[i] *= share;
   };
   std::vector<Vec3> place = blocks[0].position;
-  // Sorting wraps grains into a periodic domain: a way of a period is none, and no grain rests in that moment.
-  double next = first_look * unit;
-  for (int calm = 0; calm < 2; next += unit) {
-    while (run.time() < next) {
-      run.step(next - run.time());
-      damp();
+  const auto go_to = [&](double time) {
+    while (run.time() < time) {
+      run.step(time - run.time());
+      if (!how.trial) damp();
     }
+  };
+  if (how.trial) go_to(trial_time * unit);
+  // Sorting wraps grains into a periodic domain: a way of a period is none, and no grain rests in that moment.
+  double next = how.first_look * unit;
+  for (int calm = 0; !how.trial && calm < 2; next += unit) {
+    go_to(next);
     calm = way_of(p, place) < at_rest * d ? calm + 1 : 0;
-    if (run.time() > latest) return std::nullopt;
+    if (run.time() > how.latest) return std::nullopt;
   }
+  if (how.trial) way_of(p, place);
   ParticleBlock& block = blocks[0];
   place.swap(block.position);
+  block.contacts = run.resting_contacts(0);
   block.velocity.assign(block.position.size(), Vec3{});
   double farthest = 0.0;
   for (std::size_t i = 0; i < place.size(); ++i) {
@@ -267,7 +283,13 @@ void cut(const Scene& scene, std::size_t k, const Scene& s, ParticleBlock& block
     for (std::size_t a = 0; a < 3; ++a)
       if (s.domain.periodic[a]) x[a] -= s.domain.size[a] * std::floor((x[a] - s.domain.origin[a]) / s.domain.size[a]);
   if (block.radius.empty()) block.radius.assign(block.position.size(), 0.5 * s.phases[0].diameter()->mean);
-  if (!std::holds_alternative<FileShape>(scene.fills[k].shape)) keep_inside(scene, k, block.position, block.radius);
+  if (!std::holds_alternative<FileShape>(scene.fills[k].shape)) {
+    SettledGrains grains{std::move(block.position), std::move(block.radius), std::move(block.contacts)};
+    keep_inside(scene, k, grains);
+    block.position = std::move(grains.position);
+    block.radius = std::move(grains.radius);
+    block.contacts = std::move(grains.contacts);
+  }
   block.velocity.assign(block.position.size(), Vec3{});
 }
 
@@ -327,25 +349,32 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
   const FewThreads team(blocks[0].position.size());
-  int trials = 0;
-  for (std::size_t stage = 0; stage < stages.size();) {
-    const bool last = stage + 1 == stages.size();
+  const auto tell = [&](const std::string& what) {
     if (words != nullptr)
-      *words << "settling  " << scene.fills[k].phase << ": " << blocks[0].position.size() << " grains, contacts "
-             << stage + 1 << " of " << stages.size() << (trials > 0 ? ", once more" : "") << std::endl;
-    const auto way =
-        rest(stages[stage], blocks, from_file || stage > 0, stage == 0 && !from_file ? fall : 2.0 * push, latest);
-    if (!way)
+      *words << "settling  " << scene.fills[k].phase << ": " << blocks[0].position.size() << " grains, " << what
+             << std::endl;
+  };
+  const auto settle_once = [&](std::size_t stage) {
+    tell("contacts " + std::to_string(stage + 1) + " of " + std::to_string(stages.size()));
+    const double first_look = stage == 0 && !from_file ? fall : 2.0 * push;
+    if (!rest(stages[stage], blocks, {from_file || stage > 0, false, first_look, latest}))
       throw SceneError(
           scene.file + ": fill." + std::to_string(k) +
           ".packing: the grains do not come to rest; expected friction above 0, and a restitution below 1");
+    if (stage == 0 || stage + 1 == stages.size()) cut(scene, k, s, blocks[0]);
+  };
+  for (std::size_t stage = 0; stage < stages.size() && !blocks[0].position.empty(); ++stage) settle_once(stage);
+  Scene as_in_the_run = s;
+  std::get<GrainsKeys>(as_in_the_run.phases[0].own).restitution =
+      find_phase(scene, scene.fills[k].phase)->grains().restitution;
+  for (int trials = 1; trials <= most_trials && !blocks[0].position.empty(); ++trials) {
+    tell("trial " + std::to_string(trials));
     const std::size_t before = blocks[0].position.size();
-    if (stage == 0 || last) cut(scene, k, s, blocks[0]);
-    if (blocks[0].position.empty()) break;  // generate() tells it
-    const bool stays = *way < place && blocks[0].position.size() == before;
-    if (!last || stays || ++trials == most_trials) ++stage;
+    const auto way = rest(as_in_the_run, blocks, {false, true, 0.0, latest});
+    cut(scene, k, s, blocks[0]);
+    if (*way < place && blocks[0].position.size() == before) break;
   }
-  return {blocks[0].position, blocks[0].radius};
+  return {std::move(blocks[0].position), std::move(blocks[0].radius), std::move(blocks[0].contacts)};
 }
 
 void SettledBeds::archive(Archive& a, const Scene& scene) {
@@ -353,6 +382,7 @@ void SettledBeds::archive(Archive& a, const Scene& scene) {
     if (scene.fills[k].packing == Packing::settled) {
       a.array("places of a settled bed", of_fill[k].position);
       a.array("radii of a settled bed", of_fill[k].radius);
+      a.array("contacts of a settled bed", of_fill[k].contacts);
     }
 }
 

@@ -57,6 +57,8 @@ class Simulation {
 
   /// A copy of the state for the writer.
   Frame frame(int index) const;
+  /// The present contacts of the spheres of a phase; numbers count its particles by their ids.
+  std::vector<RestingContact> resting_contacts(std::size_t phase) const;
   /// One row of history.csv: names and values.
   HistoryRow history() const;
   std::vector<std::string> history_columns() const { return history().names; }

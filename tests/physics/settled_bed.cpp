@@ -10,8 +10,10 @@
 #include <numbers>
 
 #include "base/errors.hpp"
+#include "output/compare.hpp"
 #include "output/series.hpp"
 #include "physics/small_scenes.hpp"
+#include "simulation/grains_file.hpp"
 
 namespace barchan {
 namespace {
@@ -131,6 +133,21 @@ TEST_P(SettledBed, StaysAtRest) {
   EXPECT_LT(area / room, 0.92);
 }
 
+/// A slope of 32 degrees, which friction alone holds: the contacts begin with the forces with which the bed came to
+/// rest. Without them grains of the slope go until their contacts have slipped as far again.
+TEST(SettledBed, OfASteepSlopeNeedsItsContacts) {
+  const std::string dune =
+      ", dune = { form = \"asymmetric\", slip-face-angle = 32, height = 0.016, length = 0.1, at = 0.06 } }";
+  Scene scene = parse_scene(over_a_core, "slope.toml",
+                            {"fill.0.shape={ bed = 0.002" + dune, "fill.1.shape={ bed = 0.006" + dune,
+                             "phases.sand.friction=1.0", "phases.sand.rolling-friction=0.8"});
+  auto blocks = make_particles(scene);
+  EXPECT_GT(blocks[0].contacts.size(), blocks[0].position.size());
+  EXPECT_LT(farthest_way(scene, blocks, 0.1), 1e-2 * 1e-3) << "of " << blocks[0].position.size() << " grains";
+  blocks[0].contacts.clear();
+  EXPECT_GT(farthest_way(scene, blocks, 0.1), 1e-2 * 1e-3);
+}
+
 /// A scene whose grains are those of a file.
 Scene from_file(const std::filesystem::path& file, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"fill.1={ phase = \"sand\", shape = { file = \"" + file.string() + "\" } }"};
@@ -143,7 +160,9 @@ class BedOfAFile : public ::testing::Test {
  protected:
   BedOfAFile() : made_(parse_scene(flat, "bed.toml", {"fill.1.shape={ bed = 0.003 }", "output.fields=[\"radius\"]"})) {
     blocks_ = make_particles(made_);
-    frame_ = Simulation(made_, make_plan(made_, blocks_), blocks_).frame(0);
+    const Simulation run(made_, make_plan(made_, blocks_), blocks_);
+    frame_ = run.frame(0);
+    frame_.contacts = contact_arrays_of(blocks_[0].contacts, run.phases()[0].first_id());
     write(frame_);
   }
   ~BedOfAFile() override { std::filesystem::remove(file_); }
@@ -184,6 +203,59 @@ TEST_F(BedOfAFile, IsThatOfTheFrame) {
     EXPECT_EQ(read[0].position[i], blocks_[0].position[i]);
     EXPECT_EQ(read[0].radius[i], blocks_[0].radius[i]);
   }
+  const auto &contacts = read[0].contacts, &written = blocks_[0].contacts;
+  ASSERT_EQ(contacts.size(), written.size());
+  EXPECT_GT(contacts.size(), blocks_[0].position.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    EXPECT_EQ(contacts[i].sphere, written[i].sphere);
+    EXPECT_EQ(contacts[i].branch, written[i].branch);
+    EXPECT_EQ(contacts[i].force, written[i].force);
+    EXPECT_EQ(contacts[i].torque, written[i].torque);
+  }
+}
+
+/// Contacts that begin with their forces have them after a step.
+TEST_F(BedOfAFile, BeginsWithItsForces) {
+  Simulation run(made_, make_plan(made_, blocks_), blocks_);
+  run.step(1e-9);
+  const auto& before = blocks_[0].contacts;
+  const auto after = run.resting_contacts(0);
+  double largest = 0.0, farthest = 0.0;
+  std::size_t found = 0;
+  for (const RestingContact& was : before)
+    for (const RestingContact& is : after)
+      if (is.sphere == was.sphere && norm(is.branch - was.branch) < 1e-6) {
+        ++found;
+        largest = std::max(largest, norm(was.force));
+        farthest = std::max(farthest, norm(is.force - was.force));
+      }
+  EXPECT_EQ(found, before.size());
+  EXPECT_GT(largest, 0.0);
+  EXPECT_LT(farthest, 0.05 * largest);  // of one that slides, its limit is that of the step
+}
+
+TEST_F(BedOfAFile, IsRefusedWithContactsThatAreNotWhole) {
+  Frame frame = frame_;
+  frame.contacts.pop_back();
+  write(frame);
+  refused("has contacts that are not whole");
+  frame = frame_;
+  frame.contacts[2].values[4] = std::nan("");
+  write(frame);
+  refused("has contacts that are not whole");
+  frame = frame_;
+  frame.contacts[0].values.pop_back();
+  write(frame);
+  refused("has contacts that are not whole");
+}
+
+TEST_F(BedOfAFile, IsComparedWithItsContacts) {
+  Frame frame = frame_;
+  EXPECT_TRUE(compare(frame_, frame, 0.0).same);
+  frame.contacts[2].values[4] *= 1.001;
+  EXPECT_FALSE(compare(frame_, frame, 1e-9).same);
+  frame.contacts.clear();
+  EXPECT_FALSE(compare(frame_, frame, 1e-9).same);
 }
 
 /// The frame is one from the middle of a run, whose contacts remember their slip; those of the next run do not.

@@ -17,6 +17,7 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       moving_ += plan.count;
       PhaseParticles& p = state.phases[k];
       p.set_mean_radius(0.5 * plan.diameter);
+      rest_.add(parts_.back().first, blocks[k].contacts);
       if (p.has(Field::radius)) std::copy(blocks[k].radius.begin(), blocks[k].radius.end(), p.column(Field::radius));
     }
   }
@@ -292,6 +293,7 @@ void Spheres::search() {
   fresh_ = others_sleep_;
   strays_.begin(set(), slack());
   search_.find(set(), slack(), chunks_, listed_numbers_.data(), others_sleep_ || must_search_ ? &sleeping_ : nullptr);
+  rest_.recall(step_, set(), chunks_);
   strays_.take_cells(search_.cells());
   cells_loaded_ = others_sleep_ = false;
   listed_numbers_ = numbers_;

@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "models/grains/sphere_rest.hpp"
 #include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_sleep.hpp"
 #include "models/grains/sphere_strays.hpp"
@@ -56,6 +57,7 @@ class Spheres : public Model {
   std::optional<std::string> trouble() const override;
   std::uint64_t pairs(const PlanEntry& entry) const override;
   long searches() const override { return searches_; }
+  std::vector<RestingContact> resting_contacts(std::size_t phase) const override;
   void archive(Archive& a) override;
 
  private:
@@ -103,6 +105,7 @@ class Spheres : public Model {
   SphereStrays strays_;
   std::vector<std::uint32_t> gone_;  // strays of a step
   SphereStep step_;
+  SphereRest rest_;
   SphereSleep sleep_;
   SphereChunk sleeping_;  // pairs of spheres that sleep; no sphere of its own
   bool must_search_ = true;

@@ -56,6 +56,16 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
   return n;
 }
 
+std::vector<RestingContact> Spheres::resting_contacts(std::size_t phase) const {
+  for (const Part& part : parts_)
+    if (part.phase == phase) {
+      const SphereSet s{layout_.dimensions,     records_[now_].data(), moving_, moving_ + fixed_kind_.size(),
+                        listed_numbers_.data(), kinds_.data(),         nullptr, nullptr};
+      return contacts_at_rest(step_, s, chunks_, part.first, part.count);
+    }
+  return {};
+}
+
 void Spheres::archive(Archive& a) {
   a.number("must search", must_search_);
   a.number("slack", slack_);
@@ -70,8 +80,8 @@ void Spheres::archive(Archive& a) {
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
-  if (a.loads() && getenv("BARCHAN_OLD")) must_search_ = true;
-  else strays_.archive(a);
+  strays_.archive(a);
+  rest_.archive(a);
   cells_loaded_ = cells_loaded_ || a.loads();
   sleep_.archive(a);
   if (a.loads()) {
