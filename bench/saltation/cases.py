@@ -155,8 +155,9 @@ def hop(bench):
 # --- the saturated flux of sand ---------------------------------------------------------------------------------------
 
 # Creyssels et al. 2009: u* (m/s), flux (g/m/s); begin and end of the average (s).
-FLUX = [(0.24, 5.25, 1.0, 2.0), (0.40, 21.09, 0.5, 1.2), (0.56, 48.85, 0.5, 1.2)]
-BLOCK = 0.1
+FLUX = [(0.24, 5.25, 1.0, 4.0), (0.40, 21.09, 0.6, 1.6), (0.56, 48.85, 0.6, 1.6)]
+SEEDS = (1, 2)  # of the bed's diameters
+BLOCK = 0.2  # s; shorter ones follow each other
 
 
 def flux_of(folder, u, creyssels, begin, end):
@@ -183,12 +184,23 @@ def flux_of(folder, u, creyssels, begin, end):
                         "grain_stress": pick("grain_stress", 1 / stress), "air_stress": pick("air_stress", 1 / stress)}}
 
 
+def stress_of(run):
+    """Stress of air and grains over rho u*^2, from 2 d up to where the drag of grains ends: least, mean, largest."""
+    p = run["profile"]
+    sums = [a + g for h, a, g in zip(p["height"], p["air_stress"], p["grain_stress"]) if 2 < h < 60]
+    return [min(sums), sum(sums) / len(sums), max(sums)]
+
+
 def flux(bench):
     runs = []
     for u, creyssels, begin, end in FLUX:
-        folder = bench.run("saltation", f"flux_{u}", f"phases.air.friction-velocity={u}", f"time.end={end}", f"saltation.0.start={begin}")
-        runs.append(flux_of(folder, u, creyssels, begin, end))
-    return {"block": BLOCK, "runs": runs, "notes": []}
+        for seed in SEEDS:
+            name = f"flux_{u}_{seed}"
+            if not (bench.out / name / "saltation_sand.json").exists():
+                bench.run("saltation", name, f"phases.air.friction-velocity={u}", f"fill.1.seed={seed}", f"time.end={end}", f"saltation.0.start={begin}")
+            run = flux_of(bench.out / name, u, creyssels, begin, end)
+            runs.append(dict(run, seed=seed, stress=stress_of(run)))
+    return {"block": BLOCK, "runs": runs}
 
 
 # --- splash -----------------------------------------------------------------------------------------------------------

@@ -1,5 +1,4 @@
 // barchan plan, generate, compare, schema.
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -48,13 +47,7 @@ int generate(const std::string& file, const std::string& output, const std::vect
   use_threads(0, plan.particles());
   Simulation start(scene, plan, blocks);
   Frame frame = start.frame(0);
-  for (std::size_t k = 0; k < blocks.size(); ++k)
-    for (FrameField& array : contact_arrays_of(blocks[k].contacts, start.phases()[k].first_id())) {
-      const auto there = std::find_if(frame.contacts.begin(), frame.contacts.end(),
-                                      [&](const FrameField& f) { return f.name == array.name; });
-      if (there == frame.contacts.end()) frame.contacts.push_back(std::move(array));
-      else there->values.insert(there->values.end(), array.values.begin(), array.values.end());
-    }
+  for (std::size_t k = 0; k < blocks.size(); ++k) add_contacts(frame, blocks[k].contacts, start.phases()[k].first_id());
   write_frame(output, frame, vtu ? FrameFormat::vtu : FrameFormat::vtp, scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";
   return 0;

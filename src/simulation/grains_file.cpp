@@ -73,21 +73,21 @@ std::optional<std::vector<RestingContact>> contacts_of(const Frame& frame, const
 
 }  // namespace
 
-std::vector<FrameField> contact_arrays_of(const std::vector<RestingContact>& contacts, std::int64_t first_id) {
-  if (contacts.empty()) return {};
-  std::vector<FrameField> arrays{{"contact_particle", "", 1, {}},
-                                 {"contact_branch", "m", 3, {}},
-                                 {"contact_force", "N", 3, {}},
-                                 {"contact_torque", "N m", 3, {}}};
+void add_contacts(Frame& frame, const std::vector<RestingContact>& contacts, std::int64_t first_id) {
+  if (contacts.empty()) return;
+  if (frame.contacts.empty())
+    frame.contacts = {{"contact_particle", "", 1, {}},
+                      {"contact_branch", "m", 3, {}},
+                      {"contact_force", "N", 3, {}},
+                      {"contact_torque", "N m", 3, {}}};
   for (const RestingContact& c : contacts) {
-    arrays[0].values.push_back(static_cast<double>(first_id + static_cast<std::int64_t>(c.sphere)));
-    for (std::size_t d = 0; d < 3; ++d) {
-      arrays[1].values.push_back(c.branch[d]);
-      arrays[2].values.push_back(c.force[d]);
-      arrays[3].values.push_back(c.torque[d]);
+    frame.contacts[0].values.push_back(static_cast<double>(first_id + static_cast<std::int64_t>(c.sphere)));
+    std::size_t of = 1;
+    for (const Vec3& vector : {c.branch, c.force, c.torque}) {
+      auto& values = frame.contacts[of++].values;
+      values.insert(values.end(), vector.begin(), vector.end());
     }
   }
-  return arrays;
 }
 
 SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {

@@ -11,7 +11,7 @@ namespace barchan {
 /// cannot have.
 SettledGrains grains_of_file(const Scene& scene, std::size_t fill);
 
-/// Frame::contacts of particles whose first has the id `first_id`.
-std::vector<FrameField> contact_arrays_of(const std::vector<RestingContact>& contacts, std::int64_t first_id);
+/// Adds to Frame::contacts those of particles whose first has the id `first_id`.
+void add_contacts(Frame& frame, const std::vector<RestingContact>& contacts, std::int64_t first_id);
 
 }  // namespace barchan

@@ -162,7 +162,7 @@ class BedOfAFile : public ::testing::Test {
     blocks_ = make_particles(made_);
     const Simulation run(made_, make_plan(made_, blocks_), blocks_);
     frame_ = run.frame(0);
-    frame_.contacts = contact_arrays_of(blocks_[0].contacts, run.phases()[0].first_id());
+    add_contacts(frame_, blocks_[0].contacts, run.phases()[0].first_id());
     write(frame_);
   }
   ~BedOfAFile() override { std::filesystem::remove(file_); }
