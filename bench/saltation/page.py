@@ -61,6 +61,17 @@ def splash(r):
                     "grain cannot give way to the side. Rolling friction of 0.2, that of `flat_bed.toml`, was chosen after both sets had been seen. Without rolling resistance (one more set of impacts) 6.6, 5.2 and 4.3 are ejected."]
 
 
+def threshold(r):
+    lines = ["## The threshold of the wind", "",
+             "`scenes/threshold.toml`, `bench/saltation/cases.py threshold`: a settled bed of 240 by 8 diameters in resolved, turbulent air, no grain in flight at the start. The least u* at "
+             "which the fastest grain is above 0.02 m/s in the last third of 0.15 s (of 0.25 mm; the time goes with sqrt(d)), by bisection; one bed a diameter. Reference: "
+             "Shao & Lu 2000, u*^2 = 0.0123 (rho_s g d/rho + 3e-4 kg/s2/(rho d)). Wanted: within 25 %.", "",
+             "| d mm | rests at u* m/s | moves at u* m/s | Shao & Lu | ratio |", "| --- | --- | --- | --- | --- |"]
+    for row in r["rows"]:
+        lines.append(f"| {row['d']:g} | {row['low']:.3f} | {row['high']:.3f} | {row['shao_lu']:.3f} | {0.5 * (row['low'] + row['high']) / row['shao_lu']:.2f} |")
+    return lines
+
+
 def flux(r):
     lines = ["## Saturated flux", "",
              "`scenes/saltation.toml`, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %): `bench/saltation/cases.py flux`. Two beds with other diameters for "
@@ -123,7 +134,7 @@ def plot(r):
 def main():
     lines = ["# Saltation against what is known", "", "Made by `bench/saltation/page.py` from the results of `bench/saltation/cases.py`. How the wind, the drag and the "
              "exchange of momentum are computed: [method.md](method.md), Air without particles.", ""]
-    for name, part in (("settling", settling), ("hop", hop), ("splash", splash), ("flux", flux)):
+    for name, part in (("settling", settling), ("hop", hop), ("splash", splash), ("threshold", threshold), ("flux", flux)):
         r = load(name)
         if r:
             lines += part(r) + [""]
