@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::square_text;
-using testing::with;
 
 class Commands : public ::testing::Test {
  protected:

@@ -17,7 +17,7 @@ class Detector {
     for (std::size_t k = 0; k < s_.phases().size(); ++k) {
       if (wall(k)) continue;
       for (std::size_t i = 0; i < s_.phases()[k].size(); ++i)
-        if (const std::string w = wrong_alone(k, i); !w.empty()) return w;
+        if (std::string w = wrong_alone(k, i); !w.empty()) return w;
     }
     for (const auto& e : s_.plan().entries) {
       if (e.law == Law::contact || e.law == Law::elastic)

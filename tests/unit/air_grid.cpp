@@ -25,8 +25,9 @@ PhaseParticles air() {
   for (const Field f : {Field::position, Field::velocity, Field::drag_acceleration}) p.add(f);
   sets::Uniform random(5);
   for (std::size_t k = 0; k < p.size(); ++k) {
-    const double x = static_cast<double>(k % 8) + 0.5 + random(-0.15, 0.15);
-    const double y = static_cast<double>(k / 8) + 0.5 + random(-0.15, 0.15);
+    const std::size_t column = k % 8, row = k / 8;
+    const double x = static_cast<double>(column) + 0.5 + random(-0.15, 0.15);
+    const double y = static_cast<double>(row) + 0.5 + random(-0.15, 0.15);
     p.column(Field::position, 0)[k] = x;
     p.column(Field::position, 1)[k] = y;
     p.column(Field::velocity, 0)[k] = 2.0 + y;

@@ -87,7 +87,9 @@ class PlainGround {
       count_[d] = std::max(1, static_cast<int>(std::floor((b_.high[d] - b_.low[d]) / spacing + 1e-9)));
       side_[d] = (b_.high[d] - b_.low[d]) / count_[d];
     }
-    nearest_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]), -1);
+    std::size_t cells = 1;
+    for (const int count : count_) cells *= static_cast<std::size_t>(count);
+    nearest_.assign(cells, -1);
     std::vector<int> crowd(nearest_.size());
     for (const Vec3& g : grains) ++crowd[cell(place(g))];
     for (const Vec3& g : grains) {
@@ -118,7 +120,8 @@ class PlainGround {
     return at;
   }
   std::size_t cell(const std::array<int, 3>& at) const {
-    return static_cast<std::size_t>((at[2] * count_[1] + at[1]) * count_[0] + at[0]);
+    const auto whole = [](int number) { return static_cast<std::size_t>(number); };
+    return (whole(at[2]) * whole(count_[1]) + whole(at[1])) * whole(count_[0]) + whole(at[0]);
   }
   template <class F>
   void about(const std::array<int, 3>& at, F&& f) const {
