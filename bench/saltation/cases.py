@@ -185,9 +185,13 @@ def flux_of(folder, u, creyssels, begin, end):
 
 
 def stress_of(run):
-    """Stress of air and grains over rho u*^2, from 2 d up to where the drag of grains ends: least, mean, largest."""
+    """Stress of air and grains over rho u*^2 in layers of ten diameters from 2 d on, six of them: least, mean, largest."""
     p = run["profile"]
-    sums = [a + g for h, a, g in zip(p["height"], p["air_stress"], p["grain_stress"]) if 2 < h < 60]
+    layers = {}
+    for h, a, g in zip(p["height"], p["air_stress"], p["grain_stress"]):
+        if 2 < h < 62:
+            layers.setdefault(int((h - 2) / 10), []).append(a + g)
+    sums = [sum(s) / len(s) for s in layers.values()]
     return [min(sums), sum(sums) / len(sums), max(sums)]
 
 
@@ -281,7 +285,7 @@ def splash(bench):
 # --- the threshold of the wind ------------------------------------------------------------------------------------------
 
 SHIELDS, COHESION = 0.0123, 3e-4  # A_N and gamma (kg/s2) of Shao & Lu 2000
-THRESHOLD_D, THRESHOLD_LOW, THRESHOLD_HIGH, THRESHOLD_STEPS = (1.5e-4, 2.5e-4, 5e-4), 0.5, 3.5, 7
+THRESHOLD_D, THRESHOLD_LOW, THRESHOLD_HIGH, THRESHOLD_STEPS = (1.5e-4, 2.5e-4, 5e-4), 0.9, 2.9, 6
 MOVES = 0.02  # m/s, of the fastest grain in the last third of a run: a bed at rest has 1e-5 m/s or less
 
 
@@ -293,12 +297,12 @@ def shao_lu(d, density=2650.0, air=1.225, g=9.81):
 def bed_moves(bench, d, u):
     """Whether a bed of grains of d goes on to move in the wind u*; all lengths of the scene by diameters."""
     scale = d / 2.5e-4
-    overrides = {"spacing": 8 * d, "domain.size": f"[{0.06 * scale:.9g}, {0.032 * scale:.9g}]", "phases.sand.diameter.mean": d,
+    overrides = {"spacing": 8 * d, "domain.size": f"[{0.12 * scale:.9g}, {0.032 * scale:.9g}]", "phases.sand.diameter.mean": d,
                  "phases.sand.stiffness": 150 * scale**2, "phases.ground.roughness": d / 30, "phases.floor.spacing": 2 * d,
                  "phases.lid.shear-stress": f"[{1.225 * u * u:.9g}, 0]", "fill.0.shape.bed": 8 * d, "fill.3.shape.bed": 8 * d,
                  "fill.4.velocity.log-profile.friction-velocity": u, "fill.4.velocity.log-profile.roughness": d / 30,
                  "time.end": 0.15 * math.sqrt(scale), "output.every": 0.15 * math.sqrt(scale), "output.walls": "false"}
-    folder = bench.run("threshold", f"threshold_{1e3 * d:g}_{u:.4f}", *(f"{key}={value}" for key, value in overrides.items()))
+    folder = bench.run("threshold", f"threshold_{1e6 * d:.0f}_{u:.4f}", *(f"{key}={value}" for key, value in overrides.items()))
     h = table(folder / "history.csv")
     last = [k for k, t in enumerate(h["time"]) if t > 2 / 3 * h["time"][-1]]
     return max(h["sand_largest_speed"][k] for k in last) > MOVES

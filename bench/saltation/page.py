@@ -63,7 +63,7 @@ def splash(r):
 
 def threshold(r):
     lines = ["## The threshold of the wind", "",
-             "`scenes/threshold.toml`, `bench/saltation/cases.py threshold`: a settled bed of 240 by 8 diameters in resolved, turbulent air, no grain in flight at the start. The least u* at "
+             "`scenes/threshold.toml`, `bench/saltation/cases.py threshold`: a settled bed of 480 by 8 diameters in resolved, turbulent air, no grain in flight at the start. The least u* at "
              "which the fastest grain is above 0.02 m/s in the last third of 0.15 s (of 0.25 mm; the time goes with sqrt(d)), by bisection; one bed a diameter. Reference: "
              "Shao & Lu 2000, u*^2 = 0.0123 (rho_s g d/rho + 3e-4 kg/s2/(rho d)). Wanted: within 25 %.", "",
              "| d mm | rests at u* m/s | moves at u* m/s | Shao & Lu | ratio |", "| --- | --- | --- | --- | --- |"]
@@ -77,7 +77,7 @@ def flux(r):
              "`scenes/saltation.toml`, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %): `bench/saltation/cases.py flux`. Two beds with other diameters for "
              f"each wind. The error is that of the mean of blocks of {r['block']} s. Wanted: within 35, 15 and 15 %.", "",
              "| u* m/s | bed | flux g/m/s | measured by Creyssels | difference | decay of flux, d | of concentration, d | air at the bed, m/s | "
-             "stress of air and grains over rho u*^2, 2 to 60 d: least, mean, largest | averaged s |",
+             "stress of air and grains over rho u*^2 in layers of 10 d, 2 to 62 d: least, mean, largest | averaged s |",
              "| --- " * 10 + "|"]
     for row in r["runs"]:
         lines.append(f"| {row['u']} | {row['seed']} | {row['flux']:.2f} +- {row['error']:.2f} | {row['creyssels']} | {percent(row['flux'], row['creyssels'])} | "
