@@ -80,7 +80,7 @@ struct PlanEntry {
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
-  bool of_spheres() const { return law == Law::contact && contact != ContactLaw::kernel; }
+  bool of_spheres() const { return law == Law::contact && barchan::of_spheres(contact); }
   bool sees_solid() const { return law == Law::boundary || law == Law::coupling; }
   /// The other phase is part of the neighbourhood in which a fluid sums its rates.
   bool continues_fluid() const { return law == Law::fluid || sees_solid(); }

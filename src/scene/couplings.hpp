@@ -21,7 +21,7 @@ double spacing_of(const Scene& scene, const Interaction& pair);
 bool meets(const Scene& scene, const Phase& phase, PhaseKind kind);
 
 /// Whether the entry is a contact of spheres: touching decides, and its radius is not read.
-inline bool of_spheres(const Interaction& pair) { return pair.law != ContactLaw::kernel; }
+inline bool of_spheres(const Interaction& pair) { return of_spheres(pair.law); }
 
 /// Whether the phase has an entry with this law of contact.
 bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law);

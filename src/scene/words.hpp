@@ -74,6 +74,8 @@ enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; la
 template <>
 inline constexpr std::array words_of<ContactLaw>{word("kernel", ContactLaw::kernel), word("linear", ContactLaw::linear),
                                                  word("hertz", ContactLaw::hertz)};
+/// Whether it is a contact of spheres: their radii decide when they touch, and no radius of the entry is read.
+constexpr bool of_spheres(ContactLaw law) { return law == ContactLaw::linear || law == ContactLaw::hertz; }
 
 enum class Slip { no_slip, free_slip };
 template <>

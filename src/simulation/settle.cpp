@@ -81,7 +81,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
   s.time.fixed_step.reset();
   ContactLaw law = ContactLaw::linear;
   for (const Interaction& pair : scene.interactions) {
-    if (pair.law == ContactLaw::kernel || (pair.a != phase.name && pair.b != phase.name)) continue;
+    if (!of_spheres(pair) || (pair.a != phase.name && pair.b != phase.name)) continue;
     const std::string& other = pair.a == phase.name ? pair.b : pair.a;
     const auto found =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == other; });
