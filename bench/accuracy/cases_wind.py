@@ -16,7 +16,9 @@ class Wind:
         fill = next(f for f in scene["fill"] if f["phase"] == "air")
         profile = fill["velocity"]["log-profile"]
         self.friction, self.roughness = profile["friction-velocity"], profile["roughness"]
-        shape = next(f["shape"] for f in scene["fill"] if f["phase"] == "sand")
+        sand = next(f["shape"] for f in scene["fill"] if f["phase"] == "sand")
+        ground = [f["shape"] for f in scene["fill"] if isinstance(f["shape"], dict) and "bed" in f["shape"]]
+        shape = sand if "bed" in sand else ground[0]  # a bed from a file lies on the ground of the air
         self.bed, self.dune = shape["bed"], shape.get("dune", {})
         self.dx, self.size, self.end = scene["spacing"], scene["domain"]["size"], scene["time"]["end"]
         self.density = scene["phases"]["air"]["density"]
