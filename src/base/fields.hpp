@@ -40,7 +40,8 @@ namespace barchan {
   row(angular_acceleration, "dw/dt", "1/s2", axial, state, "of a sphere that rubs, in the last step of its contacts") \
   row(von_mises_stress, "s_v", "Pa", scalar, derived, "of a body: the stress in one direction that distorts as much (von Mises)") \
   row(principal_stress, "s_1 s_2 s_3", "Pa", principal, derived, "of a body: principal values of Cauchy's stress, the largest first; positive pulls") \
-  row(strain, "E", "1", symmetric, derived, "of a total Lagrangian body: strain of Green and Lagrange, xx yy zz xy yz xz")
+  row(strain, "E", "1", symmetric, derived, "of a total Lagrangian body: strain of Green and Lagrange, xx yy zz xy yz xz") \
+  row(contact_force, "F_c", "N", vector, state, "of an elastic body that touches bodies or walls by its particles: force of them on the particle in the last step; in 2D per metre of depth")
 // clang-format on
 
 #define BARCHAN_NAME(name, symbol, unit, rank, lifetime, meaning) name,

@@ -58,11 +58,13 @@ void BodyContact::schedule(Schedule& s) {
   for (const std::size_t phase : {entry_.a, entry_.b}) {
     if (!layout_.phases[phase].moves) continue;
     if (!sides_.empty())
-      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration}, [this, phase] {
+      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
                push_from_sides(phase);
              }});
     if (entry_.direction(phase) < 0) continue;
-    s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration}, [this, phase] { push(phase); }});
+    s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
+             push(phase);
+           }});
   }
 }
 

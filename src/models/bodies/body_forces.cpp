@@ -6,12 +6,22 @@ namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
+/// The columns of contact_force; null where the phase does not have it.
+template <int Dim>
+std::array<double*, Dim> felt_columns(PhaseParticles& p) {
+  std::array<double*, Dim> felt{};
+  for (int d = 0; d < Dim && p.has(Field::contact_force); ++d)
+    felt[static_cast<std::size_t>(d)] = p.column(Field::contact_force, d);
+  return felt;
+}
+
 template <int Dim, bool Rubs>
 void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
               const BodyContactLaw& law, double dt) {
   using R = MotionRecord<Dim>;
   std::array<double*, Dim> acceleration{};
   for (int d = 0; d < Dim; ++d) acceleration[static_cast<std::size_t>(d)] = a.column(Field::acceleration, d);
+  const std::array<double*, Dim> felt = felt_columns<Dim>(a);
   const double inverse_mass = 1.0 / a.mass();
   const BodyContactLaw::Constants<Lanes> constants(law, dt);
   Shares shares(static_cast<std::int64_t>(a.size()), 64);
@@ -34,15 +44,20 @@ void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, c
           for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
           BodyContactLaw::add<Rubs>(constants, r, r2, dv, force);
         });
-    for (std::size_t d = 0; d < Dim; ++d) acceleration[d][k] += simd::sum(force[d]) * inverse_mass;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double sum = simd::sum(force[d]);
+      acceleration[d][k] += sum * inverse_mass;
+      if (felt[d]) felt[d][k] += sum;
+    }
   }
 }
 
 /// The particles k .. k + width - 1.
 template <class V, int Dim, bool Rubs>
 BARCHAN_SIMD_INLINE void at_side(const std::array<double*, Dim>& x, const std::array<double*, Dim>& v,
-                                 const std::array<double*, Dim>& a, const BodySide& side, double half,
-                                 const BodyContactLaw::Constants<V>& constants, double inverse_mass, std::size_t k) {
+                                 const std::array<double*, Dim>& a, const std::array<double*, Dim>& felt,
+                                 const BodySide& side, double half, const BodyContactLaw::Constants<V>& constants,
+                                 double inverse_mass, std::size_t k) {
   std::array<V, Dim> r, speed, force;
   for (std::size_t d = 0; d < Dim; ++d) {
     r[d] = force[d] = V(0.0);
@@ -52,7 +67,10 @@ BARCHAN_SIMD_INLINE void at_side(const std::array<double*, Dim>& x, const std::a
   if (!simd::any(height < constants.distance)) return;
   r[side.axis] = V(side.sign) * height;
   BodyContactLaw::add<Rubs>(constants, r, simd::fma(height, height, V(least_square)), speed, force);
-  for (std::size_t d = 0; d < Dim; ++d) simd::fma(force[d], V(inverse_mass), V::load(a[d] + k)).store(a[d] + k);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    simd::fma(force[d], V(inverse_mass), V::load(a[d] + k)).store(a[d] + k);
+    if (felt[d]) (V::load(felt[d] + k) + force[d]).store(felt[d] + k);
+  }
 }
 
 template <int Dim, bool Rubs>
@@ -64,6 +82,7 @@ void sides(PhaseParticles& body, const BodySide& side, double half, const BodyCo
     v[static_cast<std::size_t>(d)] = body.column(Field::velocity, d);
     a[static_cast<std::size_t>(d)] = body.column(Field::acceleration, d);
   }
+  const std::array<double*, Dim> felt = felt_columns<Dim>(body);
   const double inverse_mass = 1.0 / body.mass();
   constexpr std::size_t width = static_cast<std::size_t>(Lanes::width);
   const BodyContactLaw::Constants<Lanes> constants(law, dt);
@@ -71,10 +90,10 @@ void sides(PhaseParticles& body, const BodySide& side, double half, const BodyCo
   const auto whole = static_cast<std::int64_t>(n / width);
 #pragma omp parallel for schedule(static)
   for (std::int64_t q = 0; q < whole; ++q)
-    at_side<Lanes, Dim, Rubs>(x, v, a, side, half, constants, inverse_mass, static_cast<std::size_t>(q) * width);
+    at_side<Lanes, Dim, Rubs>(x, v, a, felt, side, half, constants, inverse_mass, static_cast<std::size_t>(q) * width);
   const BodyContactLaw::Constants<One> single(law, dt);
   for (std::size_t k = static_cast<std::size_t>(whole) * width; k < n; ++k)
-    at_side<One, Dim, Rubs>(x, v, a, side, half, single, inverse_mass, k);
+    at_side<One, Dim, Rubs>(x, v, a, felt, side, half, single, inverse_mass, k);
 }
 
 }  // namespace

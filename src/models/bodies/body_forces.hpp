@@ -1,11 +1,19 @@
 // The sums of a contact of bodies.
 #pragma once
 
+#include <algorithm>
+
 #include "engine/pair_loop.hpp"
 #include "laws/body_contact.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
+
+/// Both of the following add what they give to the field contact_force too, where the phase has it.
+inline void clear_contact_forces(PhaseParticles& p) {
+  if (!p.has(Field::contact_force)) return;
+  for (int d = 0; d < p.dimensions(); ++d) std::fill_n(p.column(Field::contact_force, d), p.size(), 0.0);
+}
 
 BARCHAN_PER_INSTRUCTION_SET(body_contact_forces,
                             /// Adds to the acceleration of `a` what the particles of the other phase give; dt: s, of

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "engine/integrate.hpp"
+#include "models/bodies/body_forces.hpp"
 #include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -59,6 +61,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   for (const Field field : {von_mises_stress, principal_stress})
     if (asked(field)) p.fields.push_back(field);
   if (p.fixed_neighbours && asked(strain)) p.fields.push_back(strain);
+  if (asked(contact_force) && touches_as_body(scene, phase)) p.fields.push_back(contact_force);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
   p.rules = rules_of(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
@@ -106,7 +109,7 @@ void ElasticPhase::schedule(Schedule& s) {
            pack_middle();
          }});
   s.add({stage::strain, plan_.name, all, all, [this] { this->strain(); }});
-  s.add({stage::elastic, plan_.name, all, {acceleration}, [this] { load(); }});
+  s.add({stage::elastic, plan_.name, all, {acceleration, contact_force}, [this] { load(); }});
 }
 
 void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
@@ -147,6 +150,7 @@ void ElasticPhase::derive() {
 void ElasticPhase::load() {
   PhaseParticles& p = w_->particles(number_);
   elastic_forces(p, w_->stress[number_], neighbours_, parameters_);
+  clear_contact_forces(p);
   forces_.add(p, w_->state.time, true);
 }
 

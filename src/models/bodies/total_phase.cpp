@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/integrate.hpp"
 #include "engine/means.hpp"
+#include "models/bodies/body_forces.hpp"
 #include "models/bodies/stiffest_vibration.hpp"
 #include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
@@ -132,7 +133,7 @@ void TotalPhase::attach(Workspace& w) {
 void TotalPhase::schedule(Schedule& s) {
   using enum Field;
   s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
-  s.add({stage::elastic, plan_.name, {position, velocity}, {density, acceleration}, [this] { load(); }});
+  s.add({stage::elastic, plan_.name, {position, velocity}, {density, acceleration, contact_force}, [this] { load(); }});
 }
 
 /// The stiffest vibration bounds the step; so does what damps it.
@@ -160,6 +161,7 @@ void TotalPhase::load() {
   must_find_places_ = false;
   stretched_ = body_->pack(p);
   body_->load(p);
+  clear_contact_forces(p);
   forces_.add(p, w_->state.time, true);
 }
 

@@ -1,0 +1,102 @@
+"""Discs pressed together (scenes/verification/hertz.toml) against Hertz: a case of bench/impacts/cases.py, its table and plot on docs/impacts.md."""
+
+import pathlib
+import subprocess
+import tempfile
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RADIUS, YOUNG, POISSON = 0.02, 1e6, 0.3  # m, Pa, -: hertz.toml
+STEEP = YOUNG / (2 * (1 - POISSON**2))  # Pa, E*
+GENTLE = 0.015  # m/s, half the largest speed of the middles; the scene's 0.04 gives 2.7 times the approach
+FRAMES = 16  # of the end, whose mean is taken: what vibrates is averaged
+
+
+def frame_of(path):
+    """Places and fields of a frame in the order of ids."""
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    data = reader.GetOutput()
+    array = lambda name: vtk_to_numpy(data.GetPointData().GetArray(name))
+    order = np.argsort(array("id"))
+    return {"place": vtk_to_numpy(data.GetPoints().GetData())[order], **{n: array(n)[order] for n in ("phase", "contact_force", "principal_stress")}}
+
+
+def measure(folder, spacing):
+    frames = [frame_of(path) for path in sorted(folder.glob("hertz_0*.vtp"))[-FRAMES:]]
+    upper = frames[0]["phase"] == 0
+    mean = {name: np.mean([f[name][upper] for f in frames], axis=0) for name in ("place", "contact_force", "principal_stress")}
+    loads = [float(f["contact_force"][upper, 1].sum()) for f in frames]
+    load = float(np.mean(loads))
+    b = np.sqrt(4 * load * (RADIUS / 2) / (np.pi * STEEP))
+    p0 = 2 * load / (np.pi * b)
+    touching = np.where(np.hypot(*mean["contact_force"][:, :2].T) > 1e-6 * load)[0]
+    touching = touching[np.argsort(mean["place"][touching, 0])]
+    x, force = mean["place"][touching, 0], mean["contact_force"][touching, 1]
+    centre = float((force * x).sum() / load)
+    x = x - centre
+    pressure = force / np.gradient(x)  # a particle's share of the surface: to the middles between it and its neighbours
+    inside = pressure > 0.2 * pressure.max()
+    square, slope = np.linalg.lstsq(np.stack([np.ones(inside.sum()), -x[inside]**2], 1), pressure[inside]**2, rcond=None)[0]
+    axis = np.abs(mean["place"][:, 0]) < 0.6 * spacing
+    depth = mean["place"][axis, 1] - float(mean["place"][touching, 1].min()) + 0.5 * spacing  # from the surface
+    stress = mean["principal_stress"][axis, 2]
+    near = depth < 2 * b
+    order = np.argsort(depth[near])
+    depth, stress = depth[near][order], stress[near][order]
+    share = -stress / p0 * np.sqrt(1 + (depth / b)**2)
+    below = depth > 2 * spacing
+    return {"count": round(RADIUS / spacing), "load": load, "unrest": float(np.std(loads) / load), "b": float(b), "p0": float(p0), "in b": float(b / spacing),
+            "moment": float(2 * np.sqrt((force * x**2).sum() / load) / b), "width": float(np.sqrt(square / slope) / b), "farthest": float(np.abs(x).max() / b),
+            "peak": float(np.sqrt(square) / p0), "largest": float(pressure.max() / p0), "outer": float(share[~below].min()),
+            "axis": [float(share[below].min()), float(share[below].max())],
+            "profile": [(x / b).tolist(), (pressure / p0).tolist()], "below": [(depth / b).tolist(), (-stress / p0).tolist()]}
+
+
+def hertz(program):
+    table = []
+    for count, speed in ((20, None), (40, None), (80, None), (80, GENTLE)):
+        with tempfile.TemporaryDirectory(prefix="barchan_hertz_") as folder:
+            sets = [f"spacing={RADIUS / count!r}"]
+            if speed:
+                sets += [f'motion.{k}.velocity=[0, "{sign}(t < 0.02)*{speed}*(1 - cos(2*pi*t/0.02))"]' for k, sign in ((0, "-"), (1, ""))]
+            subprocess.run([program, "run", str(ROOT / "scenes/verification/hertz.toml"), "--out", folder, "--threads", "1", "--quiet",
+                            *(x for s in sets for x in ("--set", s))], check=True)
+            table.append(measure(pathlib.Path(folder), RADIUS / count))
+    return {"table": table}
+
+
+CASES = {"hertz": hertz}
+
+
+def page(results):
+    if "hertz" not in results:
+        return []
+    lines = ["### Two elastic discs pressed together (Hertz)", "",
+             "| particles a radius | P [N/m] | b/R | p_0/E | spacings in b | width over b: by the fit | by the second moment | farthest that touches "
+             "| peak over p_0: by the fit | largest of a particle | stress on the axis over the exact one, from 2 spacings to 2 b deep | in the two outermost layers |",
+             "| --- |" + " --- |" * 11]
+    lines += [f"| {r['count']} | {r['load']:.0f} | {r['b'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in b']:.1f} | {r['width']:.3f} | {r['moment']:.3f} | "
+              f"{r['farthest']:.3f} | {r['peak']:.3f} | {r['largest']:.3f} | {r['axis'][0]:.3f} to {r['axis'][1]:.3f} | {r['outer']:.2f} at least |"
+              for r in results["hertz"]["table"]]
+    lines += ["", "![Pressure in the contact of two discs, and stress below it](gallery/impacts_hertz.png)", ""]
+    return lines
+
+
+def plot(results, gallery, pyplot):
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
+    x, z = np.linspace(-1, 1, 201), np.linspace(0, 2, 101)
+    left.plot(x, np.sqrt(1 - x**2), "--", color="black", label="Hertz")
+    right.plot(1 / np.sqrt(1 + z**2), z, "--", color="black")
+    for r, colour, mark in zip(results["hertz"]["table"], ("#0072B2", "#D55E00", "#009E73"), ("o", "s", ".")):
+        left.plot(*r["profile"], mark, color=colour, markersize=4, label=f"{r['count']} a radius")
+        right.plot(r["below"][1], r["below"][0], mark, color=colour, markersize=4)
+    left.set(xlabel="x/b", ylabel="contact force over share of the surface, over p_0")
+    right.set(xlabel="stress on the axis over -p_0", ylabel="depth/b", xlim=(0, 1.1))
+    right.invert_yaxis()
+    figure.legend(loc="outside upper center", ncol=4, frameon=False)
+    figure.savefig(gallery / "impacts_hertz.png", dpi=110)
