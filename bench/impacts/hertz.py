@@ -95,8 +95,8 @@ def plot(results, gallery, pyplot):
     for r, colour, mark in zip(results["hertz"]["table"], ("#0072B2", "#D55E00", "#009E73"), ("o", "s", ".")):
         left.plot(*r["profile"], mark, color=colour, markersize=4, label=f"{r['count']} a radius")
         right.plot(r["below"][1], r["below"][0], mark, color=colour, markersize=4)
-    left.set(xlabel="x/b", ylabel="contact force over share of the surface, over p_0")
+    left.set(xlabel="x/b", ylabel="pressure of the contact over p_0")
     right.set(xlabel="stress on the axis over -p_0", ylabel="depth/b", xlim=(0, 1.1))
     right.invert_yaxis()
-    figure.legend(loc="outside upper center", ncol=4, frameon=False)
+    left.legend(loc="lower center", bbox_to_anchor=(.5, 1.), ncol=2, frameon=False)
     figure.savefig(gallery / "impacts_hertz.png", dpi=110)

@@ -250,5 +250,83 @@ TEST(TotalLagrangianBodies, ABlockThatBouncesKeepsItsEnergy) {
   EXPECT_LT(height / 0.2, 0.95);
 }
 
+/// Component d of the sum of contact_force over a phase, N, with the sum of mass times acceleration beside it.
+std::pair<double, double> felt(const PhaseParticles& p, int d) {
+  double force = 0.0, motion = 0.0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    force += p.column(Field::contact_force, d)[k];
+    motion += p.mass() * p.column(Field::acceleration, d)[k];
+  }
+  return {force, motion};
+}
+
+TEST(BodyContact, ContactForceIsWhatMovesABody) {
+  const std::string field = "output.fields=[\"contact_force\"]";
+  Drive bars("verification/two_bars", {field, "precision=\"double\""});
+  bars.to(5e-6);
+  const auto [on_b, of_b] = felt(bars.phase(1), 0);
+  const double on_a = felt(bars.phase(0), 0).first;
+  EXPECT_GT(on_b, 0.0);
+  EXPECT_NEAR(on_b / of_b, 1.0, 1e-10);
+  EXPECT_NEAR(on_a / on_b, -1.0, 1e-10);
+  report("of two bars, over mass times acceleration - 1", on_b / of_b - 1.0, 1e-10);
+
+  Drive block("bouncing_block", {field, "spacing=0.01", "fill.1.velocity=[0, -1]",
+                                 "fill.1.shape.box={ min = [0.15, 0.001], max = [0.25, 0.101] }"});
+  block.to(4e-3);
+  const auto [from_floor, of_block] = felt(block.phase(0), 1);
+  const double weight = 1000.0 * 0.1 * 0.1 * 9.81;
+  EXPECT_GT(from_floor, 10.0 * weight);
+  EXPECT_NEAR(from_floor / (of_block + weight), 1.0, 1e-10);
+  report("of a block on the floor, the same", from_floor / (of_block + weight) - 1.0, 1e-10);
+}
+
+/// Particles of the disc that touch: x and the contact's push along y, m and N, from left to right; means over frames.
+std::vector<std::array<double, 2>> touching(const std::vector<std::array<double, 2>>& sums, double times) {
+  std::vector<std::array<double, 2>> rows;
+  for (const auto& [x, push] : sums)
+    if (push > 0.0) rows.push_back({x / times, push / times});
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+TEST(TotalLagrangianBodies, DiscsPressedTogetherHaveThePressureOfHertz) {
+  Drive drive("verification/hertz");
+  const PhaseParticles& upper = drive.phase(0);
+  std::vector<std::array<double, 2>> sums(upper.size());
+  double load = 0.0, on_lower = 0.0, held = 0.0;
+  constexpr int times = 16;
+  for (int time = 1; time <= times; ++time) {
+    drive.to(0.02 + 2.5e-4 * time);
+    for (std::size_t k = 0; k < upper.size(); ++k) {
+      sums[static_cast<std::size_t>(upper.id()[k])][0] += upper.column(Field::position, 0)[k];
+      sums[static_cast<std::size_t>(upper.id()[k])][1] += upper.column(Field::contact_force, 1)[k];
+    }
+    load += felt(upper, 1).first / times;
+    on_lower += felt(drive.phase(1), 1).first / times;
+    const HistoryRow row = drive.simulation().history();
+    for (std::size_t c = 0; c < row.names.size(); ++c)
+      if (row.names[c] == "motion_0_force_y [N]") held += row.values[c] / times;
+  }
+  EXPECT_NEAR(on_lower / load, -1.0, 1e-10);
+  report("force on what holds the disc over P - 1", held / load - 1.0, 0.03);
+  EXPECT_NEAR(held / load, 1.0, 0.03);
+
+  // Hertz (1882): R* = R/2, E* = E/(2 (1 - nu^2)).
+  const double pi = 3.14159265358979, b = std::sqrt(4.0 * load * 0.01 / (pi * 1e6 / (2.0 * 0.91)));
+  const double peak = 2.0 * load / (pi * b);
+  const auto rows = touching(sums, times);
+  ASSERT_GT(rows.size(), 4U);
+  double centre = 0.0, square = 0.0, highest = 0.0;
+  for (const auto& [x, push] : rows) centre += x * push / load;
+  for (const auto& [x, push] : rows) square += (x - centre) * (x - centre) * push / load;
+  for (std::size_t k = 1; k + 1 < rows.size(); ++k)
+    highest = std::max(highest, 2.0 * rows[k][1] / (rows[k + 1][0] - rows[k - 1][0]));
+  report("width of the contact over b - 1", 2.0 * std::sqrt(square) / b - 1.0, 0.07);
+  report("peak of the pressure over p_0 - 1", highest / peak - 1.0, 0.07);
+  EXPECT_NEAR(2.0 * std::sqrt(square) / b, 1.0, 0.07);
+  EXPECT_NEAR(highest / peak, 1.0, 0.07);
+}
+
 }  // namespace
 }  // namespace barchan
