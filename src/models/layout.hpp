@@ -72,6 +72,7 @@ struct PlanEntry {
   bool corrected = false;            // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
+  double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
   bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
   bool of_surfaces = false;          // of these: their outlines touch, not their particles
   double restitution = 1, friction = 0;  // of such
