@@ -286,7 +286,7 @@ def splash(bench):
 
 SHIELDS, COHESION = 0.0123, 3e-4  # A_N and gamma (kg/s2) of Shao & Lu 2000
 THRESHOLD_D, THRESHOLD_LOW, THRESHOLD_HIGH, THRESHOLD_STEPS = (1.5e-4, 2.5e-4, 5e-4), 0.8, 2.0, 5
-THRESHOLD_WINDS = (((0.85, 0.38), (1, 2)), ((0.0, 0.0), (1,)))  # lift and gusts, and the beds
+THRESHOLD_WINDS = (((0.85, 0.38), (1, 2)),)  # lift and gusts, and the beds
 MOVES = 0.02  # m/s, of the fastest grain in the last third of a run: a bed at rest has 1e-5 m/s or less
 
 
