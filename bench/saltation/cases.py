@@ -327,7 +327,42 @@ def threshold(bench):
     return {"rows": rows}
 
 
-CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux}
+# --- heaps --------------------------------------------------------------------------------------------------------------
+
+HEAP_SEEDS, HEAP_D = (1, 2, 3), 1e-3
+
+
+def surface_of(x, step):
+    """Highest centre (m) in each interval of `step`, and the middles of the intervals; up to the first empty one."""
+    tops = {}
+    for along, up in x[:, :2]:
+        k = int(along / step)
+        tops[k] = max(tops.get(k, 0.0), up)
+    number = next(k for k in range(len(tops) + 1) if k not in tops)
+    return [(k + 0.5) * step for k in range(number)], [tops[k] for k in range(number)]
+
+
+def heaps(bench):
+    """The angle of the heap of repose.toml, and what column_collapse.toml leaves, a bed each seed."""
+    import numpy
+    angles, columns = [], []
+    for seed in HEAP_SEEDS:
+        _, x, v = frames_of(bench.run("repose", f"repose_{seed}", f"fill.2.seed={seed}"), "repose", "sand")[-1]
+        along, up = surface_of(x, 2 * HEAP_D)
+        low, high = min(up), max(up)
+        kept = [k for k, y in enumerate(up) if 0.25 <= (y - low) / (high - low) <= 0.85]
+        slope = numpy.polyfit([along[k] for k in kept], [up[k] for k in kept], 1)[0]
+        angles.append({"seed": seed, "angle": math.degrees(math.atan(-slope)), "speed": float(numpy.hypot(v[:, 0], v[:, 1]).max())})
+        frames = frames_of(bench.run("column_collapse", f"column_{seed}", f"fill.1.seed={seed}"), "column_collapse", "sand")
+        start, end = frames[0][1], frames[-1][1]
+        length, height = 0.03, float(numpy.quantile(start[:, 1], 0.99)) + 0.5 * HEAP_D
+        along, up = surface_of(end, 2 * HEAP_D)
+        columns.append({"seed": seed, "aspect": height / length, "front": (float(numpy.quantile(end[:, 0], 0.99)) - length) / length,
+                        "gap": (along[-1] + HEAP_D - length) / length, "height": max(up) / length})
+    return {"repose": angles, "collapse": columns}
+
+
+CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "heaps": heaps}
 
 
 def main():
