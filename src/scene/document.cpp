@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "base/errors.hpp"
-#include "scene/stray_character.hpp"
 
 namespace barchan {
 namespace {
@@ -81,7 +80,6 @@ std::vector<std::string> split(const std::string& dotted) {
 std::unique_ptr<toml::node> parse_value(const std::string& text, const std::string& label) {
   const auto take = [&](const std::string& source) -> std::unique_ptr<toml::node> {
     toml::table parsed;
-    if (stray_character(source)) return nullptr;
     try {
       parsed = toml::parse(std::string_view(source), std::string_view(label));
     } catch (const toml::parse_error&) { return nullptr; }
@@ -182,12 +180,6 @@ void apply(toml::table& document, const std::string& assignment, Problems& probl
 toml::table parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides,
                            Problems& problems) {
   toml::table document;
-  if (const auto stray = stray_character(text)) {
-    const toml::source_position place{stray->line, stray->column};
-    problems.fail(
-        {place, place, nullptr}, "",
-        "not TOML: '" + stray->character + "' outside of quotes; expected letters without accents, or text in quotes");
-  }
   try {
     document = toml::parse(std::string_view(text), std::string_view(file));
   } catch (const toml::parse_error& error) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "scene/reader.hpp"
-#include "scene/stray_character.hpp"
 
 namespace barchan {
 
@@ -53,7 +52,6 @@ void flatten(const toml::node& node, const std::string& dotted, Values& values) 
 Values values_of(const std::string& text) {
   Values values;
   try {
-    if (stray_character(text)) return {{"the document", "another one"}};
     flatten(toml::parse(text), "", values);
   } catch (const toml::parse_error&) { values["the document"] = "another one"; }
   return values;
