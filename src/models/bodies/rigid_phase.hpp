@@ -38,8 +38,9 @@ class RigidPhase : public Model {
   void clear_loads();
   void sum_loads();
   void finish_kick();
-  void kick(RigidBody& body, double time) const;
-  void drive(RigidBody& body, double time);
+  static void kick(RigidBody& body, double time);
+  void drive(RigidBody& body, double time) const;
+  void end_step(RigidBody& body) const;
   std::array<Vec3, 2> driven(const RigidBody& body) const;
   void add_particles(RigidBody& body) const;
   void hold_torque(RigidBody& body);
@@ -55,6 +56,8 @@ class RigidPhase : public Model {
   void carry_places();
   void carry_velocities();
   void carry_accelerations();
+  template <int Dim>
+  void tell_fluids();
   std::size_t bodies() const { return plan_.rigid_bodies.size(); }
   RigidBody& body(std::size_t k) const { return w_->state.bodies[first_body_ + k]; }
   std::size_t id_of(std::size_t place) const;
