@@ -41,7 +41,10 @@ BARCHAN_SIMD_INLINE void take_carried(barchan::detail::Has<Quantity::carried, Di
     particle.u[d] = record[R::velocity + d];
     particle.c[d] = record[R::turning + d];
   }
-  for (std::size_t d = 0; d < particle.rate.size(); ++d) particle.rate[d] = record[R::rate + d];
+  for (std::size_t d = 0; d < particle.rate.size(); ++d) {
+    particle.rate[d] = record[R::rate + d];
+    particle.old_rate[d] = record[R::old_rate + d];
+  }
 }
 
 /// Neighbours from their transposed record; beside: of laws that read it, at: the list's entries.

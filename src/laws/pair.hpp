@@ -53,9 +53,9 @@ struct Has<Quantity::beside, Dim, T> {
 };
 template <int Dim, class T>
 struct Has<Quantity::carried, Dim, T> {
-  std::array<T, Dim> u;                  // m/s, its own velocity
-  std::array<T, Dim> c;                  // m/s, of this what the turning of its rigid body gives it, w x x_b
-  std::array<T, Dim == 2 ? 1 : 3> rate;  // 1/s, w, the angular velocity of its rigid body
+  std::array<T, Dim> u;                            // m/s, its own velocity at the end of the step
+  std::array<T, Dim> c;                            // m/s, of this what the turning of its rigid body gives it, w x x_b
+  std::array<T, Dim == 2 ? 1 : 3> rate, old_rate;  // 1/s, w of its rigid body, and w when its torque was computed
 };
 }  // namespace detail
 

@@ -8,11 +8,11 @@
 // fluid is continued with; of a rigid body with the angular velocity w, x_b from its place, the torque of the pair is
 // that of laws/turning_friction.hpp:
 //   de_a/dt = (1/rho_a) sum V_b { (p_a + p_b) (v_a - u_b) . r F - 2 mu F v_ab . (v_a - u_b)
-//                                 + 2 mu F (w x r) . [ 1/2 v_ab - w x x_b - 1/2 w x r ] }
+//                                 + mu F [ (w x r) . v_ab - (w0 x r) . (2 w x x_b + w x r) ] }
 //
 // Pair by pair this is the power of the force on a and on b and of the torque on b, with the sign changed. A force is
-// computed with velocities half a step old, its power is that with the velocities of now: u_b, w are those, and of a
-// the pass takes f_a . a_a dt/2 away, f_a = sum V_b F [2 mu v_ab - (p_a + p_b) r] (models/air/energy.hpp).
+// computed with velocities half a step old (v, w0), its power is that with the velocities of now: u_b and w are those,
+// and of a the pass takes f_a . a_a dt/2 away, f_a = sum V_b F [2 mu v_ab - (p_a + p_b) r] (models/air/energy.hpp).
 #pragma once
 
 #include "laws/pair.hpp"
@@ -76,15 +76,15 @@ struct SolidEnergy
   BARCHAN_SIMD_INLINE void add(const Own<Dim, T>& a, const Particle<Dim, T, Reads>& b, const Pair<Dim, T>& ab,
                                Sums<Dim, T>& s) const {
     const T vf = b.volume * ab.f, pressures = a.p + b.p, friction(2.0 * viscosity);
-    const auto turn = turned(b.rate, ab.r);
+    const auto turn = turned(b.rate, ab.r), old_turn = turned(b.old_rate, ab.r);
     T power(0.0), turning(0.0);
     for (std::size_t d = 0; d < Dim; ++d) {
       const T v = a.v[d] - b.v[d], force = vf * (friction * v - pressures * ab.r[d]);
       power = fma(force, a.v[d] - b.u[d], power);
-      turning = fma(turn[d], T(0.5) * (v - turn[d]) - b.c[d], turning);
+      turning += turn[d] * v - old_turn[d] * (T(2.0) * b.c[d] + turn[d]);
       s.force[d] += force;
     }
-    s.work += fma(vf * friction, turning, -power);
+    s.work += fma(vf * T(viscosity), turning, -power);
   }
 
   template <class S>

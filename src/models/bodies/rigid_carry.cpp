@@ -107,6 +107,8 @@ void RigidPhase::tell_fluids() {
   constexpr std::size_t axes = Dim == 2 ? 1 : 3, first = Dim == 2 ? 2 : 0;
   const PhaseParticles& p = w_->particles(number_);
   RecordArray& records = w_->carried[number_];
+  renew_carriers();
+  for (std::size_t k = 0; k < bodies(); ++k) old_rates_[k] = carriers_[k].rate;
   carriers_.clear();
   for (std::size_t k = 0; k < bodies(); ++k) {
     RigidBody ends = body(k);
@@ -128,7 +130,10 @@ void RigidPhase::tell_fluids() {
       r[R::velocity + d] = c.velocity[d] + turning[d];
       r[R::turning + d] = turning[d];
     }
-    for (std::size_t d = 0; d < axes; ++d) r[R::rate + d] = c.rate[first + d];
+    for (std::size_t d = 0; d < axes; ++d) {
+      r[R::rate + d] = c.rate[first + d];
+      r[R::old_rate + d] = old_rates_[body_of_[id]][first + d];
+    }
   }
   records.fill_images(w_->neighbours.grid(number_), Dim);
 }

@@ -93,6 +93,7 @@ void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 void RigidPhase::attach(Workspace& w) {
   w_ = &w;
   carriers_.reserve(bodies());
+  old_rates_.resize(bodies());
   place_of_.resize(arms_.size());
   find_places();
   w.when_sorted.emplace_back([this] { find_places(); });

@@ -69,6 +69,7 @@ class RigidPhase : public Model {
   Forces forces_;
   bool felt_ = false;                    // particles feel something by themselves
   std::vector<Carrier> carriers_;        // by body, of the task that runs
+  std::vector<Vec3> old_rates_;          // 1/s, by body, of the step before its kick
   std::vector<RigidHold> holds_;         // by [[motion]]
   std::vector<Vec3> arms_;               // m, from the body's place along its own axes, by id
   std::vector<std::uint32_t> body_of_;   // by id
