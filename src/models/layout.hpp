@@ -124,6 +124,7 @@ struct PlanPhase {
   bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
   bool body = false;                     // elastic
   bool fixed_neighbours = false;         // a body whose neighbours are those of its first shape: nobody searches them
+  bool heats = false;                    // a solid in a fluid whose internal energy is asked for
   bool enclosed = false;                 // a fluid whose mean density is kept
   double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
