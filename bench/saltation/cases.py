@@ -285,7 +285,8 @@ def splash(bench):
 # --- the threshold of the wind ------------------------------------------------------------------------------------------
 
 SHIELDS, COHESION = 0.0123, 3e-4  # A_N and gamma (kg/s2) of Shao & Lu 2000
-THRESHOLD_D, THRESHOLD_LOW, THRESHOLD_HIGH, THRESHOLD_STEPS = (1.5e-4, 2.5e-4, 5e-4), 0.9, 2.9, 6
+THRESHOLD_D, THRESHOLD_LOW, THRESHOLD_HIGH, THRESHOLD_STEPS = (1.5e-4, 2.5e-4, 5e-4), 0.8, 2.0, 5
+THRESHOLD_WINDS = (((0.85, 0.38), (1, 2)),)  # lift and gusts, and the beds
 MOVES = 0.02  # m/s, of the fastest grain in the last third of a run: a bed at rest has 1e-5 m/s or less
 
 
@@ -294,15 +295,16 @@ def shao_lu(d, density=2650.0, air=1.225, g=9.81):
     return math.sqrt(SHIELDS * (density / air * g * d + COHESION / (air * d)))
 
 
-def bed_moves(bench, d, u):
-    """Whether a bed of grains of d goes on to move in the wind u*; all lengths of the scene by diameters."""
+def bed_moves(bench, d, u, seed, wind):
+    """Whether a bed of grains of d goes on to move in the wind u*; all lengths of the scene by diameters. wind: lift and gusts."""
     scale = d / 2.5e-4
     overrides = {"spacing": 8 * d, "domain.size": f"[{0.12 * scale:.9g}, {0.032 * scale:.9g}]", "phases.sand.diameter.mean": d,
                  "phases.sand.stiffness": 150 * scale**2, "phases.ground.roughness": d / 30, "phases.floor.spacing": 2 * d,
                  "phases.lid.shear-stress": f"[{1.225 * u * u:.9g}, 0]", "fill.0.shape.bed": 8 * d, "fill.3.shape.bed": 8 * d,
                  "fill.4.velocity.log-profile.friction-velocity": u, "fill.4.velocity.log-profile.roughness": d / 30,
+                 "fill.3.seed": seed, "interactions.air-sand.lift": wind[0], "interactions.air-sand.gusts": wind[1],
                  "time.end": 0.15 * math.sqrt(scale), "output.every": 0.15 * math.sqrt(scale), "output.walls": "false"}
-    folder = bench.run("threshold", f"threshold_{1e6 * d:.0f}_{u:.4f}", *(f"{key}={value}" for key, value in overrides.items()))
+    folder = bench.run("threshold", f"threshold_{1e6 * d:.0f}_{u:.4f}_{seed}_{wind[1]}", *(f"{key}={value}" for key, value in overrides.items()))
     h = table(folder / "history.csv")
     last = [k for k, t in enumerate(h["time"]) if t > 2 / 3 * h["time"][-1]]
     return max(h["sand_largest_speed"][k] for k in last) > MOVES
@@ -310,20 +312,57 @@ def bed_moves(bench, d, u):
 
 def threshold(bench):
     rows = []
-    for d in THRESHOLD_D:
-        expected = shao_lu(d)
-        low, high = THRESHOLD_LOW * expected, THRESHOLD_HIGH * expected
-        tried = []
-        for _ in range(THRESHOLD_STEPS):
-            middle = 0.5 * (low + high)
-            moves = bed_moves(bench, d, middle)
-            tried.append([middle, moves])
-            low, high = (low, middle) if moves else (middle, high)
-        rows.append({"d": 1e3 * d, "low": low, "high": high, "shao_lu": expected, "tried": tried})
+    for wind, seeds in THRESHOLD_WINDS:
+        for d in THRESHOLD_D:
+            for seed in seeds:
+                expected = shao_lu(d)
+                low, high = THRESHOLD_LOW * expected, THRESHOLD_HIGH * expected
+                tried = []
+                for _ in range(THRESHOLD_STEPS):
+                    middle = 0.5 * (low + high)
+                    moves = bed_moves(bench, d, middle, seed, wind)
+                    tried.append([middle, moves])
+                    low, high = (low, middle) if moves else (middle, high)
+                rows.append({"d": 1e3 * d, "lift": wind[0], "gusts": wind[1], "seed": seed, "low": low, "high": high, "shao_lu": expected, "tried": tried})
     return {"rows": rows}
 
 
-CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux}
+# --- heaps --------------------------------------------------------------------------------------------------------------
+
+HEAP_SEEDS, HEAP_D = (1, 2, 3), 1e-3
+
+
+def surface_of(x, step):
+    """Highest centre (m) in each interval of `step`, and the middles of the intervals; up to the first empty one."""
+    tops = {}
+    for along, up in x[:, :2]:
+        k = int(along / step)
+        tops[k] = max(tops.get(k, 0.0), up)
+    number = next(k for k in range(len(tops) + 1) if k not in tops)
+    return [(k + 0.5) * step for k in range(number)], [tops[k] for k in range(number)]
+
+
+def heaps(bench):
+    """The angle of the heap of repose.toml, and what column_collapse.toml leaves, a bed each seed."""
+    import numpy
+    angles, columns = [], []
+    for seed in HEAP_SEEDS:
+        _, x, v = frames_of(bench.run("repose", f"repose_{seed}", f"fill.2.seed={seed}"), "repose", "sand")[-1]
+        along, up = surface_of(x, 2 * HEAP_D)
+        low, high = min(up), max(up)
+        kept = [k for k, y in enumerate(up) if 0.25 <= (y - low) / (high - low) <= 0.85]
+        slope = numpy.polyfit([along[k] for k in kept], [up[k] for k in kept], 1)[0]
+        angles.append({"seed": seed, "angle": math.degrees(math.atan(-slope)), "speed": float(numpy.hypot(v[:, 0], v[:, 1]).max())})
+        frames = frames_of(bench.run("column_collapse", f"column_{seed}", f"fill.1.seed={seed}"), "column_collapse", "sand")
+        start, end = frames[0][1], frames[-1][1]
+        length, height = 0.03, float(numpy.quantile(start[:, 1], 0.99)) + 0.5 * HEAP_D
+        along, up = surface_of(end, 2 * HEAP_D)
+        columns.append({"seed": seed, "aspect": height / length, "front": (float(numpy.quantile(end[:, 0], 0.99)) - length) / length,
+                        "gap": (along[-1] + HEAP_D - length) / length, "height": max(up) / length})
+    return {"repose": angles, "collapse": columns}
+
+
+CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "heaps": heaps}
 
 
 def main():

@@ -21,7 +21,7 @@ namespace barchan {
   row(velocity_gradient, "grad v", "1/s", matrix, derived, "velocity gradient, row-major") \
   row(stress, "s", "Pa", symmetric, state, "deviatoric stress, xx yy zz xy yz xz") \
   row(energy, "e", "J/kg", scalar, state, "specific internal energy") \
-  row(energy_rate, "de/dt", "W/kg", scalar, derived, "rate of change of the internal energy") \
+  row(energy_rate, "de/dt", "W/kg", scalar, state, "rate of change of the internal energy") \
   row(shift_velocity, "du", "m/s", vector, state, "transport velocity less the velocity (particle shifting)") \
   row(anisotropy, "A", "1", deviator, state, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz") \
   row(wholeness, "chi", "1", scalar, state, "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface") \

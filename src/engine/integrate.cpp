@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace barchan {
 
@@ -44,12 +45,6 @@ void advance_density(PhaseParticles& phase, double time, const PressureLaw& law)
   double *rho = phase.column(Field::density), *p = phase.column(Field::pressure);
   const double* rate = phase.column(Field::density_rate);
   const auto n = static_cast<std::int64_t>(phase.size());
-  if (phase.has(Field::energy)) {
-    double* e = phase.column(Field::energy);
-    const double* e_rate = phase.column(Field::energy_rate);
-#pragma omp for simd schedule(static) nowait
-    for (std::int64_t k = 0; k < n; ++k) e[k] += time * e_rate[k];
-  }
   if (law.exponent == 1.0) {
     const double stiffness = law.sound_speed * law.sound_speed;
 #pragma omp for simd schedule(static) nowait
@@ -96,6 +91,14 @@ void kick_and_drift(PhaseParticles& phase, double half_kick, double time, const 
               : kick_and_drift_all<3, false>(phase, half_kick, time);
     if (pressure) advance_density(phase, time, *pressure);
   }
+}
+
+void advance_energy(PhaseParticles& phase, double time) {
+  const auto n = static_cast<std::int64_t>(phase.size());
+  double* e = phase.column(Field::energy);
+  const double* rate = std::as_const(phase).column(Field::energy_rate);
+#pragma omp parallel for simd schedule(static)
+  for (std::int64_t k = 0; k < n; ++k) e[k] += time * rate[k];
 }
 
 void drift(PhaseParticles& phase, double time) {

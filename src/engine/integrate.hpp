@@ -15,8 +15,11 @@ struct PressureLaw {
 };
 
 /// v += half_kick a; x += drift (v + du), du the shift velocity where the phase has one. If `pressure` is given:
-/// rho += drift drho/dt, p = pressure(rho), and e += drift de/dt where the phase has an energy.
+/// rho += drift drho/dt, p = pressure(rho).
 void kick_and_drift(PhaseParticles& phase, double half_kick, double drift, const PressureLaw* pressure);
+
+/// e += time de/dt.
+void advance_energy(PhaseParticles& phase, double time);
 
 /// x += drift v.
 void drift(PhaseParticles& phase, double drift);

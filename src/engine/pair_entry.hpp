@@ -18,7 +18,8 @@ struct PairEntry {
   KernelKind kernel;
   double radius;  // m
   Law law;
-  const double* beside = nullptr;  // by record; of laws that read it
+  const double* beside = nullptr;        // by record; of laws that read it
+  const RecordArray* carried = nullptr;  // carried records of the neighbours; of laws that read them
 };
 
 }  // namespace barchan

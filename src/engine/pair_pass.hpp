@@ -30,7 +30,21 @@ BARCHAN_SIMD_INLINE void take_quantity(barchan::detail::Has<q, Dim, T>& particle
     for (std::size_t d = 0; d < Dim; ++d) particle.v[d] = record[R::velocity + d];
   else if constexpr (q == Quantity::pressure) particle.p = record[R::pressure];
   else if constexpr (q == Quantity::volume) particle.volume = record[R::volume];
-  else if constexpr (!first) particle.beside = gather_of<T::width>(beside, at);
+  else if constexpr (q == Quantity::beside && !first) particle.beside = gather_of<T::width>(beside, at);
+}
+
+/// How their bodies carry the neighbours, from their transposed record.
+template <int Dim, class T>
+BARCHAN_SIMD_INLINE void take_carried(barchan::detail::Has<Quantity::carried, Dim, T>& particle, const T* record) {
+  using R = CarriedRecord<Dim>;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    particle.u[d] = record[R::velocity + d];
+    particle.c[d] = record[R::turning + d];
+  }
+  for (std::size_t d = 0; d < particle.rate.size(); ++d) {
+    particle.rate[d] = record[R::rate + d];
+    particle.old_rate[d] = record[R::old_rate + d];
+  }
 }
 
 /// Neighbours from their transposed record; beside: of laws that read it, at: the list's entries.
@@ -63,6 +77,12 @@ BARCHAN_SIMD_INLINE void add_row(const Law& law, const Kernel& kernel, const Own
     simd::load_transposed<R::size>(data, R::size / PairList::stride, at, record);
     Particle<Dim, Lanes, typename Law::Reads> b;
     detail::take(b, record, e.beside, at);
+    if constexpr (reads_quantity<typename Law::Reads, Quantity::carried>) {
+      using C = CarriedRecord<Dim>;
+      Lanes carried[C::size];
+      simd::load_transposed<C::size>(e.carried->data(), C::size / PairList::stride, at, carried);
+      detail::take_carried<Dim, Lanes>(b, carried);
+    }
     Pair<Dim, Lanes> ab;
     ab.r2 = separation<Dim>(a.x, record + R::position, ab.r);
     if constexpr (Law::needs == Needs::value_and_gradient) kernel.value_and_gradient(ab.r2, ab.w, ab.f);

@@ -7,6 +7,10 @@
 // turbulent fluid, is the square root of the dynamic viscosity [sqrt(Pa s)].
 // A stress record holds position, velocity, stress/density^2 and volume:
 //   2D  x y u v sxx syy sxy V     3D  x y z u v w sxx syy szz sxy syz sxz V - - -
+// A carried record holds of a particle of a solid its position, its own velocity at the end of the step, the part of it
+// that the turning of its rigid body gives, w x x_b, and the angular velocity of that body, w at the end of the step
+// and w0 with which its torque was computed:
+//   2D  x y u v cx cy w w0        3D  x y z u v w cx cy cz wx wy wz w0x w0y w0z -
 #pragma once
 
 #include <algorithm>
@@ -30,6 +34,12 @@ template <int Dim>
 struct StressRecord {
   static constexpr int size = Dim == 2 ? 8 : 16, position = 0, velocity = Dim, stress = 2 * Dim;
   static constexpr int stresses = Dim == 2 ? 3 : 6, volume = stress + stresses;
+};
+
+template <int Dim>
+struct CarriedRecord {
+  static constexpr int size = Dim == 2 ? 8 : 16, position = 0, velocity = Dim, turning = 2 * Dim, rate = 3 * Dim,
+                       old_rate = Dim == 2 ? 7 : 12;
 };
 
 /// Records of one phase.

@@ -23,7 +23,8 @@ enum class Quantity {
   velocity,  // m/s
   pressure,  // Pa; its meaning is the pass's own
   volume,    // m^dimensions; 0 marks the dummy that pads the rows of lists
-  beside     // of the second particle only: a number of the pass's own that stands beside the records
+  beside,    // of the second particle only: a number of the pass's own that stands beside the records
+  carried    // of the second particle only, one of a solid: how its body carries it
 };
 template <Quantity... q>
 struct Quantities {};
@@ -50,6 +51,12 @@ template <int Dim, class T>
 struct Has<Quantity::beside, Dim, T> {
   T beside;
 };
+template <int Dim, class T>
+struct Has<Quantity::carried, Dim, T> {
+  std::array<T, Dim> u;                            // m/s, its own velocity at the end of the step
+  std::array<T, Dim> c;                            // m/s, of this what the turning of its rigid body gives it, w x x_b
+  std::array<T, Dim == 2 ? 1 : 3> rate, old_rate;  // 1/s, w of its rigid body, and w when its torque was computed
+};
 }  // namespace detail
 
 /// A particle as a law reads it.
@@ -59,6 +66,12 @@ template <int Dim, class T, Quantity... q>
 struct Particle<Dim, T, Quantities<q...>> : detail::Has<q, Dim, T>... {
   std::array<T, Dim> x;
 };
+
+/// Whether a law reads a quantity.
+template <class Reads, Quantity wanted>
+inline constexpr bool reads_quantity = false;
+template <Quantity... q, Quantity wanted>
+inline constexpr bool reads_quantity<Quantities<q...>, wanted> = ((q == wanted) || ...);
 
 /// What a law says of itself: what it needs of the kernel, and what it reads of both particles beside their positions.
 template <Needs n, Quantity... q>

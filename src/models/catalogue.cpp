@@ -88,6 +88,8 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
            {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
         layout.phases[k].fields.push_back(f);
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    layout.phases[k].heats = !layout.phases[k].flows && rubs_on_energy(scene, scene.phases[k]);
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if ((scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column)) ||
         drags_by_law(scene, scene.phases[k]))
       layout.phases[k].fields.push_back(Field::drag_acceleration);

@@ -72,6 +72,7 @@ struct PlanEntry {
   bool corrected = false;            // the consistent scheme divides by these sums: exact to first order all the same
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
+  double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
   bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
   bool of_surfaces = false;          // of these: their outlines touch, not their particles
   double restitution = 1, friction = 0;  // of such
@@ -123,6 +124,7 @@ struct PlanPhase {
   bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
   bool body = false;                     // elastic
   bool fixed_neighbours = false;         // a body whose neighbours are those of its first shape: nobody searches them
+  bool heats = false;                    // a solid in a fluid whose internal energy is asked for
   bool enclosed = false;                 // a fluid whose mean density is kept
   double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
   std::string enclosure = "";            // why it is enclosed or not, of a fluid

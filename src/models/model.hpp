@@ -32,7 +32,6 @@ enum Stage : std::size_t {
   extend_solids,
   fluid,
   surface,
-  energy,
   repel,
   elastic,
   weight,
@@ -43,6 +42,7 @@ enum Stage : std::size_t {
   rigid,
   motion,
   hold,
+  energy,
   kick,
   watch,
   count

@@ -21,7 +21,6 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "extension into solids",
                                                          "fluid rates",
                                                          "free surface",
-                                                         "fluid energy",
                                                          "wall repulsion",
                                                          "elastic forces",
                                                          "weight of grains",
@@ -32,6 +31,7 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "rigid bodies",
                                                          "driven and measured sets",
                                                          "bulk speed",
+                                                         "fluid energy",
                                                          "kick",
                                                          "watch"};
 
@@ -93,6 +93,29 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
   records.fill_images<Dim>(grid, x);
 }
 
+/// Velocities at the end of the step, `kick` (s) after those of now; nothing turns.
+template <int Dim>
+void pack_carried(const PhaseParticles& p, RecordArray& records, double kick) {
+  using R = CarriedRecord<Dim>;
+  const auto n = static_cast<std::int64_t>(p.size());
+  const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
+  std::array<const double*, Dim> a{};
+  if (kick > 0.0) a = columns<Dim>(p, Field::acceleration);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    double* r = records[k];
+    std::fill_n(r, R::size, 0.0);
+    for (std::size_t d = 0; d < Dim; ++d) {
+      r[R::position + d] = x[d][k];
+      r[R::velocity + d] = v[d][k] + (a[d] ? kick * a[d][k] : 0.0);
+    }
+  }
+}
+
+/// A solid that a fluid asks how it moves; rigid bodies tell that themselves (models/bodies/rigid_phase.hpp).
+bool moves_by_itself(const PlanPhase& p) { return p.heats && p.rigid_bodies.empty(); }
+
 std::vector<double> spacings(const Layout& layout) {
   std::vector<double> all;
   for (const auto& p : layout.phases) all.push_back(p.spacing);
@@ -112,6 +135,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   neighbours.adapt_skin();
   const std::size_t phases = layout.phases.size();
   const int size = layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
+  const int carried_size = layout.dimensions == 2 ? CarriedRecord<2>::size : CarriedRecord<3>::size;
   const bool mixed = scene.precision == Precision::mixed;
   // Records in double are read by: every law but the fluid's own in mixed precision, and by tasks that call
   // need_motion.
@@ -126,6 +150,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     motion.emplace_back(read[k] ? size : 0);
     extended.emplace_back(seen[k] ? size : 0);
     stress.emplace_back(0);
+    carried.emplace_back(layout.phases[k].heats ? carried_size : 0);
     compact.push_back(mixed && (layout.phases[k].flows || seen[k]) ? std::make_unique<CompactRecords>(layout.bounds)
                                                                    : nullptr);
   }
@@ -140,7 +165,7 @@ void Workspace::fit_records() {
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     if (!neighbours.has_grid(k)) continue;
     const std::size_t n = state.phases[k].size(), images = neighbours.grid(k).images();
-    for (RecordArray* r : {&motion[k], &extended[k], &stress[k]})
+    for (RecordArray* r : {&motion[k], &extended[k], &stress[k], &carried[k]})
       if (r->stride() > 0) r->resize(n, images);
     if (compact[k]) compact[k]->resize(n, images);
     if (layout.phases[k].eddies) eddies[k].resize(n, images);
@@ -150,7 +175,7 @@ void Workspace::fit_records() {
 std::size_t Workspace::bytes() const {
   std::size_t total = neighbours.bytes();
   for (const auto& p : state.phases) total += p.bytes();
-  for (const auto* set : {&motion, &extended, &stress})
+  for (const auto* set : {&motion, &extended, &stress, &carried})
     for (const auto& r : *set) total += r.bytes();
   return total;
 }
@@ -169,6 +194,8 @@ void CommonWork::schedule(Schedule& s) {
     for (const Field f : p.fields) all = all | FieldSet{f};
   s.add({stage::neighbours, "all", all, all, [this] { find_neighbours(); }});
   s.add({stage::pack, "all", {position, velocity, density, pressure, stress}, {}, [this] { pack(); }});
+  if (std::any_of(layout_.phases.begin(), layout_.phases.end(), moves_by_itself))
+    s.add({stage::energy, "all", {position, velocity, acceleration}, {}, [this] { carry(); }});
   s.add({stage::kick, "all", {acceleration}, {velocity}, [this] { kick(); }});
 }
 
@@ -205,15 +232,25 @@ void CommonWork::pack() {
   }
 }
 
+void CommonWork::carry() {
+  const bool flat = layout_.dimensions == 2;
+  for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
+    if (!moves_by_itself(layout_.phases[k])) continue;
+    const PhaseParticles& p = w_->particles(k);
+    flat ? pack_carried<2>(p, w_->carried[k], kick_of(k)) : pack_carried<3>(p, w_->carried[k], kick_of(k));
+    w_->carried[k].fill_images(w_->neighbours.grid(k), layout_.dimensions);
+  }
+}
+
+double CommonWork::kick_of(std::size_t phase) const {
+  const PlanPhase& p = layout_.phases[phase];
+  return p.moves && !(p.diameter > 0) && p.rigid_bodies.empty() ? w_->kick_time : 0.0;
+}
+
 void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
-    if (layout_.phases[k].moves) {
-      // Spheres were kicked in the steps of their contacts; rigid bodies are kicked as a whole.
-      const bool elsewhere = layout_.phases[k].diameter > 0 || !layout_.phases[k].rigid_bodies.empty();
-      const double time = elsewhere ? 0.0 : w_->kick_time;
-      largest = std::max(largest, barchan::kick(w_->particles(k), time));
-    }
+    if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
   w_->state.largest_acceleration = largest;
 }
 

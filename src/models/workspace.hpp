@@ -24,6 +24,7 @@ class Workspace {
   Neighbours neighbours;
 
   std::vector<RecordArray> motion, extended, stress;     // by phase; extended: a solid as the fluid sees it
+  std::vector<RecordArray> carried;                      // by phase: how a solid moves at the end of the step
   std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/air reads
   std::vector<EddyRecords> eddies;                       // by phase
   std::vector<AlignedVector<double>> ground_stress;      // Pa, by fluid and particle; empty: walls say it themselves
@@ -63,7 +64,11 @@ class CommonWork : public Model {
  private:
   void find_neighbours();
   void pack();
+  void carry();
   void kick();
+  /// s, by which kick() changes the velocities of a phase: spheres were kicked in the steps of their contacts, rigid
+  /// bodies are kicked as a whole.
+  double kick_of(std::size_t phase) const;
 
   const Layout& layout_;
   Workspace* w_ = nullptr;

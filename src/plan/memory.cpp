@@ -90,11 +90,13 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     const double own = n * (columns(plan, p) * wide + id);
     fields += own + n * (wide + id);  // and what a sort writes into
     const double motion = plan.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size,
-                 stress = plan.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size;
+                 stress = plan.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size,
+                 carried = plan.dimensions == 2 ? CarriedRecord<2>::size : CarriedRecord<3>::size;
     const bool seen = std::any_of(plan.entries.begin(), plan.entries.end(),
                                   [&](const PlanEntry& e) { return e.sees_solid() && e.other == k; });
     records += all * wide *
-               (motion * (seen ? 2.0 : 1.0) + (p.body && !p.fixed_neighbours ? stress : 0.0) + (p.eddies ? 4.0 : 0.0));
+               (motion * (seen ? 2.0 : 1.0) + (p.heats ? carried : 0.0) +
+                (p.body && !p.fixed_neighbours ? stress : 0.0) + (p.eddies ? 4.0 : 0.0));
     if (p.fixed_neighbours) {  // models/bodies/reference_body.hpp: constants and sums of a particle; the search before
       const double numbers = dimensions == 2 ? 11.0 : 24.0, gradient = dimensions == 2 ? 5.0 : 10.0;
       const double number = scene.precision == Precision::mixed ? index : wide;

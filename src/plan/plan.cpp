@@ -99,6 +99,8 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.drag = i.drag;
     e.contact = i.law;
     e.drag_law = i.drag_law;
+    e.lift = i.lift;
+    e.gusts = i.gusts;
     e.of_bodies = touch_as_bodies(i, scene.phases[e.a], scene.phases[e.b]);
     e.of_surfaces = e.of_bodies && touch_by_surfaces(scene.phases[e.a], scene.phases[e.b]);
     e.restitution = i.restitution.value_or(1.0);

@@ -215,6 +215,16 @@ void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const s
   }
 }
 
+void check_along_ground(const Fill& fill, const std::string& profile, const Scene& scene, const Report& report) {
+  if (!fill.log_profile || !fill.log_profile->along_ground) return;
+  const std::string key = profile + ".along-ground";
+  const bool bed = std::any_of(scene.fills.begin(), scene.fills.end(),
+                               [](const Fill& f) { return std::holds_alternative<BedShape>(f.shape); });
+  if (!bed) report(key, "no ground to follow; expected a fill with shape = { bed = ... }");
+  else if (!fill.log_profile->over_ground)
+    report(key, "beside over-ground = false, which counts heights from the bottom; expected one of the two");
+}
+
 }  // namespace
 
 void check_fills(const Scene& scene, const Report& report) {
@@ -236,6 +246,7 @@ void check_fills(const Scene& scene, const Report& report) {
     check_sizes(fill, shape, scene, report);
     check_outline(fill, spacing_of(scene, fill), shape, scene, report);
     check_leave_out(fill, dotted, report);
+    check_along_ground(fill, dotted + ".velocity.log-profile", scene, report);
     if (phase && fill.packing == Packing::settled && !(scene.domain.gravity[1] < 0.0) &&
         !report.touched("domain.gravity"))
       report(dotted + ".packing", "nothing makes the grains fall; expected domain.gravity with a negative y component");

@@ -161,12 +161,17 @@ class PhysicsChecker {
 
   void pair(const Interaction& pair, const Phase& a, const Phase& b) {
     const std::string dotted = "interactions." + pair.a + "-" + pair.b;
-    contact(pair, a, b, dotted);
-    if (of_spheres(pair) || touch_as_bodies(pair, a, b)) return;
     const auto is = [&](PhaseKind k, PhaseKind l) {
       return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };
     using enum PhaseKind;
+    for (const char* key : {".lift", ".gusts"})
+      if (report_.has(dotted + key) && (pair.drag_law == DragLaw::none || !is(fluid, grains)))
+        tell(dotted + key,
+             "only the entry of a fluid of particles and grains with a law of drag by name, as drag = \"duran\", has "
+             "it; expected no such key");
+    contact(pair, a, b, dotted);
+    if (of_spheres(pair) || touch_as_bodies(pair, a, b)) return;
     if (report_.has(dotted + ".drag") && !is(fluid, grains) && !is(column, grains))
       tell(dotted + ".drag", "only a fluid or a column with grains has a drag; expected no such key here");
     const bool touches =

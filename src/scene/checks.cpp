@@ -1,6 +1,7 @@
 #include "scene/checks.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -12,6 +13,18 @@
 
 namespace barchan {
 
+namespace {
+
+/// The element of a number from 0; null where `number` is none, as a section is asked for where an array stands.
+const toml::node* element(const toml::array& array, const std::string& number) {
+  std::size_t index = 0;
+  const char* end = number.data() + number.size();
+  const auto [rest, error] = std::from_chars(number.data(), end, index);
+  return error == std::errc() && rest == end ? array.get(index) : nullptr;
+}
+
+}  // namespace
+
 const toml::node* Report::find(const std::string& dotted) const {
   const toml::node* node = &document_;
   std::size_t begin = 0;
@@ -19,7 +32,7 @@ const toml::node* Report::find(const std::string& dotted) const {
     const std::size_t end = std::min(dotted.find('.', begin), dotted.size());
     const std::string part = dotted.substr(begin, end - begin);
     if (const toml::table* table = node->as_table()) node = table->get(part);
-    else if (const toml::array* array = node->as_array()) node = array->get(static_cast<std::size_t>(std::stoul(part)));
+    else if (const toml::array* array = node->as_array()) node = element(*array, part);
     else node = nullptr;
     begin = end + 1;
   }

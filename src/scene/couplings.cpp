@@ -34,6 +34,12 @@ bool meets(const Scene& scene, const Phase& phase, PhaseKind kind) {
   });
 }
 
+bool rubs_on_energy(const Scene& scene, const Phase& phase) {
+  return std::any_of(scene.phases.begin(), scene.phases.end(), [&](const Phase& other) {
+    return other.kind() == PhaseKind::fluid && other.fluid().energy && entry_between(scene, phase, other);
+  });
+}
+
 bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law) {
   return std::any_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
     return pair.law == law && (pair.a == phase.name || pair.b == phase.name);

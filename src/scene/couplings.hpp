@@ -20,6 +20,9 @@ double spacing_of(const Scene& scene, const Interaction& pair);
 /// Whether the phase has an entry with another phase of this kind.
 bool meets(const Scene& scene, const Phase& phase, PhaseKind kind);
 
+/// Whether the phase has an entry with a fluid whose internal energy is asked for.
+bool rubs_on_energy(const Scene& scene, const Phase& phase);
+
 /// Whether the entry is a contact of spheres: touching decides, and its radius is not read.
 inline bool of_spheres(const Interaction& pair) { return of_spheres(pair.law); }
 

@@ -59,18 +59,37 @@ class InitialVelocity {
   InitialVelocity(const Fill& fill, const Scene& scene)
       : log_(fill.log_profile),
         bottom_(scene.domain.origin[1]),
+        size_(scene.domain.size[1]),
+        step_(0.5 * spacing_of(scene, fill)),
         ground_(scene),
         components_{Formula(fill.velocity[0]), Formula(fill.velocity[1]), Formula(fill.velocity[2])} {}
 
   Vec3 operator()(const Vec3& x) const {
     Vec3 v{components_[0](x), components_[1](x), components_[2](x)};
-    if (log_) v[0] += log_wind(*log_, x[1] - bottom_ - (log_->over_ground ? ground_.height(x[0], x[2]) : 0.0));
+    if (!log_) return v;
+    if (log_->along_ground) {
+      const auto wind = along_ground(x);
+      v[0] += wind[0];
+      v[1] += wind[1];
+    } else {
+      v[0] += log_wind(*log_, x[1] - bottom_ - (log_->over_ground ? ground_.height(x[0], x[2]) : 0.0));
+    }
     return v;
   }
 
  private:
+  /// Streamlines at even shares s = (y - h)/(H - h) of the height: u = U(s H_0) H_0/(H - h), v = u (1 - s) dh/dx, with
+  /// H_0 = H - h over the flat bed. du/dx + dv/dy = 0.
+  std::array<double, 2> along_ground(const Vec3& x) const {
+    const double ground = ground_.height(x[0], x[2]), flat = size_ - ground_.flat(), room = size_ - ground;
+    const double share = (x[1] - bottom_ - ground) / room;
+    const double slope = (ground_.height(x[0] + step_, x[2]) - ground_.height(x[0] - step_, x[2])) / (2.0 * step_);
+    const double u = log_wind(*log_, share * flat) * flat / room;
+    return {u, u * (1.0 - share) * slope};
+  }
+
   std::optional<LogProfile> log_;
-  double bottom_;
+  double bottom_, size_, step_;  // m
   Ground ground_;
   std::array<Formula, 3> components_;
 };

@@ -147,6 +147,10 @@ constexpr Key table[] = {
     {"interactions.pair", "drag", drag("0; duran with a column"), "",
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
      "grain's drag by name (docs/method.md).", not_negative},
+    {"interactions.pair", "lift", at<&Interaction::lift>(0.0), "",
+     "Only with a law of drag by name, in a fluid: lift of a grain that stands on the bed over its drag, by the shear of the wind about it (docs/method.md); 0.85 measured by Chepil 1958.", not_negative},
+    {"interactions.pair", "gusts", at<&Interaction::gusts>(0.0), "",
+     "Only with a law of drag by name, in a fluid: standard deviation of the wind near the bed over its mean, in patterns that the wind carries (docs/method.md); 0.38 at a wall.", {.at_least = 0.0, .at_most = 0.6}},
     {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
      "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
      "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
@@ -218,6 +222,9 @@ constexpr Key table[] = {
     {"fill.velocity.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},
     {"fill.velocity.log-profile", "over-ground", at<&LogProfile::over_ground>(true), "",
      "Count the height from the ground (bed and dune) rather than from the bottom of the domain."},
+    {"fill.velocity.log-profile", "along-ground", at<&LogProfile::along_ground>(false), "",
+     "Only over a bed: the wind follows the ground, along streamlines that divide the height between ground and top of the domain as over the flat bed, and no air is "
+     "pressed together: faster over a dune, with a component along y."},
 
     {"forcing", "phase", at<&Forcing::phase>(required), "", "Phase that feels the force."},
     {"forcing", "acceleration", at<&Forcing::acceleration>("none"), "m/s2", "Acceleration; this, hold or rate.", {}, "x y z t"},

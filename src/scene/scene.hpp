@@ -38,7 +38,8 @@ struct LogProfile {
   double friction_velocity{};  // m/s
   double roughness{};          // m
   double kappa = 0.4;
-  bool over_ground{};  // height counted from the ground under the point (bed and dune)
+  bool over_ground{};   // height counted from the ground under the point (bed and dune)
+  bool along_ground{};  // on streamlines that divide the height over the ground evenly
 };
 
 /// Sizes of the spheres of a phase: diameters spread evenly over mean (1 - spread) .. mean (1 + spread).
@@ -179,6 +180,8 @@ struct Interaction {
   KernelKind kernel{};
   double drag{};                      // fluid-grains: drag coefficient of a grain, 0 switches it off
   DragLaw drag_law{};                 // column-grains: drag of a grain
+  double lift{};                      // with drag_law and a fluid: lift of a grain on the bed over its drag
+  double gusts{};                     // the same: standard deviation of the wind at the bed over its mean
   ContactLaw law{};                   // of grains with grains, walls and bodies
   std::optional<double> restitution;  // contact of bodies: of two particles that meet
   std::optional<double> friction;     // contact of bodies: Coulomb's coefficient

@@ -19,9 +19,9 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   for (const auto& l : plan_.limits) state_.limit_counts[l.name] = 0;
   for (const char* name : {"force", "output", "fixed", "retreat"}) state_.limit_counts[name] = 0;
   state_.dt = plan_.step();
-  schedule_.run(stage::walls, stage::hold);
+  schedule_.run(stage::walls, stage::energy);
   work_->must_search = true;
-  schedule_.run(stage::walls, stage::hold);  // the weights of the consistent Laplacian are those of the pass before
+  schedule_.run(stage::walls, stage::energy);  // the weights of the consistent Laplacian are those of the pass before
   for (const auto& model : models_)
     if (const StepLimit* l = model->moving_limit()) state_.limit_counts[l->name] = 0;
   watch_ = std::make_unique<Watch>(

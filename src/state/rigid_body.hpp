@@ -19,6 +19,7 @@ struct RigidMotion {
   Vec3 spin{};                             // kg m2/s, angular momentum about its place along its own axes; in 2D z
   Vec3 force{}, torque{};                  // N, N m: of the last step, all that kick it; the torque about its place
   Vec3 touch_force{}, touch_torque{};      // N, N m: of these, what others give that touch it
+  double touch_work = 0.0;                 // J, the work of these on it since the start
 };
 
 struct RigidBody {

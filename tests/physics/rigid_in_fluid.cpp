@@ -1,4 +1,4 @@
-// Rigid bodies in fluids: momentum, buoyancy, added mass, the torque of a turning cylinder.
+// Rigid bodies in fluids: momentum, energy, buoyancy, added mass, the torque of a turning cylinder.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -60,6 +60,49 @@ TEST(RigidInFluid, TakesWhatTheFluidLoses) {
   for (int k = 0; k < 50; ++k) run->step(1.0);
   EXPECT_LT(value(*run, "ball_velocity_x"), 0.95 * before) << "the water holds it back";
   EXPECT_GT(value(*run, "ball_velocity_x"), 0.3 * before);
+}
+
+/// What is left of the energy over what became heat: kinetic energy, heat, what contacts took, and the work of what is
+/// driven.
+double energy_drift(const std::string& text, int steps, const std::vector<std::string>& moving,
+                    const std::vector<std::string>& driven, const std::vector<std::string>& overrides = {}) {
+  const auto run = small::simulation(text, overrides);
+  const auto sum = [&](const std::vector<std::string>& names, const std::string& of) {
+    double total = 0.0;
+    for (const std::string& name : names) total += value(*run, name + of);
+    return total;
+  };
+  const auto energy = [&] {
+    const bool contacts = text.find("ball-block") != std::string::npos;
+    return sum(moving, "_kinetic_energy") + value(*run, "water_internal_energy") + sum(driven, "_work") +
+           (contacts ? value(*run, "ball_block_taken_energy") : 0.0);
+  };
+  const double start = energy(), heat = value(*run, "water_internal_energy");
+  double worst = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    run->step(1.0);
+    worst = std::max(worst, std::abs(energy() - start));
+  }
+  return worst / std::abs(value(*run, "water_internal_energy") - heat);
+}
+
+/// The rest is of the second order in the step: 1/4 with half of it.
+void expect_energy(const char* what, const std::string& text, int steps, const std::vector<std::string>& moving,
+                   const std::vector<std::string>& driven) {
+  const double rest = energy_drift(text, steps, moving, driven),
+               finer = energy_drift(text, 2 * steps, moving, driven, {"time.safety=0.5"});
+  report(std::string("energy left over the heat, ") + what, rest, 5e-3);
+  report("the same with half the step", finer, 1e-3);
+  EXPECT_LT(rest, 5e-3) << what;
+  EXPECT_LT(finer, 1e-3) << what;
+  EXPECT_LT(finer, 0.4 * rest) << what;
+}
+
+TEST(RigidInFluid, WhatLeavesTheMotionIsHeat) {
+  expect_energy("free bodies", small::drowned, 200, {"water", "ball", "block"}, {});
+  const std::string motion = "\n[[motion]]\nphase = \"block\"\nabout = [0.9, 0.4]\nangular-velocity = \"20*t\"\n";
+  expect_energy("one is driven and touches another", small::drowned + motion, 200, {"water", "ball"}, {"block"});
+  expect_energy("3D", small::drowned_ball, 50, {"water", "ball"}, {});
 }
 
 void go(Simulation& run, double time) {

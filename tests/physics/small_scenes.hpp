@@ -71,6 +71,7 @@ density = 1000
 viscosity = 1e-2
 sound-speed = 20
 scheme = "plain"
+energy = true
 [phases.ball]
 kind = "rigid"
 density = 1500
@@ -117,6 +118,7 @@ density = 1000
 viscosity = 1e-2
 sound-speed = 20
 scheme = "plain"
+energy = true
 [phases.ball]
 kind = "rigid"
 density = 1500

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/column/air_column.hpp"
 #include "physics/drive.hpp"
 
 namespace barchan {
@@ -45,6 +46,57 @@ TEST(WindOverSand, AHeavyBedIsAsRoughAsItsGrains) {
   const double share = row[static_cast<std::size_t>(at)] / (1.225 * 0.4 * 0.4);
   report("stress on the ground over rho u*^2", share, 1.2);
   EXPECT_NEAR(share, 1.05, 0.15);
+}
+
+/// Of one grain on flat ground, at rest: the share of the drag that Anderson & Hallet's difference of winds gives.
+TEST(WindOverSand, LiftIsAShareOfTheDrag) {
+  const std::string grain = "fill.3={ phase = \"sand\", shape = { points = [[0.05, 0.0032]] } }";
+  Drive drive("wind_over_sand", {grain, "phases.sand.diameter={ mean = 2.5e-4, spread = 0 }",
+                                 "interactions.air-sand.lift=0.85", "time.end=1e-4"});
+  drive.simulation().step(1e-4);
+  const PhaseParticles& sand = drive.phase(1);
+  ASSERT_EQ(sand.size(), 1u);
+  // Half way between two layers; its radius on both sides of it.
+  const double radius = 1.25e-4, height = sand.column(Field::position, 1)[0] - 0.003;
+  double shear = 0, wind = 0;
+  for (const std::size_t k : {4, 5}) {
+    AirProfile profile = drive.simulation().state().air.at(k);
+    AirColumn column({1.225, 1.48e-5, MixingLength::duran, Slip::no_slip}, profile);
+    column.integrate_speed();
+    shear += column.mean_speed(height, height + radius) - column.mean_speed(height - radius, height);
+    wind += column.mean_speed(height - radius, height + radius);
+  }
+  const double share = 0.85 * shear / wind;
+  const double lift = sand.column(Field::drag_acceleration, 1)[0], drag = sand.column(Field::drag_acceleration, 0)[0];
+  EXPECT_GT(drag, 1.0);
+  report("lift over drag, over its formula", lift / drag / share, 1.02);
+  EXPECT_NEAR(lift / drag / share, 1.0, 0.02);
+}
+
+/// What grains in the layers and over them get, the layers and the particles of the air lose, with gusts and lift too.
+TEST(WindOverSand, GustsAndLiftKeepTheMomentum) {
+  std::string points;
+  for (int k = 0; k < 60; ++k)
+    points += (k ? ", [" : "[") + std::to_string(0.001 + 0.002 * k) + ", " + std::to_string(0.0034 + 1e-4 * k) + "]";
+  const std::string cloud = "fill.3={ phase = \"sand\", shape = { points = [" + points + "] } }";
+  Drive drive("wind_over_sand",
+              {cloud, "interactions.air-sand.lift=0.85", "interactions.air-sand.gusts=0.38", "time.end=2e-3"});
+  const auto momentum = [](const PhaseParticles& p, int d) {
+    double sum = 0;
+    for (std::size_t k = 0; k < p.size(); ++k) sum += p.mass_of(k) * p.column(Field::drag_acceleration, d)[k];
+    return sum;
+  };
+  for (int step = 0; step < 20; ++step) drive.simulation().step(1.0);
+  const State& state = drive.simulation().state();
+  double layers = 0;
+  for (const AirProfile& p : state.air)
+    for (const double given : p.given)
+      layers += given / state.air[0].last * 0.12 / static_cast<double>(state.air.size());
+  const double x = momentum(drive.phase(1), 0), y = momentum(drive.phase(1), 1);
+  EXPECT_GT(std::abs(momentum(drive.phase(0), 0)), 1e-3 * std::abs(x));  // some are over the layers, and gusts
+  EXPECT_GT(std::abs(y), 1e-3 * std::abs(x));
+  EXPECT_NEAR((layers - x - momentum(drive.phase(0), 0)) / x, 0.0, 1e-10);
+  EXPECT_NEAR((y + momentum(drive.phase(0), 1)) / x, 0.0, 1e-10);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ Pair<2, One> apart(double w, double f) {
 }
 
 /// v_ab = (1, 2): v.r = 11, v^2 = 5. V F = 0.5 * -2 = -1; 1/2 (p_a + p_b) = 10. -1 (10*11 - 3*5) = -95 W/m3.
+/// The force on a: -1 (2*3 (1, 2) - 20 (3, 4)) = (54, 68) N/m3.
 TEST(PairLaws, EnergyIsTheWorkOfPressureLessThatOfFriction) {
   PlainEnergy::Own<2, One> a{}, b{};
   a.v = {One(1.5), One(2.0)};
@@ -29,11 +30,34 @@ TEST(PairLaws, EnergyIsTheWorkOfPressureLessThatOfFriction) {
   const PlainEnergy law{{}, 3.0};
   law.add(a, b, apart<PlainEnergy>(0.0, -2.0), s);
   EXPECT_EQ(s.work[0], -95.0);
+  EXPECT_EQ(s.force[0][0], 54.0);
+  EXPECT_EQ(s.force[1][0], 68.0);
   PlainEnergy::close_entry(s);
   law.add(a, b, apart<PlainEnergy>(0.0, -2.0), s);
   PlainEnergy::close_entry(s);
   EXPECT_EQ(s.total, -190.0);
   EXPECT_EQ(s.work[0], 0.0);
+}
+
+/// The same two, b of a body: u_b = (0.5, 1), of which turning gives c = (0.25, 1.5); w = 2, w0 = 3. The power of the
+/// force is (54, 68).(1, 1) = 122; w x r = (-8, 6), w0 x r = (-12, 9). Turning: mu V F = -3 times
+/// [(-8, 6).(1, 2) - (-12, 9).(2 c + (-8, 6))] = 4 - (-12*-7.5 + 9*9) = -167: 501 W/m3.
+TEST(PairLaws, EnergyOfASolidIsThatOfItsOwnMotion) {
+  SolidEnergy::Own<2, One> a{};
+  Particle<2, One, SolidEnergy::Reads> b{};
+  a.v = {One(1.5), One(2.0)};
+  b.v = {One(0.5), One(0.0)};
+  a.p = One(8.0);
+  b.p = One(12.0);
+  b.volume = One(0.5);
+  b.u = {One(0.5), One(1.0)};
+  b.c = {One(0.25), One(1.5)};
+  b.rate = {One(2.0)};
+  b.old_rate = {One(3.0)};
+  SolidEnergy::Sums<2, One> s{};
+  SolidEnergy{{}, 3.0}.add(a, b, apart<SolidEnergy>(0.0, -2.0), s);
+  EXPECT_EQ(s.work[0], -122.0 + 501.0);
+  EXPECT_EQ(s.force[0][0], 54.0);
 }
 
 /// V (mu_b - mu) F = 0.5 * (0.7 - 0.2) * -2 = -0.5, times v_ab = (1, 2).

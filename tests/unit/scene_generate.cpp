@@ -268,6 +268,60 @@ TEST(Generate, WindIsLogarithmicOverTheGround) {
   EXPECT_NEAR(generate(scene)[0].velocity.at(0)[0], 2.0 + std::log(0.6 / 0.2), 1e-6) << "added to the velocity";
 }
 
+/// Between the ground and a streamline flows the same everywhere: the integral of u over the height is that of the
+/// logarithm over the flat bed, and a particle's velocity points along its streamline.
+TEST(Generate, WindAlongTheGroundKeepsItsFlux) {
+  constexpr double bed = 0.1, height = 0.2, length = 1.6, at = 1.0, u_star = 0.4, roughness = 1e-3, top = 1.0;
+  std::string points;
+  constexpr int n = 400;
+  const auto ground = [&](double x) {
+    return bed + 0.5 * height * (1 + std::cos(2 * std::numbers::pi * (x - at) / length));
+  };
+  const std::array<double, 3> places{1.0, 0.7, 1.3};
+  for (const double x : places)
+    for (int k = 0; k < n; ++k)
+      points += (points.empty() ? "[" : ", [") + std::to_string(x) + ", " +
+                std::to_string(ground(x) + (k + 0.5) / n * (top - ground(x))) + "]";
+  const Scene scene = parse_scene(R"toml(spacing = 1e-3
+[domain]
+size = [2, 1]
+[phases.air]
+kind = "fluid"
+density = 1
+[phases.ground]
+kind = "wall"
+spacing = 0.05
+[interactions]
+air-air = 2.1
+air-ground = 2.1
+[[fill]]
+phase = "ground"
+shape = { bed = 0.1, dune = { height = 0.2, length = 1.6, at = 1.0 } }
+[[fill]]
+phase = "air"
+shape = { points = [)toml" + points + R"toml(] }
+velocity = { log-profile = { friction-velocity = 0.4, roughness = 1e-3, along-ground = true } }
+[time]
+end = 1
+)toml",
+                                  "s.toml");
+  const auto blocks = generate(scene);
+  const auto& air = blocks.at(0);
+  ASSERT_EQ(air.position.size(), places.size() * n);
+  const double whole = top - bed, flux = u_star / 0.4 * (whole * std::log(whole / roughness) - whole + roughness);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) sum += air.velocity[p * n + k][0] * (top - ground(places[p])) / n;
+    EXPECT_NEAR(sum / flux, 1.0, 2e-3) << places[p];
+  }
+  // Half way up on the windward side.
+  const std::size_t k = n + n / 2;
+  const Vec3 &x = air.position[k], &v = air.velocity[k];
+  const double slope = -height * std::numbers::pi / length * std::sin(2 * std::numbers::pi * (x[0] - at) / length);
+  EXPECT_NEAR(v[1] / v[0], slope * (top - x[1]) / (top - ground(x[0])), 1e-4);
+  EXPECT_GT(v[1], 0.0);
+}
+
 TEST(Generate, FormulasGiveVelocityAndPressure) {
   const Scene scene = parse_scene(
       with(square_text, "\"the-rest\"", "\"the-rest\"\nvelocity = [\"sin(2*pi*x)\", \"-y\"]\npressure = \"x + y\""),

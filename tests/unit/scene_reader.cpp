@@ -191,7 +191,7 @@ shape = "the-rest"
 packing = "rows"
 perturb = 0.2
 seed = 7
-velocity = { log-profile = { friction-velocity = 0.5, roughness = 1e-5, over-ground = false } }
+velocity = { log-profile = { friction-velocity = 0.5, roughness = 1e-5, over-ground = false, along-ground = false } }
 pressure = "1000*y"
 [[fill]]
 phase = "oil"

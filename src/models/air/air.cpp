@@ -46,10 +46,14 @@ void Air::schedule(Schedule& s) {
   s.add({stage::fluid, plan_.name, reads, writes, [this] { rate(); }});
   if (plan_.free_surface)
     s.add({stage::surface, plan_.name, {position, wholeness}, {surface_normal}, [this] { find_surface(); }});
-  if (keys_.energy)
-    s.add({stage::energy, plan_.name, {position, velocity, density, pressure}, {energy_rate}, [this] {
-             fluid_energy(*particles_, w_->motion[number_], neighbours_);
+  if (keys_.energy) {
+    s.add({stage::energy, plan_.name, {position, velocity, density, pressure, acceleration}, {energy_rate}, [this] {
+             fluid_energy(*particles_, w_->motion[number_], fluids_, solids_, w_->kick_time);
            }});
+    s.add({stage::kick, plan_.name, {energy_rate}, {Field::energy}, [this] {
+             advance_energy(*particles_, w_->kick_time);
+           }});
+  }
   if (plan_.held)
     s.add({stage::hold, plan_.name, {velocity}, {acceleration}, [this] {
              hold_bulk_velocity(*particles_, hold_, w_->state.dt, mean_);
@@ -59,6 +63,7 @@ void Air::schedule(Schedule& s) {
 void Air::kick_and_drift() {
   const double dt = w_->state.dt;
   barchan::kick_and_drift(*particles_, 0.5 * dt, dt, &pressure_);
+  if (keys_.energy) advance_energy(*particles_, 0.5 * dt);
   if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
   if (keeps_inside_) hold_inside(*particles_, held_);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);

@@ -8,6 +8,7 @@
 #include "engine/integrate.hpp"
 #include "engine/means.hpp"
 #include "models/air/eddies.hpp"
+#include "models/air/energy.hpp"
 #include "models/air/relief.hpp"
 #include "models/air/surface.hpp"
 #include "models/forces.hpp"
@@ -55,6 +56,8 @@ class Air : public Model {
 
   PressureLaw pressure_;
   std::vector<FluidNeighbour> neighbours_;  // its entry with itself first
+  std::vector<FluidNeighbour> fluids_;      // of these, what the energy asks for: fluids, and solids
+  std::vector<SolidNeighbour> solids_;
   FluidParameters parameters_{};
   Forces forces_;
   Sides held_;                              // the domain's sides that a wall closes

@@ -214,6 +214,9 @@ void Air::bind_entries() {
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);
+    if (!keys_.energy) continue;
+    if (solid) solids_.push_back({n, &w_->carried[other]});
+    else fluids_.push_back(n);
   }
   for (const auto& e : layout_.entries)
     if (e.law == Law::boundary && e.fluid == number_)

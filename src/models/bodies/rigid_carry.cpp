@@ -100,6 +100,46 @@ void RigidPhase::carry_accelerations() {
   }
 }
 
+/// Velocities at the end of the step, for the fluids' energy: carried records.
+template <int Dim>
+void RigidPhase::tell_fluids() {
+  using R = CarriedRecord<Dim>;
+  constexpr std::size_t axes = Dim == 2 ? 1 : 3, first = Dim == 2 ? 2 : 0;
+  const PhaseParticles& p = w_->particles(number_);
+  RecordArray& records = w_->carried[number_];
+  renew_carriers();
+  for (std::size_t k = 0; k < bodies(); ++k) old_rates_[k] = carriers_[k].rate;
+  carriers_.clear();
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    RigidBody ends = body(k);
+    end_step(ends);
+    carriers_.emplace_back(ends);
+  }
+  std::array<const double*, Dim> x{};
+  for (std::size_t d = 0; d < Dim; ++d) x[d] = p.column(Field::position, static_cast<int>(d));
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const std::size_t id = id_of(k);
+    const Carrier& c = carriers_[body_of_[id]];
+    const Vec3 turning = cross(c.rate, c.axes.to_space(arms_[id]));
+    double* r = records[k];
+    for (std::size_t d = 0; d < Dim; ++d) {
+      r[R::position + d] = x[d][k];
+      r[R::velocity + d] = c.velocity[d] + turning[d];
+      r[R::turning + d] = turning[d];
+    }
+    for (std::size_t d = 0; d < axes; ++d) {
+      r[R::rate + d] = c.rate[first + d];
+      r[R::old_rate + d] = old_rates_[body_of_[id]][first + d];
+    }
+  }
+  records.fill_images(w_->neighbours.grid(number_), Dim);
+}
+template void RigidPhase::tell_fluids<2>();
+template void RigidPhase::tell_fluids<3>();
+
 void RigidPhase::history(HistoryRow& row) const {
   const bool flat = layout_.dimensions == 2;
   const auto vector = [&](const std::string& name, const Vec3& v, const char* unit) {
@@ -124,6 +164,7 @@ void RigidPhase::history(HistoryRow& row) const {
     axial(name + "_angular_momentum", axes.to_space(b.now.spin), "kg m2/s");
     vector(name + "_force", b.now.touch_force, "N");
     axial(name + "_torque", b.now.touch_torque, "N m");
+    row.add(name + "_work [J]", b.now.touch_work);
   }
 }
 

@@ -27,11 +27,6 @@ Vec3 velocity_at(const RigidBody& body, const OwnAxes& axes, const Vec3& arm) {
   return body.now.velocity + cross(axes.to_space(own_angular_velocity(body)), arm);
 }
 
-void load(RigidBody& body, const Vec3& arm, const Vec3& force) {
-  body.now.touch_force = body.now.touch_force + force;
-  body.now.touch_torque = body.now.touch_torque + cross(arm, force);
-}
-
 bool is_round(const ContactSurface& surface) { return surface.form() == ContactSurface::Form::round; }
 
 /// m, from a place to the farthest of the surfaces that have probes.
@@ -57,7 +52,12 @@ RigidContact::RigidContact(const Scene& scene, const Layout& layout, const PlanE
 }
 
 void RigidContact::schedule(Schedule& s) {
+  s.add({stage::kick_and_drift, entry_.name, {}, {}, [this] { taken_ += 0.5 * w_->state.dt * power_; }});
   s.add({stage::contacts, entry_.name, {}, {}, [this] { touch(); }});
+  s.add({stage::kick, entry_.name, {}, {}, [this] {
+           power_ = power();
+           taken_ += w_->kick_time * power_;
+         }});
 }
 
 void RigidContact::attach(Workspace& w) {
@@ -160,15 +160,29 @@ void RigidContact::limits(std::vector<StepLimit>& limits) const {
 
 void RigidContact::touch() {
   overlap_ = 0.0;
-  for (Side& side : a_) side.now = OwnAxes(body_of(side));
-  for (Side& side : b_) side.now = OwnAxes(body_of(side));
+  for (std::vector<Side>* sides : {&a_, &b_})
+    for (Side& side : *sides) {
+      side.now = OwnAxes(body_of(side));
+      side.force = side.torque = Vec3{};
+    }
   if (entry_.a == entry_.b) {
     for (std::size_t i = 0; i < a_.size(); ++i)
       for (std::size_t j = i + 1; j < a_.size(); ++j) touch(a_[i], a_[j]);
     return;
   }
-  for (const Side& a : a_)
-    for (const Side& b : b_) touch(a, b);
+  for (Side& a : a_)
+    for (Side& b : b_) touch(a, b);
+}
+
+/// Of the forces of this step with the velocities of now.
+double RigidContact::power() {
+  double given = 0.0;
+  for (const std::vector<Side>* sides : {&a_, &b_})
+    for (const Side& side : *sides) {
+      const RigidBody& body = body_of(side);
+      given += dot(side.force, body.now.velocity) + dot(side.now.to_own(side.torque), own_angular_velocity(body));
+    }
+  return -given;
 }
 
 /// What must be added to places of a so that it lies in the image next to b.
@@ -181,7 +195,7 @@ Vec3 RigidContact::image_between(const RigidBody& a, const RigidBody& b) const {
   return image;
 }
 
-void RigidContact::touch(const Side& a, const Side& b) {
+void RigidContact::touch(Side& a, Side& b) {
   const RigidBody &first = body_of(a), &second = body_of(b);
   const bool planes = !(std::max(a.reach, b.reach) < 1e300);
   const Vec3 image = planes ? Vec3{} : image_between(first, second);
@@ -195,9 +209,8 @@ void RigidContact::touch(const Side& a, const Side& b) {
 }
 
 /// The probes of a on the surface of b.
-void RigidContact::touch(const Side& a, const ContactSurface& of_a, const Side& b, const ContactSurface& on_b,
-                         const Vec3& image) {
-  RigidBody &first = body_of(a), &second = body_of(b);
+void RigidContact::touch(Side& a, const ContactSurface& of_a, Side& b, const ContactSurface& on_b, const Vec3& image) {
+  const RigidBody &first = body_of(a), &second = body_of(b);
   for (const TouchPoint& probe : of_a.probes()) {
     const Vec3 x = first.now.place + image + a.now.to_space(a.first.to_own(probe.at - first.first_place));
     const Vec3 from_b = x - second.now.place;
@@ -209,13 +222,13 @@ void RigidContact::touch(const Side& a, const ContactSurface& of_a, const Side& 
     overlap_ = std::max(overlap_, overlap);
     if (!std::isfinite(overlap)) continue;  // trouble() tells
     const Vec3 normal = b.now.to_space(b.first.to_own(gap->normal));
-    push(first, a, second, b, x - (probe.radius - 0.5 * overlap) * normal, image, overlap, normal);
+    push(a, b, x - (probe.radius - 0.5 * overlap) * normal, image, overlap, normal);
   }
 }
 
 /// Forces at the place `at` (m); `normal` points at a, whose places lie `image` away.
-void RigidContact::push(RigidBody& a, const Side& of_a, RigidBody& b, const Side& of_b, const Vec3& at,
-                        const Vec3& image, double overlap, const Vec3& normal) {
+void RigidContact::push(Side& of_a, Side& of_b, const Vec3& at, const Vec3& image, double overlap, const Vec3& normal) {
+  const RigidBody &a = body_of(of_a), &b = body_of(of_b);
   const Vec3 arm_a = at - image - a.now.place, arm_b = at - b.now.place;
   const Vec3 v = velocity_at(a, of_a.now, arm_a) - velocity_at(b, of_b.now, arm_b);
   const double dt = w_->state.dt, speed = dot(v, normal);
@@ -227,12 +240,28 @@ void RigidContact::push(RigidBody& a, const Side& of_a, RigidBody& b, const Side
   const Vec3 along = v - speed * normal;
   if (const double sliding = norm(along); law_.friction > 0.0 && sliding > 0.0)
     force = force - law_.grip(pressed, sliding, inverse(1.0 / sliding * along), dt) * along;
-  load(a, arm_a, force);
-  load(b, arm_b, -1.0 * force);
+  load(of_a, arm_a, force);
+  load(of_b, arm_b, -1.0 * force);
+}
+
+void RigidContact::load(Side& side, const Vec3& arm, const Vec3& force) {
+  RigidBody& body = body_of(side);
+  const Vec3 torque = cross(arm, force);
+  body.now.touch_force = body.now.touch_force + force;
+  body.now.touch_torque = body.now.touch_torque + torque;
+  side.force = side.force + force;
+  side.torque = side.torque + torque;
 }
 
 void RigidContact::history(HistoryRow& row) const {
   row.add(layout_.phases[entry_.a].name + "_" + layout_.phases[entry_.b].name + "_overlap [m]", overlap_);
+  row.add(layout_.phases[entry_.a].name + "_" + layout_.phases[entry_.b].name + "_taken_energy [J]", taken_);
+}
+
+void RigidContact::archive(Archive& a) {
+  a.number("overlap of " + entry_.name, overlap_);
+  a.number("power of " + entry_.name, power_);
+  a.number("energy of " + entry_.name, taken_);
 }
 
 std::optional<std::string> RigidContact::trouble() const {

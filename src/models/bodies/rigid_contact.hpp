@@ -17,7 +17,7 @@ class RigidContact : public Model {
   void limits(std::vector<StepLimit>& limits) const override;
   void history(HistoryRow& row) const override;
   std::optional<std::string> trouble() const override;
-  void archive(Archive& a) override { a.number("overlap of " + entry_.name, overlap_); }
+  void archive(Archive& a) override;
 
  private:
   /// A body with its outline, or a part of a wall, which is a body that never moves.
@@ -27,6 +27,7 @@ class RigidContact : public Model {
     std::vector<ContactSurface> surfaces;  // in space as the body lay at the start
     double reach = 0.0;                    // m, of the surfaces from the body's place; 1e300: a plane
     OwnAxes first, now;                    // axes at the start and now
+    Vec3 force{}, torque{};                // N, N m: of this entry in this step, the torque about the body's place
   };
   void add_bodies(std::size_t phase, double reach, std::vector<Side>& sides);
   void add_wall(std::size_t phase, double reach, std::vector<Side>& sides);
@@ -35,10 +36,11 @@ class RigidContact : public Model {
   Vec3 image_between(const RigidBody& a, const RigidBody& b) const;
   double largest_inverse_mass(std::size_t phase) const;
   void touch();
-  void touch(const Side& a, const Side& b);
-  void touch(const Side& a, const ContactSurface& of_a, const Side& b, const ContactSurface& on_b, const Vec3& image);
-  void push(RigidBody& a, const Side& of_a, RigidBody& b, const Side& of_b, const Vec3& at, const Vec3& image,
-            double overlap, const Vec3& normal);
+  void touch(Side& a, Side& b);
+  void touch(Side& a, const ContactSurface& of_a, Side& b, const ContactSurface& on_b, const Vec3& image);
+  void push(Side& of_a, Side& of_b, const Vec3& at, const Vec3& image, double overlap, const Vec3& normal);
+  void load(Side& side, const Vec3& arm, const Vec3& force);
+  double power();
 
   const Scene& scene_;
   const Layout& layout_;
@@ -47,6 +49,8 @@ class RigidContact : public Model {
   std::vector<Side> a_, b_;       // b_ is empty where both are of one phase
   std::vector<RigidBody> still_;  // places of walls
   double overlap_ = 0.0;          // m, the deepest of the last step
+  double power_ = 0.0;            // W, that the contacts take out of the motion at the end of the last step
+  double taken_ = 0.0;            // J, that they took since the start
   Workspace* w_ = nullptr;
 };
 

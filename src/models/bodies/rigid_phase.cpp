@@ -93,6 +93,7 @@ void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 void RigidPhase::attach(Workspace& w) {
   w_ = &w;
   carriers_.reserve(bodies());
+  old_rates_.resize(bodies());
   place_of_.resize(arms_.size());
   find_places();
   w.when_sorted.emplace_back([this] { find_places(); });
@@ -123,20 +124,29 @@ const StepLimit* RigidPhase::moving_limit() {
   return &limit_;
 }
 
-void RigidPhase::kick(RigidBody& body, double time) const {
-  if (body.hold == RigidBody::Hold::driven) return;
-  if (body.hold == RigidBody::Hold::free) body.now.velocity = body.now.velocity + time / body.mass * body.now.force;
-  body.now.spin = body.now.spin + time * OwnAxes(body).to_own(body.now.torque);
-}
-
 namespace {
+
+/// W, of what touches the body.
+double touch_power(const RigidBody& body) {
+  return dot(body.now.touch_force, body.now.velocity) +
+         dot(OwnAxes(body).to_own(body.now.touch_torque), own_angular_velocity(body));
+}
 
 Vec3 value(const std::array<Formula, 3>& f, double time) { return {f[0]({}, time), f[1]({}, time), f[2]({}, time)}; }
 
 }  // namespace
 
+/// Velocities change evenly while forces act, so that the mean power is exact. Driven bodies keep theirs.
+void RigidPhase::kick(RigidBody& body, double time) {
+  const double before = touch_power(body);
+  if (body.hold == RigidBody::Hold::free) body.now.velocity = body.now.velocity + time / body.mass * body.now.force;
+  if (body.hold != RigidBody::Hold::driven)
+    body.now.spin = body.now.spin + time * OwnAxes(body).to_own(body.now.torque);
+  body.now.touch_work += 0.5 * time * (before + touch_power(body));
+}
+
 /// Gives a driven body the velocities of its motion at a time (s).
-void RigidPhase::drive(RigidBody& body, double time) {
+void RigidPhase::drive(RigidBody& body, double time) const {
   if (body.hold != RigidBody::Hold::driven) return;
   const RigidHold& hold = holds_[body.motion];
   body.now.velocity = value(hold.velocity, time);
@@ -224,13 +234,16 @@ void RigidPhase::sum_loads() {
     hold_torque(b);
   }
   carry_accelerations();
+  if (plan_.heats) layout_.dimensions == 2 ? tell_fluids<2>() : tell_fluids<3>();
+}
+
+void RigidPhase::end_step(RigidBody& body) const {
+  drive(body, w_->state.time);
+  kick(body, w_->kick_time);
 }
 
 void RigidPhase::finish_kick() {
-  for (std::size_t k = 0; k < bodies(); ++k) {
-    kick(body(k), w_->kick_time);
-    drive(body(k), w_->state.time);
-  }
+  for (std::size_t k = 0; k < bodies(); ++k) end_step(body(k));
   carry_velocities();
 }
 

@@ -38,8 +38,9 @@ class RigidPhase : public Model {
   void clear_loads();
   void sum_loads();
   void finish_kick();
-  void kick(RigidBody& body, double time) const;
-  void drive(RigidBody& body, double time);
+  static void kick(RigidBody& body, double time);
+  void drive(RigidBody& body, double time) const;
+  void end_step(RigidBody& body) const;
   std::array<Vec3, 2> driven(const RigidBody& body) const;
   void add_particles(RigidBody& body) const;
   void hold_torque(RigidBody& body);
@@ -55,6 +56,8 @@ class RigidPhase : public Model {
   void carry_places();
   void carry_velocities();
   void carry_accelerations();
+  template <int Dim>
+  void tell_fluids();
   std::size_t bodies() const { return plan_.rigid_bodies.size(); }
   RigidBody& body(std::size_t k) const { return w_->state.bodies[first_body_ + k]; }
   std::size_t id_of(std::size_t place) const;
@@ -66,6 +69,7 @@ class RigidPhase : public Model {
   Forces forces_;
   bool felt_ = false;                    // particles feel something by themselves
   std::vector<Carrier> carriers_;        // by body, of the task that runs
+  std::vector<Vec3> old_rates_;          // 1/s, by body, of the step before its kick
   std::vector<RigidHold> holds_;         // by [[motion]]
   std::vector<Vec3> arms_;               // m, from the body's place along its own axes, by id
   std::vector<std::uint32_t> body_of_;   // by id

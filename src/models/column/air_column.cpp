@@ -68,16 +68,19 @@ void AirColumn::Spread::clear() {
 
 void AirColumn::Spread::add(const AirColumn& column, double low, double high, double amount) {
   const std::vector<double>& face = column.profile_.face;
-  low = std::clamp(low, face.front(), face.back());
-  high = std::clamp(high, face.front(), face.back());
-  const std::size_t a = column.cell_at(low), b = column.cell_at(high);
-  if (!(high > low)) {
+  const double bottom = std::clamp(low, face.front(), face.back()), top = std::clamp(high, face.front(), face.back());
+  const std::size_t a = column.cell_at(bottom), b = column.cell_at(top);
+  if (!(high > low) || !(top > bottom) || (a == b && low == bottom && high == top)) {
     part_[a] += amount;
     return;
   }
   const double density = amount / (high - low);
+  if (low < bottom) part_[a] += density * (bottom - low);
+  if (high > top) part_[b] += density * (high - top);
+  low = bottom;
+  high = top;
   if (a == b) {
-    part_[a] += amount;
+    part_[a] += density * (high - low);
     return;
   }
   part_[a] += density * (face[a + 1] - low);

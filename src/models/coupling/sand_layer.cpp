@@ -20,15 +20,26 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       viscosity_(scene.phases[fluid_].fluid().viscosity),
       diameter_(layout.phases[grains_].diameter),
       top_(reach * layout.phases[fluid_].spacing),
+      lift_(entry.lift),
       interval_(interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
-      grid_(layout.bounds, layout.phases[fluid_].spacing) {}
+      grid_(layout.bounds, layout.phases[fluid_].spacing) {
+  if (!(entry.gusts > 0.0)) return;
+  const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
+  const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
+  const double low = layout.bounds.low[0], size = layout.bounds.high[0] - low;
+  gusts_.emplace(entry.gusts, viscosity_, bagnold, low, size,
+                 static_cast<std::size_t>(std::max(1.0, std::round(size / layout.phases[fluid_].spacing))));
+}
 
 void SandLayer::attach(Workspace& w) {
   w_ = &w;
   const double size = layout_.bounds.high[0] - layout_.bounds.low[0];
-  const auto n = static_cast<std::size_t>(std::max(1.0, std::round(size / layout_.phases[fluid_].spacing)));
+  const double spacing = layout_.phases[fluid_].spacing;
+  const double long_enough = std::max(spacing, long_as * diameter_);
+  const auto n = static_cast<std::size_t>(std::max(1.0, std::round(size / long_enough)));
   width_ = size / static_cast<double>(n);
-  ground_ = fitted_heights(scene_, {static_cast<int>(n * heights), 0});
+  samples_ = static_cast<std::size_t>(std::max(1.0, std::round(width_ / spacing)));
+  ground_ = fitted_heights(scene_, {static_cast<int>(n * samples_ * heights), 0});
   if (ground_.empty())
     throw SceneError(scene_.file + ": interactions." + name_ +
                      ".drag: no ground under the air; expected a wall with "
@@ -55,7 +66,7 @@ void SandLayer::attach(Workspace& w) {
 }
 
 SandLayer::Ground SandLayer::ground(double x) const {
-  const double step = width_ / static_cast<double>(heights), low = layout_.bounds.low[0];
+  const double step = width_ / static_cast<double>(samples_ * heights), low = layout_.bounds.low[0];
   const auto n = static_cast<long>(ground_.size()) - 1;
   const double s = (x - low) / step;
   const long k = ((static_cast<long>(std::floor(s)) % n) + n) % n;
@@ -65,10 +76,11 @@ SandLayer::Ground SandLayer::ground(double x) const {
   return {a + share * (b - a), 1.0 / length, slope / length};
 }
 
-std::size_t SandLayer::column_at(double x) const {
+SandLayer::Between SandLayer::between(double x) const {
   const auto n = static_cast<long>(layers_.size());
-  const long k = static_cast<long>(std::floor((x - layout_.bounds.low[0]) / width_));
-  return static_cast<std::size_t>(((k % n) + n) % n);
+  const double s = (x - layout_.bounds.low[0]) / width_ - 0.5, whole = std::floor(s);
+  const long k = static_cast<long>(whole);
+  return {static_cast<std::size_t>(((k % n) + n) % n), static_cast<std::size_t>((((k + 1) % n) + n) % n), s - whole};
 }
 
 void SandLayer::schedule(Schedule& s) {
@@ -85,13 +97,10 @@ void SandLayer::give_stress() {
   auto& stress = w_->ground_stress[fluid_];
   const PhaseParticles& air = w_->particles(fluid_);
   const double* x = air.column(Field::position, 0);
-  const std::size_t n = layers_.size();
   for (std::size_t k = 0; k < air.size(); ++k) {
-    const double s = (x[k] - layout_.bounds.low[0]) / width_ - 0.5, cell = std::floor(s), share = s - cell;
-    const long left = static_cast<long>(cell), all = static_cast<long>(n);
-    const AirProfile &a = profile(static_cast<std::size_t>(((left % all) + all) % all)),
-                     &b = profile(static_cast<std::size_t>((((left + 1) % all) + all) % all));
-    stress[k] = (1.0 - share) * std::abs(a.stress.back()) + share * std::abs(b.stress.back());
+    const Between b = between(x[k]);
+    stress[k] =
+        (1.0 - b.share) * std::abs(profile(b.left).stress.back()) + b.share * std::abs(profile(b.right).stress.back());
   }
 }
 
@@ -121,12 +130,18 @@ void SandLayer::act() {
   }
 }
 
-/// The speed of the air's particles along the ground, where the layer ends.
+/// The speed of the air's particles along the ground, where the layer ends: by the weights by which places feel it.
 double SandLayer::top_speed(std::size_t column) const {
-  const double x = layout_.bounds.low[0] + (static_cast<double>(column) + 0.5) * width_;
-  const Ground g = ground(x);
-  const auto u = grid_.velocity({x - top_ * g.along_y, g.height + top_ * g.along_x});
-  return u[0] * g.along_x + u[1] * g.along_y;
+  const auto all = static_cast<long>(samples_);
+  const double middle = layout_.bounds.low[0] + (static_cast<double>(column) + 0.5) * width_;
+  double sum = 0.0;
+  for (long k = 1 - all; k < all; ++k) {
+    const double away = static_cast<double>(k) / static_cast<double>(all), x = middle + away * width_;
+    const Ground g = ground(x);
+    const auto u = grid_.velocity({x - top_ * g.along_y, g.height + top_ * g.along_x});
+    sum += (1.0 - std::abs(away)) * (u[0] * g.along_x + u[1] * g.along_y);
+  }
+  return sum / static_cast<double>(all);
 }
 
 /// The layers that the grains at their initial speeds let pass: steps that grow until the air rests.
@@ -153,6 +168,11 @@ void SandLayer::blow(double dt) {
     layers_[c].advance(dt, AirColumn::Top::at_speed(top_speed(c)), loads_[c]);
 }
 
+/// Mean wind (m/s) between two heights over the ground where a grain is.
+double SandLayer::wind_about(const Between& b, double low, double high) const {
+  return (1.0 - b.share) * layers_[b.left].mean_speed(low, high) + b.share * layers_[b.right].mean_speed(low, high);
+}
+
 /// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
 /// drag in that. A drag that was kept for another time than was meant gave the grains more or less than the air lost.
 void SandLayer::exchange(double kept, double meant) {
@@ -166,12 +186,17 @@ void SandLayer::exchange(double kept, double meant) {
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
   for (const Near& q : near_) {
-    const double more =
-        rate_[q.grain] * (layers_[q.column].mean_speed(q.height - q.radius, q.height + q.radius) - q.wind);
+    const double more = rate_[q.grain] * (wind_about(q.place, q.height - q.radius, q.height + q.radius) - q.wind);
+    if (gusts_) {
+      const double gust = ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y - q.pull;
+      const double force = -p.mass_of(q.grain) * gust;
+      grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
+    }
     ax[q.grain] += more * q.ground.along_x;
     ay[q.grain] += more * q.ground.along_y;
   }
-  // What the layers do not take, the particles of the air do; from the bed the ground takes what is across it.
+  // What the layers do not take, the particles of the air do (of gusts before); from the bed the ground takes what is
+  // across it.
   for (const std::size_t k : flying_) {
     const double m = p.mass_of(k);
     grid_.push({x[k], y[k]}, {-m * ax[k], -m * ay[k]});
@@ -200,15 +225,32 @@ void SandLayer::find_near() {
     if (height >= top_) {
       flying_.push_back(k);
     } else if (height > -deep * diameter_) {
-      near_.push_back({k, column_at(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, g});
+      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, g});
     } else {
       p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
     }
   }
 }
 
+/// The wind (m/s) that a grain at x feels where its mean is `wind`.
+double SandLayer::felt(double x, double wind) const {
+  if (!gusts_) return wind;
+  const double most = gusts_->largest_gusty_speed();
+  return wind + gusts_->at(x) * std::clamp(wind, -most, most);
+}
+
+/// Lift (m/s2) across the ground on a grain of speed `along` the ground that feels the wind `blows`, whose drag by
+/// difference of speed is `rate`.
+double SandLayer::lift(const Near& q, double blows, double along, double rate) const {
+  const double shear =
+      wind_about(q.place, q.height, q.height + q.radius) - wind_about(q.place, q.height - q.radius, q.height);
+  const double gain = q.wind != 0.0 ? blows / q.wind : 1.0, difference = blows - along;
+  return lift_ * rate * gain * shear * difference / std::max({std::abs(difference), std::abs(blows), 1e-300});
+}
+
 void SandLayer::feel() {
   find_near();
+  if (gusts_) gusts_->blow(w_->state.time + 0.5 * hold_);
   PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
@@ -234,8 +276,18 @@ void SandLayer::feel() {
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < near; ++i) {
       Near& q = near_[static_cast<std::size_t>(i)];
-      q.wind = layers_[q.column].mean_speed(q.height - q.radius, q.height + q.radius);
-      of(q.grain, {q.wind * q.ground.along_x, q.wind * q.ground.along_y});
+      q.wind = wind_about(q.place, q.height - q.radius, q.height + q.radius);
+      const Ground& g = q.ground;
+      of(q.grain, {q.wind * g.along_x, q.wind * g.along_y});
+      q.pull = ax[q.grain] * g.along_x + ay[q.grain] * g.along_y;
+      const double blows = felt(x[q.grain], q.wind), mean_rate = rate_[q.grain];
+      if (gusts_) of(q.grain, {blows * g.along_x, blows * g.along_y});
+      const double rate = rate_[q.grain];
+      rate_[q.grain] = mean_rate;  // of the layer
+      if (!(lift_ > 0.0)) continue;
+      const double up = lift(q, blows, u[q.grain] * g.along_x + v[q.grain] * g.along_y, rate);
+      ax[q.grain] -= up * g.along_y;
+      ay[q.grain] += up * g.along_x;
     }
   });
 }
@@ -243,16 +295,18 @@ void SandLayer::feel() {
 /// The drag of the grains in a layer's cells by area, and its derivative by the speed of the air.
 void SandLayer::spread() {
   const PhaseParticles& p = w_->particles(grains_);
-  const double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
   const auto each = [&](auto&& amount_of, auto&& sums_of) {
     for (auto& s : spreads_) s.clear();
-    for (const Near& q : near_)
-      spreads_[q.column].add(layers_[q.column], q.height - q.radius, q.height + q.radius,
-                             p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_);
+    for (const Near& q : near_) {
+      const double amount = p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_;
+      const double low = q.height - q.radius, high = q.height + q.radius;
+      const Between& b = q.place;
+      spreads_[b.left].add(layers_[b.left], low, high, (1.0 - b.share) * amount);
+      spreads_[b.right].add(layers_[b.right], low, high, b.share * amount);
+    }
     for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads_[c]));
   };
-  each([&](const Near& q) { return ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y; },
-       [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
+  each([](const Near& q) { return q.pull; }, [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
   each([&](const Near& q) { return rate_[q.grain]; },
        [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
 }

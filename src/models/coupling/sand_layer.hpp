@@ -6,13 +6,26 @@
 // (models/column/air_column.hpp): it has the speed of the air's particles on its top, passes between the grains of the
 // bed, and loses what the grains take. The stress on its top is what the ground takes from the air's particles, in
 // place of the logarithmic law of a roughness: grains that fly make the ground rougher by themselves.
+//
+// A layer is 40 diameters long at least, and a grain feels the wind of the two about it, by linear weights: in a
+// shorter one the wake of a grain would hold back the grain itself. (The wind needs about that way to get over what a
+// grain has taken: the time in which it mixes over three diameters, times its speed.)
+//
+// On request grains in a layer feel gusts (gusts.hpp) and a lift across the ground by the shear about them: with U+, U-
+// the mean wind about the upper and the lower half of a grain of speed v along the ground, U about all of it, u with
+// the gust, and k the drag by difference of speed,
+//   a = C k (U+ - U-) (u - v)/max(|u - v|, |u|),
+// Anderson & Hallet's (1986) difference of the squares of the winds on top and at the bottom of the grain. It is C
+// times the drag where a grain rests and the wind is linear from zero at its bottom: C = 0.85 (Chepil 1958).
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "models/column/air_column.hpp"
 #include "models/coupling/air_grid.hpp"
+#include "models/coupling/gusts.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -32,14 +45,30 @@ class SandLayer : public Model {
   static constexpr double cells = 4.0;       // a diameter
   static constexpr double fine = 10.0;       // diameters over the ground with such cells
   static constexpr double interval = 0.004;  // of sqrt(d/g), between two exchanges: 20 us for 0.25 mm
+  static constexpr double long_as = 40.0;    // diameters, of a layer, at least one spacing of the air
   static constexpr std::size_t heights = 8;  // of the ground, known a spacing of the air
 
   /// The ground under a place: its height (m, as a coordinate), and the direction along it.
   struct Ground {
     double height, along_x, along_y;
   };
+  /// Two layers about a place; `share` is the weight of the right one.
+  struct Between {
+    std::size_t left, right;
+    double share;
+  };
+  /// A grain in a layer, where it will be in the middle of the time to the next exchange.
+  struct Near {
+    std::size_t grain;
+    Between place;
+    double height, radius;  // m over the ground, m
+    double wind;            // m/s, the mean about it
+    double pull;            // m/s2 along the ground, its drag in that wind
+    Ground ground;
+  };
   Ground ground(double x) const;
-  std::size_t column_at(double x) const;
+  Between between(double x) const;
+  double wind_about(const Between& b, double low, double high) const;
 
   void act();
   void exchange(double kept, double meant);
@@ -50,30 +79,28 @@ class SandLayer : public Model {
   void blow(double dt);
   void give_stress();
   double top_speed(std::size_t column) const;
+  double felt(double x, double wind) const;
+  double lift(const Near& q, double blows, double along, double rate) const;
   AirProfile& profile(std::size_t column) const { return w_->state.air[place_ + column]; }
 
   const Scene& scene_;
   const Layout& layout_;
-  std::size_t fluid_, grains_, place_ = 0;
+  std::size_t fluid_, grains_, place_ = 0, samples_ = 1;  // samples_: spacings of the air in a layer
   DragLaw law_;
   std::string name_;
   double density_, viscosity_, diameter_, top_, width_ = 0.0;  // kg/m3, m2/s, m, m, m
-  double interval_, hold_ = 0.0;                               // s
+  double lift_;
+  double interval_, hold_ = 0.0;  // s
   Workspace* w_ = nullptr;
   AirGrid grid_;
+  std::optional<Gusts> gusts_;  // where the entry has some
   std::vector<double> ground_;  // m, over the bottom of the domain
   std::vector<AirColumn> layers_;
   std::vector<AirColumn::Spread> spreads_;
   std::vector<AirColumn::Load> loads_;
-  /// A grain in a layer, where it will be in the middle of the time to the next exchange.
-  struct Near {
-    std::size_t grain, column;
-    double height, radius, wind;  // m over the ground, m, m/s
-    Ground ground;
-  };
   std::vector<Near> near_;           // grains in the layers
   std::vector<std::size_t> flying_;  // grains over them
-  std::vector<double> rate_;         // 1/s, of each grain
+  std::vector<double> rate_;         // 1/s, of each grain, by the difference of speed
 };
 
 }  // namespace barchan
