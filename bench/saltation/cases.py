@@ -207,6 +207,32 @@ def flux(bench):
     return {"block": BLOCK, "runs": runs}
 
 
+# --- flux in resolved air ------------------------------------------------------------------------------------------------
+
+RESOLVED = ((0.40, 21.09, 1.8, 3.0),)  # u*, Creyssels, averaged from and to, s
+
+
+def resolved(bench):
+    """flat_bed.toml with nothing that holds the wind: the stress on the lid is rho u*^2, and air and sand find their balance."""
+    runs = []
+    for u, creyssels, begin, end in RESOLVED:
+        name = f"rflux_{u:g}"
+        if not (bench.out / name / "saltation_sand.json").exists():
+            bench.run("flat_bed", name, f"phases.lid.shear-stress=[{1.225 * u * u:.9g}, 0]", f"fill.4.velocity.log-profile.friction-velocity={u}", "forcing=[]",
+                      f"time.end={end}", "output.every=0.1", f'saltation=[{{ name = "sand", phase = "sand", every = 1e-3, start = {begin} }}]')
+        h = table(bench.out / name / "history.csv")
+        blocks = {}
+        for t, q in zip(h["time"], h["sand_flux"]):
+            if t >= begin:
+                blocks.setdefault(int((t - begin) / BLOCK), []).append(1e3 * q)
+        means = [sum(b) / len(b) for b in blocks.values() if len(b) > 10]
+        mean = sum(means) / len(means)
+        fit = json.loads((bench.out / name / "saltation_sand.json").read_text())
+        runs.append({"u": u, "creyssels": creyssels, "flux": mean, "error": math.sqrt(sum((m - mean) ** 2 for m in means) / max(len(means) - 1, 1) / len(means)),
+                     "flux_decay": fit["flux_decay"]["height"] / fit["diameter"], "from": begin, "to": h["time"][-1]})
+    return {"block": BLOCK, "runs": runs}
+
+
 # --- splash -----------------------------------------------------------------------------------------------------------
 
 # Rice, Willetts & McEwan 1995, medium sand: speed (m/s) and angle of the impact; share of the speed and angle of the rebound; grains
@@ -362,7 +388,7 @@ def heaps(bench):
     return {"repose": angles, "collapse": columns}
 
 
-CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "heaps": heaps}
+CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "resolved": resolved, "heaps": heaps}
 
 
 def main():
