@@ -70,7 +70,7 @@ def report(what, bound, value, good):
 def watch(program, scratch):
     for scene, sets in (("verification/taylor_green.toml", ["spacing=0.005", "time.end=0.1"]),
                         ("paper/impact_cubes.toml", ["time.end=1e-4", "output.every=1e-3"]),
-                        ("verification/dam_break.toml", ["time.end=0.5"]), ("repose.toml", ["fill.2.packing=staggered", "time.end=0.1"])):
+                        ("verification/dam_break.toml", ["time.end=0.5"]), ("column_collapse.toml", ["fill.1.packing=staggered", "time.end=0.1"])):
         out = scratch / "watch"
         run(program, scene, sets, out)
         seconds = json.loads((out / "run.json").read_text())["seconds"]

@@ -25,12 +25,18 @@ class Bench:
     def run(self, scene, name, *overrides):
         """Runs a scene of the repository; returns its folder."""
         folder = self.out / name
-        command = [self.program, "run", str(ROOT / "scenes" / f"{scene}.toml"), "--out", str(folder), "--quiet",
-                   "--threads", str(self.threads)]
-        for o in overrides:
-            command += ["--set", o]
-        subprocess.run(command, check=True)
+        self.call("run", scene, ["--out", str(folder), "--quiet", "--threads", str(self.threads)], overrides)
         return folder
+
+    def generate(self, scene, file, *overrides):
+        """Writes the particles with which a scene of the repository begins."""
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.call("generate", scene, ["-o", str(file)], overrides)
+
+    def call(self, command, scene, options, overrides):
+        file = scene if isinstance(scene, pathlib.Path) else ROOT / "scenes" / f"{scene}.toml"
+        sets = [word for o in overrides for word in ("--set", o)]
+        subprocess.run([self.program, command, str(file), *options, *sets], check=True)
 
 
 def table(file):
@@ -207,9 +213,27 @@ def flux(bench):
     return {"block": BLOCK, "runs": runs}
 
 
+IMPACT_WINDS, IMPACT_END = (0.18, 0.20, 0.22), 3.0  # u* (m/s), s
+
+
+def impact(bench):
+    """The least wind that keeps saltation going once grains fly: saltation.toml in weak winds, the flux of its last second."""
+    runs = []
+    for u in IMPACT_WINDS:
+        for seed in SEEDS:
+            folder = bench.out / f"impact_{u:.2f}_{seed}"
+            if not (folder / "saltation_sand.json").exists():
+                bench.run("saltation", folder.name, f"phases.air.friction-velocity={u}", f"fill.1.seed={seed}", f"time.end={IMPACT_END}",
+                          f"saltation.0.start={IMPACT_END / 2}", "output.every=0.5")
+            h = table(folder / "history.csv")
+            last = [1e3 * q for t, q in zip(h["time"], h["sand_flux"]) if t >= IMPACT_END - 1.0]
+            runs.append({"u": u, "seed": seed, "flux": sum(last) / len(last), "end": h["time"][-1]})
+    return {"runs": runs}
+
+
 # --- flux in resolved air ------------------------------------------------------------------------------------------------
 
-RESOLVED = ((0.40, 21.09, 1.8, 3.0),)  # u*, Creyssels, averaged from and to, s
+RESOLVED = ((0.24, 5.25, 1.8, 3.0), (0.40, 21.09, 1.8, 3.0), (0.56, 48.85, 1.8, 3.0))  # u*, Creyssels, averaged from and to, s
 
 
 def resolved(bench):
@@ -353,9 +377,37 @@ def threshold(bench):
     return {"rows": rows}
 
 
+# --- the paper's kernel and drag by name ----------------------------------------------------------------------------------
+
+KERNEL_DRAG_D, KERNEL_DRAG_LENGTH, KERNEL_DRAG_TIMES = 5e-4, 0.06, (0.003, 0.012, 0.021, 0.030)  # m, m, s
+MASS_OF_A_SPHERE = math.pi / 6  # in a slab a diameter thick, over that of a grain of the kernel, rho d^2 by metre
+
+
+def kernel_drag(bench):
+    """The flat bed of the paper with its kernel between air and sand, and with drag by name: what leaves the same bed, when and how fast."""
+    import numpy
+    d, rows = KERNEL_DRAG_D, []
+    drag = pathlib.Path(__file__).resolve().parent / "flat_bed_drag.toml"
+    for law, scene, share in (("kernel", "paper/flat_bed", 1.0), ("drag", drag, MASS_OF_A_SPHERE)):
+        folder = bench.run(scene, f"kernel_drag_{law}", "output.every=5e-4")
+        frames = frames_of(folder, pathlib.Path(scene).stem, "sand")
+        start = frames[0][1]
+        rises = [(t, v[(x[:, 1] - start[:, 1]) > d]) for t, x, v in frames]
+        first, how = next((t, v) for t, v in rises if len(v))
+        top, mass = start[:, 1].max(), 2650 * d * d * share
+        at = []
+        for wanted in KERNEL_DRAG_TIMES:
+            t, x, v = min(frames, key=lambda f: abs(f[0] - wanted))
+            at.append({"t": t, "flying": int((x[:, 1] > top + d).sum()), "height": float(x[:, 1].max() - top) / d,
+                       "fastest": float(numpy.hypot(v[:, 0], v[:, 1]).max()), "flux": 1e3 * mass * float(v[:, 0].sum()) / KERNEL_DRAG_LENGTH})
+        rows.append({"law": law, "grains": len(start), "take_off": first, "along": float(how[:, 0].mean()), "up": float(how[:, 1].mean()), "at": at})
+    return {"rows": rows}
+
+
 # --- heaps --------------------------------------------------------------------------------------------------------------
 
 HEAP_SEEDS, HEAP_D = (1, 2, 3), 1e-3
+HEAP_FRICTIONS = ((0.5, 0.2), (0.6, 0.3), (1.0, 0.8))  # friction and rolling-friction
 
 
 def surface_of(x, step):
@@ -368,27 +420,47 @@ def surface_of(x, step):
     return [(k + 0.5) * step for k in range(number)], [tops[k] for k in range(number)]
 
 
-def heaps(bench):
-    """The angle of the heap of repose.toml, and what column_collapse.toml leaves, a bed each seed."""
+def slope_of(x):
+    """Angle (degrees) of the line through the surface of grains at x, from 0.25 to 0.85 of its height; falls along x: positive."""
     import numpy
-    angles, columns = [], []
+    along, up = surface_of(x, 2 * HEAP_D)
+    low, high = min(up), max(up)
+    kept = [k for k, y in enumerate(up) if 0.25 <= (y - low) / (high - low) <= 0.85]
+    return -math.degrees(math.atan(numpy.polyfit([along[k] for k in kept], [up[k] for k in kept], 1)[0]))
+
+
+def drained(bench, seed, *overrides):
+    """The last frame of repose.toml with a bed of its own: the angle above the shelf, that of the heap below, and what still moves."""
+    import numpy
+    shelf, width = 0.0505, 0.076  # m: between the chambers, and where the slot begins
+    bed = bench.out / f"repose_bed_{seed}{''.join(overrides)}.vtp".replace("=", "_")
+    sand = 'shape = { box = { min = [0, 0.051], max = [0.09, 0.091] } }, packing = "settled"'
+    bench.generate("repose", bed, "fill.0.shape.box.max=[0.09, 0.051]", "output.walls=false", f'fill.2={{ phase = "sand", {sand}, seed = {seed} }}', *overrides)
+    folder = bench.run("repose", bed.stem.replace("_bed", ""), f'fill.2={{ phase = "sand", shape = {{ file = "{bed}" }} }}', *overrides)
+    _, x, v = frames_of(folder, "repose", "sand")[-1]
+    above = x[:, 1] > shelf
+    mirror = numpy.column_stack([0.09 - x[~above][:, 0], x[~above][:, 1]])
+    return {"seed": seed, "angle": slope_of(x[above & (x[:, 0] < width)]), "speed": float(numpy.hypot(*v[above][:, :2].T).max()), "below": slope_of(mirror)}
+
+
+def heaps(bench):
+    """The angle at which repose.toml rests, and what column_collapse.toml leaves, a bed each seed."""
+    import numpy
+    angles, columns = [drained(bench, seed) for seed in HEAP_SEEDS], []
+    harder = [drained(bench, 1, f"phases.sand.friction={mu}", f"phases.sand.rolling-friction={rolling}") for mu, rolling in HEAP_FRICTIONS]
     for seed in HEAP_SEEDS:
-        _, x, v = frames_of(bench.run("repose", f"repose_{seed}", f"fill.2.seed={seed}"), "repose", "sand")[-1]
-        along, up = surface_of(x, 2 * HEAP_D)
-        low, high = min(up), max(up)
-        kept = [k for k, y in enumerate(up) if 0.25 <= (y - low) / (high - low) <= 0.85]
-        slope = numpy.polyfit([along[k] for k in kept], [up[k] for k in kept], 1)[0]
-        angles.append({"seed": seed, "angle": math.degrees(math.atan(-slope)), "speed": float(numpy.hypot(v[:, 0], v[:, 1]).max())})
         frames = frames_of(bench.run("column_collapse", f"column_{seed}", f"fill.1.seed={seed}"), "column_collapse", "sand")
         start, end = frames[0][1], frames[-1][1]
         length, height = 0.03, float(numpy.quantile(start[:, 1], 0.99)) + 0.5 * HEAP_D
         along, up = surface_of(end, 2 * HEAP_D)
         columns.append({"seed": seed, "aspect": height / length, "front": (float(numpy.quantile(end[:, 0], 0.99)) - length) / length,
                         "gap": (along[-1] + HEAP_D - length) / length, "height": max(up) / length})
-    return {"repose": angles, "collapse": columns}
+    frictions = [dict(h, friction=mu, rolling=rolling) for h, (mu, rolling) in zip(harder, HEAP_FRICTIONS)]
+    return {"parameters": {"friction": 0.6, "rolling": 0.6}, "repose": angles, "frictions": frictions, "collapse": columns}
 
 
-CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "resolved": resolved, "heaps": heaps}
+CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "impact": impact, "resolved": resolved, "heaps": heaps,
+         "kernel-drag": kernel_drag}
 
 
 def main():

@@ -79,10 +79,10 @@ class Restart(unittest.TestCase):
         self.assertGreater(len(files(out)), len(before))
 
     def test_a_settled_bed_is_taken_from_the_checkpoint(self):
-        bed = ["--set", "fill.2.shape.box.max=[0.015, 0.016]", "--set", "output.every=0.001", "--threads", "1"]
+        bed = ["--set", "fill.1.shape.box.max=[0.015, 0.016]", "--set", "output.every=0.001", "--threads", "1"]
 
         def go(out, end, *options):
-            made = subprocess.run([PROGRAM, "run", str(SOURCE / "scenes/repose.toml"), "--out", str(out), "--set", f"time.end={end}", *bed, *options],
+            made = subprocess.run([PROGRAM, "run", str(SOURCE / "scenes/column_collapse.toml"), "--out", str(out), "--set", f"time.end={end}", *bed, *options],
                                   capture_output=True, text=True)
             self.assertEqual(made.returncode, 0, made.stderr)
             return made.stdout
