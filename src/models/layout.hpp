@@ -130,6 +130,7 @@ struct PlanPhase {
   std::string enclosure = "";            // why it is enclosed or not, of a fluid
   std::string physics = "";              // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
   std::vector<RigidBody> rigid_bodies;   // at the start; none of a phase of another kind
+  double weight_share = 1.0;             // of gravity, that grains feel: less than 1 with buoyancy
   double contact_stiffness = 0;          // N/m, of a rigid body with another (2D: N/m a metre)
   std::vector<Field> fields;
   PhaseRules rules;

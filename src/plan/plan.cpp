@@ -170,6 +170,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     q.count = blocks[k].position.size();
     q.spacing = p.spacing;
     q.mass = (p.density > 0 ? p.density : 1.0) * std::pow(p.spacing, scene.dimensions);
+    if (p.if_grains()) q.weight_share = weight_share(scene, p);
     if (const auto size = p.diameter(); size && p.if_grains()) {
       q.diameter = size->mean;
       q.largest_diameter = size->largest();

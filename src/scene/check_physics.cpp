@@ -159,6 +159,24 @@ class PhysicsChecker {
                      "\" feels, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
   }
 
+  void buoyancy(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) {
+    if (!pair.buoyancy) return;
+    const bool first = a.kind() == PhaseKind::grains;
+    const Phase &grains = first ? a : b, &fluid = first ? b : a;
+    const bool column = fluid.kind() == PhaseKind::column;
+    const std::string place = dotted + ".buoyancy";
+    if (grains.kind() != PhaseKind::grains ||
+        !(column || (fluid.kind() == PhaseKind::fluid && pair.drag_law != DragLaw::none)))
+      return tell(place,
+                  "only the entry of grains with a column, or with a fluid and a law of drag by name, has it (a kernel "
+                  "gives grains the fluid's pressure, which bears them); expected no such key");
+    if (norm(scene_.domain.gravity) == 0.0)
+      return tell(place, "nothing has a weight; expected domain.gravity, or no such key");
+    if (!(fluid.density < grains.density))
+      tell(place, "\"" + grains.name + "\" would float in \"" + fluid.name +
+                      "\"; expected a density of the grains above that of the fluid");
+  }
+
   void pair(const Interaction& pair, const Phase& a, const Phase& b) {
     const std::string dotted = "interactions." + pair.a + "-" + pair.b;
     const auto is = [&](PhaseKind k, PhaseKind l) {
@@ -170,6 +188,7 @@ class PhysicsChecker {
         tell(dotted + key,
              "only the entry of a fluid of particles and grains with a law of drag by name, as drag = \"duran\", has "
              "it; expected no such key");
+    buoyancy(pair, a, b, dotted);
     contact(pair, a, b, dotted);
     if (of_spheres(pair) || touch_as_bodies(pair, a, b)) return;
     if (report_.has(dotted + ".drag") && !is(fluid, grains) && !is(column, grains))

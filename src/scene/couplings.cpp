@@ -54,6 +54,16 @@ bool drags_by_law(const Scene& scene, const Phase& phase) {
   });
 }
 
+double weight_share(const Scene& scene, const Phase& grains) {
+  double share = 1.0;
+  for (const Interaction& pair : scene.interactions) {
+    if (!pair.buoyancy || (pair.a != grains.name && pair.b != grains.name)) continue;
+    const Phase* fluid = find_phase(scene, pair.a == grains.name ? pair.b : pair.a);
+    if (fluid && fluid->kind() != PhaseKind::grains) share -= fluid->density / grains.density;
+  }
+  return share;
+}
+
 bool has_eddies(const Scene& scene, const Phase& fluid) {
   if (fluid.kind() != PhaseKind::fluid) return false;
   return fluid.fluid().turbulence != Turbulence::none ||

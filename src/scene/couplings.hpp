@@ -32,6 +32,9 @@ bool touches_by(const Scene& scene, const Phase& phase, ContactLaw law);
 /// Whether the phase has an entry of a fluid and grains with a law of drag by name.
 bool drags_by_law(const Scene& scene, const Phase& phase);
 
+/// The share of gravity that grains feel: 1 - rho_fluid/rho_grain with the fluids of entries with buoyancy, else 1.
+double weight_share(const Scene& scene, const Phase& grains);
+
 /// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
 /// `roughness` or `shear-stress`.
 bool has_eddies(const Scene& scene, const Phase& fluid);

@@ -151,6 +151,8 @@ constexpr Key table[] = {
      "Only with a law of drag by name, in a fluid: lift of a grain that stands on the bed over its drag, by the shear of the wind about it (docs/method.md); 0.85 measured by Chepil 1958.", not_negative},
     {"interactions.pair", "gusts", at<&Interaction::gusts>(0.0), "",
      "Only with a law of drag by name, in a fluid: standard deviation of the wind near the bed over its mean, in patterns that the wind carries (docs/method.md); 0.38 at a wall.", {.at_least = 0.0, .at_most = 0.6}},
+    {"interactions.pair", "buoyancy", at<&Interaction::buoyancy>(false), "",
+     "Only with a law of drag by name: grains weigh less by the fluid that they displace, g (1 - rho_fluid/rho_grain) (docs/method.md). In air 0.05 % for quartz; in water it matters."},
     {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
      "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
      "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},

@@ -21,7 +21,8 @@ Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravi
   bool walls = false, moving_walls = false;
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (p.moves) moving_.push_back({k, p.flows ? p.sound_speed : 0.0, p.flows ? scene.phases[k].density : 0.0});
+    if (p.moves)
+      moving_.push_back({k, p.flows ? p.sound_speed : 0.0, p.flows ? scene.phases[k].density : 0.0, p.weight_share});
     sound_speed_ = std::max(sound_speed_, plan.phases[k].sound_speed);
     if (const WallKeys* wall = scene.phases[k].if_wall()) {
       walls = true;
@@ -49,7 +50,8 @@ Budget::Sums Budget::sums(const State& state) const {
       s.momentum[c] += ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i]; });
       s.kinetic += 0.5 * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i] * v[i]; });
       if (gravity_[c] != 0.0)
-        s.potential -= gravity_[c] * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * x[i]; });
+        s.potential -=
+            moving.weight_share * gravity_[c] * ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * x[i]; });
     }
     if (moving.density > 0.0) {
       const double* rho = p.column(Field::density);

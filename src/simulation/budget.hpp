@@ -48,6 +48,7 @@ class Budget {
   struct Moving {
     std::size_t phase = 0;
     double sound_speed = 0.0, density = 0.0;  // m/s and kg/m3 of a fluid; 0: nothing is stored
+    double weight_share = 1.0;                // of gravity
   };
   std::vector<Moving> moving_;
   Vec3 gravity_{};  // m/s2

@@ -71,6 +71,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
   const SphereSize size = *phase.diameter();
   Scene s = scene;
   s.phases = {phase};
+  s.domain.gravity = weight_share(scene, phase) * scene.domain.gravity;
   std::get<GrainsKeys>(s.phases[0].own).restitution = std::min(restitution, phase.grains().restitution);
   std::get<GrainsKeys>(s.phases[0].own).sleep = false;
   s.interactions.clear();
@@ -341,8 +342,8 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   const bool from_file = std::holds_alternative<FileShape>(scene.fills[k].shape);
   std::vector<ParticleBlock> blocks =
       from_file ? begin_with_file(scene, k, s) : begin_loosely(scene, scene.fills[k], s, c, thickness);
-  const double unit = std::sqrt(s.phases[0].diameter()->mean / norm(scene.domain.gravity)),
-               fall = std::sqrt(2.0 * thickness / norm(scene.domain.gravity)) / unit;
+  const double unit = std::sqrt(s.phases[0].diameter()->mean / norm(s.domain.gravity)),
+               fall = std::sqrt(2.0 * thickness / norm(s.domain.gravity)) / unit;
   std::vector<Scene> stages;
   if (!from_file)
     for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));

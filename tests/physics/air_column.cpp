@@ -54,6 +54,24 @@ TEST_F(AirColumnScene, AGrainSettlesAsTabulated) {
   EXPECT_LT(worst, 0.005);
 }
 
+/// In water a grain weighs 0.62 of what it weighs in air. Exact: g (1 - rho/rho_s) = 18 mu v (1 + 0.15 Re^0.687)/(rho_s
+/// d^2).
+TEST_F(AirColumnScene, AGrainInWaterIsBorneByIt) {
+  const double density = 998.0, nu = 1.004e-6, solid = 2650.0, d = 2.5e-4;
+  double low = 0.0, high = 1.0;
+  for (int k = 0; k < 100; ++k) {
+    const double v = 0.5 * (low + high), re = v * d / nu;
+    const double drag = 18.0 * density * nu * v * (1.0 + 0.15 * std::pow(re, 0.687)) / (solid * d * d);
+    (drag > 9.81 * (1.0 - density / solid) ? high : low) = v;
+  }
+  Drive drive("verification/settling", {"phases.air.density=998", "phases.air.viscosity=1.004e-6",
+                                        "interactions.air-sand.buoyancy=true", "time.end=0.1"});
+  drive.to(0.1);
+  const double error = std::abs(-drive.phase(1).column(Field::velocity, 1)[0] / low - 1.0);
+  report("settling in water: terminal speed", error, 0.003);
+  EXPECT_LT(error, 0.003);
+}
+
 /// A step ten times as long (and the relaxation time a hundredth: grains as heavy as air) stays at the terminal speed.
 TEST_F(AirColumnScene, ALongStepIsStable) {
   Drive drive("verification/settling", {"phases.sand.density=5", "time.step=3e-3", "time.end=0.3"});

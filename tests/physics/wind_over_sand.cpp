@@ -48,6 +48,17 @@ TEST(WindOverSand, AHeavyBedIsAsRoughAsItsGrains) {
   EXPECT_NEAR(share, 1.05, 0.15);
 }
 
+/// A grain that is twice as heavy as the air feels half of gravity besides its drag.
+TEST(WindOverSand, BuoyancyTakesTheWeightOfTheAir) {
+  Drive drive("wind_over_sand", {"fill.3={ phase = \"sand\", shape = { points = [[0.05, 0.02]] } }",
+                                 "phases.sand.diameter={ mean = 2.5e-4, spread = 0 }", "phases.sand.density=2.45",
+                                 "interactions.air-sand.buoyancy=true", "time.end=1e-5"});
+  drive.simulation().step(1e-5);
+  const PhaseParticles& sand = drive.phase(1);
+  const double weight = sand.column(Field::acceleration, 1)[0] - sand.column(Field::drag_acceleration, 1)[0];
+  EXPECT_NEAR(weight, -0.5 * 9.81, 1e-9);
+}
+
 /// Of one grain on flat ground, at rest: the share of the drag that Anderson & Hallet's difference of winds gives.
 TEST(WindOverSand, LiftIsAShareOfTheDrag) {
   const std::string grain = "fill.3={ phase = \"sand\", shape = { points = [[0.05, 0.0032]] } }";

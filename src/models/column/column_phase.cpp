@@ -7,6 +7,7 @@
 #include "engine/means.hpp"
 #include "laws/kept_drag.hpp"
 #include "output/numbers.hpp"
+#include "scene/couplings.hpp"
 #include "scene/log_wind.hpp"
 
 namespace barchan {
@@ -268,6 +269,7 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
   }
   const double* y = p.column(Field::position, 1);
   const Diameters diameter(p, grains.diameter);
+  const double weight = weight_share(scene_, scene_.phases[grains.phase]);
   const double time = hold_, ahead = time_ahead(grains);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
@@ -279,7 +281,7 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     std::array<double, dimensions> air{speed}, own{}, gravity{};
     for (std::size_t c = 0; c < dimensions; ++c) {
       own[c] = v[c][k];
-      gravity[c] = scene_.domain.gravity[c];
+      gravity[c] = weight * scene_.domain.gravity[c];
     }
     const auto kept = kept_drag<dimensions>(
         air, own, gravity, stokes, d / keys_.viscosity, [&](double re) { return excess(re, at); }, time);

@@ -257,7 +257,8 @@ void SandLayer::feel() {
   const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
   const double solid = scene_.phases[grains_].density, half = 0.5 * hold_;
-  const std::array<double, 2> gravity{scene_.domain.gravity[0], scene_.domain.gravity[1]};
+  const double weight = layout_.phases[grains_].weight_share;
+  const std::array<double, 2> gravity{weight * scene_.domain.gravity[0], weight * scene_.domain.gravity[1]};
   with_drag_law(law_, [&](auto law) {
     const auto excess = [](double re) { return decltype(law)::excess(re); };
     const auto of = [&](std::size_t k, const std::array<double, 2>& wind) {

@@ -132,7 +132,8 @@ void GrainPhase::kick_and_drift() {
 void GrainPhase::weigh() {
   PhaseParticles& p = w_->particles(number_);
   for (int d = 0; d < layout_.dimensions; ++d)
-    std::fill_n(p.column(Field::acceleration, d), p.size(), scene_.domain.gravity[static_cast<std::size_t>(d)]);
+    std::fill_n(p.column(Field::acceleration, d), p.size(),
+                plan_.weight_share * scene_.domain.gravity[static_cast<std::size_t>(d)]);
   forces_.add(p, w_->state.time, true);
 }
 
