@@ -103,6 +103,8 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
       records += n * (numbers * number + (gradient + dimensions) * wide + index);
       for (const auto& e : plan.entries)
         if (e.law == Law::elastic && e.a == k) start += n * 40.0 * (1.0 + e.consistency.neighbours);
+      for (const auto& e : plan.entries)  // models/bodies/self_contact.hpp
+        if (e.of_bodies && e.a == k && e.b == k) records += n * (2.0 * wide + index * (dimensions == 2 ? 25.0 : 93.0));
     }
     const double search = all * dimensions * narrow * 1.125 + (all - n) * sizeof(Image);
     grids += cells(plan, k) * 4.0 * index + search + 2.0 * n * index;

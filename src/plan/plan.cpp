@@ -120,6 +120,16 @@ void add_entries(const Scene& scene, Plan& plan) {
       for (const std::size_t p : {e.a, e.b})
         if (e.a == e.b || plan.phases[p].smoothing_length == 0) plan.phases[p].smoothing_length = 0.5 * e.radius;
     }
+    if (touches_itself(i, scene.phases[e.a], scene.phases[e.b])) {  // an entry of its own: it is searched
+      e.name += " contact";
+      e.law = Law::contact;
+      e.of_bodies = true;
+      e.corrected = false;
+      e.consistency = {};
+      e.radius = plan.phases[e.a].spacing;
+      add_directions(scene, plan, e);
+      plan.entries.push_back(e);
+    }
   }
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     auto& p = plan.phases[k];

@@ -23,6 +23,16 @@ void check_formulation(const Phase& phase, const Report& report) {
 /// restitution and friction, and what a contact of bodies has no use for.
 void check_contact(const Interaction& pair, const Phase& a, const Phase& b, const Report& report) {
   const std::string dotted = "interactions." + pair.a + "-" + pair.b;
+  if (touches_itself(pair, a, b)) return;
+  if (a.name == b.name && a.kind() == PhaseKind::elastic) {
+    for (const char* key : {".restitution", ".friction"})
+      if (report.has(dotted + key))
+        report(dotted + key, is_total(a)
+                                 ? "nothing reads it without restitution; expected restitution beside it"
+                                 : "parts of an updated Lagrangian body feel each other by its kernel; expected "
+                                   "formulation = \"total-lagrangian\", or no such key here");
+    return;
+  }
   if (!touch_as_bodies(pair, a, b)) {
     for (const char* key : {".restitution", ".friction"})
       if (report.has(dotted + key))

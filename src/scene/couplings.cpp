@@ -108,10 +108,15 @@ bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b) {
   return bodies_may_touch(a, b) && (pair.restitution || is_total(a) || is_total(b) || rigid);
 }
 
+bool touches_itself(const Interaction& pair, const Phase& a, const Phase& b) {
+  return a.name == b.name && is_total(a) && pair.restitution;
+}
+
 bool touches_as_body(const Scene& scene, const Phase& phase) {
   return std::any_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
-    return (pair.a == phase.name || pair.b == phase.name) &&
-           touch_as_bodies(pair, *find_phase(scene, pair.a), *find_phase(scene, pair.b));
+    if (pair.a != phase.name && pair.b != phase.name) return false;
+    const Phase &a = *find_phase(scene, pair.a), &b = *find_phase(scene, pair.b);
+    return touch_as_bodies(pair, a, b) || touches_itself(pair, a, b);
   });
 }
 

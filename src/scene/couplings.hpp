@@ -51,7 +51,10 @@ bool has_surface(const Shape& shape, int dimensions);
 bool only_sides(const Scene& scene, const Phase& wall);
 /// Whether this entry is one: it says restitution, or a total Lagrangian or rigid body has no other.
 bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b);
-/// Whether the phase has such an entry.
+/// Whether the own entry of a total Lagrangian body says restitution: parts of it that are far apart in its first shape
+/// touch each other.
+bool touches_itself(const Interaction& pair, const Phase& a, const Phase& b);
+/// Whether the phase has an entry of one of these two.
 bool touches_as_body(const Scene& scene, const Phase& phase);
 
 }  // namespace barchan

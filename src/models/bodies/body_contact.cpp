@@ -16,7 +16,7 @@ constexpr double softness = 0.25;
 
 BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   double stiffness = 1e300, inverse_mass = 0.0;
-  for (const std::size_t k : {e.a, e.b}) {
+  for (const std::size_t k : {e.a, e.b}) {  // of a body with itself twice
     const PlanPhase& p = layout.phases[k];
     if (!p.moves || !p.rigid_bodies.empty()) continue;  // as hard and as heavy as a wall
     const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
@@ -53,8 +53,30 @@ BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEnt
     if (!layout.phases[k].moves) sides_ = sides_of(scene, layout, scene.phases[k]);
 }
 
+void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
+  if (!itself()) return;
+  const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+    return e.law == Law::elastic && e.a == entry_.a && e.b == entry_.b;
+  });
+  far_ = FarPairs(blocks[entry_.a].position, layout_.bounds, layout_.phases[entry_.a].spacing, held->radius);
+}
+
+void BodyContact::attach(Workspace& w) {
+  w_ = &w;
+  if (itself()) w.when_sorted.emplace_back([this] { must_choose_ = true; });
+}
+
+void BodyContact::archive(Archive& a) {
+  if (a.loads()) must_choose_ = true;
+}
+
 void BodyContact::schedule(Schedule& s) {
   using enum Field;
+  if (itself()) {
+    s.add(
+        {stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this] { push_itself(); }});
+    return;
+  }
   for (const std::size_t phase : {entry_.a, entry_.b}) {
     if (!layout_.phases[phase].moves) continue;
     if (!sides_.empty())
@@ -82,13 +104,20 @@ void BodyContact::limits(std::vector<StepLimit>& limits) const {
   // The restitution of two particles needs a tenth; how bodies part is decided by their own waves.
   const bool single = of_single_particles();
   const double share = single ? StepConstants::restitution : StepConstants::body_contact;
-  limits.push_back({"contact " + entry_.name, scene_.time.safety * share * law_.time_scale(),
+  limits.push_back({itself() ? entry_.name : "contact " + entry_.name, scene_.time.safety * share * law_.time_scale(),
                     single ? "0.1 sqrt(m/K): keeps the restitution" : "0.35 sqrt(m/K): a contact of bodies"});
 }
 
 void BodyContact::push(std::size_t phase) {
   body_contact_forces(w_->particles(phase), w_->motion[phase], w_->list(entry_.direction(phase)),
                       w_->motion[entry_.partner(phase)], law_, w_->state.dt);
+}
+
+void BodyContact::push_itself() {
+  PhaseParticles& body = w_->particles(entry_.a);
+  if (must_choose_) far_.choose(body, w_->list(entry_.forward), w_->neighbours.grid(entry_.a));
+  must_choose_ = false;
+  body_contact_forces(body, w_->motion[entry_.a], far_, law_, w_->state.dt);
 }
 
 void BodyContact::push_from_sides(std::size_t phase) {

@@ -1,4 +1,5 @@
-// An entry whose law is a contact of bodies: with another body or with a wall (laws/body_contact.hpp).
+// An entry whose law is a contact of bodies: with another body, with a wall, or of parts of one body
+// (laws/body_contact.hpp).
 #pragma once
 
 #include "models/bodies/body_forces.hpp"
@@ -9,12 +10,15 @@ namespace barchan {
 class BodyContact : public Model {
  public:
   BodyContact(const Scene& scene, const Layout& layout, const PlanEntry& entry);
-  void attach(Workspace& w) override { w_ = &w; }
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void limits(std::vector<StepLimit>& limits) const override;
+  void archive(Archive& a) override;
 
  private:
   void push(std::size_t phase);
+  void push_itself();
   void push_from_sides(std::size_t phase);
   bool of_single_particles() const;
 
@@ -24,6 +28,10 @@ class BodyContact : public Model {
   BodyContactLaw law_;
   std::vector<BodySide> sides_;  // of a wall that is nothing else
   Workspace* w_ = nullptr;
+  // Of a body with itself:
+  bool itself() const { return entry_.a == entry_.b; }
+  FarPairs far_;
+  bool must_choose_ = true;  // the list is new
 };
 
 }  // namespace barchan

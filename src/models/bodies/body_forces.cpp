@@ -15,8 +15,9 @@ std::array<double*, Dim> felt_columns(PhaseParticles& p) {
   return felt;
 }
 
-template <int Dim, bool Rubs>
-void contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
+/// List: PairList or FarPairs.
+template <int Dim, bool Rubs, class List>
+void contacts(PhaseParticles& a, const RecordArray& own, const List& list, const RecordArray& others,
               const BodyContactLaw& law, double dt) {
   using R = MotionRecord<Dim>;
   std::array<double*, Dim> acceleration{};
@@ -104,12 +105,26 @@ void body_side_forces(PhaseParticles& a, const BodySide& side, double half, cons
   else rubs ? sides<3, true>(a, side, half, law, dt) : sides<3, false>(a, side, half, law, dt);
 }
 
-void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
-                         const BodyContactLaw& law, double dt) {
+namespace {
+
+template <class List>
+void contacts_of(PhaseParticles& a, const RecordArray& own, const List& list, const RecordArray& others,
+                 const BodyContactLaw& law, double dt) {
   const bool rubs = law.friction > 0.0;
   if (a.dimensions() == 2)
     rubs ? contacts<2, true>(a, own, list, others, law, dt) : contacts<2, false>(a, own, list, others, law, dt);
   else rubs ? contacts<3, true>(a, own, list, others, law, dt) : contacts<3, false>(a, own, list, others, law, dt);
+}
+
+}  // namespace
+
+void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
+                         const BodyContactLaw& law, double dt) {
+  contacts_of(a, own, list, others, law, dt);
+}
+void body_contact_forces(PhaseParticles& a, const RecordArray& own, const FarPairs& list, const BodyContactLaw& law,
+                         double dt) {
+  contacts_of(a, own, list, own, law, dt);
 }
 
 }  // namespace barchan::BARCHAN_TARGET

@@ -5,6 +5,7 @@
 
 #include "engine/pair_loop.hpp"
 #include "laws/body_contact.hpp"
+#include "models/bodies/self_contact.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
@@ -19,7 +20,10 @@ BARCHAN_PER_INSTRUCTION_SET(body_contact_forces,
                             /// Adds to the acceleration of `a` what the particles of the other phase give; dt: s, of
                             /// the step. Records of motion.
                             void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
-                                                     const RecordArray& others, const BodyContactLaw& law, double dt);)
+                                                     const RecordArray& others, const BodyContactLaw& law, double dt);
+                            /// What parts of a body give each other.
+                            void body_contact_forces(PhaseParticles& a, const RecordArray& own, const FarPairs& list,
+                                                     const BodyContactLaw& law, double dt);)
 
 /// A side of the domain: a plane.
 struct BodySide {
