@@ -234,6 +234,17 @@ def impact(bench):
 # --- flux in resolved air ------------------------------------------------------------------------------------------------
 
 RESOLVED = ((0.24, 5.25, 1.8, 3.0), (0.40, 21.09, 1.8, 3.0), (0.56, 48.85, 1.8, 3.0))  # u*, Creyssels, averaged from and to, s
+RESOLVED_START = 0.35  # m/s: weaker winds need grains in flight to begin with
+
+
+def flat_bed_with_grains_in_flight(bench):
+    """flat_bed.toml with twelve grains in flight at the start, as saltation.toml has them: below the fluid threshold nothing else would start."""
+    bed = ROOT / "scenes" / "flat_bed_bed.vtp"
+    text = (ROOT / "scenes" / "flat_bed.toml").read_text().replace("flat_bed_bed.vtp", str(bed))
+    points = ", ".join(f"[{0.005 + 0.01 * k:.3f}, {0.0055 + 0.0012 * (5 * k % 12):.4f}]" for k in range(12))
+    file = bench.out / "flat_bed_with_grains.toml"
+    file.write_text(f'{text}\n[[fill]]\nphase = "sand"\nshape = {{ points = [{points}] }}\nvelocity = ["0.5 + x/0.12", "0.5 - x/0.12"]\n')
+    return file
 
 
 def resolved(bench):
@@ -242,7 +253,8 @@ def resolved(bench):
     for u, creyssels, begin, end in RESOLVED:
         name = f"rflux_{u:g}"
         if not (bench.out / name / "saltation_sand.json").exists():
-            bench.run("flat_bed", name, f"phases.lid.shear-stress=[{1.225 * u * u:.9g}, 0]", f"fill.4.velocity.log-profile.friction-velocity={u}", "forcing=[]",
+            scene = flat_bed_with_grains_in_flight(bench) if u < RESOLVED_START else "flat_bed"
+            bench.run(scene, name, f"phases.lid.shear-stress=[{1.225 * u * u:.9g}, 0]", f"fill.4.velocity.log-profile.friction-velocity={u}", "forcing=[]",
                       f"time.end={end}", "output.every=0.1", f'saltation=[{{ name = "sand", phase = "sand", every = 1e-3, start = {begin} }}]')
         h = table(bench.out / name / "history.csv")
         blocks = {}

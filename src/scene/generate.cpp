@@ -95,9 +95,11 @@ class InitialVelocity {
 };
 
 /// Spheres, loose or fixed, lie in the ground of the air, which has another wall than they have: nothing joins the two.
+/// Grains with a law of drag by name fly between particles of air that are coarser than they are.
 bool may_overlap(const Scene& scene, const Fill& a, const Fill& b) {
   const Phase *p = find_phase(scene, a.phase), *q = find_phase(scene, b.phase);
-  if (!p || !q || entry_between(scene, *p, *q)) return false;
+  if (!p || !q) return false;
+  if (const Interaction* entry = entry_between(scene, *p, *q)) return entry->drag_law != DragLaw::none;
   const auto ground_and_spheres = [](const Phase& wall, const Phase& spheres) {
     return wall.if_wall() && !wall.diameter() && spheres.diameter();
   };
@@ -111,14 +113,17 @@ void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& s
   if (places.empty())
     fail(scene, k,
          "no particle" + phase + "; expected a larger shape, a smaller spacing, or an earlier place in the file");
+  std::vector<bool> apart;  // by fill: that this one may overlap
+  for (const Fill& fill : scene.fills) apart.push_back(may_overlap(scene, scene.fills[k], fill));
   for (const Vec3& x : places) {
     if (kind != PhaseKind::wall && !inside_domain(scene, x, dx))
       fail(scene, k,
            "a particle" + phase + " at " + point_text(x, scene.dimensions) +
                " m lies outside the domain; expected a shape inside it");
     constexpr double least = (1.0 - 1e-6) * overlap_distance;
-    const int other = std::max(occupied.inside.owner_near(x, dx, least), occupied.outside.owner_near(x, dx, least));
-    if (other < 0 || may_overlap(scene, scene.fills[k], scene.fills[static_cast<std::size_t>(other)])) continue;
+    const int other =
+        std::max(occupied.inside.owner_near(x, dx, least, apart), occupied.outside.owner_near(x, dx, least, apart));
+    if (other < 0) continue;
     fail(scene, k,
          "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
              " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +

@@ -49,6 +49,14 @@ Places::Cell Places::cell_of(const Vec3& x) const {
 void Places::add(const Vec3& x, double spacing, int owner) { grid_[cell_of(x)].push_back({x, spacing, owner}); }
 
 int Places::owner_near(const Vec3& x, double spacing, double distance, int except) const {
+  return nearest_owner(x, spacing, distance, [&](int owner) { return owner == except; });
+}
+int Places::owner_near(const Vec3& x, double spacing, double distance, const std::vector<bool>& except) const {
+  return nearest_owner(x, spacing, distance, [&](int owner) { return except[static_cast<std::size_t>(owner)]; });
+}
+
+template <class Except>
+int Places::nearest_owner(const Vec3& x, double spacing, double distance, const Except& except) const {
   if (grid_.empty()) return -1;
   const Cell centre = cell_of(x);
   int owner = -1;
@@ -65,7 +73,7 @@ int Places::owner_near(const Vec3& x, double spacing, double distance, int excep
     if (found == grid_.end()) continue;
     for (const Point& point : found->second) {
       const double r = space_.distance(x, point.x);
-      if (point.owner == except || !(r < nearest) || !(r < distance * (0.5 * (spacing + point.spacing)))) continue;
+      if (except(point.owner) || !(r < nearest) || !(r < distance * (0.5 * (spacing + point.spacing)))) continue;
       nearest = r;
       owner = point.owner;
     }

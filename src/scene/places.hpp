@@ -30,6 +30,8 @@ class Places {
   /// The nearest particle to one at x of this spacing (m) that is nearer than `distance`, in spacings and at most 1,
   /// and whose owner is not `except`; its owner, or -1.
   int owner_near(const Vec3& x, double spacing, double distance, int except = -1) const;
+  /// The same; `except`: by owner, who does not count.
+  int owner_near(const Vec3& x, double spacing, double distance, const std::vector<bool>& except) const;
 
  private:
   using Cell = std::array<long, 3>;
@@ -42,6 +44,8 @@ class Places {
     int owner;
   };
   Cell cell_of(const Vec3& x) const;
+  template <class Except>
+  int nearest_owner(const Vec3& x, double spacing, double distance, const Except& except) const;
 
   PeriodicSpace space_;
   std::array<double, 3> width_{};

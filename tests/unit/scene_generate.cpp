@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include "base/errors.hpp"
@@ -425,6 +427,18 @@ TEST(Generate, ADomainThatIsNoWholeNumberOfSpacingsKeepsItsLastRowInside) {
     EXPECT_EQ(x.size(), 100u);
     for (const Vec3& place : x) EXPECT_LE(place[0], size);
   }
+}
+
+TEST(Generate, GrainsInFlightStandBetweenParticlesOfCoarserAir) {
+  std::ifstream file(BARCHAN_SOURCE_DIR "/scenes/wind_over_sand.toml");
+  const std::string bed(std::istreambuf_iterator<char>(file), {});
+  const std::string grain = "[[fill]]\nphase = \"sand\"\nshape = { points = [[0.05, 0.0201]] }\n";
+  const auto count = [](const std::string& text) {
+    return generate(parse_scene(text, "s.toml"))[1].position.size();  // air, sand
+  };
+  EXPECT_EQ(count(bed + grain), count(bed) + 1);
+  EXPECT_NE(problem_of(parse_scene(bed + grain + grain, "s.toml")).find("overlaps fill.5 of phase \"sand\""),
+            std::string::npos);
 }
 
 TEST(Generate, TellsOfOverlapsEmptyFillsAndParticlesOutside) {
