@@ -5,6 +5,10 @@
 //   Pi_ab     = (-alpha c mu + beta mu^2) / rho,  mu = h v.r/(r^2 + 0.01 h^2) on approach, else 0   (Monaghan 1992)
 // The stress rate is Hooke's law with Jaumann's rotation, s_dot = 2 G dev(D) + s.W^T + W.s (eq. 11 prints G for 2G and
 // no rotation), in models/bodies/elastic.cpp. No kernel corrections: momentum and angular momentum of a pair are exact.
+//   de_a/dt   = -1/2 sum m_b v_ab . [s_a/rho_a^2 + s_b/rho_b^2 - Pi_ab] . grad W   (eq. 13 with the whole stress, and
+//   the
+//                                                                                   factor 1/2 that it lacks)
+// Each particle of a pair gains half of what the pair takes from the motion: work against the stress, and heat of Pi.
 #pragma once
 
 #include <array>
@@ -34,9 +38,11 @@ struct ElasticForce {
     T alpha, beta, smoothing, soft;  // viscosity: -alpha c h/rho, beta h^2/rho, -, 0.01 h^2
   };
 
-  template <bool Viscous, class T>
+  /// power [W/kg]: of the force on `a` in the frame of b, with WithPower.
+  template <bool Viscous, bool WithPower, class T>
   static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b,
-                                      const T* s_b, T volume_b, std::array<T, Dim>& acceleration) {
+                                      const T* s_b, T volume_b, std::array<T, Dim>& acceleration,
+                                      [[maybe_unused]] T& power) {
     // The dummy has no volume; its mass must vanish as well.
     const T mf = select(volume_b > T(0.0), a.mass_b * f, T(0.0));
     T resistance(0.0);
@@ -52,6 +58,7 @@ struct ElasticForce {
       T traction = -(resistance * r[d]);
       for (std::size_t e = 0; e < Dim; ++e) traction = fma(s[stress_index<Dim>(d, e)], r[e], traction);
       acceleration[d] = fma(mf, traction, acceleration[d]);
+      if constexpr (WithPower) power = fma(mf * traction, a.v[d] - v_b[d], power);
     }
   }
 };

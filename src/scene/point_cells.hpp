@@ -54,7 +54,7 @@ class PointCells {
             Vec3 r = x - point.x;
             for (std::size_t d = 0; d < dimensions_; ++d)
               if (cells_[d] > 0) r[d] -= space_.domain().size[d] * std::round(r[d] / space_.domain().size[d]);
-            if (const double distance = norm(r); distance < reach_) f(r, distance, point.volume);
+            if (dot(r, r) < reach_ * reach_) f(r, norm(r), point.volume);
           }
         }
   }

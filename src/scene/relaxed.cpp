@@ -90,6 +90,8 @@ class Border {
     }
     const int parts = dimensions_ == 2 ? 4 : 3, all = dimensions_ == 2 ? parts * parts : parts * parts * parts;
     const double width = spacing_ / parts, share = volume() / all;
+    double rest = 0.0;
+    Vec3 moment{};
     for (int i = 0; i < all; ++i) {
       const int index[3] = {i % parts, i / parts % parts, i / parts / parts};
       Vec3 x = centre;
@@ -97,8 +99,12 @@ class Border {
         x[d] += (index[d] - 0.5 * (parts - 1)) * width;
       const double inside = std::clamp(0.5 + region_.depth(x) / width, 0.0, 1.0);
       content_ += inside * share;
-      if (inside < 1.0) outside_.add(space_.wrapped(x), (1.0 - inside) * share);
+      if (dimensions_ == 2 && inside < 1.0) outside_.add(space_.wrapped(x), (1.0 - inside) * share);
+      rest += (1.0 - inside) * share;
+      moment = moment + (1.0 - inside) * share * x;
     }
+    // In 3D one point for the part of a cell that is outside: 27 would make most of the work of a relaxation.
+    if (dimensions_ == 3 && rest > 0.0) outside_.add(space_.wrapped(1.0 / rest * moment), rest);
   }
 
   int dimensions_;

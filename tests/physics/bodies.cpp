@@ -232,6 +232,39 @@ TEST(TotalLagrangianBodies, RubberRingsBounceAndKeepMomentumAndEnergy) {
   EXPECT_LT(kept, 0.95) << "and vibrate";
 }
 
+// Eq. (13): what stress and viscosity take from the motion, the internal energy has; of it the strain stores what the
+// stress says.
+TEST(UpdatedLagrangianBodies, AnImpactWithViscosityKeepsMotionAndInternalEnergy) {
+  std::vector<std::string> sets{"interactions={ kernel = \"cubic-spline\", a-a = 2.4, b-b = 2.4, a-b = 1.0 }"};
+  for (const std::string body : {"phases.a.", "phases.b."})
+    for (const char* key : {"formulation=updated-lagrangian", "artificial-viscosity=0.2", "energy=true"})
+      sets.push_back(body + key);
+  Drive viscous("verification/two_bars", sets);
+  sets.push_back("phases.a.artificial-viscosity=0");
+  sets.push_back("phases.b.artificial-viscosity=0");
+  Drive plain("verification/two_bars", sets);
+  const auto of = [](Drive& drive, const std::string& what) {
+    return sum_of(drive.simulation(), {"a_" + what + "_energy [J]", "b_" + what + "_energy [J]"});
+  };
+  const double before = of(viscous, "kinetic");
+  double worst = 0.0, strained = 0.0, apart = 0.0;
+  for (int k = 1; k <= 27; ++k) {
+    viscous.to(1e-6 * k);
+    plain.to(1e-6 * k);
+    worst = std::max(worst, std::abs(of(viscous, "kinetic") + of(viscous, "internal") - before) / before);
+    strained = std::max(strained, of(plain, "strain") / before);
+    apart = std::max(apart, std::abs(of(plain, "internal") - of(plain, "strain")) / before);
+  }
+  const double heat = (of(viscous, "internal") - of(viscous, "strain")) / before;
+  report("kinetic + internal energy, largest change", worst, 1e-4);
+  report("heat of the viscosity over the energy at the start", heat, 0.05);
+  report("without viscosity: internal - strain energy", apart, 1e-3);
+  EXPECT_LT(worst, 1e-4);
+  EXPECT_GT(heat, 0.05);
+  EXPECT_GT(strained, 0.2) << "they are strained";
+  EXPECT_LT(apart, 1e-3);
+}
+
 TEST(TotalLagrangianBodies, ABlockThatBouncesKeepsItsEnergy) {
   Drive drive("bouncing_block");
   const Simulation& s = drive.simulation();

@@ -136,6 +136,9 @@ TEST_P(Invariants, PressureKeepsTheAngularMomentumOfAPatch) {
   angular.expect_zero(GetParam() == 2 ? 1 : 3, 1e-12);
 }
 
+const std::vector<Field> elastic_fields{Field::velocity, Field::density, Field::pressure, Field::stress,
+                                        Field::acceleration};
+
 /// Elastic phases with packed stress.
 struct Bodies {
   Cast cast;
@@ -147,10 +150,9 @@ struct Bodies {
                       .beta = 0.0,
                       .sound_speed = 2.0,
                       .gravity = {}};
-  Bodies(int dimensions, bool periodic, double ratio, bool pressure_only)
-      : cast(mixture(dimensions, periodic, ratio,
-                     {Field::velocity, Field::density, Field::pressure, Field::stress, Field::acceleration},
-                     all_directions)) {
+  Bodies(int dimensions, bool periodic, double ratio, bool pressure_only,
+         const std::vector<Field>& fields = elastic_fields)
+      : cast(mixture(dimensions, periodic, ratio, fields, all_directions)) {
     for (auto& p : cast.phases) {
       if (pressure_only)
         for (int c = 0; c < 6; ++c) std::fill_n(p.column(Field::stress, c), p.size(), 0.0);
@@ -197,6 +199,24 @@ TEST_P(Invariants, PressureAndViscosityOfBodiesKeepTheirAngularMomentum) {
   Balance angular;
   for (const auto& p : bodies.cast.phases) add_torques(angular, p);
   angular.expect_zero(GetParam() == 2 ? 1 : 3, 1e-12);
+}
+
+// What stress and viscosity take from the motion, the internal energy gains (eq. 13).
+TEST_P(Invariants, ElasticBodiesKeepTheirEnergy) {
+  auto fields = elastic_fields;
+  fields.push_back(Field::energy_rate);
+  for (const double alpha : {0.0, 1.5}) {
+    Bodies bodies(GetParam(), true, 7.0, false, fields);
+    bodies.q.alpha = alpha;
+    bodies.force();
+    Balance energy;
+    for (const auto& p : bodies.cast.phases)
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        energy.add({p.mass() * dot(vector(p, Field::velocity, k), vector(p, Field::acceleration, k)), 0, 0});
+        energy.add({p.mass() * p.column(Field::energy_rate)[k], 0, 0});
+      }
+    energy.expect_zero(1, 1e-12);
+  }
 }
 
 // sum m v.a = -sum V sigma : grad v: what the forces do to the motion, the strain pass finds as work of the stress.

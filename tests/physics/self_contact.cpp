@@ -1,4 +1,6 @@
 // A body that touches itself: as two bodies do, momentum and energy stay, and where nothing touches nothing changes.
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -118,6 +120,30 @@ TEST(SelfContact, ChangesNothingWhereNothingTouches) {
   with.to(6e-3);
   without.to(6e-3);
   EXPECT_EQ(motion_of(with.phase(0)), motion_of(without.phase(0)));
+}
+
+TEST(SelfContact, KeepsItsBitsOnOtherThreadsAndAfterARestart) {
+  Drive run(scene), other(scene);
+  run.to(2.5e-3);
+  double felt = 0.0;
+  const PhaseParticles& p = run.phase(0);
+  for (std::size_t k = 0; k < p.size(); ++k) felt = std::max(felt, std::abs(p.column(Field::contact_force, 1)[k]));
+  EXPECT_GT(felt, 0.0) << "the prongs touch";
+  Archive written;
+  run.simulation().archive(written);
+  Archive saved(written.bytes());
+  other.simulation().archive(saved);
+  saved.finish();
+  const int threads = omp_get_max_threads();
+  const auto go_on = [](Drive& drive, int on) {
+    omp_set_num_threads(on);
+    for (int k = 0; k < 300; ++k) drive.simulation().step(1.0);
+  };
+  go_on(run, 1);
+  go_on(other, 2);
+  omp_set_num_threads(threads);
+  EXPECT_EQ(motion_of(run.phase(0)), motion_of(other.phase(0)));
+  EXPECT_EQ(run.simulation().history_row(), other.simulation().history_row());
 }
 
 }  // namespace

@@ -125,10 +125,12 @@ void expect_elastic_acts_back(double m_a, double m_b, double roundings) {
       own.soft = One(0.01);
       const auto neighbour = broadcast<Dim>(of_a ? v_b : v_a);
       std::array<One, Dim> a{};
-      Law::template add<Viscous>(own, broadcast<Dim>(r, of_a ? 1.0 : -1.0), One(dot(r, r)), One(f), neighbour.data(),
-                                 (of_a ? s_b : s_a).data(), One(1.0), a);
-      std::array<double, Dim> m_dv;
+      One power(0.0);
+      Law::template add<Viscous, true>(own, broadcast<Dim>(r, of_a ? 1.0 : -1.0), One(dot(r, r)), One(f),
+                                       neighbour.data(), (of_a ? s_b : s_a).data(), One(1.0), a, power);
+      std::array<double, Dim + 1> m_dv;
       for (std::size_t d = 0; d < Dim; ++d) m_dv[d] = (of_a ? m_a : m_b) * a[d][0];
+      m_dv[Dim] = (of_a ? m_a : m_b) * power[0];
       return m_dv;
     };
     const auto on_a = force(true), on_b = force(false);
@@ -136,6 +138,13 @@ void expect_elastic_acts_back(double m_a, double m_b, double roundings) {
       EXPECT_NEAR(on_a[d], -on_b[d], roundings * ulp * std::abs(on_a[d]));
       felt += on_a[d] != 0.0;
     }
+    double power = 0.0, size = 0.0;  // of the force in the frame of b: both particles find the same
+    for (std::size_t d = 0; d < Dim; ++d) {
+      power += on_a[d] * (v_a[d] - v_b[d]);
+      size += std::abs(on_a[d] * (v_a[d] - v_b[d]));
+    }
+    EXPECT_NEAR(on_a[Dim], power, 8.0 * ulp * size);
+    EXPECT_NEAR(on_b[Dim], power, 8.0 * ulp * size);
   }
   EXPECT_EQ(felt, 500 * Dim);
 }

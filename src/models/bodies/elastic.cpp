@@ -90,7 +90,6 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
   using R = StressRecord<Dim>;
   using Law = ElasticStrain<Dim>;
   double *rho = body.column(Field::density), *p = body.column(Field::pressure);
-  double* energy = body.has(Field::energy) ? body.column(Field::energy) : nullptr;
   std::array<double*, 6> stress{};
   for (int c = 0; c < 6; ++c) stress[static_cast<std::size_t>(c)] = body.column(Field::stress, c);
   const auto& kernels = ready_kernels(neighbours, Dim);
@@ -141,30 +140,23 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
       for (std::size_t e = 0; e <= d; ++e) store_four(next.in[d][e], stress[column_of[d][e]], first, count);
     if (Dim == 2) store_four(next.zz, stress[2], first, count);
     Four density = load_four(rho, first, count);
-    if (energy) {  // de/dt = s:L/rho, eq. (13b) with the whole stress; the power at the middle of the step
-      Four power(0.0), trace(0.0);
-      for (std::size_t d = 0; d < Dim; ++d) {
-        trace += l[d][d];
-        for (std::size_t e = 0; e < Dim; ++e) power = simd::fma(mid.in[d][e], l[d][e], power);
-      }
-      power -= load_four(p, first, count) * trace;
-      store_four(load_four(energy, first, count) + time * power / density, energy, first, count);
-    }
     density = simd::fma(time, s.density, density);
     store_four(density, rho, first, count);
     store_four(stiffness * (density - Four(q.reference_density)), p, first, count);
   }
 }
 
-template <int Dim, bool Viscous>
+template <int Dim, bool Viscous, bool WithPower>
 void forces(PhaseParticles& body, const RecordArray& own_records, std::span<const ElasticNeighbour> neighbours,
             const ElasticParameters& q) {
   using R = StressRecord<Dim>;
   using Law = ElasticForce<Dim>;
-  using Sums = std::array<Lanes, Dim>;
+  constexpr std::size_t sums_of = Dim + (WithPower ? 1 : 0);  // acceleration, power
+  using Sums = std::array<Lanes, sums_of>;
   const double alpha = -q.alpha * q.sound_speed / q.reference_density, beta = q.beta / q.reference_density;
   std::array<double*, Dim> a{};
   for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = body.column(Field::acceleration, d);
+  double* rate = WithPower ? body.column(Field::energy_rate) : nullptr;
   const auto& kernels = ready_kernels(neighbours, Dim);
   const std::size_t n = body.size();
   const auto fours = static_cast<std::int64_t>((n + 3) / 4);
@@ -177,7 +169,8 @@ void forces(PhaseParticles& body, const RecordArray& own_records, std::span<cons
       const std::size_t k = std::min(first + lane, n - 1);
       const double* record = own_records[k];
       typename Law::template Own<Lanes> own;
-      Sums sum;
+      std::array<Lanes, Dim> sum;
+      Lanes power(0.0);
       for (std::size_t d = 0; d < Dim; ++d) {
         own.x[d] = Lanes(record[R::position + d]);
         own.v[d] = Lanes(record[R::velocity + d]);
@@ -197,15 +190,17 @@ void forces(PhaseParticles& body, const RecordArray& own_records, std::span<cons
               row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
                 std::array<Lanes, Dim> r;
                 const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-                Law::template add<Viscous>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress,
-                                           b[R::volume], sum);
+                Law::template add<Viscous, WithPower>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress,
+                                                      b[R::volume], sum, power);
               });
         });
       }
-      sums[lane] = sum;
+      for (std::size_t d = 0; d < Dim; ++d) sums[lane][d] = sum[d];
+      if constexpr (WithPower) sums[lane][Dim] = power;
     }
-    const auto s = reduce<std::array<Four, Dim>, double>(sums);
+    const auto s = reduce<std::array<Four, sums_of>, double>(sums);
     for (std::size_t d = 0; d < Dim; ++d) store_four(s[d] + Four(q.gravity[d]), a[d], first, count);
+    if constexpr (WithPower) store_four(Four(-0.5) * s[Dim], rate, first, count);
   }
 }
 
@@ -223,9 +218,13 @@ void elastic_strain(PhaseParticles& body, const RecordArray& own, std::span<cons
 void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
                     const ElasticParameters& q) {
   const bool viscous = q.alpha != 0.0 || q.beta != 0.0;
-  if (body.dimensions() == 2)
-    viscous ? forces<2, true>(body, own, neighbours, q) : forces<2, false>(body, own, neighbours, q);
-  else viscous ? forces<3, true>(body, own, neighbours, q) : forces<3, false>(body, own, neighbours, q);
+  const auto run = [&]<bool Viscous, bool WithPower>() {
+    body.dimensions() == 2 ? forces<2, Viscous, WithPower>(body, own, neighbours, q)
+                           : forces<3, Viscous, WithPower>(body, own, neighbours, q);
+  };
+  if (body.has(Field::energy_rate))
+    viscous ? run.template operator()<true, true>() : run.template operator()<false, true>();
+  else viscous ? run.template operator()<true, false>() : run.template operator()<false, false>();
 }
 
 }  // namespace barchan::BARCHAN_TARGET

@@ -39,7 +39,8 @@ BARCHAN_PER_INSTRUCTION_SET(elastic_strain,
                                                 const ElasticParameters& parameters, double dt);)
 
 BARCHAN_PER_INSTRUCTION_SET(elastic_forces,
-                            /// Writes the acceleration.
+                            /// Writes the acceleration; where the body has it, energy_rate [W/kg] by
+                            /// laws/elastic.hpp with the velocities of the records.
                             void elastic_forces(PhaseParticles& body, const RecordArray& own,
                                                 std::span<const ElasticNeighbour> neighbours,
                                                 const ElasticParameters& parameters);)

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/integrate.hpp"
+#include "engine/means.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
@@ -57,7 +59,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std
   if (!p.fixed_neighbours) p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration};
   if (!p.fixed_neighbours || asked(stress)) p.fields.push_back(stress);
-  if (phase.elastic().energy) p.fields.push_back(energy);
+  if (!p.fixed_neighbours && phase.elastic().energy) p.fields.insert(p.fields.end(), {energy, energy_rate});
   for (const Field field : {von_mises_stress, principal_stress})
     if (asked(field)) p.fields.push_back(field);
   if (p.fixed_neighbours && asked(strain)) p.fields.push_back(strain);
@@ -102,14 +104,21 @@ void ElasticPhase::attach(Workspace& w) {
 
 void ElasticPhase::schedule(Schedule& s) {
   using enum Field;
-  const FieldSet all{position, velocity, density, pressure, acceleration, Field::stress, energy};
-  s.add(
-      {stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity, energy}, [this] { kick_and_drift(); }});
+  const FieldSet all{position, velocity, density, pressure, acceleration, Field::stress};
+  const bool heats = phase_.elastic().energy;
+  FieldSet moved{position, velocity}, loaded{acceleration, contact_force};
+  if (heats) moved = moved | FieldSet{energy}, loaded = loaded | FieldSet{energy_rate};
+  s.add({stage::kick_and_drift, plan_.name, {acceleration, energy_rate}, moved, [this] { kick_and_drift(); }});
   s.add({stage::strain_records, plan_.name, {position, velocity, density, pressure, Field::stress}, {}, [this] {
            pack_middle();
          }});
   s.add({stage::strain, plan_.name, all, all, [this] { this->strain(); }});
-  s.add({stage::elastic, plan_.name, all, {acceleration, contact_force}, [this] { load(); }});
+  s.add({stage::elastic, plan_.name, all, loaded, [this] { load(); }});
+  if (!heats) return;
+  s.add({stage::energy, plan_.name, {acceleration}, {energy_rate}, [this] { take_power(); }});
+  s.add({stage::kick, plan_.name, {energy_rate}, {energy}, [this] {
+           advance_energy(w_->particles(number_), w_->kick_time);
+         }});
 }
 
 void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
@@ -126,6 +135,7 @@ void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
 void ElasticPhase::kick_and_drift() {
   const double half = 0.5 * w_->state.dt;
   barchan::kick_and_drift(w_->particles(number_), half, half, nullptr);
+  if (phase_.elastic().energy) advance_energy(w_->particles(number_), half);
 }
 
 void ElasticPhase::pack_middle() {
@@ -150,8 +160,49 @@ void ElasticPhase::derive() {
 void ElasticPhase::load() {
   PhaseParticles& p = w_->particles(number_);
   elastic_forces(p, w_->stress[number_], neighbours_, parameters_);
+  if (phase_.elastic().energy)
+    for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+      const double* a = std::as_const(p).column(Field::acceleration, static_cast<int>(d));
+      pairs_[d].resize(p.size());
+      for (std::size_t k = 0; k < p.size(); ++k) pairs_[d][k] = a[k] - parameters_.gravity[d];
+    }
   clear_contact_forces(p);
   forces_.add(p, w_->state.time, true);
+}
+
+/// The forces of pairs were computed with velocities half a step old; their power is that with the velocities of now.
+/// Half of f_ab . (a_a - a_b) dt/2 at each of a pair is in sum f_a . a_a dt/2 at a.
+void ElasticPhase::take_power() {
+  PhaseParticles& p = w_->particles(number_);
+  double* rate = p.column(Field::energy_rate);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    const double* a = std::as_const(p).column(Field::acceleration, static_cast<int>(d));
+    for (std::size_t k = 0; k < p.size(); ++k) rate[k] -= w_->kick_time * a[k] * pairs_[d][k];
+  }
+}
+
+/// That of the present stress: of the density (K/rho0)(ln(rho/rho0) + rho0/rho - 1) a kilogram, whose pressure is
+/// p = (K/rho0)(rho - rho0), and s:s/(4 G) a cubic metre of the deviator.
+double ElasticPhase::strain_energy() const {
+  const PhaseParticles& p = w_->particles(number_);
+  const double* rho = p.column(Field::density);
+  std::array<const double*, 6> s{};
+  for (int c = 0; c < 6; ++c) s[static_cast<std::size_t>(c)] = p.column(Field::stress, c);
+  const double bulk = parameters_.bulk_modulus / parameters_.reference_density, shear = 4.0 * parameters_.shear_modulus;
+  return p.mass() * ordered_sum(p.size(), [&](std::size_t k) {
+           const double x = rho[k] / parameters_.reference_density - 1.0;
+           double squares = 0.0;
+           for (std::size_t c = 0; c < 6; ++c) squares += (c < 3 ? 1.0 : 2.0) * s[c][k] * s[c][k];
+           return bulk * (std::log1p(x) - x / (1.0 + x)) + squares / (shear * rho[k]);
+         });
+}
+
+void ElasticPhase::history(HistoryRow& row) const {
+  row.add(plan_.name + "_strain_energy [J]", strain_energy());
+  if (!phase_.elastic().energy) return;
+  const PhaseParticles& p = w_->particles(number_);
+  const double* e = p.column(Field::energy);
+  row.add(plan_.name + "_internal_energy [J]", p.mass() * ordered_sum(p.size(), [&](std::size_t k) { return e[k]; }));
 }
 
 }  // namespace barchan

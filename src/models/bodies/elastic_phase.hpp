@@ -1,6 +1,7 @@
 // An elastic phase: strain in the middle of the step, stress at its end.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "models/bodies/elastic.hpp"
@@ -19,6 +20,7 @@ class ElasticPhase : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void derive() override;
+  void history(HistoryRow& row) const override;
   void limits(std::vector<StepLimit>& limits) const override;
   int phase() const override { return static_cast<int>(number_); }
 
@@ -27,6 +29,8 @@ class ElasticPhase : public Model {
   void pack_middle();
   void strain();
   void load();
+  void take_power();
+  double strain_energy() const;
 
   const Scene& scene_;
   const Layout& layout_;
@@ -37,6 +41,7 @@ class ElasticPhase : public Model {
   Workspace* w_ = nullptr;
   std::vector<ElasticNeighbour> neighbours_;
   ElasticParameters parameters_{};
+  std::array<std::vector<double>, 3> pairs_;  // m/s2, acceleration by the pairs of this law; with energy = true
 };
 
 }  // namespace barchan
