@@ -30,7 +30,13 @@ void ForceOn::attach(Workspace& w) {
   w_ = &w;
   set_.attach(w, "force." + std::to_string(number_));
   for (const auto& e : layout_.entries) {
-    if (!wall_ || e.law != Law::boundary || e.other != phase_) continue;
+    if (!wall_ || !e.has(phase_) || !(meter_.by.empty() || layout_.phases[e.partner(phase_)].name == meter_.by))
+      continue;
+    if (e.of_spheres()) {
+      pushes_.push_back(w.sphere_pushes.size());
+      w.sphere_pushes.push_back({phase_, e.partner(phase_), meter_.about});
+    }
+    if (e.law != Law::boundary || e.other != phase_) continue;
     w.need_motion(e.fluid);
     fluids_.push_back({{&w.list(e.direction(phase_)), &w.motion[e.fluid], e.kernel, e.radius,
                         pair_viscosity(scene_, layout_, phase_, e.fluid), false},
@@ -38,8 +44,9 @@ void ForceOn::attach(Workspace& w) {
                        e.fluid,
                        Forces(scene_, layout_.phases[e.fluid].name)});
   }
-  balance_ = !meter_.box && std::all_of(fluids_.begin(), fluids_.end(),
-                                        [&](const Felt& felt) { return touches_nothing_else(felt.phase); });
+  balance_ = !meter_.box && !fluids_.empty() && std::all_of(fluids_.begin(), fluids_.end(), [&](const Felt& felt) {
+    return touches_nothing_else(felt.phase);
+  });
 }
 
 /// A fluid of the consistent scheme whose entries are those with itself and with this wall.
@@ -60,7 +67,26 @@ void ForceOn::schedule(Schedule& s) {
 
 void ForceOn::measure() {
   force_ = torque_ = {};
-  if (!wall_) return add_sums(1.0, scene_.domain.gravity);
+  wall_ ? measure_wall() : add_sums(1.0, scene_.domain.gravity);
+  sum_up();
+}
+
+/// The impulse, and the force by spheres.
+void ForceOn::sum_up() {
+  const double dt = w_->state.dt;
+  impulse_ = impulse_ + 0.5 * dt * (smooth_ + force_);
+  smooth_ = force_;
+  for (const std::size_t k : pushes_) {
+    const auto& push = w_->sphere_pushes[k];
+    impulse_ = impulse_ + 1.0 / layout_.slab * push.impulse;
+    if (!(dt > 0.0)) continue;
+    force_ = force_ + 1.0 / (dt * layout_.slab) * push.impulse;
+    torque_ = torque_ + 1.0 / (dt * layout_.slab) * push.turn;
+  }
+}
+
+/// By fluids.
+void ForceOn::measure_wall() {
   PhaseParticles& wall = w_->particles(phase_);
   for (const Felt& felt : fluids_) {
     for (int d = 0; d < layout_.dimensions; ++d) std::fill_n(wall.column(Field::acceleration, d), wall.size(), 0.0);
@@ -114,11 +140,15 @@ void ForceOn::history(HistoryRow& row) const {
     row.add(meter_.name + "_force_" + axes[d] + " [N]", force_[d]);
   for (std::size_t d = layout_.dimensions == 2 ? 2 : 0; d < 3; ++d)
     row.add(meter_.name + "_torque_" + axes[d] + " [N m]", torque_[d]);
+  for (std::size_t d = 0; d < 3 && d < static_cast<std::size_t>(layout_.dimensions); ++d)
+    row.add(meter_.name + "_impulse_" + axes[d] + " [N s]", impulse_[d]);
 }
 
 void ForceOn::archive(Archive& a) {
   a.number("force on " + meter_.name, force_);
   a.number("torque on " + meter_.name, torque_);
+  a.number("impulse on " + meter_.name, impulse_);
+  a.number("force on " + meter_.name + " without spheres", smooth_);
   if (a.loads()) set_.set_places();
 }
 

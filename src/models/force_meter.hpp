@@ -12,7 +12,8 @@ namespace barchan {
 /// velocity that are continued into the wall (Adami et al. 2012); of a fluid of the consistent scheme over the sum of
 /// the gradient on a lattice, which that scheme divides by too. Such pairs miss what a curved wall does by about dx/(2
 /// R) (docs/method.md). So of a whole wall that is all that its fluids of that scheme touch, the force is what the
-/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of a body: mass times acceleration of its
+/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of spheres: the mean over the steps of their
+/// contacts within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its
 /// particles, less gravity. The torque counts periodic images nearest to its point.
 class ForceOn : public Model {
  public:
@@ -25,6 +26,8 @@ class ForceOn : public Model {
 
  private:
   void measure();
+  void measure_wall();
+  void sum_up();
   void add_sums(double share, const Vec3& less);
   bool touches_nothing_else(std::size_t fluid) const;
 
@@ -40,9 +43,12 @@ class ForceOn : public Model {
     std::size_t phase;
     Forces forces;
   };
-  std::vector<Felt> fluids_;  // of a wall
-  bool balance_ = false;      // the force is what the fluids lose
-  Vec3 force_{}, torque_{};   // N, N m (per metre of depth in 2D), in the last step
+  std::vector<Felt> fluids_;         // of a wall
+  std::vector<std::size_t> pushes_;  // of a wall, by spheres: in Workspace::sphere_pushes
+  bool balance_ = false;             // the force is what the fluids lose
+  Vec3 force_{}, torque_{};          // N, N m (per metre of depth in 2D), in the last step
+  Vec3 impulse_{};  // N s: so far, of spheres that of their contacts, else by the trapezoids of the kicks
+  Vec3 smooth_{};   // N: of all but spheres, at the end of the last step
   Workspace* w_ = nullptr;
 };
 

@@ -29,6 +29,14 @@ class Workspace {
   std::vector<EddyRecords> eddies;                       // by phase
   std::vector<AlignedVector<double>> ground_stress;      // Pa, by fluid and particle; empty: walls say it themselves
 
+  /// What spheres of a phase do to a wall in a step (N s and N m s, not by depth), for a meter that asks (attach).
+  struct SpherePush {
+    std::size_t wall, grains;  // phases
+    Vec3 about;                // m, of the torque
+    Vec3 impulse{}, turn{};
+  };
+  std::vector<SpherePush> sphere_pushes;
+
   /// How the motion records of a phase are filled.
   struct Packing {
     bool pressure = false;      // with its pressure; else 0

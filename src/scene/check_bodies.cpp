@@ -61,23 +61,50 @@ void check_set(const BodySet& set, const std::string& dotted, const Scene& scene
       return report(dotted + ".box", "its lower corner lies above its upper one; expected min <= max");
 }
 
-/// Walls count too, where only fluids act on them, by laws whose reaction is known.
+/// Why the force of a phase on a wall is not measured; empty: it is.
+std::string what_cannot_be_measured(const Scene& scene, const Phase& wall, const Phase& other,
+                                    const ForceMeter& meter) {
+  const std::string name = "the force of \"" + other.name + "\" ";
+  if (other.kind() == PhaseKind::grains) {
+    if (!of_spheres(*entry_between(scene, wall, other)))
+      return name + "on a wall is not measured; expected grains with law = \"linear\" or \"hertz\"";
+    if (other.grains().sleep) return name + "on a wall is not measured where grains sleep; expected sleep = false";
+    if (meter.box)
+      return name + "on a part of a wall is not measured; expected no box (a part may be a phase of its own)";
+    return {};
+  }
+  if (other.kind() != PhaseKind::fluid) return name + "on a wall is not measured; expected fluids or grains";
+  if (wall.wall().law == WallLaw::repulsive)
+    return "the force on a repulsive wall is not measured; expected law = \"adami\"";
+  if (has_eddies(scene, other))
+    return "the force of the turbulent fluid \"" + other.name +
+           "\" is not measured; expected a laminar one (or [[wall-shear]])";
+  return {};
+}
+
+/// Walls count too, where fluids and spheres act on them, by laws whose reaction is known.
 void check_force(const ForceMeter& meter, const std::string& dotted, const Scene& scene, const Report& report) {
   const Phase* phase = find_phase(scene, meter.phase);
   if (!phase || report.touched(dotted) || report.touched("phases")) return;
   const auto refuse = [&](const std::string& what) { report(dotted + ".phase", what); };
   if (phase->kind() != PhaseKind::wall && phase->kind() != PhaseKind::elastic)
     return refuse("\"" + phase->name + "\" is neither wall nor body; expected a phase of kind wall or elastic");
-  if (phase->kind() != PhaseKind::wall) return;
-  if (phase->wall().law == WallLaw::repulsive)
-    return refuse("the force on a repulsive wall is not measured; expected law = \"adami\"");
+  const auto refuse_by = [&](const std::string& what) { report(dotted + ".by", what); };
+  if (phase->kind() != PhaseKind::wall) {
+    if (!meter.by.empty()) refuse_by("the force on a body is that of all; expected a wall, or no `by`");
+    return;
+  }
+  if (!meter.by.empty()) {
+    const Phase* by = find_phase(scene, meter.by);
+    if (!by) return refuse_by(unknown_phase(meter.by, scene));
+    if (!entry_between(scene, *phase, *by))
+      return refuse_by("\"" + by->name + "\" and \"" + phase->name +
+                       "\" have no entry in [interactions]: it is always 0");
+  }
   for (const Phase& other : scene.phases) {
-    if (!entry_between(scene, *phase, other)) continue;
-    if (other.kind() != PhaseKind::fluid)
-      return refuse("the force of \"" + other.name + "\" on a wall is not measured; expected a wall with fluids only");
-    if (has_eddies(scene, other))
-      return refuse("the force of the turbulent fluid \"" + other.name +
-                    "\" is not measured; expected a laminar one (or [[wall-shear]])");
+    if (!entry_between(scene, *phase, other) || !(meter.by.empty() || meter.by == other.name)) continue;
+    const auto what = what_cannot_be_measured(scene, *phase, other, meter);
+    if (!what.empty()) return meter.by.empty() ? refuse(what) : refuse_by(what);
   }
 }
 

@@ -263,11 +263,12 @@ constexpr Key table[] = {
     {"marker.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
 
     {"force", "name", at<&ForceMeter::name>(required), "",
-     "Letters, digits and underscores: of the columns NAME_force_x, NAME_force_y (and NAME_force_z) and NAME_torque_z (in 3D also _x, _y) in "
-     "history.csv."},
+     "Letters, digits and underscores: of the columns NAME_force_x, NAME_force_y (and NAME_force_z), NAME_torque_z (in 3D also _x, _y) and "
+     "NAME_impulse_x, ... (the force summed over time) in history.csv."},
     {"force", "phase", at<&ForceMeter::phase, ForceMeter>(required), "",
-     "Wall: what its fluids do to it. Elastic phase: all forces on it but gravity, of a part also those of the rest of the body."},
+     "Wall: what its fluids and grains do to it; of grains the mean of the step. Elastic phase: all forces on it but gravity, of a part also those of the rest of the body."},
     {"force", "box", at<&ForceMeter::box, ForceMeter>("all of it"), "", "Particles that stand in this box at the start."},
+    {"force", "by", at<&ForceMeter::by>("all that touch it"), "", "Of a wall: the phase whose force is measured, a laminar fluid or grains that are spheres."},
     {"force", "about", at<&ForceMeter::about>("zero"), "m", "Point of the torque."},
     {"force.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
     {"force.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},

@@ -306,9 +306,10 @@ struct Motion : BodySet {
   std::optional<AxialExpression> torque;            // N m, formulas in t, on bodies that turn freely about a place
   double friction{};                                // N m, the largest torque of the dry friction there
 };
-/// A wall, a body or a part of one, whose force and torque are written to history.csv.
+/// A wall, a body or a part of one, whose force, torque and impulse are written to history.csv.
 struct ForceMeter : BodySet {
   std::string name;
+  std::string by;  // of a wall: the phase whose force it is; empty: all that touch it
   Vec3 about{};  // m, of the torque
 };
 /// A set whose mean place is written to history.csv.

@@ -177,6 +177,73 @@ TEST(ForceMeters, ShearOnOneWallOfAChannel) {
   EXPECT_NEAR(found / exact, 1.0, 0.012);
 }
 
+// What grains get beside their weight, walls of spheres and sides of the domain lose, in every step of the contacts.
+TEST(ForceMeters, WallsGetTheMomentumThatGrainsLose) {
+  std::string text = small::spheres;
+  const auto forcing = text.find("[[forcing]]");
+  text.erase(forcing, text.find("[time]") - forcing);
+  const auto run = small::simulation(text);
+  const auto momentum = [&](int d) { return history(*run, d == 0 ? "momentum_x [kg m/s]" : "momentum_y [kg m/s]"); };
+  double mass = 0.0, worst = 0.0, scale = 0.0, on_base = 0.0, by_stones = 0.0;
+  for (const PhaseParticles& p : run->phases())
+    for (std::size_t k = 0; p.has(Field::contact_acceleration) && k < p.size(); ++k) mass += p.mass_of(k);
+  const double begun[] = {momentum(0), momentum(1)};
+  for (int step = 0; step < 400; ++step) {
+    run->step(1.0);
+    for (int d = 0; d < 2; ++d) {
+      const std::string axis = d == 0 ? "x [N s]" : "y [N s]";
+      const double base = history(*run, "base_impulse_" + axis), floor = history(*run, "floor_impulse_" + axis);
+      const double weight = mass * (d == 0 ? 0.5 : -9.81) * run->time();
+      scale = std::max(scale, std::abs(momentum(d) - begun[d]));
+      worst = std::max(worst, std::abs(momentum(d) - begun[d] - weight + base + floor));
+      on_base = std::max(on_base, std::abs(base));
+    }
+    by_stones = history(*run, "stones_on_floor_impulse_y [N s]");
+  }
+  report("momentum of grains and walls, change", worst / scale, 1e-11);
+  EXPECT_LT(worst / scale, 1e-11);
+  EXPECT_GT(on_base / scale, 0.05) << "grains fall on the base";
+  EXPECT_LE(std::abs(by_stones), std::abs(history(*run, "floor_impulse_y [N s]")));
+}
+
+// A grain at rest: its weight, at the place where it touches.
+TEST(ForceMeters, AGrainAtRestWeighs) {
+  const auto run = small::simulation(R"toml(
+spacing = 1e-3
+[domain]
+size = [0.04, 0.02]
+gravity = [0, -9.81]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = 1e-3
+restitution = 0.3
+[phases.floor]
+kind = "wall"
+[interactions]
+sand-sand = { law = "linear" }
+sand-floor = { law = "linear" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "sand"
+shape = { points = [[0.03, 0.00055]] }
+[time]
+end = 0.1
+largest-speed = 0.1
+)toml" + meter("floor", "floor", "about = [0.01, 0.3]\n") +
+                                     meter("by_sand", "floor", "by = \"sand\"\n"));
+  while (run->time() < 0.1) run->step(0.1 - run->time());
+  const double weight = run->phases()[0].mass_of(0) * 9.81;
+  const double force = history(*run, "floor_force_y [N]"), torque = history(*run, "floor_torque_z [N m]");
+  report("force on the floor over the weight - 1", force / -weight - 1.0, 1e-3);
+  report("its torque over 2 cm times the weight - 1", torque / (-0.02 * weight) - 1.0, 1e-3);
+  EXPECT_NEAR(force / -weight, 1.0, 1e-3);
+  EXPECT_NEAR(torque / (-0.02 * weight), 1.0, 1e-3);
+  EXPECT_EQ(force, history(*run, "by_sand_force_y [N]"));
+}
+
 // A body that falls freely feels nothing; one that is pushed feels its push, about any point.
 TEST(ForceMeters, BodyThatIsPushed) {
   const std::string body = R"toml(
@@ -227,6 +294,16 @@ TEST(ForceMeters, WhatIsNotMeasuredIsRefused) {
             std::string::npos);
   EXPECT_NE(refusal(tank + meter("a b", "floor")).find("expected letters, digits and underscores"), std::string::npos);
   EXPECT_NE(refusal(small::dune + meter("a", "floor")).find("on a wall is not measured"), std::string::npos);
+  EXPECT_NE(refusal(small::spheres + meter("a", "floor", "box = { min = [0, 0], max = [1, 1] }\n"))
+                .find("force.3.phase: the force of \"stones\" on a part of a wall is not measured"),
+            std::string::npos);
+  EXPECT_NE(refusal(small::spheres + meter("a", "base", "by = \"floor\"\n"))
+                .find("force.3.by: \"floor\" and \"base\" have no entry in [interactions]"),
+            std::string::npos);
+  std::string sleepy = small::spheres;
+  sleepy.insert(sleepy.find("density = 2650"), "sleep = true\n");
+  EXPECT_NE(refusal(sleepy).find("the force of \"sand\" on a wall is not measured where grains sleep"),
+            std::string::npos);
   EXPECT_EQ(refusal(tank + meter("a", "floor")), "");
 }
 

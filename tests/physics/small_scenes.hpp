@@ -454,6 +454,16 @@ acceleration = ["3*sin(400*t)", "2*cos(300*t)"]
 [time]
 end = 10
 largest-speed = 2
+[[force]]
+name = "base"
+phase = "base"
+[[force]]
+name = "floor"
+phase = "floor"
+[[force]]
+name = "stones_on_floor"
+phase = "floor"
+by = "stones"
 )toml";
 
 /// Hertzian spheres that move about in a periodic box with a floor.

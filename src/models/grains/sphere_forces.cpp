@@ -67,6 +67,27 @@ BARCHAN_SIMD_INLINE void add_up(Sums<Dim>& sums, const ContactForces<V, Dim>& f,
   }
 }
 
+/// Adds the force of a touch to what a wall feels; the sphere's own is the opposite, at `place`.
+template <int Dim>
+void push_wall(const SphereStep& step, SphereChunk& chunk, std::size_t law, const std::array<double, Dim>& force,
+               const std::array<double, Dim>& place) {
+  for (std::size_t w = 0; w < step.watched.size(); ++w) {
+    if (step.watched[w].law != law) continue;
+    std::array<double, 3> f{}, r{};
+    for (std::size_t d = 0; d < Dim; ++d) {
+      f[d] = -force[d];
+      r[d] = place[d] - step.watched[w].about[d];
+      if (step.period[d] > 0.0) r[d] -= step.period[d] * std::round(r[d] / step.period[d]);
+    }
+    auto& to = chunk.pushed[w];
+    for (std::size_t d = 0; d < 3; ++d) {
+      const std::size_t e = (d + 1) % 3, g = (d + 2) % 3;
+      to[d] += f[d];
+      to[3 + d] += r[e] * f[g] - r[g] * f[e];
+    }
+  }
+}
+
 /// What a chunk's pairs add up to, lane by lane.
 struct Tally {
   V lost{0.0}, stored{0.0}, deepest{0.0};
@@ -89,6 +110,8 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
     turns[d] = V(step.period[d] > 0.0 ? 1.0 / step.period[d] : 0.0);
   }
   const auto count = static_cast<std::uint32_t>(chunk.end - chunk.begin);
+  const bool watched =
+      std::any_of(step.watched.begin(), step.watched.end(), [&](const WatchedLaw& w) { return w.law == group.law; });
   // Pairs that may touch within a step.
   const V margin(step.dt * (chunk.fastest + (group.weight < 1.0 ? step.fastest : chunk.fastest)));
   const double* records = step.records;
@@ -173,6 +196,16 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
       chunk.touches[q] = static_cast<std::uint8_t>((chunk.touches[q] & ~(((1u << width) - 1u) << half)) | has << half);
       tally.contacts += group.weight * std::popcount(has);
       add_up<Dim, Rubs>(sums, f, a, b, chunk.begin, count);
+      if (!watched) continue;
+      for (int k = 0; k < static_cast<int>(width); ++k) {
+        if ((has >> k & 1u) == 0) continue;
+        std::array<double, Dim> force, place;
+        for (std::size_t d = 0; d < Dim; ++d) {
+          force[d] = f.force[d][k];
+          place[d] = x_a[d][k] - s.lever_a[k] * s.normal[d][k];
+        }
+        push_wall<Dim>(step, chunk, group.law, force, place);
+      }
     }
 }
 
@@ -217,6 +250,12 @@ void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at
   double* to = sums.of + (sleeps ? chunk.end - chunk.begin : at.sphere - chunk.begin) * Sums<Dim>::size;
   for (std::size_t d = 0; d < Dim; ++d) to[d] += f.force[d].v;
   for (std::size_t d = 0; d < spins; ++d) to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
+  std::array<double, Dim> force, place;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    force[d] = f.force[d].v;
+    place[d] = d == at.axis ? at.place : r[d];
+  }
+  push_wall<Dim>(step, chunk, at.law, force, place);
   chunk.lost += f.lost.v;
   chunk.stored += f.stored.v;
   chunk.deepest = std::max(chunk.deepest, 0.5 * overlap / radius);
@@ -321,6 +360,7 @@ template <int Dim>
 void step_chunk(const SphereStep& step, SphereChunk& chunk) {
   chunk.lost = chunk.stored = chunk.deepest = chunk.contacts = 0.0;
   chunk.wakes = false;
+  std::fill(chunk.pushed.begin(), chunk.pushed.end(), std::array<double, 6>{});
   if (chunk.idle()) {
     chunk.farthest = chunk.fastest = 0.0;
     return;

@@ -10,8 +10,10 @@
 // that has its forces can move on while its neighbours still read where it was.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "base/aligned.hpp"
@@ -90,7 +92,8 @@ struct SphereChunk {
   double farthest = 0.0;            // square of the longest way since the search, one step ahead, over its allowance's
   double fastest = 0.0;             // m/s
   double contacts = 0.0;
-  bool wakes = false;  // somebody of the border
+  bool wakes = false;                         // somebody of the border
+  std::vector<std::array<double, 6>> pushed;  // by watched law: force on the wall (N) and its torque (N m)
 
   bool idle() const { return !all_awake && awake.empty() && groups.empty() && sides.empty(); }
   /// Calls f with each sphere that moves.
@@ -120,6 +123,12 @@ struct SphereColumns {
   std::size_t first = 0;  // sphere at the columns' begin
 };
 
+/// A law whose forces on its wall are summed, and the place of the torque (m).
+struct WatchedLaw {
+  std::uint32_t law;
+  std::array<double, 3> about;
+};
+
 /// One step of contacts.
 struct SphereStep {
   int dimensions = 2;
@@ -138,6 +147,7 @@ struct SphereStep {
   bool rubs = false, rolls = false;        // some law does
   std::size_t numbers = 0;                 // of the memory of a pair
   const SleepStep* sleep = nullptr;        // null: nobody sleeps
+  std::span<const WatchedLaw> watched;
 };
 
 }  // namespace barchan

@@ -87,6 +87,7 @@ void Spheres::attach(Workspace& w) {
   strays_.prepare(set(), laws_.reach(), chunks_, step_.numbers);
   step_.tightness = strays_.tightness();
   gone_.reserve(moving_);
+  watch_walls();
   for (std::size_t d = 0; d < 3; ++d)
     step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
 }
@@ -166,6 +167,24 @@ void Spheres::point_at_columns() {
   }
 }
 
+/// The laws whose forces on walls meters ask for.
+void Spheres::watch_walls() {
+  for (const auto& push : w_->sphere_pushes)
+    watched_.push_back({laws_.table()[push.wall * layout_.phases.size() + push.grains], push.about});
+  pushing_.assign(watched_.size(), {});
+  for (SphereChunk& chunk : chunks_) chunk.pushed.assign(watched_.size(), {});
+  step_.watched = watched_;
+}
+
+/// The present forces on walls act for a time (s).
+void Spheres::sum_pushes(double time) {
+  for (std::size_t k = 0; k < watched_.size(); ++k)
+    for (std::size_t d = 0; d < 3; ++d) {
+      w_->sphere_pushes[k].impulse[d] += time * pushing_[k][d];
+      w_->sphere_pushes[k].turn[d] += time * pushing_[k][3 + d];
+    }
+}
+
 /// A step of the scene.
 void Spheres::advance() {
   const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : scene_.time.safety * laws_.step();
@@ -174,6 +193,8 @@ void Spheres::advance() {
   point_at_columns();
   if (sleep_.on() && sleep_.look(*w_, numbers_.data(), lost_)) others_sleep_ = true;
   const double each = dt / static_cast<double>(steps);
+  for (auto& push : w_->sphere_pushes) push.impulse = push.turn = {};
+  sum_pushes(0.5 * each);
   layout_.dimensions == 2 ? pack<2>(each) : pack<3>(each);
   for (long k = 0; k < steps; ++k) go(k + 1 == steps, each);
 }
@@ -352,6 +373,13 @@ void Spheres::go(bool last, double dt) {
   const auto n = static_cast<std::int64_t>(chunks_.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t c = 0; c < n; ++c) step_spheres(step_, chunks_[static_cast<std::size_t>(c)]);
+  if (!watched_.empty()) {
+    std::fill(pushing_.begin(), pushing_.end(), std::array<double, 6>{});
+    for (const SphereChunk& chunk : chunks_)
+      for (std::size_t k = 0; k < watched_.size(); ++k)
+        for (std::size_t q = 0; q < 6; ++q) pushing_[k][q] += chunk.pushed[k][q];
+    sum_pushes(last ? 0.5 * dt : dt);
+  }
   if (fresh_) step_spheres(step_, sleeping_);
   fresh_ = false;
   stored_ = sleeping_.stored;

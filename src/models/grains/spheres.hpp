@@ -82,6 +82,8 @@ class Spheres : public Model {
   template <int Dim>
   void make_records();
   SphereSet set();
+  void watch_walls();
+  void sum_pushes(double time);
   double slack() const { return slack_ * laws_.reach(); }
 
   static constexpr long searches_a_sort = 32;
@@ -116,6 +118,8 @@ class Spheres : public Model {
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;
   double contacts_ = 0.0;
+  std::vector<WatchedLaw> watched_;             // of w_->sphere_pushes
+  std::vector<std::array<double, 6>> pushing_;  // N, N m: of the last step of a bundle, whose second half is to come
 };
 
 }  // namespace barchan

@@ -77,6 +77,7 @@ void Spheres::archive(Archive& a) {
   a.number("deepest", deepest_);
   a.number("contacts", contacts_);
   a.number("set of records", now_);
+  if (!watched_.empty()) a.array("forces on walls", pushing_);
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
