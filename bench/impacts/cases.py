@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/impacts/cases.py build/barchan [--only CASE]... [--write]
     /usr/bin/python3 bench/impacts/cases.py none --only none --write     # the page from the results, runs nothing
 
-Cases: cantilever, csm3, bars, restitution, paper, of bounce.py rings, block, of hertz.py hertz, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.json. With
+Cases: cantilever, csm3, bars, restitution, paper, of bounce.py rings, block, of hertz.py hertz, hertz_spheres, of eq13.py eq13, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.json. With
 --write, docs/impacts.md (between its markers) and docs/gallery/impacts_*.png are made from them. One thread, about five minutes
 on a quiet core; csm3 takes most of them.
 """
@@ -21,6 +21,7 @@ import numpy as np
 
 import bearing
 import bounce
+import eq13
 import hertz
 import rigid
 
@@ -144,7 +145,7 @@ def paper(program):
     return {"table": table}
 
 
-CASES = {"cantilever": cantilever, "csm3": csm3, "bars": bars, "restitution": restitution, "paper": paper} | hertz.CASES
+CASES = {"cantilever": cantilever, "csm3": csm3, "bars": bars, "restitution": restitution, "paper": paper} | hertz.CASES | eq13.CASES
 for other_name, other_case in (rigid.CASES | bounce.CASES).items():
     CASES[other_name] = lambda program, case=other_case: case(lambda *scene: Run(program, *scene))
 
@@ -198,7 +199,7 @@ def page(results):
                   "| figure | the paper | speed of A, of B at the end [m/s] | distance at which the force begins [dx] | ours |", "| --- | --- | --- | --- | --- |"]
         lines += [f"| {r['figure']} | {r['statement']} | {r['a']:.2f}, {r['b']:.2f} | {r['begins']:.2f} | {verdict(r)} |" for r in results["paper"]["table"]]
         lines += ["", "![Speeds in figures 6 to 9](gallery/impacts_paper.png)", ""]
-    lines += bounce.page(results) + hertz.page(results) + rigid.page(results)
+    lines += bounce.page(results) + hertz.page(results) + eq13.page(results) + rigid.page(results)
     if "bearing" in results:
         lines += bearing.page(results["bearing"])
     return "\n".join(lines)

@@ -1,4 +1,5 @@
-"""Discs pressed together (scenes/verification/hertz.toml) against Hertz: a case of bench/impacts/cases.py, its table and plot on docs/impacts.md."""
+"""Discs and spheres pressed together (scenes/verification/hertz.toml, hertz_spheres.toml) against Hertz: cases of bench/impacts/cases.py, tables and plots on
+docs/impacts.md."""
 
 import pathlib
 import subprocess
@@ -70,10 +71,62 @@ def hertz(program):
     return {"table": table}
 
 
-CASES = {"hertz": hertz}
+RINGS, WIDE = 4, 1.25  # rings of equal area, as far as the radius whose square is WIDE a^2
+
+
+def measure_spheres(folder, spacing):
+    """Surfaces of particles that do not meet place for place: a single particle's force is noise, those of rings and their moments are not."""
+    frames = [frame_of(path) for path in sorted(folder.glob("hertz_spheres_0*.vtp"))[-FRAMES:]]
+    upper = frames[0]["phase"] == 0
+    place, force = (np.mean([f[name][upper] for f in frames], axis=0) for name in ("place", "contact_force"))
+    loads = [float(f["contact_force"][upper, 1].sum()) for f in frames]
+    load = float(np.mean(loads))
+    a = (3 * load * (RADIUS / 2) / (4 * STEEP))**(1 / 3)
+    p0 = 3 * load / (2 * np.pi * a**2)
+    touching = np.abs(force[:, 1]) > 1e-6 * load
+    place, force = place[touching][:, [0, 2]], force[touching][:, 1]
+    r = np.hypot(*(place - (force[:, None] * place).sum(0) / load).T)
+    edges = a * np.sqrt(np.linspace(0, WIDE, RINGS + 1))
+    pressure = np.array([force[(r >= low) & (r < high)].sum() / (np.pi * edges[1]**2) for low, high in zip(edges, edges[1:])])
+    middle = np.sqrt((edges[:-1]**2 + edges[1:]**2) / 2)
+    inside = pressure > 0.2 * pressure.max()
+    square, slope = np.linalg.lstsq(np.stack([np.ones(inside.sum()), -middle[inside]**2], 1), pressure[inside]**2, rcond=None)[0]
+    return {"count": round(RADIUS / spacing), "load": load, "unrest": float(np.std(loads) / load), "a": float(a), "p0": float(p0), "in a": float(a / spacing),
+            "touching": int(touching.sum()), "moment": float(np.sqrt(2.5 * (force * r**2).sum() / load) / a), "width": float(np.sqrt(square / slope) / a),
+            "farthest": float(r.max() / a), "peak": float(np.sqrt(square) / p0),
+            "inner": float(force[r < 0.6 * a].sum() / (load * (1 - 0.64**1.5))), "rings": [(middle / a).tolist(), (pressure / p0).tolist()]}
+
+
+def hertz_spheres(program):
+    table = []
+    for count in (10, 20, 40):
+        with tempfile.TemporaryDirectory(prefix="barchan_hertz_") as folder:
+            subprocess.run([program, "run", str(ROOT / "scenes/verification/hertz_spheres.toml"), "--out", folder, "--threads", "1", "--quiet",
+                            "--set", f"spacing={RADIUS / count!r}"], check=True)
+            table.append(measure_spheres(pathlib.Path(folder), RADIUS / count))
+    return {"table": table}
+
+
+CASES = {"hertz": hertz, "hertz_spheres": hertz_spheres}
 
 
 def page(results):
+    return page_of_discs(results) + page_of_spheres(results)
+
+
+def page_of_spheres(results):
+    if "hertz_spheres" not in results:
+        return []
+    lines = ["### Two elastic spheres pressed together (Hertz)", "",
+             "| particles a radius | P [N] | a/R | p_0/E | spacings in a | particles that touch | width over a: by the second moment | by the fit | farthest that touches "
+             "| peak over p_0, by the fit | pressure inside 0.6 a over the exact one |",
+             "| --- |" + " --- |" * 10]
+    lines += [f"| {r['count']} | {r['load']:.2f} | {r['a'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in a']:.1f} | {r['touching']} | {r['moment']:.3f} | "
+              f"{r['width']:.3f} | {r['farthest']:.3f} | {r['peak']:.3f} | {r['inner']:.3f} |" for r in results["hertz_spheres"]["table"]]
+    return lines + [""]
+
+
+def page_of_discs(results):
     if "hertz" not in results:
         return []
     lines = ["### Two elastic discs pressed together (Hertz)", "",

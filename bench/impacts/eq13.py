@@ -1,0 +1,48 @@
+"""Energy of an impact with viscosity (eq. 13 of Halik et al. 2015): a case of bench/impacts/cases.py, its table on docs/impacts.md."""
+
+import csv
+import pathlib
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+UPDATED = [f"{key}" for p in "ab" for key in (f"phases.{p}.formulation=updated-lagrangian", f"phases.{p}.artificial-viscosity=0.2", f"phases.{p}.energy=true")]
+PLAIN = [f"phases.{p}.artificial-viscosity=0" for p in "ab"]
+BARS = UPDATED + ['interactions={ kernel = "cubic-spline", a-a = 2.4, b-b = 2.4, a-b = 1.0 }']
+RUNS = {"cubes, one spacing between them (figure 7b)": ("paper/impact_cubes.toml", []),
+        "the same without viscosity": ("paper/impact_cubes.toml", PLAIN),
+        "cubes, 2.4 spacings everywhere (figure 6b)": ("paper/impact_cubes.toml", ["interactions.a-b=2.4"]),
+        "two bars, 40 a length": ("verification/two_bars.toml", BARS),
+        "the same bars without viscosity": ("verification/two_bars.toml", BARS + PLAIN)}
+
+
+def measure(path):
+    rows = list(csv.DictReader(path.open()))
+    total = lambda what: [sum(float(row[f"{p}_{what}_energy [J]"]) for p in "ab") for row in rows]
+    motion, internal, strain = total("kinetic"), total("internal"), total("strain")
+    start = motion[0]
+    return {"kept": max(abs(k + e - start) for k, e in zip(motion, internal)) / start, "motion": motion[-1] / start, "strain": max(strain) / start,
+            "rest": (internal[-1] - strain[-1]) / start, "apart": max(abs(e - s) for e, s in zip(internal, strain)) / start}
+
+
+def eq13(program):
+    table = {}
+    for name, (scene, sets) in RUNS.items():
+        with tempfile.TemporaryDirectory(prefix="barchan_eq13_") as folder:
+            subprocess.run([program, "run", str(ROOT / "scenes" / scene), "--out", folder, "--threads", "1", "--quiet", *(x for s in sets for x in ("--set", s))],
+                           check=True)
+            table[name] = measure(pathlib.Path(folder) / "history.csv")
+    return {"table": table}
+
+
+CASES = {"eq13": eq13}
+
+
+def page(results):
+    if "eq13" not in results:
+        return []
+    lines = ["### Energy of an impact with viscosity (eq. 13)", "",
+             "| run | largest change of kinetic + internal energy | kinetic energy at the end | largest strain energy | internal less strain energy at the end | at most |",
+             "| --- |" + " --- |" * 5]
+    lines += [f"| {name} | {r['kept']:.1e} | {r['motion']:.4f} | {r['strain']:.3f} | {r['rest']:.1e} | {r['apart']:.1e} |" for name, r in results["eq13"]["table"].items()]
+    return lines + ["", "All over the kinetic energy of the start.", ""]
