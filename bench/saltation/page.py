@@ -200,10 +200,25 @@ def resolved(r):
                     "At 0.4 m/s the flux first overshoots (0.11 kg/m/s at 0.4 s, for the wind begins as over a bed at rest) and then swings by a fifth about its mean."]
 
 
+def storm(r):
+    lines = ["## A dune in a storm", "", "`scenes/dune.toml`: `bench/saltation/storm.py`, one run of 0.5 s, which says how each figure is measured. Momentum along x, N s for each metre of depth:", "",
+             "| put in: held bulk speed, stress on the lid | gained by air and grains | given by grains to the core, to the lid | to the ground by the pressure of the air | rest | largest rest in the run |",
+             "| --- " * 6 + "|",
+             f"| {r['put']:.4f} | {r['gained']:.4f} | {r['core']:.4f}, {r['lid']:.4f} | {r['pressure']:.4f} | {r['rest']:.4f}, {100 * r['share']:.1f} % of what is put in | {100 * r['largest']:.1f} % |", "",
+             "Wanted: within 1 %. The pressure is that of the air's first row over the ground in 250 frames, the rest of the table is from history.csv; nothing was fitted. The impulse of the grains is that of their contacts.", "",
+             "| grains | at the start | at the end |", "| --- " * 3 + "|"]
+    lines += [f"| {name} | {a} | {b} ({b - a:+d}) |" for name, (a, b) in r["places"].items()]
+    lines += [f"| all | {r['grains'][0]} | {r['grains'][1]} |", "",
+              f"{r['flying']} grains are more than two diameters over the ground at the end, {r['fastest']:.1f} m/s the fastest of the run. Air along x in the last 0.1 s: {r['lee']:.1f} m/s within 8 mm over the slip face, "
+              f"{r['crest']:.1f} m/s over the crest (1 to 8 mm), {r['far']:.1f} m/s far behind the dune (1 to 8 mm). The stress on top of the layers near the ground goes from {r['stress'][0]:.1f} to {r['stress'][1]:.1f} Pa: "
+              f"the held bulk speed gives the air back what grains take. Largest density error of the air: {100 * r['density']:.1f} %. Deepest overlap of two grains: {100 * r['deepest']:.0f} % of their mean diameter."]
+    return lines
+
+
 def main():
     lines = ["# Saltation against what is known", "", "Made by `bench/saltation/page.py` from the results of `bench/saltation/cases.py`. How the wind, the drag and the "
              "exchange of momentum are computed: [method.md](method.md), Air without particles.", ""]
-    for name, part in (("settling", settling), ("hop", hop), ("splash", splash), ("heaps", heaps), ("threshold", threshold), ("flux", flux), ("impact", impact), ("resolved", resolved), ("kernel-drag", kernel_drag)):
+    for name, part in (("settling", settling), ("hop", hop), ("splash", splash), ("heaps", heaps), ("threshold", threshold), ("flux", flux), ("impact", impact), ("resolved", resolved), ("kernel-drag", kernel_drag), ("storm", storm)):
         r = load(name)
         if r:
             lines += part(r) + [""]
