@@ -8,6 +8,7 @@ disturbed by 0.01 spacings with another seed in each, u* times 0.98, 1 and 1.02 
 instruction sets that the program and this machine have (or --instructions). Asked: every run reaches its end; the density error of the air is
 at most 2 % in every row of history.csv (a thousand rows a run); no grain leaves. With --ustar-factor or --density-factor
 (grains as heavy by that factor) the scene is another one; then every run must end well or be stopped by the watch with its message.
+Of a scene without a logarithmic wind other things differ and are asked: ensemble_any.py.
 
 Runs are single-threaded, --jobs at a time (2). --runs-dir keeps them: a run that is there is not done again, so that an ensemble
 can be stopped and gone on with. With --write the figures go to bench/stability/results/ and docs/stability.md is written again from
@@ -31,6 +32,7 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench/accuracy"))
 import cases_wind  # noqa: E402
+import ensemble_any as any_scene  # noqa: E402
 from harness import Frame, table  # noqa: E402
 from page import processor  # noqa: E402
 
@@ -73,6 +75,8 @@ def members(scene, sets_of_instructions, options):
 
 def figures(out, name, scene):
     """What a finished run shows; figures that it did not come to are None."""
+    if not any_scene.is_wind(scene):
+        return any_scene.figures(out, name, scene)
     report = json.loads((out / "run.json").read_text())
     history = table(out / "history.csv")
     t, bulk = history["time [s]"], history["air_mean_vx [m/s]"]
@@ -117,6 +121,8 @@ def carry_out(member, program, instructions, sets, path, out):
 
 
 def row(r):
+    if "step_factor" in r:
+        return any_scene.row(r)
     text = lambda key, form: "" if r.get(key) is None else format(r[key], form)
     ended = "" if r.get("ended_at") is None else f"{1e3 * r['ended_at']:.1f}"
     return (f"| {r['run']} | {r['seed']} | {r['friction_velocity']:.4g} | {r['precision']} | {r.get('instructions', '')} | {r['status']} | {ended} | "
@@ -126,6 +132,8 @@ def row(r):
 
 def verdict(result):
     """Lines of what was asked and what came out; True if all is well."""
+    if "step_factor" in result["runs"][0]:
+        return any_scene.verdict(result)
     runs, plain = result["runs"], result["ustar_factor"] == 1 and result["density_factor"] == 1
     ended = sum(r["status"] == 0 for r in runs)
     stopped = sum(r["status"] == 3 and bool(r["message"]) for r in runs)
@@ -147,14 +155,20 @@ def title(result):
 
 def write_page():
     """docs/stability.md between its markers, from all results that are there."""
-    parts = []
+    parts, rows = [], []
     for file in sorted(RESULTS.glob("*.json")):
         result = json.loads(file.read_text())
         if "runs" not in result:  # the atlas stands beside the ensembles
             continue
+        if "step_factor" in result["runs"][0]:
+            rows.append(any_scene.page_row(result))
+            continue
         lines, _ = verdict(result)
         parts += [f"\n## {title(result)}\n", f"`{result['command']}`\n"] + ["\n".join(f"- {x}" for x in lines) + "\n",
                   HEAD + "\n" + "\n".join(row(r) for r in result["runs"]) + f"\n\nMeasured on {result['processor']}.\n"]
+    if rows:
+        about = "`ensemble.py build/barchan SCENE --runs N`. The step (time.safety) times 0.98, 1 and 1.02, fluids and elastic bodies disturbed with other seeds, mixed and double precision, all instruction sets."
+        parts = ["\n## Bodies, heaps and fluids\n", about + " Least and largest of the runs.\n", any_scene.PAGE_HEAD + "\n" + "\n".join(rows) + "\n"] + parts
     before, begin, rest = PAGE.read_text().partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
@@ -168,7 +182,7 @@ def ensemble(path, program, options, folder):
     variant = "".join(f"-{name}-{value:g}" for name, value in (("ustar", options.ustar_factor), ("density", options.density_factor)) if value != 1)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         jobs = [pool.submit(carry_out, member, program, instructions, sets, path, folder / f"{label(path)[:-5].replace('/', '-')}{variant}" / f"{member['run']:02d}")
-                for member, instructions, sets in members(scene, options.instructions or available(program), options)]
+                for member, instructions, sets in (members if any_scene.is_wind(scene) else any_scene.members)(scene, options.instructions or available(program), options)]
         runs = []
         for job in jobs:
             runs.append(job.result())

@@ -198,18 +198,20 @@ void GroundDistance::archive(Archive& a) {
 }
 
 /// From a particle: less half a spacing. From a piece of a surface: the height over its plane, half a spacing (and what
-/// a slope stretches it by) to either side.
-double GroundDistance::from_seed(const Vec3& x, std::size_t seed) const {
+/// a slope stretches it by) to either side. Or `least`, if that is less: most seeds are farther, and that is soon seen.
+double GroundDistance::nearer(const Vec3& x, std::size_t seed, double least) const {
   Vec3 r{};
   for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d) {
     r[d] = x[d] - seeds_[seed][d];
     const double period = bounds_.high[d] - bounds_.low[d];
-    if (bounds_.periodic[d]) r[d] -= period * std::round(r[d] / period);
+    if (bounds_.periodic[d] && std::abs(r[d]) >= 0.5 * period) r[d] -= period * std::round(r[d] / period);
   }
   const double over = dot(normals_[seed], r);
-  if (!(dot(normals_[seed], normals_[seed]) > 0.0)) return norm(r) - half_[seed];
+  if (!(dot(normals_[seed], normals_[seed]) > 0.0)) return std::min(least, norm(r) - half_[seed]);
+  if (over >= least) return least;
   const double beside = std::max(std::sqrt(std::max(dot(r, r) - over * over, 0.0)) - 1.5 * half_[seed], 0.0);
-  return std::hypot(std::max(over, 0.0), beside);
+  if (beside >= least) return least;
+  return std::min(least, over > 0.0 && beside > 0.0 ? std::hypot(over, beside) : std::max({over, beside, 0.0}));
 }
 
 double GroundDistance::distance(const Vec3& x) const {
@@ -227,8 +229,12 @@ double GroundDistance::distance(const Vec3& x) const {
   Place at{};
   const std::int32_t* nearest = nearest_.data() + cell_of<Dim>(x, at);
   if (surfaces_) {
-    for (const std::ptrdiff_t step : around_)
-      if (nearest[step] >= 0) least = std::min(least, from_seed(x, static_cast<std::size_t>(nearest[step])));
+    std::int32_t last = -1;
+    for (const std::ptrdiff_t step : around_) {
+      if (nearest[step] == last) continue;  // neighbours often have the same
+      last = nearest[step];
+      if (last >= 0) least = nearer(x, static_cast<std::size_t>(last), least);
+    }
   } else {
     double squared_least = 1e300;
     std::int32_t last = -1;

@@ -47,7 +47,7 @@ class GroundDistance {
   std::size_t cell_of(const Vec3& x, Place& at) const;
   template <int Dim>
   double squared(const Vec3& x, std::int32_t seed) const;
-  double from_seed(const Vec3& x, std::size_t seed) const;
+  double nearer(const Vec3& x, std::size_t seed, double least) const;
   std::size_t number(const Place& at) const;
   template <class F>
   void images(const Place& at, F&& f) const;

@@ -97,7 +97,10 @@ void SandLayer::give_stress() {
   auto& stress = w_->ground_stress[fluid_];
   const PhaseParticles& air = w_->particles(fluid_);
   const double* x = air.column(Field::position, 0);
-  for (std::size_t k = 0; k < air.size(); ++k) {
+  const auto n = static_cast<std::int64_t>(air.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
     const Between b = between(x[k]);
     stress[k] =
         (1.0 - b.share) * std::abs(profile(b.left).stress.back()) + b.share * std::abs(profile(b.right).stress.back());
@@ -185,15 +188,20 @@ void SandLayer::exchange(double kept, double meant) {
   PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  const auto near = static_cast<std::int64_t>(near_.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < near; ++i) {
+    Near& q = near_[static_cast<std::size_t>(i)];
+    q.more = rate_[q.grain] * (wind_about(q.place, q.height - q.radius, q.height + q.radius) - q.wind);
+  }
   for (const Near& q : near_) {
-    const double more = rate_[q.grain] * (wind_about(q.place, q.height - q.radius, q.height + q.radius) - q.wind);
     if (gusts_) {
       const double gust = ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y - q.pull;
       const double force = -p.mass_of(q.grain) * gust;
       grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
     }
-    ax[q.grain] += more * q.ground.along_x;
-    ay[q.grain] += more * q.ground.along_y;
+    ax[q.grain] += q.more * q.ground.along_x;
+    ay[q.grain] += q.more * q.ground.along_y;
   }
   // What the layers do not take, the particles of the air do (of gusts before); from the bed the ground takes what is
   // across it.
@@ -225,7 +233,7 @@ void SandLayer::find_near() {
     if (height >= top_) {
       flying_.push_back(k);
     } else if (height > -deep * diameter_) {
-      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, g});
+      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, g});
     } else {
       p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
     }

@@ -64,6 +64,7 @@ class SandLayer : public Model {
     double height, radius;  // m over the ground, m
     double wind;            // m/s, the mean about it
     double pull;            // m/s2 along the ground, its drag in that wind
+    double more;            // m/s2, what the wind adds to it that the layer has after the exchange
     Ground ground;
   };
   Ground ground(double x) const;
