@@ -310,7 +310,7 @@ struct Motion : BodySet {
 struct ForceMeter : BodySet {
   std::string name;
   std::string by;  // of a wall: the phase whose force it is; empty: all that touch it
-  Vec3 about{};  // m, of the torque
+  Vec3 about{};    // m, of the torque
 };
 /// A set whose mean place is written to history.csv.
 struct Marker : BodySet {
