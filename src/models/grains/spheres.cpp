@@ -167,24 +167,6 @@ void Spheres::point_at_columns() {
   }
 }
 
-/// The laws whose forces on walls meters ask for.
-void Spheres::watch_walls() {
-  for (const auto& push : w_->sphere_pushes)
-    watched_.push_back({laws_.table()[push.wall * layout_.phases.size() + push.grains], push.about});
-  pushing_.assign(watched_.size(), {});
-  for (SphereChunk& chunk : chunks_) chunk.pushed.assign(watched_.size(), {});
-  step_.watched = watched_;
-}
-
-/// The present forces on walls act for a time (s).
-void Spheres::sum_pushes(double time) {
-  for (std::size_t k = 0; k < watched_.size(); ++k)
-    for (std::size_t d = 0; d < 3; ++d) {
-      w_->sphere_pushes[k].impulse[d] += time * pushing_[k][d];
-      w_->sphere_pushes[k].turn[d] += time * pushing_[k][3 + d];
-    }
-}
-
 /// A step of the scene.
 void Spheres::advance() {
   const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : scene_.time.safety * laws_.step();

@@ -1,4 +1,4 @@
-// What a run tells of its spheres, and what a checkpoint keeps of them.
+// What a run tells of its spheres and measures of them, and what a checkpoint keeps.
 #include <algorithm>
 #include <cmath>
 
@@ -64,6 +64,24 @@ std::vector<RestingContact> Spheres::resting_contacts(std::size_t phase) const {
       return contacts_at_rest(step_, s, chunks_, part.first, part.count);
     }
   return {};
+}
+
+/// The laws whose forces on walls meters ask for.
+void Spheres::watch_walls() {
+  for (const auto& push : w_->sphere_pushes)
+    watched_.push_back({laws_.table()[push.wall * layout_.phases.size() + push.grains], push.about});
+  pushing_.assign(watched_.size(), {});
+  for (SphereChunk& chunk : chunks_) chunk.pushed.assign(watched_.size(), {});
+  step_.watched = watched_;
+}
+
+/// The present forces on walls act for a time (s).
+void Spheres::sum_pushes(double time) {
+  for (std::size_t k = 0; k < watched_.size(); ++k)
+    for (std::size_t d = 0; d < 3; ++d) {
+      w_->sphere_pushes[k].impulse[d] += time * pushing_[k][d];
+      w_->sphere_pushes[k].turn[d] += time * pushing_[k][3 + d];
+    }
 }
 
 void Spheres::archive(Archive& a) {
