@@ -240,8 +240,8 @@ TEST(UpdatedLagrangianBodies, AnImpactWithViscosityKeepsMotionAndInternalEnergy)
     for (const char* key : {"formulation=updated-lagrangian", "artificial-viscosity=0.2", "energy=true"})
       sets.push_back(body + key);
   Drive viscous("verification/two_bars", sets);
-  sets.push_back("phases.a.artificial-viscosity=0");
-  sets.push_back("phases.b.artificial-viscosity=0");
+  sets.emplace_back("phases.a.artificial-viscosity=0");
+  sets.emplace_back("phases.b.artificial-viscosity=0");
   Drive plain("verification/two_bars", sets);
   const auto of = [](Drive& drive, const std::string& what) {
     return sum_of(drive.simulation(), {"a_" + what + "_energy [J]", "b_" + what + "_energy [J]"});
