@@ -101,6 +101,7 @@ struct TouchingSpheres {
   V overlap;           // m; below 0 a gap
   V lever_a, lever_b;  // m, from the centres to the contact
   V reduced_mass;      // kg
+  V inverse_mass;      // 1/kg, of the reduced mass
   V reduced_radius;    // m
 };
 
@@ -179,6 +180,7 @@ struct Normal {
   V force, elastic;  // N; elastic: its part that is stored
   V depth;           // m, the overlap, of a contact that begins part of a step's way
   V stiffness;       // N/m, at that depth
+  V inverse_depth;   // 1/m; Hertz only
   V dashpot;         // N s/m
   V share;           // of the step in which they touch
 };
@@ -207,32 +209,37 @@ BARCHAN_SIMD_INLINE Normal<V> linear_normal(const Constants<V>& c, V x, V approa
   return n;
 }
 
+// Roots and quotients take most of the time of a contact: each stands here once, and what only an onset needs is found
+// there.
 template <class V>
 BARCHAN_SIMD_INLINE Normal<V> hertz_normal(const Constants<V>& c, V x, V approach, V mass, V inverse_mass, V radius) {
-  const V least(1e-30), overlap = simd::max(x, least), root = simd::sqrt(radius), near(4.0);
-  const V stiff = c.stiffness * root, damp = c.dashpot * simd::sqrt(mass * stiff);
+  const V least(1e-30), overlap = simd::max(x, least), near(4.0);
   Normal<V> n;
-  const V square_root = simd::sqrt(overlap), here = stiff * square_root;
+  const V here = c.stiffness * simd::sqrt(radius * overlap), inverse = V(1.0) / overlap;
   const V turn2 = V(1.5) * here * (c.dt * c.dt) * inverse_mass, slower = fnma(turn2, V(1.0 / 12.0), V(1.0));
   const V before = fma(simd::max(approach, -approach), c.dt, least);
   const auto begins = x < near * before;
   n.depth = overlap;
+  n.inverse_depth = inverse;
   n.stiffness = here;
   n.elastic = here * overlap * slower;
-  n.dashpot = damp * simd::sqrt(square_root);
+  n.dashpot = c.dashpot * simd::sqrt(mass * here);
   n.share = V(1.0);
   // Far from the onset x^(3/2) + a^2/(16 sqrt(x)), which is what the weights make of it.
-  const V small = V(1.0 / 16.0) / (overlap * overlap);
+  const V small = V(1.0 / 16.0) * (inverse * inverse);
   const auto far_of = [&](V a) { return here * overlap * fma(a * a, small, slower); };
-  const auto near_of = [&](V a, V onset) { return stiff * (a * simd::sqrt(a)) * slower * onset; };
+  const auto near_of = [&](V a, V onset) { return c.stiffness * (a * simd::sqrt(radius * a)) * slower * onset; };
   V first = far_of(before);
   if (to_bits(begins) != 0) {
-    const HertzOnset<V> early(simd::min(x / before, near));
+    const V ratio = x / before;
+    const HertzOnset<V> early(simd::min(ratio, near));
     first = select(begins, near_of(before, early.force), first);
-    n.dashpot = select(begins, damp * simd::sqrt(simd::sqrt(before)) * early.root, n.dashpot);
+    n.dashpot = select(begins, c.dashpot * simd::sqrt(mass * c.stiffness * simd::sqrt(radius * before)) * early.root,
+                       n.dashpot);
     n.share = begin(x, before);
     n.depth = simd::max(overlap, V(0.25) * before);
-    n.stiffness = stiff * simd::sqrt(n.depth);
+    n.inverse_depth = V(1.0) / n.depth;
+    n.stiffness = c.stiffness * simd::sqrt(radius * n.depth);
   }
   const V centred = fnma(first * inverse_mass, c.half_dt, approach);
   const V a = fma(simd::max(centred, -centred), c.dt, least);
@@ -243,8 +250,7 @@ BARCHAN_SIMD_INLINE Normal<V> hertz_normal(const Constants<V>& c, V x, V approac
   const V drag = n.dashpot * inverse_mass;
   n.dashpot = n.dashpot * fnma(drag * drag, c.dt * c.dt * V(1.0 / 12.0), V(1.0));
   const V force = fma(n.dashpot, approach, elastic) / fma(n.dashpot * inverse_mass, c.half_dt, V(1.0));
-  const V slope = V(1.5) * here;
-  const V ending = select(x > V(0.0), slope * ramp(force / slope, before), V(0.0));
+  const V ending = select(x > V(0.0), ramp(force, V(1.5) * here * before), V(0.0));
   n.force = select(c.dashpot > V(0.0), select(approach > V(0.0), force, ending), n.elastic);
   return n;
 }
@@ -257,7 +263,8 @@ BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::ar
                                            const std::array<V, N>& velocity, V stiffness, V old_stiffness, V dashpot,
                                            V limit, V inverse_mass, V dt, V in_touch, V& lost, V& stored) {
   std::array<V, N> force;
-  const V centred = V(1.0) / fma(dashpot * inverse_mass, V(0.5) * dt, V(1.0));
+  const V slower = fma(dashpot * inverse_mass, V(0.5) * dt, V(1.0)), inverse = V(1.0) / (slower * stiffness);
+  const V centred = inverse * stiffness, back = inverse * slower;
   V f2(1e-200), was(0.0), now(0.0), work(0.0);
   for (std::size_t k = 0; k < N; ++k) {
     slip[k] = fma(velocity[k], dt * in_touch, slip[k]);
@@ -266,7 +273,6 @@ BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::ar
   }
   const auto slides = f2 > limit * limit;
   const V share = select(slides, limit / simd::sqrt(f2), V(1.0));
-  const V back = V(1.0) / stiffness;
   for (std::size_t k = 0; k < N; ++k) {
     force[k] = force[k] * share;
     slip[k] = select(slides, -force[k] * back, slip[k]);
@@ -294,7 +300,7 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
   ContactForces<V, Dim> out;
   V v_n(0.0);
   for (std::size_t d = 0; d < Dim; ++d) v_n = fma(s.velocity[d], s.normal[d], v_n);
-  const V inverse_mass = V(1.0) / s.reduced_mass;
+  const V inverse_mass = s.inverse_mass;
   sphere_contact::Normal<V> along_n;
   if constexpr (Hertz)
     along_n = sphere_contact::hertz_normal(c, s.overlap, -v_n, s.reduced_mass, inverse_mass, s.reduced_radius);
@@ -310,7 +316,7 @@ BARCHAN_SIMD_INLINE ContactForces<V, Dim> touch(const sphere_contact::Constants<
     V k_t = c.tangential * k, old_k_t = k_t, shrink(1.0);
     if constexpr (Hertz) {
       // k_t of the step before over that of now; the overlap was delta + v_n dt.
-      const V ratio = simd::sqrt(simd::max(fma(v_n, c.dt, along_n.depth), V(0.0)) / along_n.depth);
+      const V ratio = simd::sqrt(simd::max(fma(v_n * c.dt, along_n.inverse_depth, V(1.0)), V(0.0)));
       old_k_t = k_t * ratio;
       shrink = simd::min(ratio, V(1.0));
     }

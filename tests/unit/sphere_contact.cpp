@@ -35,6 +35,7 @@ After meet(const SphereContact& law, double mass_a, double mass_b, double speed,
     s.overlap = V(2.0 * radius) - x;
     s.lever_a = s.lever_b = V(radius);
     s.reduced_mass = V(reduced);
+    s.inverse_mass = V(1.0 / reduced);
     s.reduced_radius = V(0.5 * radius);
     const auto near = s.overlap > V(-dt) * simd::max(u, -u);
     auto f = touch<Hertz, true, false>(constants, s, memory);

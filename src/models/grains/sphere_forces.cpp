@@ -3,69 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
-#include "engine/pair_loop.hpp"
+#include "models/grains/sphere_vectors.hpp"
 
 namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
-constexpr std::size_t batch = SphereChunk::batch;
-constexpr std::size_t width = Lanes::width < static_cast<int>(batch) ? static_cast<std::size_t>(Lanes::width) : batch;
-using V = simd::Vec<double, static_cast<int>(width)>;
-using Four = simd::Vec<double, 4>;
+using namespace sphere_vectors;
 using One = simd::Vec<double, 1>;
-
-/// Sums of the forces on a chunk's spheres, and of one that takes what belongs to other chunks. 2D: fx fy t -; 3D: fx
-/// fy fz - tx ty tz -.
-template <int Dim>
-struct Sums {
-  static constexpr std::size_t size = Dim == 2 ? 4 : 8;
-  alignas(64) double of[(SphereChunk::most + 1) * size];
-  void clear(std::size_t spheres) { std::memset(of, 0, spheres * size * sizeof(double)); }
-};
-
-/// Adds the forces of a vector of pairs to both sides, pair after pair.
-template <int Dim, bool Rubs>
-BARCHAN_SIMD_INLINE void add_up(Sums<Dim>& sums, const ContactForces<V, Dim>& f, const std::uint32_t* a,
-                                const std::uint32_t* b, std::size_t begin, std::uint32_t count) {
-  static constexpr std::uint32_t rows[4] = {0, 1, 2, 3};
-  const auto slot = [&](std::uint32_t sphere) {
-    return static_cast<std::size_t>(std::min(sphere - static_cast<std::uint32_t>(begin), count)) * Sums<Dim>::size;
-  };
-  constexpr std::size_t sets = Dim == 2 ? 2 : Rubs ? 3 : 1;
-  alignas(64) double lanes[sets][4][width];
-  const auto put = [&](std::size_t set, V x, V y, V z) {
-    x.store(lanes[set][0]);
-    y.store(lanes[set][1]);
-    z.store(lanes[set][2]);
-    V(0.0).store(lanes[set][3]);
-  };
-  if constexpr (Dim == 2) {
-    put(0, f.force[0], f.force[1], f.torque_a[0]);
-    put(1, f.force[0], f.force[1], -f.torque_b[0]);
-  } else {
-    put(0, f.force[0], f.force[1], f.force[2]);
-    if constexpr (Rubs) {
-      put(1, f.torque_a[0], f.torque_a[1], f.torque_a[2]);
-      put(2, f.torque_b[0], f.torque_b[1], f.torque_b[2]);
-    }
-  }
-  Four of[sets][width];
-  for (std::size_t set = 0; set < sets; ++set)
-    for (std::size_t q = 0; q < width; q += 4)  // four pairs at once
-      simd::load_transposed<4>(&lanes[set][0][q], width, rows, of[set] + q);
-  for (std::size_t k = 0; k < width; ++k) {
-    double *to_a = sums.of + slot(a[k]), *to_b = sums.of + slot(b[k]);
-    (Four::load(to_a) + of[0][k]).store(to_a);
-    (Four::load(to_b) - of[Dim == 2 ? 1 : 0][k]).store(to_b);
-    if constexpr (Dim == 3 && Rubs) {
-      (Four::load(to_a + 4) + of[1][k]).store(to_a + 4);
-      (Four::load(to_b + 4) + of[2][k]).store(to_b + 4);
-    }
-  }
-}
 
 /// Adds the force of a touch to what a wall feels; the sphere's own is the opposite, at `place`.
 template <int Dim>
@@ -121,6 +67,7 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
     for (std::size_t half = 0; half < batch; half += width) {
       const std::uint32_t *a = chunk.a.data() + q * batch + half, *b = chunk.b.data() + q * batch + half;
       const std::uint32_t had = chunk.touches[q] >> half & ((1u << width) - 1u);
+      if (q + 1 < group.end) fetch<Dim>(records, a + batch, b + batch);
       V x_a[4], x_b[4];
       simd::load_transposed<4>(records, stride, a, x_a);
       simd::load_transposed<4>(records, stride, b, x_b);
@@ -153,7 +100,11 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
         simd::load_transposed<4>(records + R::spin, stride, a, w_a);
         simd::load_transposed<4>(records + R::spin, stride, b, w_b);
       }
-      const V distance = simd::sqrt(r2), inverse = V(1.0) / distance, inverse_reach = V(1.0) / reach;
+      // One quotient for all: 1/distance, 1/reach, m* and its inverse.
+      const V a3 = r_a * r_a * r_a, b3 = r_b * r_b * r_b, both = a3 * b3, mass = fma(of_a, b3, of_b * a3);
+      const V distance = simd::sqrt(r2), lengths = distance * reach, masses = both * mass;
+      const V quotient = V(1.0) / (lengths * masses), of_lengths = quotient * masses, of_masses = quotient * lengths;
+      const V inverse = of_lengths * reach, inverse_reach = of_lengths * distance;
       s.overlap = reach - distance;
       V parts(0.0);
       for (std::size_t d = 0; d < Dim; ++d) {
@@ -172,8 +123,8 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
       s.lever_a = share_a * distance;
       s.lever_b = distance - s.lever_a;
       s.reduced_radius = share_a * r_b;
-      const V a3 = r_a * r_a * r_a, b3 = r_b * r_b * r_b;
-      s.reduced_mass = a3 * b3 / fma(of_a, b3, of_b * a3);
+      s.reduced_mass = both * both * of_masses;
+      s.inverse_mass = mass * mass * of_masses;
       std::array<V, numbers> slip;
       for (std::size_t k = 0; k < numbers; ++k) slip[k] = V::load(memory + k * batch);
       if constexpr (Rubs) {
@@ -240,7 +191,8 @@ void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at
   s.lever_a = One(distance);
   s.lever_b = One(0.0);
   s.reduced_radius = One(radius);
-  s.reduced_mass = One(1.0 / step.passive[at.sphere * passive_size + passive_mass]);
+  s.inverse_mass = One(step.passive[at.sphere * passive_size + passive_mass]);
+  s.reduced_mass = One(1.0) / s.inverse_mass;
   std::array<One, numbers> slip;
   for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(at.memory[k]);
   const auto f = touch<Hertz, Rubs, Rolls>(sphere_contact::Constants<One>(law, step.dt), s, slip);
