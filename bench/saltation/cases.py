@@ -274,7 +274,10 @@ def resolved(bench):
 # Rice, Willetts & McEwan 1995, medium sand: speed (m/s) and angle of the impact; share of the speed and angle of the rebound; grains
 # ejected an impact, and their speed (m/s).
 RICE = {"speed": 3.30, "angle": 11.5, "rebound": 0.57, "rebound_angle": 30.2, "ejecta": 2.89, "ejection_speed": 0.266}
-SPLASH_RUNS, SPLASH_WIDTH, SPLASH_D, SPLASH_LEVELS = 20, 0.036, 3.0e-4, (1.0, 1.5, 2.0)
+SPLASH_D, SPLASH_LEVELS = 3.0e-4, (1.0, 1.5, 2.0)
+# In a slab one diameter thick, and in three dimensions: runs, strikers of each, width and thickness (m) of the bed, height (m) of the start.
+SPLASHES = ({"scene": "splash", "dimensions": 2, "runs": 20, "strikers": 3, "width": 0.036, "thickness": SPLASH_D, "start": 0.0045},
+            {"scene": "splash_3d", "dimensions": 3, "runs": 30, "strikers": 2, "width": 0.0144, "thickness": 0.006, "start": 0.0033})
 
 
 def frames_of(folder, name, phase):
@@ -299,49 +302,64 @@ def frames_of(folder, name, phase):
 
 
 def risers(frames, height, above):
-    """Speed (m/s) and angle at the bed of each grain that is seen to rise over `height`, `above` metres over the bed: v^2 + 2 g above."""
+    """Speed (m/s) and angle at the bed, seen from the side, of each grain that is seen to rise over `height`, `above` metres over the bed: v^2 + 2 g above."""
     found, done = [], set()
     for _, x, v in frames:
-        for k in range(len(x)):
-            if x[k, 1] > height and v[k, 1] > 0 and k not in done:
+        for k in ((x[:, 1] > height) & (v[:, 1] > 0)).nonzero()[0]:
+            if k not in done:
                 done.add(k)
                 up = math.sqrt(v[k, 1] ** 2 + 2 * G * (x[k, 1] - height + above))
                 found.append((math.hypot(v[k, 0], up), math.degrees(math.atan2(up, v[k, 0]))))
     return found
 
 
-def splash_of(folder, level):
-    """Rebounds and ejected grains of one run: those that rise over `level` diameters above the bed, whose surface is the mean over its
-    length of the highest centre in four diameters. A striker that does not rise so high stays in the bed."""
-    bed = frames_of(folder, "splash", "sand")
-    start = bed[0][1]
-    tops = [max(y for x, y, _ in start if a <= x < a + 4 * SPLASH_D) for a in (4 * SPLASH_D * k for k in range(round(SPLASH_WIDTH / SPLASH_D / 4)))]
-    above = level * SPLASH_D
-    height = sum(tops) / len(tops) + above
-    return risers(frames_of(folder, "splash", "striker"), height, above), risers(bed[1:], height, above)
+def bed_surface(bed, case):
+    """Mean over the bed of the highest centre in tiles four diameters long and one thick."""
+    tops = {}
+    for x, y, z in bed:
+        tile = int(x // (4 * SPLASH_D)), int(z // SPLASH_D) if case["dimensions"] == 3 else 0
+        tops[tile] = max(tops.get(tile, y), y)
+    return sum(tops.values()) / len(tops)
+
+
+def strikers_of(case, k):
+    """Where the strikers of run k begin: every run elsewhere over the same bed, the strikers of one far from each other."""
+    n, width, thickness = case["strikers"], case["width"], case["thickness"]
+    places = []
+    for s in range(n):
+        x = (0.001 + width * (s + k / case["runs"]) / n) % width
+        place = [x, case["start"]] + ([thickness * ((11 * k % case["runs"]) / case["runs"] + s / n) % thickness] if case["dimensions"] == 3 else [])
+        places.append("[" + ", ".join(f"{c:.6f}" for c in place) + "]")
+    return "[" + ", ".join(places) + "]"
+
+
+def splash_of(bench, case):
+    """Many impacts of one scene: rebounds and ejected grains, those that rise over a level above the bed. A striker that does not rise so high stays in the bed."""
+    rebounds, ejected, counts = ({level: [] for level in SPLASH_LEVELS} for _ in range(3))
+    for k in range(case["runs"]):
+        folder = bench.run(case["scene"], f"{case['scene']}_{k}", f"fill.2.shape.points={strikers_of(case, k)}", "output.walls=false")
+        bed, strikers = frames_of(folder, case["scene"], "sand"), frames_of(folder, case["scene"], "striker")
+        surface = bed_surface(bed[0][1], case)
+        for level in SPLASH_LEVELS:
+            above = level * SPLASH_D
+            rebounds[level] += risers(strikers, surface + above, above)
+            thrown = risers(bed[1:], surface + above, above)
+            ejected[level] += thrown
+            counts[level].append(len(thrown) / case["strikers"])
+    mean = lambda values: sum(values) / max(len(values), 1)  # noqa: E731
+    error = lambda values: math.sqrt(sum((v - mean(values)) ** 2 for v in values) / max(len(values) - 1, 1) / max(len(values), 1))  # noqa: E731
+    rows = []
+    for level in SPLASH_LEVELS:
+        shares, speeds = [v / RICE["speed"] for v, _ in rebounds[level]], [v for v, _ in ejected[level]]
+        rows.append({"level": level, "impacts": case["runs"] * case["strikers"], "rebounds": len(shares), "rebound": mean(shares), "rebound_error": error(shares),
+                     "rebound_angle": mean([a for _, a in rebounds[level]]), "ejecta": mean(counts[level]), "ejecta_error": error(counts[level]),
+                     "ejection_speed": mean(speeds), "ejection_speed_error": error(speeds), "ejection_angle": mean([a for _, a in ejected[level]])})
+    return {"scene": case["scene"], "dimensions": case["dimensions"], "levels": rows}
 
 
 def splash(bench):
-    """Many impacts of scenes/splash.toml: the strikers of each run begin at other places of the same bed."""
-    folders, strikers = [], 3
-    for k in range(SPLASH_RUNS):
-        begin = [(0.001 + 0.012 * s + 0.012 * k / SPLASH_RUNS) % SPLASH_WIDTH for s in range(strikers)]
-        points = ", ".join(f"[{x:.6f}, 0.0045]" for x in begin)
-        folders.append(bench.run("splash", f"splash_{k}", f"fill.2.shape.points=[{points}]"))
-    rows = []
-    for level in SPLASH_LEVELS:
-        found = [splash_of(folder, level) for folder in folders]
-        rebounds, ejected = [r for f in found for r in f[0]], [e for f in found for e in f[1]]
-        impacts = SPLASH_RUNS * strikers
-        mean = lambda values: sum(values) / max(len(values), 1)  # noqa: E731
-        error = lambda values: math.sqrt(sum((v - mean(values)) ** 2 for v in values) / max(len(values) - 1, 1) / max(len(values), 1))  # noqa: E731
-        shares = [v / RICE["speed"] for v, _ in rebounds]
-        counts = [len(f[1]) / strikers for f in found]
-        rows.append({"level": level, "impacts": impacts, "rebounds": len(rebounds), "rebound": mean(shares), "rebound_error": error(shares),
-                     "rebound_angle": mean([a for _, a in rebounds]), "ejecta": mean(counts), "ejecta_error": error(counts),
-                     "ejection_speed": mean([v for v, _ in ejected]), "ejection_speed_error": error([v for v, _ in ejected]),
-                     "ejection_angle": mean([a for _, a in ejected])})
-    return {"rice": RICE, "levels": rows}
+    """Many impacts of scenes/splash.toml and splash_3d.toml: the strikers of each run begin at other places of the same bed."""
+    return {"rice": RICE, "beds": [splash_of(bench, case) for case in SPLASHES]}
 
 
 # --- the threshold of the wind ------------------------------------------------------------------------------------------
