@@ -8,7 +8,7 @@ layer one grain thick, which both programs compute as spheres whose third coordi
 side by side until --grains are there: both programs start from the same places, radii and velocities (0.05 m/s in waves, so that
 contacts open and close and lists are searched anew) and take the same step. LAMMPS runs with each skin of SKINS; its best counts.
 The figure is grain-steps a second of user CPU time, steps only; the median of the rounds. A step here is one of the contacts'.
-With --write the table goes to bench/grains/results/lammps.json, docs/performance.md takes it from there (bench/throughput/measure.py).
+With --write the figures go to bench/grains/results/lammps.json and into the table of docs/performance.md.
 """
 
 import argparse
@@ -25,6 +25,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
+PAGE = HERE.parents[1] / "docs/performance.md"
 SKINS = (.1, .2, .3)  # of the mean diameter
 SUBSTEPS = 8  # of the grains in a step of Barchan's, when nothing else limits it
 D, YOUNG, POISSON, FRICTION, RESTITUTION, DENSITY = 1e-3, 5e6, .25, .5, .5, 2650.
@@ -212,6 +213,18 @@ def measure(program, lmp, dim, grains, steps, rounds, scratch):
             "ratio": a / b, "ratios": [o / t for o, t in zip(ours, theirs[best])], "listed_pairs_a_grain": contacts}
 
 
+def write_page(results):
+    """The rows of the table of docs/performance.md."""
+    text = PAGE.read_text()
+    for r in results:
+        row = (f"| {r['dimensions']}D | {r['grains']} | {r['barchan'] / 1e6:.1f} | {r['lammps'] / 1e6:.1f} | {r['ratio']:.2f} "
+               f"({min(r['ratios']):.2f} to {max(r['ratios']):.2f}) |")
+        text, found = re.subn(rf"^\| {r['dimensions']}D \| \d+ \| .*$", row, text, flags=re.MULTILINE)
+        if found != 1:
+            raise SystemExit(f"lammps.py: {found} rows of {PAGE} begin with {r['dimensions']}D; expected 1")
+    PAGE.write_text(text)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=lambda p: str(pathlib.Path(p).resolve()))
@@ -231,3 +244,4 @@ if __name__ == "__main__":
     if options.write:
         (HERE / "results").mkdir(exist_ok=True)
         (HERE / "results/lammps.json").write_text(json.dumps(results, indent=1) + "\n")
+        write_page(results)

@@ -36,6 +36,11 @@ struct StressRecord {
   static constexpr int stresses = Dim == 2 ? 3 : 6, volume = stress + stresses;
 };
 
+/// Artificial stress/density^2 (laws/elastic.hpp), components as in a stress record; a list's entry finds it too.
+struct ArtificialStressRecord {
+  static constexpr int size = 8;
+};
+
 template <int Dim>
 struct CarriedRecord {
   static constexpr int size = Dim == 2 ? 8 : 16, position = 0, velocity = Dim, turning = 2 * Dim, rate = 3 * Dim,

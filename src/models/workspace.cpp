@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/integrate.hpp"
+#include "models/bodies/artificial_stress.hpp"
 #include "models/bodies/elastic.hpp"
 
 namespace barchan {
@@ -150,6 +151,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     motion.emplace_back(read[k] ? size : 0);
     extended.emplace_back(seen[k] ? size : 0);
     stress.emplace_back(0);
+    artificial.emplace_back(0);
     carried.emplace_back(layout.phases[k].heats ? carried_size : 0);
     compact.push_back(mixed && (layout.phases[k].flows || seen[k]) ? std::make_unique<CompactRecords>(layout.bounds)
                                                                    : nullptr);
@@ -165,7 +167,7 @@ void Workspace::fit_records() {
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     if (!neighbours.has_grid(k)) continue;
     const std::size_t n = state.phases[k].size(), images = neighbours.grid(k).images();
-    for (RecordArray* r : {&motion[k], &extended[k], &stress[k], &carried[k]})
+    for (RecordArray* r : {&motion[k], &extended[k], &stress[k], &carried[k], &artificial[k]})
       if (r->stride() > 0) r->resize(n, images);
     if (compact[k]) compact[k]->resize(n, images);
     if (layout.phases[k].eddies) eddies[k].resize(n, images);
@@ -175,7 +177,7 @@ void Workspace::fit_records() {
 std::size_t Workspace::bytes() const {
   std::size_t total = neighbours.bytes();
   for (const auto& p : state.phases) total += p.bytes();
-  for (const auto* set : {&motion, &extended, &stress, &carried})
+  for (const auto* set : {&motion, &extended, &stress, &carried, &artificial})
     for (const auto& r : *set) total += r.bytes();
   return total;
 }
@@ -228,6 +230,10 @@ void CommonWork::pack() {
     if (w_->stress[k].stride() > 0) {
       pack_stress(p, w_->stress[k]);
       w_->stress[k].fill_images(grid, layout_.dimensions);
+    }
+    if (w_->artificial[k].stride() > 0) {
+      pack_artificial_stress(p, w_->scene.phases[k].elastic().artificial_stress, w_->artificial[k]);
+      w_->artificial[k].fill_images(grid, 0);
     }
   }
 }

@@ -25,6 +25,7 @@ class Workspace {
 
   std::vector<RecordArray> motion, extended, stress;     // by phase; extended: a solid as the fluid sees it
   std::vector<RecordArray> carried;                      // by phase: how a solid moves at the end of the step
+  std::vector<RecordArray> artificial;                   // by phase: artificial stress of bodies
   std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/air reads
   std::vector<EddyRecords> eddies;                       // by phase
   std::vector<AlignedVector<double>> ground_stress;      // Pa, by fluid and particle; empty: walls say it themselves

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "engine/records.hpp"
+#include "scene/couplings.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -83,6 +84,7 @@ double MemoryNeed::bytes() const {
 MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
   double fields = 0, records = 0, grids = 0, frames = 0, past = 0, start = 0, kept = 0, contacts = 0;
   const double dimensions = plan.dimensions;
+  const bool pulled = has_artificial_stress(scene);
   const double written = 3 + 3 + 3 + 2 * static_cast<double>(scene.output.fields.size()) + 2;  // numbers of a particle
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
@@ -96,7 +98,8 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
                                   [&](const PlanEntry& e) { return e.sees_solid() && e.other == k; });
     records += all * wide *
                (motion * (seen ? 2.0 : 1.0) + (p.heats ? carried : 0.0) +
-                (p.body && !p.fixed_neighbours ? stress : 0.0) + (p.eddies ? 4.0 : 0.0));
+                (p.body && !p.fixed_neighbours ? stress + (pulled ? ArtificialStressRecord::size : 0) : 0.0) +
+                (p.eddies ? 4.0 : 0.0));
     if (p.fixed_neighbours) {  // models/bodies/reference_body.hpp: constants and sums of a particle; the search before
       const double numbers = dimensions == 2 ? 11.0 : 24.0, gradient = dimensions == 2 ? 5.0 : 10.0;
       const double number = scene.precision == Precision::mixed ? index : wide;

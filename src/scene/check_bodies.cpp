@@ -16,7 +16,7 @@ void check_formulation(const Phase& phase, const Report& report) {
   };
   for (const char* key : {"elasticity", "hourglass", "retardation"})
     if (!total) refuse(key, "total-lagrangian");
-  for (const char* key : {"artificial-viscosity", "artificial-viscosity-beta", "energy"})
+  for (const char* key : {"artificial-viscosity", "artificial-viscosity-beta", "artificial-stress", "energy"})
     if (total) refuse(key, "updated-lagrangian");
 }
 

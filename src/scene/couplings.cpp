@@ -81,6 +81,12 @@ bool has_surface(const Shape& shape, int dimensions) {
          facet_dimensions(shape) == 2;
 }
 
+bool has_artificial_stress(const Scene& scene) {
+  return std::any_of(scene.phases.begin(), scene.phases.end(), [](const Phase& p) {
+    return p.kind() == PhaseKind::elastic && !is_total(p) && p.elastic().artificial_stress > 0.0;
+  });
+}
+
 bool is_total(const Phase& phase) {
   return phase.kind() == PhaseKind::elastic && phase.elastic().formulation == Formulation::total_lagrangian;
 }

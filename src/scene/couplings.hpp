@@ -41,6 +41,8 @@ bool has_eddies(const Scene& scene, const Phase& fluid);
 
 /// An elastic body whose strain comes from its first shape.
 bool is_total(const Phase& phase);
+/// Whether an updated Lagrangian body has artificial stress: then all of them have records of it.
+bool has_artificial_stress(const Scene& scene);
 /// Whether the two can have a contact of bodies: a body with another body or a wall; rigid bodies of one phase.
 bool bodies_may_touch(const Phase& a, const Phase& b);
 /// Whether they touch by their surfaces, not by their particles: rigid bodies with rigid bodies and walls.

@@ -81,6 +81,9 @@ constexpr Key table[] = {
      "Law of a body with formulation = \"total-lagrangian\"; both are Hooke's for small strains."},
     {"phases", "hourglass", of<&ElasticKeys::hourglass>(0.5), "Young's modulus",
      "Strength of the control of motions that the gradient does not see, of a body with formulation = \"total-lagrangian\".", not_negative},
+    {"phases", "artificial-stress", of<&ElasticKeys::artificial_stress>(0.0), "",
+     "Repulsion of particles that are pulled, against the tensile instability, of a body with formulation = \"updated-lagrangian\": epsilon of Gray, "
+     "Monaghan & Swift 2001, who took 0.3.", {.at_least = 0.0, .at_most = 1.0}},
     {"phases", "retardation", of<&ElasticKeys::retardation>(0.0), "s",
      "Damping of Kelvin and Voigt, of a body with formulation = \"total-lagrangian\": a vibration of angular frequency w has the damping ratio "
      "w retardation/2.", not_negative},

@@ -78,12 +78,12 @@ struct ElasticKeys {
   Formulation formulation{};
   double young{};  // Pa
   double poisson{};
-  Elasticity elasticity{};             // of total-lagrangian bodies, as the next two
-  double hourglass{};                  // strength of the hourglass control, of Young's modulus
-  double retardation{};                // s, of Kelvin and Voigt's damping
-  double artificial_viscosity{};       // Monaghan's alpha
-  double artificial_viscosity_beta{};  // Monaghan's beta
-  bool energy{};                       // integrate the internal energy (eq. 13)
+  Elasticity elasticity{};                                     // of total-lagrangian bodies, as the next two
+  double hourglass{};                                          // strength of the hourglass control, of Young's modulus
+  double retardation{};                                        // s, of Kelvin and Voigt's damping
+  double artificial_viscosity{}, artificial_viscosity_beta{};  // Monaghan's alpha and beta
+  double artificial_stress{};  // epsilon of Gray, Monaghan & Swift; updated Lagrangian bodies
+  bool energy{};               // integrate the internal energy (eq. 13)
 };
 
 /// Each [[fill]] of such a phase is a body that moves as a whole.

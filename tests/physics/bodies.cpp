@@ -265,6 +265,36 @@ TEST(UpdatedLagrangianBodies, AnImpactWithViscosityKeepsMotionAndInternalEnergy)
   EXPECT_LT(apart, 1e-3);
 }
 
+/// The least distance of two particles of a phase (m).
+double least_distance(const PhaseParticles& p) {
+  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
+  double least = 1e300;
+  for (std::size_t k = 0; k < p.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j) least = std::min(least, std::hypot(x[k] - x[j], y[k] - y[j]));
+  return least;
+}
+
+// Swegle's instability: without artificial stress the particles of what is pulled meet, and the ring tears.
+TEST(UpdatedLagrangianBodies, ArtificialStressKeepsARubberRingWhole) {
+  const std::string coarse = "spacing=2e-3";
+  const double spacing = 2e-3;
+  Drive with("verification/rings_updated", {coarse}),
+      without("verification/rings_updated", {coarse, "phases.a.artificial-stress=0", "phases.b.artificial-stress=0"});
+  with.to(5e-3);
+  without.to(5e-3);
+  const double apart = least_distance(with.phase(0)) / spacing, torn = least_distance(without.phase(0)) / spacing;
+  report("least distance of two particles with artificial stress", apart, 0.5);
+  report("without", torn, 0.3);
+  EXPECT_GT(apart, 0.5);
+  EXPECT_LT(torn, 0.3);
+  with.to(0.016);
+  const Simulation& s = with.simulation();
+  const double scale = 6.95 * with.phase(0).mass() * static_cast<double>(with.phase(0).size());
+  report("speed of the ring afterwards over that before", sum_of(s, {"b_mean_vx [m/s]"}) / 6.95, 0.7);
+  EXPECT_LT(std::abs(sum_of(s, {"momentum_x [kg m/s]"})) / scale, 1e-12);
+  EXPECT_GT(sum_of(s, {"b_mean_vx [m/s]"}) / 6.95, 0.7) << "they bounce";
+}
+
 TEST(TotalLagrangianBodies, ABlockThatBouncesKeepsItsEnergy) {
   Drive drive("bouncing_block");
   const Simulation& s = drive.simulation();

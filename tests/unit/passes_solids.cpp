@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/kernel.hpp"
+#include "laws/elastic.hpp"
+#include "models/bodies/artificial_stress.hpp"
 #include "models/bodies/elastic.hpp"
 #include "models/pair_forces.hpp"
 #include "models/walls/walls.hpp"
@@ -61,7 +63,7 @@ Matrix stress_rate(const Matrix& s, const Matrix& l, double shear) {
 
 struct ElasticStage {
   Cast cast;
-  std::vector<RecordArray> stress;
+  std::vector<RecordArray> stress, artificial;
   std::vector<ElasticNeighbour> neighbours;
   ElasticParameters q{.reference_density = 1.05,
                       .shear_modulus = 7.0,
@@ -88,6 +90,20 @@ struct ElasticStage {
     }
     neighbours = {{&cast.list(0), &stress[0], KernelKind::wendland_c2, own_radius, cast.phases[0].mass()},
                   {&cast.list(1), &stress[1], KernelKind::cubic_spline, other_radius, cast.phases[1].mass()}};
+  }
+  /// Gives both phases artificial stress; the second none of its own.
+  void pull() {
+    const int dimensions = cast.bounds.dimensions;
+    for (std::size_t k = 0; k < 2; ++k) {
+      artificial.emplace_back(ArtificialStressRecord::size);
+      artificial[k].resize(cast.phases[k].size(), cast.neighbours.grid(k).images());
+      pack_artificial_stress(cast.phases[k], k == 0 ? 0.3 : 0.0, artificial[k]);
+      artificial[k].fill_images(cast.neighbours.grid(k), 0);
+    }
+    for (std::size_t b = 0; b < 2; ++b) {
+      neighbours[b].artificial = &artificial[b];
+      neighbours[b].inverse_weight = 1.0 / naive::weight(neighbours[b].kernel, neighbours[b].radius, dimensions, 1.0);
+    }
   }
   /// Calls f(b, j, r, F, h) for every neighbour of particle k of phase 0.
   template <class F>
@@ -143,10 +159,26 @@ TEST_P(ElasticPasses, StrainEqualsTheNaiveSums) {
 
 TEST_P(ElasticPasses, ForcesEqualTheNaiveSums) {
   const int dimensions = GetParam();
-  for (const bool viscous : {false, true}) {
+  for (const auto& [viscous, pulled] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
     ElasticStage stage(dimensions);
     auto& q = stage.q;
     if (!viscous) q.alpha = q.beta = 0.0;
+    if (pulled) stage.pull();
+    // R of particle k of a phase, and f^4.
+    const auto artificial = [&](const PhaseParticles& p, std::size_t k) {
+      Matrix s{};
+      for (std::size_t d = 0; pulled && d < static_cast<std::size_t>(dimensions); ++d)
+        for (std::size_t e = 0; e < static_cast<std::size_t>(dimensions); ++e)
+          s[d][e] = stage.artificial[&p == &stage.cast.phases[0] ? 0 : 1][k]
+                                    [dimensions == 2 ? stress_index<2>(d, e) : stress_index<3>(d, e)];
+      return s;
+    };
+    const auto nearness = [&](const PhaseParticles& p, const Vec3& r) {
+      const ElasticNeighbour& e = stage.neighbours[&p == &stage.cast.phases[0] ? 0 : 1];
+      return std::pow(
+          naive::weight(e.kernel, e.radius, dimensions, norm(r)) / naive::weight(e.kernel, e.radius, dimensions, 1.0),
+          4);
+    };
     auto& body = stage.cast.phases[0];
     std::array<std::vector<double>, 3> expected;
     std::vector<double> heating;  // eq. (13), half of what each pair takes from the motion
@@ -160,17 +192,18 @@ TEST_P(ElasticPasses, ForcesEqualTheNaiveSums) {
       return s;
     };
     for (std::size_t k = 0; k < body.size(); ++k) {
-      const Matrix s_a = sigma(body, k);
+      const Matrix s_a = sigma(body, k), r_a = artificial(body, k);
       const Vec3 v_a = vector(body, Field::velocity, k);
       Vec3 dv = q.gravity;
       double power = 0.0;
       stage.for_neighbours(k, [&](const PhaseParticles& b, std::size_t j, const Vec3& r, double f, double h) {
-        const Matrix s_b = sigma(b, j);
+        const Matrix s_b = sigma(b, j), r_b = artificial(b, j);
+        const double near = pulled ? nearness(b, r) : 0.0;
         const Vec3 v_ab = v_a - vector(b, Field::velocity, j);
         const double vr = dot(v_ab, r), mu = vr < 0 ? h * vr / (dot(r, r) + 0.01 * h * h) : 0.0;
         const double resistance = (-q.alpha * q.sound_speed * mu + q.beta * mu * mu) / q.reference_density;
         for (std::size_t d = 0; d < 3; ++d) {
-          const double pair = b.mass() * f * (dot(s_a[d] + s_b[d], r) - resistance * r[d]);
+          const double pair = b.mass() * f * (dot(s_a[d] + s_b[d] + near * (r_a[d] + r_b[d]), r) - resistance * r[d]);
           dv[d] += pair;
           power += pair * v_ab[d];
         }
@@ -178,11 +211,53 @@ TEST_P(ElasticPasses, ForcesEqualTheNaiveSums) {
       for (std::size_t d = 0; d < 3; ++d) expected[d].push_back(dv[d]);
       heating.push_back(-0.5 * power);
     }
-    elastic_forces(body, stage.stress[0], stage.neighbours, q);
+    elastic_forces(body, stage.stress[0], stage.neighbours, q, pulled ? &stage.artificial[0] : nullptr);
     EXPECT_LT(difference(body.column(Field::energy_rate), heating), rounding);
     for (int d = 0; d < dimensions; ++d)
       EXPECT_LT(difference(body.column(Field::acceleration, d), expected[static_cast<std::size_t>(d)]), rounding);
   }
+}
+
+// Stresses with known principal values, of any sign and some of them equal, in random axes.
+TEST_P(ElasticPasses, ArtificialStressIsOfWhatPulls) {
+  const int dimensions = GetParam();
+  const auto size = static_cast<std::size_t>(dimensions);
+  Uniform random(5);
+  PhaseParticles body =
+      phase(dimensions, std::vector<Vec3>(200), 1.0, {Field::density, Field::pressure, Field::stress});
+  std::vector<Matrix> expected;
+  for (std::size_t k = 0; k < body.size(); ++k) {
+    Vec3 principal{random(-2, 2), random(-2, 2), random(-2, 2)};
+    if (k % 4 == 0) principal[1] = principal[0];
+    if (k % 10 == 0) principal[2] = 0.0;
+    const double t = random(0, 7), u = dimensions == 3 ? random(0, 7) : 0.0;
+    const Matrix axes{Vec3{std::cos(t) * std::cos(u), std::sin(t) * std::cos(u), std::sin(u)},
+                      Vec3{-std::sin(t), std::cos(t), 0.0},
+                      Vec3{-std::cos(t) * std::sin(u), -std::sin(t) * std::sin(u), std::cos(u)}};
+    Matrix s{}, pulls{};
+    for (std::size_t q = 0; q < size; ++q)
+      for (std::size_t d = 0; d < 3; ++d) {
+        s[d] = s[d] + principal[q] * axes[q][d] * axes[q];
+        pulls[d] = pulls[d] + std::max(principal[q], 0.0) * axes[q][d] * axes[q];
+      }
+    const double rho = random(0.5, 2.0), p = random(-1, 1);
+    body.column(Field::density)[k] = rho;
+    body.column(Field::pressure)[k] = p;
+    for (std::size_t d = 0; d < 3; ++d) {
+      for (std::size_t e = 0; e <= d; ++e) body.column(Field::stress, places[d][e])[k] = s[d][e] + (d == e ? p : 0.0);
+      pulls[d] = -0.3 / (rho * rho) * pulls[d];
+    }
+    expected.push_back(pulls);
+  }
+  RecordArray records(ArtificialStressRecord::size);
+  records.resize(body.size(), 0);
+  pack_artificial_stress(body, 0.3, records);
+  for (std::size_t k = 0; k < body.size(); ++k)
+    for (std::size_t d = 0; d < size; ++d)
+      for (std::size_t e = 0; e <= d; ++e)
+        EXPECT_NEAR(records[k][dimensions == 2 ? stress_index<2>(d, e) : stress_index<3>(d, e)], expected[k][d][e],
+                    1e-13)
+            << k;
 }
 
 class SolidPasses : public testing::TestWithParam<int> {};

@@ -146,14 +146,84 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
   }
 }
 
-template <int Dim, bool Viscous, bool WithPower>
-void forces(PhaseParticles& body, const RecordArray& own_records, std::span<const ElasticNeighbour> neighbours,
-            const ElasticParameters& q) {
+/// Adds f^4 (R_a + R_b) to the stress of a vector of neighbours, which begin at `entry` of a row; weight: W(r)/W(dx).
+template <std::size_t N>
+BARCHAN_SIMD_INLINE void pull_apart(const std::array<Lanes, N>& own, const RecordArray& records,
+                                    const std::uint32_t* entry, Lanes weight, Lanes* stress) {
+  constexpr int size = ArtificialStressRecord::size;
+  Lanes other[size];
+  simd::load_transposed<size>(records.data(), size / PairList::stride, entry, other);
+  const Lanes near = nearness(weight);
+  for (std::size_t c = 0; c < N; ++c) stress[c] = simd::fma(near, own[c] + other[c], stress[c]);
+}
+
+/// Viscosity over the smoothing length and its square (laws/elastic.hpp).
+struct Viscosity {
+  double alpha, beta;  // -alpha c/rho, beta/rho
+};
+
+/// What the pairs of particle k add up to: acceleration, and its power with WithPower.
+template <int Dim, bool Viscous, bool WithPower, bool Pulled>
+BARCHAN_SIMD_INLINE std::array<Lanes, Dim + (WithPower ? 1 : 0)> forces_on(
+    std::size_t k, const RecordArray& own_records, std::span<const ElasticNeighbour> neighbours,
+    const std::vector<ReadyKernel>& kernels, const Viscosity& viscosity,
+    [[maybe_unused]] const RecordArray* artificial) {
   using R = StressRecord<Dim>;
   using Law = ElasticForce<Dim>;
-  constexpr std::size_t sums_of = Dim + (WithPower ? 1 : 0);  // acceleration, power
-  using Sums = std::array<Lanes, sums_of>;
-  const double alpha = -q.alpha * q.sound_speed / q.reference_density, beta = q.beta / q.reference_density;
+  const double* record = own_records[k];
+  typename Law::template Own<Lanes> own;
+  std::array<Lanes, Dim> sum;
+  Lanes power(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    own.x[d] = Lanes(record[R::position + d]);
+    own.v[d] = Lanes(record[R::velocity + d]);
+    sum[d] = Lanes(0.0);
+  }
+  [[maybe_unused]] std::array<Lanes, Law::stresses> pull;
+  for (std::size_t c = 0; c < Law::stresses; ++c) {
+    own.s[c] = Lanes(record[R::stress + c]);
+    if constexpr (Pulled) pull[c] = Lanes((*artificial)[k][c]);
+  }
+  for (std::size_t c = 0; c < neighbours.size(); ++c) {
+    const auto& e = neighbours[c];
+    const auto row = e.list->row(k);
+    const double h = 0.5 * e.radius;
+    own.mass_b = Lanes(e.mass);
+    own.alpha = Lanes(viscosity.alpha * h);
+    own.beta = Lanes(viscosity.beta * h * h);
+    own.soft = Lanes(0.01 * h * h);
+    [[maybe_unused]] const Lanes inverse_weight(e.inverse_weight);
+    [[maybe_unused]] const std::uint32_t* entry = row.begin;
+    kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
+      for_each_neighbour<R::size>(
+          row, *e.records, [&](Lanes * b) __attribute__((always_inline)) {
+            std::array<Lanes, Dim> r;
+            const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
+            Lanes factor;
+            if constexpr (Pulled) {
+              Lanes weight;
+              kernel.value_and_gradient(r2, weight, factor);
+              pull_apart(pull, *e.artificial, entry, weight * inverse_weight, b + R::stress);
+              entry += Lanes::width;
+            } else {
+              factor = kernel.gradient(r2);
+            }
+            Law::template add<Viscous, WithPower>(own, r, r2, factor, b + R::velocity, b + R::stress, b[R::volume], sum,
+                                                  power);
+          });
+    });
+  }
+  std::array<Lanes, Dim + (WithPower ? 1 : 0)> all;
+  for (std::size_t d = 0; d < Dim; ++d) all[d] = sum[d];
+  if constexpr (WithPower) all[Dim] = power;
+  return all;
+}
+
+template <int Dim, bool Viscous, bool WithPower, bool Pulled>
+void forces(PhaseParticles& body, const RecordArray& own_records, std::span<const ElasticNeighbour> neighbours,
+            const ElasticParameters& q, const RecordArray* artificial) {
+  constexpr std::size_t sums_of = Dim + (WithPower ? 1 : 0);
+  const Viscosity viscosity{-q.alpha * q.sound_speed / q.reference_density, q.beta / q.reference_density};
   std::array<double*, Dim> a{};
   for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = body.column(Field::acceleration, d);
   double* rate = WithPower ? body.column(Field::energy_rate) : nullptr;
@@ -164,40 +234,10 @@ void forces(PhaseParticles& body, const RecordArray& own_records, std::span<cons
 #pragma omp parallel
   for (const std::int64_t block : shares) {
     const std::size_t first = 4 * static_cast<std::size_t>(block), count = std::min<std::size_t>(4, n - first);
-    std::array<Sums, 4> sums;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-      const std::size_t k = std::min(first + lane, n - 1);
-      const double* record = own_records[k];
-      typename Law::template Own<Lanes> own;
-      std::array<Lanes, Dim> sum;
-      Lanes power(0.0);
-      for (std::size_t d = 0; d < Dim; ++d) {
-        own.x[d] = Lanes(record[R::position + d]);
-        own.v[d] = Lanes(record[R::velocity + d]);
-        sum[d] = Lanes(0.0);
-      }
-      for (std::size_t c = 0; c < Law::stresses; ++c) own.s[c] = Lanes(record[R::stress + c]);
-      for (std::size_t c = 0; c < neighbours.size(); ++c) {
-        const auto& e = neighbours[c];
-        const auto row = e.list->row(k);
-        const double h = 0.5 * e.radius;
-        own.mass_b = Lanes(e.mass);
-        own.alpha = Lanes(alpha * h);
-        own.beta = Lanes(beta * h * h);
-        own.soft = Lanes(0.01 * h * h);
-        kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
-          for_each_neighbour<R::size>(
-              row, *e.records, [&](const Lanes* b) __attribute__((always_inline)) {
-                std::array<Lanes, Dim> r;
-                const Lanes r2 = separation<Dim>(own.x, b + R::position, r);
-                Law::template add<Viscous, WithPower>(own, r, r2, kernel.gradient(r2), b + R::velocity, b + R::stress,
-                                                      b[R::volume], sum, power);
-              });
-        });
-      }
-      for (std::size_t d = 0; d < Dim; ++d) sums[lane][d] = sum[d];
-      if constexpr (WithPower) sums[lane][Dim] = power;
-    }
+    std::array<std::array<Lanes, sums_of>, 4> sums;
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      sums[lane] = forces_on<Dim, Viscous, WithPower, Pulled>(std::min(first + lane, n - 1), own_records, neighbours,
+                                                              kernels, viscosity, artificial);
     const auto s = reduce<std::array<Four, sums_of>, double>(sums);
     for (std::size_t d = 0; d < Dim; ++d) store_four(s[d] + Four(q.gravity[d]), a[d], first, count);
     if constexpr (WithPower) store_four(Four(-0.5) * s[Dim], rate, first, count);
@@ -216,15 +256,19 @@ void elastic_strain(PhaseParticles& body, const RecordArray& own, std::span<cons
 }
 
 void elastic_forces(PhaseParticles& body, const RecordArray& own, std::span<const ElasticNeighbour> neighbours,
-                    const ElasticParameters& q) {
+                    const ElasticParameters& q, const RecordArray* artificial) {
   const bool viscous = q.alpha != 0.0 || q.beta != 0.0;
-  const auto run = [&]<bool Viscous, bool WithPower>() {
-    body.dimensions() == 2 ? forces<2, Viscous, WithPower>(body, own, neighbours, q)
-                           : forces<3, Viscous, WithPower>(body, own, neighbours, q);
+  const auto run = [&]<bool Viscous, bool WithPower, bool Pulled>() {
+    body.dimensions() == 2 ? forces<2, Viscous, WithPower, Pulled>(body, own, neighbours, q, artificial)
+                           : forces<3, Viscous, WithPower, Pulled>(body, own, neighbours, q, artificial);
+  };
+  const auto with_power = [&]<bool Viscous, bool WithPower>() {
+    artificial ? run.template operator()<Viscous, WithPower, true>()
+               : run.template operator()<Viscous, WithPower, false>();
   };
   if (body.has(Field::energy_rate))
-    viscous ? run.template operator()<true, true>() : run.template operator()<false, true>();
-  else viscous ? run.template operator()<true, false>() : run.template operator()<false, false>();
+    viscous ? with_power.template operator()<true, true>() : with_power.template operator()<false, true>();
+  else viscous ? with_power.template operator()<true, false>() : with_power.template operator()<false, false>();
 }
 
 }  // namespace barchan::BARCHAN_TARGET

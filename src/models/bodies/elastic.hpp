@@ -14,8 +14,10 @@ struct ElasticNeighbour {
   const PairList* list;
   const RecordArray* records;  // stress records of the other phase
   KernelKind kernel;
-  double radius;  // m
-  double mass;    // kg, of a particle of the other phase
+  double radius;                            // m
+  double mass;                              // kg, of a particle of the other phase
+  const RecordArray* artificial = nullptr;  // artificial stress of the other phase; null: the entry has none
+  double inverse_weight = 0.0;              // m^dimensions, 1/W(dx); dx: mean spacing of both
 };
 
 struct ElasticParameters {
@@ -39,10 +41,12 @@ BARCHAN_PER_INSTRUCTION_SET(elastic_strain,
                                                 const ElasticParameters& parameters, double dt);)
 
 BARCHAN_PER_INSTRUCTION_SET(elastic_forces,
-                            /// Writes the acceleration; where the body has it, energy_rate [W/kg] by
+                            /// Writes the acceleration, with artificial stress where `artificial` (that of the body) is
+                            /// given; where the body has it, energy_rate [W/kg] by
                             /// laws/elastic.hpp with the velocities of the records.
                             void elastic_forces(PhaseParticles& body, const RecordArray& own,
                                                 std::span<const ElasticNeighbour> neighbours,
-                                                const ElasticParameters& parameters);)
+                                                const ElasticParameters& parameters,
+                                                const RecordArray* artificial = nullptr);)
 
 }  // namespace barchan

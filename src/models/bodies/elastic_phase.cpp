@@ -6,6 +6,7 @@
 
 #include "engine/integrate.hpp"
 #include "engine/means.hpp"
+#include "kernels/kernel.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
@@ -94,11 +95,17 @@ void ElasticPhase::attach(Workspace& w) {
                  std::sqrt(bulk / phase_.density),
                  scene_.domain.gravity};
   w.stress[number_] = RecordArray(layout_.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size);
+  const bool pulled = has_artificial_stress(scene_);
+  if (pulled) w.artificial[number_] = RecordArray(ArtificialStressRecord::size);
   for (const auto& e : layout_.entries) {
     if (!e.has(number_) || e.law != Law::elastic) continue;
     const std::size_t other = e.partner(number_);
-    neighbours_.push_back(
-        {&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius, layout_.phases[other].mass});
+    const double dx = 0.5 * (plan_.spacing + layout_.phases[other].spacing);
+    const double weight = with_kernel<double>(e.kernel, e.radius, layout_.dimensions,
+                                              [&](const auto& kernel) { return kernel.value(dx); });
+    neighbours_.push_back({&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius,
+                           layout_.phases[other].mass, pulled ? &w.artificial[other] : nullptr,
+                           weight > 0.0 ? 1.0 / weight : 0.0});
   }
 }
 
@@ -159,7 +166,8 @@ void ElasticPhase::derive() {
 
 void ElasticPhase::load() {
   PhaseParticles& p = w_->particles(number_);
-  elastic_forces(p, w_->stress[number_], neighbours_, parameters_);
+  const RecordArray& artificial = w_->artificial[number_];
+  elastic_forces(p, w_->stress[number_], neighbours_, parameters_, artificial.stride() > 0 ? &artificial : nullptr);
   if (phase_.elastic().energy)
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
       const double* a = std::as_const(p).column(Field::acceleration, static_cast<int>(d));
