@@ -3,7 +3,7 @@
 import os
 
 import numpy as np
-from paraview.simple import (ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
+from paraview.simple import (Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
                              ProgrammableSource, Show, Text)
 
 from barchan_series import bar_ticks, round_floor
@@ -135,22 +135,28 @@ class Marks:
     # -- arrows
 
     def arrows(self, source, metres_per_speed, scale_of=None, colour=None, layer=6, thickness=1.0, centred=False,
-               name="arrows"):
+               name="arrows", longest=None):
         """Velocity vectors of a source's points: `metres_per_speed` is the length in metres of 1 m/s; an arrow starts at
         its point or has its middle there. What of an arrow leaves the box is cut off. With `scale_of`, a speed (m/s), an
-        arrow of that speed (or a part of it that fits) and its value stand beside the colour bar."""
+        arrow of that speed (or a part of it that fits) and its value stand beside the colour bar. Points faster than
+        `longest` (m/s) have arrows of that speed."""
         if scale_of:
             self._arrow_scale(scale_of, metres_per_speed, thickness, name)
-        glyph = self._glyph(source, metres_per_speed, thickness, centred, name)
+        array = "velocity"
+        if longest:
+            source, array = Calculator(registrationName=name + " no longer", Input=source), "arrow"
+            source.ResultArrayName = array
+            source.Function = f"velocity*min(1, {longest!r}/(mag(velocity)+1e-30))"
+        glyph = self._glyph(source, metres_per_speed, thickness, centred, name, array)
         shown = Show(self.series.cut(glyph, name + " in the window", exact=True), self.view)
         self._flat_arrow(shown, colour or INK, layer)
         return shown
 
     @staticmethod
-    def _glyph(source, metres_per_speed, thickness, centred, name):
+    def _glyph(source, metres_per_speed, thickness, centred, name, array="velocity"):
         glyph = Glyph(registrationName=name, Input=source, GlyphType="Arrow")
-        glyph.OrientationArray = ["POINTS", "velocity"]
-        glyph.ScaleArray = ["POINTS", "velocity"]
+        glyph.OrientationArray = ["POINTS", array]
+        glyph.ScaleArray = ["POINTS", array]
         glyph.VectorScaleMode = "Scale by Magnitude"
         glyph.ScaleFactor = metres_per_speed
         glyph.GlyphMode = "All Points"

@@ -37,7 +37,8 @@ few = series.moving_at_once(grains, 0.2 * top) <= 100 or all(series.size(phase) 
 shown = []
 for phase in grains:
     if few:
-        figure.arrows(series.source(phase), 6 * series.spacing / top, scale_of=None if shown else top, name="arrow", thickness=0.8)
+        figure.arrows(series.source(phase), 6 * series.spacing / top, scale_of=None if shown else top, name="arrow", thickness=0.8,
+                      longest=top)
     shown.append(figure.particles(phase, array="velocity", layer=3))
 if shown:
     figure.colours(shown, "velocity", 0.0, top, series.speed_title(grains), points=SAND_SPEED)

@@ -65,7 +65,8 @@ def splash(r):
                     f"{min(row['ejecta'] / rice['ejecta'] for row in slab['levels']):.2f} to {max(row['ejecta'] / rice['ejecta'] for row in slab['levels']):.2f}, and rebounds are "
                     f"{slab['levels'][1]['rebound_angle'] - rice['rebound_angle']:.0f} degrees steeper than measured: there a struck grain cannot give way to the side. Both have the same grains and "
                     "laws. A bed of 12 diameters in three dimensions, settled with half of the friction and without rolling friction (60 impacts), gave 4.6, 3.5 and 3.0 ejected and rebounds of "
-                    "0.61 of the speed at 31 degrees: the height of 1 d is then missed (1.59). Rolling friction of 0.2, that of `flat_bed.toml`, was chosen in the slab after both sets had been seen; without it 6.6, 5.2 and 4.3 are ejected there."]
+                    "0.61 of the speed at 31 degrees: the height of 1 d is then missed (1.59). Rolling friction of 0.2, that of `flat_bed.toml`, was chosen in the slab after both sets had been seen; without it 6.6, 5.2 and 4.3 are ejected there.",
+                    "", "![Two grains have struck a bed of sand and rebound: speed of the grains at 7.5 ms](gallery/splash_3d.png)"]
 
 
 def heaps(r):
