@@ -209,8 +209,7 @@ BARCHAN_SIMD_INLINE Normal<V> linear_normal(const Constants<V>& c, V x, V approa
   return n;
 }
 
-// Roots and quotients take most of the time of a contact: each stands here once, and what only an onset needs is found
-// there.
+// Each root and quotient stands here once; what only an onset needs is found there.
 template <class V>
 BARCHAN_SIMD_INLINE Normal<V> hertz_normal(const Constants<V>& c, V x, V approach, V mass, V inverse_mass, V radius) {
   const V least(1e-30), overlap = simd::max(x, least), near(4.0);

@@ -25,7 +25,7 @@ struct Sums {
 };
 
 /// Asks for the records of a vector of pairs, which come from the second cache or further away: without it a bed of
-/// 10^5 waits for them in a quarter of its time.
+/// 10^5 waits for them in a fifth of its time.
 template <int Dim>
 BARCHAN_SIMD_INLINE void fetch(const double* records, const std::uint32_t* a, const std::uint32_t* b) {
   constexpr std::size_t size = SphereRecord<Dim>::size, line = 8;
