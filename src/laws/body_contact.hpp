@@ -1,7 +1,8 @@
 // Contact of two particles of bodies that touch where their spacings end. Sign: r = x_a - x_b, n = r/|r| points at a,
 // v = v_a - v_b; forces are on a.
 //
-//   normal      F_n = max(phi K delta - psi c v.n, 0),  delta = d - |r|, d half the sum of the two spacings
+//   normal      F_n = max(phi K delta + 8 K max(delta - 0.35 d, 0) - psi c v.n, 0),  delta = d - |r|, d half the sum of
+//               the two spacings; the second spring keeps a corner, which one particle holds, from passing a wall
 //   tangential  F_t = -min(c_t |v_t|, mu F_n) v_t/|v_t|, v_t = v - (v.n) n: Coulomb, with a creep of mu F_n/c_t
 //   c = 2 zeta sqrt(m* K), c_t = 2 sqrt(m* K); zeta from the restitution, as of spheres (laws/sphere_contact.hpp)
 //
@@ -23,6 +24,8 @@
 namespace barchan {
 
 struct BodyContactLaw {
+  static constexpr double deep = 0.35, hardening = 8.0;  // of d, of K: the second spring
+
   double distance = 0;      // m, d
   double stiffness = 0;     // N/m, K
   double reduced_mass = 0;  // kg, m*
@@ -41,10 +44,12 @@ struct BodyContactLaw {
 
   template <class V>
   struct Constants {
-    V distance, stiffness, dashpot, rub, friction, dt, slow;
+    V distance, stiffness, deep_distance, second_stiffness, dashpot, rub, friction, dt, slow;
     Constants(const BodyContactLaw& law, double step)
         : distance(law.distance),
           stiffness(law.stiffness),
+          deep_distance(deep * law.distance),
+          second_stiffness(hardening * law.stiffness),
           dashpot(law.dashpot),
           rub(law.rub),
           friction(law.friction),
@@ -64,7 +69,9 @@ struct BodyContactLaw {
     const auto first = share <= one;
     const V phi = select(first, V(0.5) * (one + share), one), psi = select(first, V(0.5) + share, one);
     const V damping = c.dashpot * psi;
-    const V push = simd::fma(phi * c.stiffness, overlap, -(damping * normal_speed)) / simd::fma(damping, c.slow, one);
+    const V second = c.second_stiffness * simd::max(overlap - c.deep_distance, V(0.0));
+    const V push = simd::fma(phi * c.stiffness, overlap, simd::fnma(damping, normal_speed, second)) /
+                   simd::fma(damping, c.slow, one);
     const V normal = select(overlap > V(0.0), simd::max(push, V(0.0)), V(0.0));
     for (std::size_t d = 0; d < Dim; ++d) force[d] = simd::fma(normal * inverse, r[d], force[d]);
     if constexpr (Rubs) {
