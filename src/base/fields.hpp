@@ -26,6 +26,7 @@ namespace barchan {
   row(anisotropy, "A", "1", deviator, state, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz") \
   row(wholeness, "chi", "1", scalar, state, "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface") \
   row(surface_normal, "n", "1/m", vector, state, "of a fluid with a free surface: direction inwards near the surface, zero elsewhere") \
+  row(near_void, "n_v", "1", scalar, state, "of a fluid of the consistent scheme that fills its space: steps for which the particle counts as beside a void, 0 in whole fluid") \
   row(eddy_viscosity, "nu_t", "m2/s", scalar, state, "kinematic viscosity of the unresolved turbulence") \
   row(ground_distance, "d", "m", scalar, derived, "distance to the surface of the nearest wall or grain at rest") \
   row(wall_normal, "n", "1", vector, state, "unit normal of a wall particle, into the fluid") \

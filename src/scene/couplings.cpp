@@ -64,6 +64,16 @@ double weight_share(const Scene& scene, const Phase& grains) {
   return share;
 }
 
+bool solids_move_in(const Scene& scene, const Phase& fluid) {
+  for (const Phase& other : scene.phases) {
+    const PhaseKind kind = other.kind();
+    if (kind != PhaseKind::grains && kind != PhaseKind::elastic && kind != PhaseKind::rigid) continue;
+    const Interaction* pair = entry_between(scene, fluid, other);
+    if (pair && pair->drag_law == DragLaw::none) return true;
+  }
+  return false;
+}
+
 bool has_eddies(const Scene& scene, const Phase& fluid) {
   if (fluid.kind() != PhaseKind::fluid) return false;
   return fluid.fluid().turbulence != Turbulence::none ||

@@ -35,6 +35,9 @@ bool drags_by_law(const Scene& scene, const Phase& phase);
 /// The share of gravity that grains feel: 1 - rho_fluid/rho_grain with the fluids of entries with buoyancy, else 1.
 double weight_share(const Scene& scene, const Phase& grains);
 
+/// Whether particles of grains or bodies are moving walls in the fluid and may leave holes in it.
+bool solids_move_in(const Scene& scene, const Phase& fluid);
+
 /// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
 /// `roughness` or `shear-stress`.
 bool has_eddies(const Scene& scene, const Phase& fluid);

@@ -178,9 +178,10 @@ TEST(ConsistentOperators, ParticlesWithTooFewNeighboursGoUncorrected) {
     Cast cast(b, std::move(one), {{0, 0, 3.0}});
     auto& fluid = cast.phases[0];
     const std::vector<FluidNeighbour> own{{&cast.list(0), &cast.motion[0], KernelKind::wendland_c2, 3.0, 0.7, true}};
-    const auto expected =
-        naive::consistent_rates(cast, 0, {{0, KernelKind::wendland_c2, 3.0, 0.7, true}}, parameters(dimensions));
-    fluid_rates(fluid, cast.motion[0], own, parameters(dimensions), FluidScheme::consistent);
+    FluidParameters q = parameters(dimensions);
+    q.ends = true;
+    const auto expected = naive::consistent_rates(cast, 0, {{0, KernelKind::wendland_c2, 3.0, 0.7, true}}, q);
+    fluid_rates(fluid, cast.motion[0], own, q, FluidScheme::consistent);
     EXPECT_EQ(expected.uncorrected, 4);
     for (int d = 0; d < dimensions; ++d)
       EXPECT_LT(difference(fluid.column(Field::acceleration, d), expected.acceleration[static_cast<std::size_t>(d)]),

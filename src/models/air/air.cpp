@@ -43,6 +43,8 @@ void Air::schedule(Schedule& s) {
     writes = writes | FieldSet{eddy_viscosity};
   }
   if (plan_.free_surface) writes = writes | FieldSet{wholeness, surface_normal};
+  if (std::find(plan_.fields.begin(), plan_.fields.end(), near_void) != plan_.fields.end())
+    writes = writes | FieldSet{near_void};
   s.add({stage::fluid, plan_.name, reads, writes, [this] { rate(); }});
   if (plan_.free_surface)
     s.add({stage::surface, plan_.name, {position, wholeness}, {surface_normal}, [this] { find_surface(); }});
@@ -98,6 +100,7 @@ void Air::rate() {
   };
   if (w_->compact[number_]) rates(*w_->compact[number_]);
   else rates(w_->motion[number_]);
+  if (q.loose) q.ends = voids_.find(*particles_, seen_, neighbours_.front().radius, plan_.spacing, loose_);
   if (plan_.enclosed) keep_mean_density(*particles_, mean_);
   forces_.add(*particles_, w_->state.time, false);
   forces_.relax(*particles_, w_->state.time, w_->state.dt);
@@ -157,6 +160,10 @@ void Air::history(HistoryRow& row) const {
 void Air::archive(Archive& a) {
   a.number(plan_.name + ": largest viscosity", largest_viscosity_);
   a.number(plan_.name + ": bulk hold", hold_);
+  if (parameters_.loose) {
+    voids_.archive(a);
+    parameters_.ends = voids_.any();
+  }
   if (ground_) ground_->archive(a);
 }
 

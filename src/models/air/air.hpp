@@ -11,6 +11,7 @@
 #include "models/air/energy.hpp"
 #include "models/air/relief.hpp"
 #include "models/air/surface.hpp"
+#include "models/air/voids.hpp"
 #include "models/forces.hpp"
 #include "models/workspace.hpp"
 
@@ -40,6 +41,7 @@ class Air : public Model {
   void rate();
   void find_surface();
   void bind_entries();
+  void look_for_voids();
   void bind_eddies();
   void bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles);
   Relief relief() const;
@@ -63,7 +65,10 @@ class Air : public Model {
   Sides held_;                              // the domain's sides that a wall closes
   Relief relief_;                           // curved ground
   std::unique_ptr<SurfaceFinder> surface_;  // null: no free surface
-  BlockMean mean_;                          // of an enclosed fluid's density rates, of a held fluid's velocity
+  LooseParticles loose_;                    // of a fluid that fills its space, consistent scheme
+  VoidFinder voids_;
+  std::vector<VoidFinder::Seen> seen_;
+  BlockMean mean_;  // of an enclosed fluid's density rates, of a held fluid's velocity
   BulkHold hold_;
   bool keeps_inside_ = false;
 

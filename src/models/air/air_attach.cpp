@@ -29,11 +29,14 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
                        ", so that the mean density should be free; leave the key out");
 }
 
-std::vector<Field> fields_of(const FluidKeys& keys, const PlanPhase& plan) {
+std::vector<Field> fields_of(const Scene& scene, const Phase& phase, const PlanPhase& plan) {
   using enum Field;
+  const FluidKeys& keys = phase.fluid();
   std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
   if (keys.shifting > 0) f.push_back(shift_velocity);
   if (keys.scheme == FluidScheme::consistent) f.push_back(anisotropy);
+  if (keys.scheme == FluidScheme::consistent && !plan.free_surface && !solids_move_in(scene, phase))
+    f.push_back(near_void);
   if (plan.free_surface) f.insert(f.end(), {wholeness, surface_normal});
   if (plan.eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
   if (keys.energy) f.insert(f.end(), {energy, energy_rate});
@@ -73,7 +76,7 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
   enclose(scene, blocks, number, layout, warnings);
-  p.fields = fields_of(phase.fluid(), p);
+  p.fields = fields_of(scene, phase, p);
   p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
   if (p.sound_speed <= 0)
     throw SceneError(scene.file + ": phases." + p.name +
@@ -189,6 +192,8 @@ void Air::attach(Workspace& w) {
     q.void_pressure = -0.2 * phase_.density * speed * speed;
   }
   bind_entries();
+  q.ends = true;
+  if (particles_->has(Field::near_void)) look_for_voids();
   held_.margin = 0.02 * plan_.spacing;
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
   if (corrected) relief_ = relief();
@@ -221,6 +226,20 @@ void Air::bind_entries() {
   for (const auto& e : layout_.entries)
     if (e.law == Law::boundary && e.fluid == number_)
       close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
+}
+
+/// The fluid is whole until a void is found.
+void Air::look_for_voids() {
+  parameters_.ends = false;
+  parameters_.loose = &loose_;
+  loose_.place.resize(particles_->size());
+  for (const auto& e : layout_.entries) {
+    if (!e.has(number_) || !e.continues_fluid()) continue;
+    const std::size_t other = e.partner(number_);
+    const VoidFinder::Seen seen{&w_->list(e.direction(number_)), &w_->particles(other), &w_->neighbours.grid(other),
+                                VoidFinder::ball * std::max(plan_.spacing, layout_.phases[other].spacing)};
+    seen_.insert(other == number_ ? seen_.begin() : seen_.end(), seen);
+  }
 }
 
 /// Its entries again with the friction of each, and the ground under it.

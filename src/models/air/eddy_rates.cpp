@@ -116,7 +116,7 @@ BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
   store_four(simd::select(before > Four(0.0), grown, begun), columns.nu_t, at.first, at.count);
 }
 
-template <int Dim, class T>
+template <int Dim, Beside beside, class T>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, const EddyRecords& eddies,
            std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& p) {
   using V = LanesOf<T>;
@@ -142,13 +142,24 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
     Four company(0.0);
     const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p, company);
     auto anisotropy = columns.anisotropy(at);
-    auto place = columns.place(at, company);
+    auto place = columns.template place<beside>(at, company);
     typename EddyFluid<Dim>::template Stress<Four> stress{s};
     const Four rho = load_four(columns.rho, at.first, at.count);
-    const auto r = finish_consistent<Dim, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    const auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress);
     renew_viscosity<Dim>(eddy_columns, stress, at, p);
-    columns.store(at, r, anisotropy, place, s.concentration);
+    columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
   }
+}
+
+template <class T>
+void dispatch(PhaseParticles& fluid, const T* own, double unit, const EddyRecords& eddies,
+              std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
+  constexpr Beside nothing = Beside::nothing, ends = Beside::ends;
+  const bool flat = fluid.dimensions() == 2;
+  if (flat && q.ends) rates<2, ends>(fluid, own, unit, eddies, neighbours, q, e);
+  else if (flat) rates<2, nothing>(fluid, own, unit, eddies, neighbours, q, e);
+  else if (q.ends) rates<3, ends>(fluid, own, unit, eddies, neighbours, q, e);
+  else rates<3, nothing>(fluid, own, unit, eddies, neighbours, q, e);
 }
 
 template <int Dim>
@@ -172,14 +183,12 @@ void reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbou
 
 void eddy_rates(PhaseParticles& fluid, const RecordArray& own, const EddyRecords& eddies,
                 std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
-  if (fluid.dimensions() == 2) rates<2>(fluid, own.data(), 1.0, eddies, neighbours, q, e);
-  else rates<3>(fluid, own.data(), 1.0, eddies, neighbours, q, e);
+  dispatch(fluid, own.data(), 1.0, eddies, neighbours, q, e);
 }
 
 void eddy_rates(PhaseParticles& fluid, const CompactRecords& own, const EddyRecords& eddies,
                 std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
-  if (fluid.dimensions() == 2) rates<2>(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
-  else rates<3>(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
+  dispatch(fluid, own.data(), own.unit(), eddies, neighbours, q, e);
 }
 
 void eddy_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid,

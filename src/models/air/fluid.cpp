@@ -28,7 +28,7 @@ BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_
   return joined;
 }
 
-template <int Dim, template <int> class Law, class T, bool Joined = false>
+template <int Dim, template <int> class Law, class T, Beside beside, bool Joined = false>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
            const FluidParameters& q) {
   using L = Law<Dim>;
@@ -71,13 +71,13 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       }
       if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw))
         s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
-      if constexpr (L::corrected)
+      if constexpr (L::corrected && beside == Beside::ends)
         if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);  // the fluid's own entry is the first
     }
     auto anisotropy = columns.anisotropy(at);
-    auto place = columns.place(at, company);
-    const auto r = finish<Dim, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);
-    columns.store(at, r, anisotropy, place, s.concentration);
+    auto place = columns.template place<beside>(at, company);
+    const auto r = finish<Dim, beside, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);
+    columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
   }
 }
 
@@ -112,14 +112,18 @@ void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const 
               const FluidParameters& q, FluidScheme scheme) {
   const bool plain = scheme == FluidScheme::plain, flat = fluid.dimensions() == 2;
   const bool joined = std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
-  if (joined && flat) rates<2, ConsistentFluid, T, true>(fluid, own, unit, neighbours, q);
-  else if (joined) rates<3, ConsistentFluid, T, true>(fluid, own, unit, neighbours, q);
-  else if (flat && plain && fluid.has(Field::wholeness)) rates<2, PlainSurface>(fluid, own, unit, neighbours, q);
-  else if (flat && plain) rates<2, PlainFluid>(fluid, own, unit, neighbours, q);
-  else if (flat) rates<2, ConsistentFluid>(fluid, own, unit, neighbours, q);
-  else if (plain && fluid.has(Field::wholeness)) rates<3, PlainSurface>(fluid, own, unit, neighbours, q);
-  else if (plain) rates<3, PlainFluid>(fluid, own, unit, neighbours, q);
-  else rates<3, ConsistentFluid>(fluid, own, unit, neighbours, q);
+  const bool surface = plain && fluid.has(Field::wholeness);
+  constexpr Beside nothing = Beside::nothing, ends = Beside::ends;
+  if (joined && flat) rates<2, ConsistentFluid, T, ends, true>(fluid, own, unit, neighbours, q);
+  else if (joined) rates<3, ConsistentFluid, T, ends, true>(fluid, own, unit, neighbours, q);
+  else if (flat && surface) rates<2, PlainSurface, T, ends>(fluid, own, unit, neighbours, q);
+  else if (flat && plain) rates<2, PlainFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  else if (flat && q.ends) rates<2, ConsistentFluid, T, ends>(fluid, own, unit, neighbours, q);
+  else if (flat) rates<2, ConsistentFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  else if (surface) rates<3, PlainSurface, T, ends>(fluid, own, unit, neighbours, q);
+  else if (plain) rates<3, PlainFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  else if (q.ends) rates<3, ConsistentFluid, T, ends>(fluid, own, unit, neighbours, q);
+  else rates<3, ConsistentFluid, T, nothing>(fluid, own, unit, neighbours, q);
 }
 
 }  // namespace

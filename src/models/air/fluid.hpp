@@ -1,6 +1,8 @@
 // Rates of a fluid phase: one loop over all its neighbours, then the laws' sums become accelerations.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,6 +25,14 @@ struct FluidNeighbour {
   double joined = 0;                        // kg/m3: density at rest of another fluid, consistent scheme; 0: no fluid
 };
 
+/// Particles of a fluid that may stand beside a void, collected by the pass over its rates in any order.
+struct LooseParticles {
+  std::vector<std::uint32_t> place;  // room for all
+  std::atomic<std::size_t> count{0};
+  /// Any thread may call it.
+  void add(std::size_t k) { place[count.fetch_add(1, std::memory_order_relaxed)] = static_cast<std::uint32_t>(k); }
+};
+
 struct FluidParameters {
   double reference_density;   // kg/m3
   double sound_speed;         // m/s
@@ -38,6 +48,8 @@ struct FluidParameters {
   double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
   double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
   double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
+  bool ends;               // a void or a free surface is near some particle, or solids move in the fluid
+  LooseParticles* loose;   // where particles that may stand beside a void are noted; null: nobody asks
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.

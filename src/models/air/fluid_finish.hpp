@@ -41,14 +41,21 @@ struct Rates {
   V density;
 };
 
-/// Where a particle stands in its fluid. Read: its company, pressure, velocity, and the direction inwards at and near
-/// the free surface, of the step before (zero elsewhere). Written: its wholeness (chi below).
+/// What may lie beside the particles of a fluid. nothing: it is whole, and no solid that moves is in it; neither plain
+/// operators nor surfaces are looked at. ends: a void or a free surface is near some of them, or solids move in it.
+enum class Beside { nothing, ends };
+
+/// Where a particle stands in its fluid. Read: its company, pressure, velocity, whether its fluid ends near it, and the
+/// direction inwards at and near the free surface, of the step before (zero elsewhere). Written: its wholeness (chi
+/// below).
 template <int Dim, class V>
 struct Place {
   V company;  // share of the neighbourhood that its own fluid fills, -tr M/Dim of the fluid's entry with itself
   V pressure;
+  V ends;  // above 0: a void or a surface may be near
   std::array<V, Dim> velocity, normal;
   V wholeness;
+  decltype(V() < V()) loose;  // its wholeness is below `loose_below`: is there a void?
 };
 
 /// The columns behind it; null without a free surface. What is left in `normal` is B = sum V F r, see SurfaceFinder.
@@ -114,13 +121,11 @@ BARCHAN_SIMD_INLINE std::array<V, Dim> shift_of(const std::array<V, Dim>& concen
   return du;
 }
 
-template <int Dim, class V>
+template <int Dim, Beside, class V>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::template Sums<V>& s, double, V rho,
-                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>&,
-                                         Place<Dim, V>& place) {
+                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>&, Place<Dim, V>&) {
   Rates<Dim, V> r;
   r.shift = shift_of<Dim, V>(s.concentration, q);
-  keep_inside<Dim, V>(r.shift, place.normal);
   const V specific = V(1.0) / rho;
   for (std::size_t d = 0; d < Dim; ++d)
     r.acceleration[d] = (V(2.0) * s.viscous[d] - s.pressure[d]) * specific + V(q.gravity[d] + q.acceleration[d]);
@@ -129,12 +134,13 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::templat
 }
 
 /// A plain fluid with a free surface: chi = -tr M/Dim - h|B|/2 is 1 inside and about a half on a straight surface.
-template <int Dim, class V>
+template <int Dim, Beside beside, class V>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainSurface<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
                                          Place<Dim, V>& place) {
   const typename PlainFluid<Dim>::template Sums<V>& plain = s;
-  Rates<Dim, V> r = finish<Dim, V>(plain, mu, rho, q, anisotropy, place);
+  Rates<Dim, V> r = finish<Dim, beside, V>(plain, mu, rho, q, anisotropy, place);
+  keep_inside<Dim, V>(r.shift, place.normal);
   // Records hold the volume m/rho: the density takes out what compression does to it.
   const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration),
           compressed = rho * V(1.0 / q.reference_density);
@@ -169,8 +175,23 @@ constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
 ///   grad p    = w M^-1 P + (1-w) [2 (p_a - p_v) B - P]
 ///   lap p     = w (-2 Dim/tr M) [L_p - (M^-1 P).B] + (1-w) 2 [L_p - rho0 g.B]
 /// p_v is the pressure of the void: zero beyond a free surface; below zero in a fluid that fills its space, so that a
-/// hole behind a grain closes.
+/// hole behind a grain closes. Disorder alone brings chi below 0.6 too, and plain operators there cost a whole fluid a
+/// fifth to a third of its accuracy: in a fluid without a surface and without solids that move, w = 1 but beside voids
+/// (VoidFinder).
 constexpr double surface_begins = 0.3, surface_ends = 0.6;
+
+/// Particles beside a void of a fluid that fills its space have a wholeness below this (a hole of one lost particle:
+/// 0.6; of six spacings: 0.2 to 0.45), and so has one in a thousand of a disturbed interior: VoidFinder looks at them.
+constexpr double loose_below = 0.5;
+
+/// chi < loose_below, without the root of |B|.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE auto is_loose(V content, const std::array<V, Dim>& concentration, const FluidParameters& q) {
+  const V over = content - V(loose_below), half = V(0.5 * q.smoothing_length);
+  V square(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) square = simd::fma(concentration[d], concentration[d], square);
+  return (over < V(0.0)) | (half * half * square > over * over);
+}
 
 /// Without friction, rows next to a heavy free surface rock each other up, where the operators change from corrected to
 /// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. The rate
@@ -189,22 +210,22 @@ BARCHAN_SIMD_INLINE V least_viscosity(V mu, V inner, const std::array<V, Dim>& n
 
 /// `friction` gives, from M^-1 and grad v, the viscous sum less what a linear field makes of it: of the term
 /// laplace_v mu friction.
-template <int Dim, class V, class Friction>
+template <int Dim, Beside beside, class V, class Friction>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu,
                                                     V rho, const FluidParameters& q,
                                                     std::array<V, Dim*(Dim + 1) / 2>& anisotropy, Place<Dim, V>& place,
                                                     Friction&& friction) {
   Rates<Dim, V> r;
+  constexpr bool ends = beside == Beside::ends;
   r.shift = shift_of<Dim, V>(s.concentration, q);
-  keep_inside<Dim, V>(r.shift, place.normal);
+  if constexpr (ends) keep_inside<Dim, V>(r.shift, place.normal);
   // A particle among grains in flight may have too few neighbours to invert anything: it goes uncorrected, M = -1.
   auto moment = s.moment;
   const V sign(Dim == 2 ? 1.0 : -1.0);
   const V content = sign * determinant(moment);
   const auto whole = content > V(least_determinant_of<Dim>(q));
-  const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration);
+  [[maybe_unused]] const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration);
   place.wholeness = content - V(0.5) * lopsided;
-  const V trace_found = trace_of<Dim, V>(s.moment);
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e <= d; ++e) {
       const std::size_t m = moment_index(d, e);
@@ -219,18 +240,24 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   }
   weighted_trace = simd::min(weighted_trace + trace, V(0.5) * trace);  // both negative
   const V per_trace = V(1.0) / trace;
-  const V inner = smooth_step(place.wholeness, surface_begins, surface_ends), outer = V(1.0) - inner;
-  const V viscosity = q.least_viscosity > 0.0 ? least_viscosity<Dim, V>(V(mu), inner, place.normal, q) : V(mu);
+  place.loose = is_loose<Dim, V>(content, s.concentration, q);
+  V inner(1.0), outer(0.0), viscosity(mu);
+  if constexpr (ends) {
+    inner = simd::select(place.ends > V(0.0), smooth_step(place.wholeness, surface_begins, surface_ends), V(1.0));
+    outer = V(1.0) - inner;
+    if (q.least_viscosity > 0.0) viscosity = least_viscosity<Dim, V>(V(mu), inner, place.normal, q);
+  }
   const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
   const V specific = V(1.0) / rho;
   const double c2 = q.sound_speed * q.sound_speed;
-  const V push = V(2.0) * (place.pressure - V(q.void_pressure));
+  [[maybe_unused]] const V push = V(2.0) * (place.pressure - V(q.void_pressure));
   std::array<V, Dim> grad_p, force;
   std::array<std::array<V, Dim>, Dim> grad_v;
   for (std::size_t d = 0; d < Dim; ++d) {
     grad_p[d] = inverse[d * Dim] * s.pressure[0];
     for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
-    force[d] = inner * grad_p[d] + outer * (push * s.concentration[d] - s.pressure[d]);
+    if constexpr (ends) force[d] = inner * grad_p[d] + outer * (push * s.concentration[d] - s.pressure[d]);
+    else force[d] = grad_p[d];
     for (std::size_t e = 0; e < Dim; ++e) {
       grad_v[d][e] = s.velocity[d * Dim] * inverse[e];
       for (std::size_t f = 1; f < Dim; ++f)
@@ -251,10 +278,14 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     r.acceleration[d] = laplace_v * rubbed[d] - force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
   }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
-  const V laplacian = inner * (laplace_p * dynamic) + outer * (V(2.0) * s.diffusion);
+  V laplacian = laplace_p * dynamic, carried = along_p * V(1.0 / c2);
+  if constexpr (ends) {
+    laplacian = inner * laplacian + outer * (V(2.0) * s.diffusion);
+    carried = inner * carried;
+  }
   r.density = -rho * divergence + V(q.diffusivity / c2) * laplacian +
-              V(q.source_diffusivity / c2 * q.reference_density) * squared + inner * (along_p * V(1.0 / c2));
-  if (q.pores > 0.0) {
+              V(q.source_diffusivity / c2 * q.reference_density) * squared + carried;
+  if (ends && q.pores > 0.0) {
     const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
     r.density = counts * r.density - rate * (rho - V(q.reference_density));
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -262,7 +293,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       r.shift[d] *= counts;
     }
   }
-  if (q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_found, lopsided, q);
+  if (ends && q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_of<Dim, V>(s.moment), lopsided, q);
   // The next step's weights; they stay positive: no entry of A beyond a half.
   const V scale = V(-0.5 * (Dim + 2) * Dim) * per_trace;
   for (std::size_t d = 0; d < Dim; ++d)
@@ -274,11 +305,11 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   return r;
 }
 
-template <int Dim, class V>
+template <int Dim, Beside beside, class V>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
                                          Place<Dim, V>& place) {
-  return finish_consistent<Dim, V>(
+  return finish_consistent<Dim, beside, V>(
       s, mu, rho, q, anisotropy, place, [&](const auto&, const auto& grad_v) __attribute__((always_inline)) {
         std::array<V, Dim> friction = s.viscous;
         for (std::size_t d = 0; d < Dim; ++d)

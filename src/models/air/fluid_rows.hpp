@@ -137,6 +137,7 @@ struct RateColumns {
   const double *rho, *pressure;
   std::array<const double*, Dim> velocity{};
   SurfaceColumns<Dim> surface;
+  const double* near_void = nullptr;  // null: its fluid may end beside every particle
 
   explicit RateColumns(PhaseParticles& fluid)
       : rate(fluid.column(Field::density_rate)),
@@ -150,6 +151,7 @@ struct RateColumns {
     }
     if constexpr (Corrected)
       for (std::size_t c = 0; c < kept; ++c) skew[c] = fluid.column(Field::anisotropy, static_cast<int>(c));
+    if (fluid.has(Field::near_void)) near_void = fluid.column(Field::near_void);
   }
 
   /// Gives `own` the weights of particle k.
@@ -171,17 +173,26 @@ struct RateColumns {
     return a;
   }
 
+  template <Beside beside>
   BARCHAN_SIMD_INLINE Place<Dim, Four> place(const FourOf& at, Four company) const {
-    Place<Dim, Four> place{company, load_four(pressure, at.first, at.count), {}, {}, {}};
+    Place<Dim, Four> place{};
+    if constexpr (beside == Beside::nothing) return place;
+    place.company = company;
+    place.pressure = load_four(pressure, at.first, at.count);
+    place.ends = near_void ? load_four(near_void, at.first, at.count) : Four(1.0);
     for (std::size_t d = 0; d < Dim; ++d) place.velocity[d] = load_four(velocity[d], at.first, at.count);
     for (std::size_t d = 0; d < Dim; ++d)
       place.normal[d] = surface.wholeness ? load_four(surface.normal[d], at.first, at.count) : Four(0.0);
     return place;
   }
 
+  template <Beside beside>
   BARCHAN_SIMD_INLINE void store(const FourOf& at, const Rates<Dim, Four>& r, const std::array<Four, moments>& a,
-                                 const Place<Dim, Four>& place, const std::array<Four, Dim>& concentration) const {
-    if (surface.wholeness) {
+                                 const Place<Dim, Four>& place, const std::array<Four, Dim>& concentration,
+                                 const FluidParameters& q) const {
+    if constexpr (Corrected)
+      if (q.loose && simd::any(place.loose)) note_loose(at, place, *q.loose);
+    if (beside == Beside::ends && surface.wholeness) {
       store_four(place.wholeness, surface.wholeness, at.first, at.count);
       for (std::size_t d = 0; d < Dim; ++d) store_four(concentration[d], surface.normal[d], at.first, at.count);
     }
@@ -192,6 +203,13 @@ struct RateColumns {
       if (shift[d]) store_four(r.shift[d], shift[d], at.first, at.count);
     }
     store_four(r.density, rate, at.first, at.count);
+  }
+
+  static void note_loose(const FourOf& at, const Place<Dim, Four>& place, LooseParticles& loose) {
+    alignas(32) std::array<double, 4> is{};
+    simd::select(place.loose, Four(1.0), Four(0.0)).store(is.data());
+    for (std::size_t lane = 0; lane < at.count; ++lane)
+      if (is[lane] > 0.0) loose.add(at.first + lane);
   }
 };
 

@@ -5,33 +5,21 @@
 #include <atomic>
 #include <cmath>
 
+#include "engine/entry_of_list.hpp"
+
 namespace barchan {
 
 namespace {
 
-/// The particle behind an entry of a list, and its square distance from x.
+/// Square distance of a listed particle from particle `from`.
 template <std::size_t Dim>
-struct Entry {
-  std::size_t source;
-  double distance2;
-};
-
-template <std::size_t Dim>
-Entry<Dim> look_up(std::uint32_t listed, const CellGrid& grid, std::size_t particles,
-                   const std::array<const double*, Dim>& x, std::size_t from) {
-  const std::size_t index = listed / PairList::stride;
-  Entry<Dim> entry{index, 0.0};
-  std::array<double, Dim> shift{};
-  if (index >= particles) {
-    const Image& image = grid.image_list()[index - particles];
-    entry.source = image.source;
-    for (std::size_t d = 0; d < Dim; ++d) shift[d] = image.shift[d] * grid.period()[d];
-  }
+double distance2(const ListedParticle<Dim>& entry, const std::array<const double*, Dim>& x, std::size_t from) {
+  double sum = 0.0;
   for (std::size_t d = 0; d < Dim; ++d) {
-    const double r = x[d][from] - x[d][entry.source] - shift[d];
-    entry.distance2 += r * r;
+    const double r = x[d][from] - x[d][entry.source] - entry.shift[d];
+    sum += r * r;
   }
-  return entry;
+  return sum;
 }
 
 }  // namespace
@@ -61,9 +49,10 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
   const auto each_near = [&](std::size_t k, auto&& f) {
     const auto row = own.row(k);
     for (const std::uint32_t* q = row.begin; q != row.end; ++q) {
-      if (*q / PairList::stride == dummy) continue;
-      const auto entry = look_up<dim>(*q, grid, n, x, k);
-      if (entry.distance2 < within2) f(entry.source);
+      const std::size_t index = *q / PairList::stride;
+      if (index == dummy) continue;
+      const auto entry = look_up<dim>(index, grid, n);
+      if (distance2<dim>(entry, x, k) < within2) f(entry.source);
     }
   };
   const auto count = static_cast<std::int64_t>(members_.size());

@@ -1,0 +1,48 @@
+// Voids in a fluid that fills its space: which of its particles stand beside one.
+#pragma once
+
+#include <span>
+
+#include "engine/cell_grid.hpp"
+#include "engine/pair_list.hpp"
+#include "models/air/fluid.hpp"
+#include "state/particles.hpp"
+
+namespace barchan {
+
+/// Finds voids and keeps `near_void`: the steps for which a particle still counts as beside one.
+///
+/// A particle whose wholeness is low stands beside a void if a ball a little wider than one lost particle leaves is
+/// empty but for itself, on the side to which its neighbourhood is lopsided. The largest empty ball of a square lattice
+/// has a radius of 0.71 spacings, of a cubic one 0.87, without one particle 1: disorder alone makes no void. It and all
+/// of its fluid within the kernel radius are then beside the void for `memory` steps.
+///
+/// Costs the rows of the few particles that the pass over the rates noted; nothing is read or written in a whole fluid.
+/// Which particles are marked depends on places alone, so that threads change nothing. Allocates nothing.
+class VoidFinder {
+ public:
+  static constexpr double ball = 1.1, outside = 1.0;  // radius and distance of the ball, in spacings
+  static constexpr double memory = 64.0;               // steps
+
+  /// What a fluid sees of one phase. `width`: radius of the ball that none of its particles may enter (m).
+  struct Seen {
+    const PairList* list;
+    const PhaseParticles* particles;
+    const CellGrid* grid;
+    double width;
+  };
+
+  /// `seen`: the fluid's own entry first. `radius`: of that (m). `spacing`: of the fluid (m). `loose`: what the pass
+  /// over the rates noted; emptied. Returns whether any particle is beside a void.
+  bool find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing, LooseParticles& loose);
+
+  bool any() const { return near_ != 0; }  ///< what find() returned last
+  void archive(Archive& a) { a.number("void near", near_); }
+
+ private:
+  template <int Dim>
+  bool find_in(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing, LooseParticles& loose);
+  std::int64_t near_ = 0;  // 1: some particle is beside a void
+};
+
+}  // namespace barchan
