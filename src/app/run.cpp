@@ -1,4 +1,6 @@
 // barchan run: integrate a scene and write its series.
+#include <omp.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -178,7 +180,9 @@ int run(const RunOptions& options) {
   if (!lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
   clear(directory, scene, plan, from.has_value());
-  Course course{scene, simulation, directory, Progress(scene.time.end, plan.particles(), options.quiet), beds};
+  Course course{scene,     simulation,
+                directory, Progress(scene.time.end, plan.particles(), options.quiet),
+                beds,      Team(omp_get_max_threads(), options.threads == 0)};
   return run_to_the_end(course, from, options.retreats);
 }
 

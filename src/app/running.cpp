@@ -130,7 +130,7 @@ int Run::loop(Past* past) {
     if (past && past->due(simulation_.steps())) past->keep(simulation_, measurements());
     const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
     const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
-    simulation_.step(std::min(next_frame, next_row) - simulation_.time());
+    course_.team.step([&] { simulation_.step(std::min(next_frame, next_row) - simulation_.time()); });
     if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
     if (measurements_) measurements_->sample(simulation_.state());
     if (due(next_row)) {
@@ -232,6 +232,9 @@ void Run::write_frame() {
 RunReport Run::report(const std::string& reason) const {
   RunReport r = make_report(simulation_, *series_, measurements_ ? &*measurements_ : nullptr, course_.progress);
   r.end_reason = reason;
+  r.threads = course_.team.most();
+  r.thread_uses = course_.team.uses();
+  r.thread_switches = course_.team.switches();
   r.retreats = course_.retreats;
   r.retreat_count = simulation_.state().retreat.count;
   if (r.retreat_count > 0)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/progress.hpp"
+#include "engine/team.hpp"
 #include "measure/measurements.hpp"
 #include "output/history.hpp"
 #include "output/run_report.hpp"
@@ -24,6 +25,7 @@ struct Course {
   std::filesystem::path directory;
   Progress progress;
   SettledBeds& beds;
+  Team team;
   double last_checkpoint = 0.0;                       // s of the run's wall time
   long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
   std::vector<RunReport::Retreat> retreats{};

@@ -38,6 +38,9 @@ std::string to_json(const RunReport& r) {
       {"time_step_limits", Json(r.time_step_limits)},
       {"budgets", Json(r.budgets)},
   };
+  for (const auto& use : r.thread_uses)
+    json["threads_used"].push_back({{"threads", use.threads}, {"steps", use.steps}, {"seconds", use.seconds}});
+  json["thread_switches"] = r.thread_switches;
   for (const auto& m : r.measured)
     json["measured"].push_back({{"kind", m.kind}, {"name", m.name}, {"files", m.files}, {"samples", m.samples}});
   // A title that is not UTF-8 must not lose the report of a whole run.

@@ -7,12 +7,16 @@
 #include <utility>
 #include <vector>
 
+#include "base/thread_chooser.hpp"
+
 namespace barchan {
 
 struct RunReport {
   // the program
   std::string version, commit, compiler, instruction_set, vtk;
-  int threads = 1;
+  int threads = 1;                              // at most
+  std::vector<ThreadChooser::Use> thread_uses;  // by number of threads
+  long thread_switches = 0;                     // how often the number changed
 
   // the scene and the plan
   std::string scene_title, scene_file, scene_state;

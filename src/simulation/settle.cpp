@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "engine/team.hpp"
 #include "scene/couplings.hpp"
 #include "scene/ground.hpp"
 #include "scene/places.hpp"
@@ -237,7 +238,7 @@ struct Rest {
 };
 /// Lets the grains of the first phase move. Their places and contacts become those of the blocks. Returns the farthest
 /// way of a grain (m), nothing when they do not come to rest before `latest`.
-std::optional<double> rest(const Scene& s, std::vector<ParticleBlock>& blocks, const Rest& how) {
+std::optional<double> rest(const Scene& s, std::vector<ParticleBlock>& blocks, const Rest& how, Team& team) {
   Simulation run(s, make_plan(s, blocks), blocks);
   PhaseParticles& p = run.phases()[0];
   const double d = s.phases[0].diameter()->mean, unit = std::sqrt(d / norm(s.domain.gravity));
@@ -251,7 +252,7 @@ std::optional<double> rest(const Scene& s, std::vector<ParticleBlock>& blocks, c
   std::vector<Vec3> place = blocks[0].position;
   const auto go_to = [&](double time) {
     while (run.time() < time) {
-      run.step(time - run.time());
+      team.step([&] { run.step(time - run.time()); });
       if (!how.trial) damp();
     }
   };
@@ -319,18 +320,22 @@ Scene softened(Scene s, double stiffness) {
   return s;
 }
 
-/// So few threads as these grains are worth, until the end of the block.
+/// As many threads as pay, of those that these grains may be worth; those from before at the end of the block.
 class FewThreads {
  public:
-  explicit FewThreads(std::size_t grains) : before_(omp_get_max_threads()) {
-    omp_set_num_threads(std::min(before_, 1 + static_cast<int>(std::min<std::size_t>(grains / 2000, 4095))));
+  explicit FewThreads(std::size_t grains)
+      : before_(omp_get_max_threads()),
+        team_(std::min(before_, 1 + static_cast<int>(std::min<std::size_t>(grains / 2000, 4095))), true) {
+    omp_set_num_threads(1);
   }
   ~FewThreads() { omp_set_num_threads(before_); }
   FewThreads(const FewThreads&) = delete;
   FewThreads& operator=(const FewThreads&) = delete;
+  Team& team() { return team_; }
 
  private:
   int before_;
+  Team team_;
 };
 
 }  // namespace
@@ -349,7 +354,7 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
     for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
-  const FewThreads team(blocks[0].position.size());
+  FewThreads threads(blocks[0].position.size());
   const auto tell = [&](const std::string& what) {
     if (words != nullptr)
       *words << "settling  " << scene.fills[k].phase << ": " << blocks[0].position.size() << " grains, " << what
@@ -358,7 +363,7 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   const auto settle_once = [&](std::size_t stage) {
     tell("contacts " + std::to_string(stage + 1) + " of " + std::to_string(stages.size()));
     const double first_look = stage == 0 && !from_file ? fall : 2.0 * push;
-    if (!rest(stages[stage], blocks, {from_file || stage > 0, false, first_look, latest}))
+    if (!rest(stages[stage], blocks, {from_file || stage > 0, false, first_look, latest}, threads.team()))
       throw SceneError(
           scene.file + ": fill." + std::to_string(k) +
           ".packing: the grains do not come to rest; expected friction above 0, and a restitution below 1");
@@ -371,7 +376,7 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
   for (int trials = 1; trials <= most_trials && !blocks[0].position.empty(); ++trials) {
     tell("trial " + std::to_string(trials));
     const std::size_t before = blocks[0].position.size();
-    const auto way = rest(as_in_the_run, blocks, {false, true, 0.0, latest});
+    const auto way = rest(as_in_the_run, blocks, {false, true, 0.0, latest}, threads.team());
     cut(scene, k, s, blocks[0]);
     if (*way < place && blocks[0].position.size() == before) break;
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <array>
 #include <cstring>
 #include <thread>
 
@@ -19,11 +20,15 @@ struct State {
   long rebuilds = 0;
 };
 
-State state_after(const std::string& text, int threads, int steps) {
+/// `changing`: every step has another number of threads, 1, 2, 3, 2, ...
+State state_after(const std::string& text, int threads, int steps, bool changing = false) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
   const auto run = small::simulation(text);
-  for (int k = 0; k < steps; ++k) run->step(1.0);
+  for (int k = 0; k < steps; ++k) {
+    if (changing) omp_set_num_threads(std::array{1, 2, 3, 2}[static_cast<std::size_t>(k % 4)]);
+    run->step(1.0);
+  }
   omp_set_num_threads(before);
   State s;
   s.time = run->time();
@@ -55,6 +60,7 @@ TEST_P(Threads, DoNotChangeABit) {
   expect_same_bits(once, state_after(text, 1, 100));
   expect_same_bits(once, state_after(text, 2, 100));
   expect_same_bits(once, state_after(text, 3, 100));
+  expect_same_bits(once, state_after(text, 1, 100, true));
   State other = state_after(text, 1, 99);
   EXPECT_NE(once.time, other.time);
   EXPECT_NE(once.values, other.values) << "and one step more does change them";

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Wall time of runs with the default number of threads beside one thread, on a quiet machine and on a busy one.
+
+    bench/throughput/busy.py [--program build/barchan] [--runs N] [--particles 500,1500,10000,100000] [--load 0,2] [--write]
+
+Periodic air of about so many particles, long enough for some seconds on one thread (--seconds); `load`: as many processes that only compute, beside the run. Runs with
+one thread and with the default number alternate. Prints the median of one thread, the median and the worst of the default over it, and how many steps
+were taken with how many threads. With --write the table goes to docs/performance.md, between its markers.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs/performance.md"
+BEGIN, END = "<!-- busy: begin -->", "<!-- busy: end -->"
+
+SCENE = """dimensions = 2
+spacing = {spacing!r}
+[domain]
+size = [1, 1]
+periodic = ["x", "y"]
+[phases.fluid]
+kind = "fluid"
+density = 1
+viscosity = 0.01
+sound-speed = 10
+[interactions]
+fluid-fluid = 2.1
+[[fill]]
+phase = "fluid"
+shape = "the-rest"
+perturb = 0.2
+velocity = ["-cos(2*pi*x)*sin(2*pi*y)", "sin(2*pi*x)*cos(2*pi*y)"]
+[time]
+end = {end!r}
+largest-speed = 1
+[output]
+every = {end!r}
+"""
+
+
+def run(program, scene, out, threads):
+    """Wall seconds of a run, and its report."""
+    command = [str(program), "run", str(scene), "--quiet", "--out", str(out)] + (["--threads", str(threads)] if threads else [])
+    begin = time.monotonic()
+    done = subprocess.run(command, capture_output=True, text=True)
+    seconds = time.monotonic() - begin
+    if done.returncode:
+        sys.exit(f"busy: {done.stderr.strip()[:300]}")
+    return seconds, json.loads((out / "run.json").read_text())
+
+
+def cell(program, particles, load, runs, seconds):
+    """One line of the table."""
+    side = round(math.sqrt(particles))
+    steps = max(20, round(seconds * 6e6 / side**2))
+    with tempfile.TemporaryDirectory() as scratch:
+        scene = pathlib.Path(scratch) / "case.toml"
+        scene.write_text(SCENE.format(spacing=1 / side, end=steps * .4 * 1.05 / side / 11))
+        burners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(load)]
+        try:
+            one, default, used = [], [], {}
+            for _ in range(runs):
+                one.append(run(program, scene, pathlib.Path(scratch) / "one", 1)[0])
+                wall, report = run(program, scene, pathlib.Path(scratch) / "default", 0)
+                default.append(wall)
+                for use in report["threads_used"]:
+                    used[use["threads"]] = used.get(use["threads"], 0) + use["steps"]
+        finally:
+            for burner in burners:
+                burner.kill()
+                burner.wait()
+    middle = statistics.median(one)
+    total = sum(used.values())
+    shares = ", ".join(f"{n}: {100 * k / total:.0f} %" for n, k in sorted(used.items()))
+    return (f"| {side**2} | {load} | {middle:.2f} | {max(one) / middle:.2f} | {statistics.median(default) / middle:.2f} | "
+            f"{max(default) / middle:.2f} | {shares} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/barchan")
+    parser.add_argument("--runs", type=int, default=10)
+    parser.add_argument("--particles", default="500,1500,10000,100000")
+    parser.add_argument("--load", default="0,2")
+    parser.add_argument("--seconds", type=float, default=1.5)
+    parser.add_argument("--write", action="store_true")
+    given = parser.parse_args()
+    lines = ["| particles | busy processes beside it | one thread, s (median) | worst of one thread | default: median over one thread | default: worst over one thread | steps by threads |",
+             "| --- " * 7 + "|"]
+    print("\n".join(lines), flush=True)
+    for load in map(int, given.load.split(",")):
+        for particles in map(int, given.particles.split(",")):
+            lines.append(cell(given.program, particles, load, given.runs, given.seconds))
+            print(lines[-1], flush=True)
+    if given.write:
+        text = PAGE.read_text()
+        head, rest = text.split(BEGIN)
+        tail = rest.split(END)[1]
+        note = f"{given.runs} runs each, {os.cpu_count()} cores; load of the machine in the minute before the end: {os.getloadavg()[0]:.1f}."
+        PAGE.write_text(head + BEGIN + "\n" + "\n".join(lines) + "\n\n" + note + "\n" + END + tail)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,77 @@
+#include "base/thread_chooser.hpp"
+
+#include <algorithm>
+
+namespace barchan {
+
+ThreadChooser::ThreadChooser(int most) {
+  for (int count = 1; count < most; count *= 2) counts_.push_back(count);
+  counts_.push_back(std::max(most, 1));
+  seconds_.assign(counts_.size(), 0.0);
+  for (const int count : counts_) uses_.push_back({count, 0, 0.0});
+  trying_ = counts_.size() > 1;
+}
+
+void ThreadChooser::go_to(std::size_t choice) {
+  if (choice != present_) ++switches_;
+  present_ = choice;
+  in_window_ = 0;
+}
+
+/// The first step of a block wakes threads and fills caches: the median of all leaves it and the searches out.
+double ThreadChooser::median() const {
+  std::array<double, block> sorted = window_;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[block / 2];
+}
+
+void ThreadChooser::give_up(bool at_once) {
+  trying_ = true;
+  best_ = 0;
+  seconds_[0] = 0.0;
+  if (!at_once) wait_ = std::min(2.0 * wait_, longest_wait);
+  since_ = at_once ? wait_ : 0.0;
+  go_to(0);
+}
+
+/// A block of the present number is complete: on to the next number, or to the best.
+void ThreadChooser::measured(double seconds) {
+  const bool gains = present_ == 0 || seconds < better * seconds_[best_];
+  seconds_[present_] = seconds;
+  if (gains) best_ = present_;
+  const bool go_on =
+      gains && present_ + 1 < counts_.size() && (present_ > 0 || since_ >= wait_ || total_ == since_) && may_lose();
+  if (go_on) return go_to(present_ + 1);
+  trying_ = false;
+  if (present_ > 0) {
+    wait_ = gains ? first_wait : std::min(2.0 * wait_, longest_wait);
+    since_ = 0.0;
+  }
+  go_to(best_);
+}
+
+void ThreadChooser::took(double seconds) {
+  uses_[present_].steps += 1;
+  uses_[present_].seconds += seconds;
+  total_ += seconds;
+  since_ += seconds;
+  if (counts_.size() == 1) return;
+  if (present_ > 0 && seconds_[0] > 0.0) {
+    lost_ += std::max(seconds - seconds_[0], 0.0);
+    if (seconds > hopeless * seconds_[0]) return give_up(false);
+  }
+  window_[in_window_++] = seconds;
+  if (in_window_ < block) return;
+  const double usual = median();
+  in_window_ = 0;
+  if (trying_) return measured(usual);
+  if (present_ > 0 && usual > slower * seconds_[present_]) return give_up(true);
+  seconds_[present_] = present_ > 0 ? std::min(usual, seconds_[present_]) : usual;
+  // With fewer threads than there could be: a trial of more.
+  if (present_ + 1 < counts_.size() && since_ >= wait_ && may_lose()) {
+    trying_ = true;
+    go_to(present_ + 1);
+  }
+}
+
+}  // namespace barchan
