@@ -29,7 +29,9 @@ Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravi
       moving_walls = moving_walls || moves(*wall);
     }
   }
-  const bool forced = !scene.forcings.empty() || !scene.motions.empty();
+  const bool blown = std::any_of(plan.entries.begin(), plan.entries.end(),
+                                 [](const PlanEntry& e) { return e.law == Law::column; });  // it gives and takes
+  const bool forced = !scene.forcings.empty() || !scene.motions.empty() || blown;
   keeps_energy_ = !forced && !moving_walls;
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan.dimensions); ++d) {
     keeps_momentum_[d] = !walls && !forced && gravity_[d] == 0.0;

@@ -70,15 +70,20 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
   const Phase& phase =
       *std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
   const SphereSize size = *phase.diameter();
-  Scene s = scene;
+  Scene s;  // what is not named here does not exist while grains settle: motions, markers, forces, what is measured
+  s.file = scene.file;
+  s.name = scene.name;
+  s.places = scene.places;
+  s.dimensions = scene.dimensions;
+  s.spacing = scene.spacing;
+  s.precision = scene.precision;
+  s.domain = scene.domain;
   s.phases = {phase};
   s.domain.gravity = weight_share(scene, phase) * scene.domain.gravity;
+  s.time = scene.time;
+  s.output = scene.output;
   std::get<GrainsKeys>(s.phases[0].own).restitution = std::min(restitution, phase.grains().restitution);
   std::get<GrainsKeys>(s.phases[0].own).sleep = false;
-  s.interactions.clear();
-  s.fills.clear();
-  s.forcings.clear();
-  s.measuring = {};
   s.output.fields.clear();
   s.time.fixed_step.reset();
   ContactLaw law = ContactLaw::linear;

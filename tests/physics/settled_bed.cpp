@@ -50,6 +50,36 @@ end = 1
 largest-speed = 0.5
 )toml";
 
+/// What stands beside a bed and has no part in its settling.
+const std::string beside = R"toml(
+[phases.plate]
+kind = "elastic"
+density = 1000
+young = 1e6
+poisson = 0.3
+[interactions.plate-plate]
+radius = 1.6
+[[fill]]
+phase = "plate"
+shape = { box = { min = [0.01, 0.02], max = [0.03, 0.026] } }
+[[motion]]
+phase = "plate"
+box = { min = [0.01, 0.02], max = [0.014, 0.026] }
+[[motion]]
+phase = "plate"
+box = { min = [0.026, 0.02], max = [0.03, 0.026] }
+[[marker]]
+name = "middle"
+phase = "plate"
+box = { min = [0.018, 0.02], max = [0.022, 0.026] }
+[[force]]
+name = "on_floor"
+phase = "floor"
+[[forcing]]
+phase = "plate"
+acceleration = [0, 1]
+)toml";
+
 /// A layer of 4 diameters over a dune of fixed spheres, as high above it everywhere.
 const std::string over_a_core = R"toml(
 dimensions = 2
@@ -350,6 +380,18 @@ TEST(SettledBed, OfTheFlatBedStaysAtRestWithoutWind) {
       std::find_if(scene.phases.begin(), scene.phases.end(), [](const Phase& p) { return p.name == "sand"; }) -
       scene.phases.begin());
   EXPECT_LT(farthest_way(scene, blocks, 0.005, sand), 1e-2 * 2.5e-4);
+}
+
+// Motions, markers, forces and what is measured belong to the run: the bed is the one that settles without them.
+TEST(SettledBed, SettlesAloneWhateverStandsBesideIt) {
+  const std::vector<std::string> shallow{"fill.1.shape={ bed = 0.003 }"};
+  const auto alone = make_particles(parse_scene(flat, "bed.toml", shallow));
+  const auto run = small::simulation(flat + beside, shallow);
+  const auto blocks = make_particles(parse_scene(flat + beside, "bed.toml", shallow));
+  ASSERT_EQ(alone[0].position.size(), blocks[0].position.size());
+  for (std::size_t i = 0; i < alone[0].position.size(); ++i) EXPECT_EQ(alone[0].position[i], blocks[0].position[i]);
+  for (int k = 0; k < 20; ++k) run->step(1.0);
+  EXPECT_NO_THROW(run->check());
 }
 
 TEST(SettledBed, IsTheSameOnAnyNumberOfThreads) {

@@ -85,6 +85,19 @@ TEST(Budget, CountsWhatCompressionStores) {
   EXPECT_NEAR(*c.run.budget().energy_growth(c.run.state()), 0.02, 1e-3);
 }
 
+// A column of air gives and takes: nothing about a grain in it is promised.
+TEST(Budget, PromisesNothingInAColumnOfAir) {
+  const Scene scene = read_scene(BARCHAN_SOURCE_DIR "/scenes/verification/hop.toml");
+  const auto blocks = generate(scene);
+  Simulation run(scene, make_plan(scene, blocks), blocks);
+  const auto sand = run.phases().size() - 1;
+  PhaseParticles& grain = run.phases()[scene.phases[0].has_particles() ? 0 : sand];
+  grain.column(Field::velocity, 0)[0] += 3.0;
+  Warnings list;
+  run.budget().report(run.state(), list);
+  EXPECT_TRUE(list.texts().empty()) << list.texts().front();
+}
+
 TEST(Budget, PromisesNothingWhereTheSceneDrives) {
   Case forced(wave + "[[forcing]]\nphase = \"water\"\nacceleration = [1, 0]\n");
   EXPECT_FALSE(forced.run.budget().momentum_drift(forced.run.state()));
