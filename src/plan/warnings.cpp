@@ -2,6 +2,8 @@
 // wrong for certain, else it would be refused.
 #include <algorithm>
 
+#include "models/drive.hpp"
+#include "output/numbers.hpp"
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
 
@@ -55,12 +57,51 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   }
 }
 
+bool are_grains(const PlanPhase& phase) { return phase.kind == "grains"; }
+
+/// What holds the mean speed of a wind pulls as hard as grains brake, and no friction velocity is given.
+void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
+    const Forcing& f = scene.forcings[k];
+    if (f.hold != Hold::bulk_speed) continue;
+    for (const PlanEntry& e : plan.entries)
+      for (const std::size_t fluid : {e.a, e.b})
+        if (plan.phases[fluid].name == f.phase && (e.law == Law::drag || e.law == Law::coupling) &&
+            are_grains(plan.phases[e.partner(fluid)]))
+          plan.warnings.push_back(
+              "forcing." + std::to_string(k) +
+              ".hold: a wind whose bulk speed is held is pulled as hard as the grains of \"" +
+              plan.phases[e.partner(fluid)].name +
+              "\" brake it: its friction velocity u* is a result, which history.csv tells (" + f.phase +
+              "_equivalent_friction_velocity); hold = \"stress\" or \"pressure-gradient\" keeps u*");
+  }
+}
+
+/// Of a column: the flux is within 10 % of measured ones up to 0.67 m/s and 1.5 times too large above 0.8 m/s.
+constexpr double strongest_column = 0.7;
+
+void warn_of_strong_columns(const Scene& scene, Plan& plan) {
+  for (const PlanEntry& e : plan.entries)
+    for (const std::size_t wind : {e.a, e.b}) {
+      const ColumnKeys* column = scene.phases[wind].if_column();
+      if (e.law != Law::column || !column || column->held) continue;
+      const double u = largest_friction_velocity(scene, column->friction_velocity);
+      if (u > strongest_column)
+        plan.warnings.push_back("phases." + plan.phases[wind].name + ".friction-velocity: " + brief(u) +
+                                " m/s is beyond the winds in which a column's flux of sand agrees with measurements, "
+                                "0.24 to 0.7 m/s: above 0.8 m/s it is 1.5 times too large, and the height of the layer "
+                                "grows with the wind, which measured ones do not");
+    }
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, Plan& plan) {
   warn_of_pairing(scene, plan);
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
+  warn_of_held_speed_over_grains(scene, plan);
+  warn_of_strong_columns(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }
 

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/means.hpp"
 #include "laws/kept_drag.hpp"
+#include "models/drive.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/log_wind.hpp"
@@ -372,6 +373,7 @@ void ColumnPhase::archive(Archive& a) {
 void ColumnPhase::history(HistoryRow& row) const {
   const std::string impulse = scene_.phases[number_].name + "_boundary_impulse_x [kg m/s]";
   const AirProfile& air = profile();
+  if (!keys_.held) add_pull(row, scene_.phases[number_].name, top_stress(w_->state.time), density_);
   if (keys_.averaging) return row.add(impulse, area_ * air.boundary);
   double momentum = air_->momentum();
   for (const double given : air.given) momentum += given;
