@@ -71,6 +71,10 @@ double stated_friction_velocity(const Scene& scene, const Phase& wind, double ti
 /// The largest |u*| (m/s) of a force that is held, at 65 times of the run.
 double largest_friction_velocity(const Scene& scene, const Expression& friction_velocity);
 
+/// What plan and run tell of a column of wind that is stronger than those in which its flux agrees with measurements;
+/// empty: it is not.
+std::string beyond_measured_winds(const Scene& scene, const Phase& wind);
+
 /// Columns NAME_pull [Pa] and NAME_equivalent_friction_velocity [m/s].
 void add_pull(HistoryRow& row, const std::string& name, double pull, double density);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "models/drive.hpp"
-#include "output/numbers.hpp"
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
 
@@ -77,21 +76,12 @@ void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
   }
 }
 
-/// Of a column: the flux is within 10 % of measured ones up to 0.67 m/s and 1.5 times too large above 0.8 m/s.
-constexpr double strongest_column = 0.7;
-
 void warn_of_strong_columns(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries)
-    for (const std::size_t wind : {e.a, e.b}) {
-      const ColumnKeys* column = scene.phases[wind].if_column();
-      if (e.law != Law::column || !column || column->held) continue;
-      const double u = largest_friction_velocity(scene, column->friction_velocity);
-      if (u > strongest_column)
-        plan.warnings.push_back("phases." + plan.phases[wind].name + ".friction-velocity: " + brief(u) +
-                                " m/s is beyond the winds in which a column's flux of sand agrees with measurements, "
-                                "0.24 to 0.7 m/s: above 0.8 m/s it is 1.5 times too large, and the height of the layer "
-                                "grows with the wind, which measured ones do not");
-    }
+    for (const std::size_t wind : {e.a, e.b})
+      if (const std::string told = beyond_measured_winds(scene, scene.phases[wind]);
+          e.law == Law::column && !told.empty())
+        plan.warnings.push_back(told);
 }
 
 }  // namespace

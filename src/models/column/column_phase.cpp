@@ -363,6 +363,11 @@ void ColumnPhase::find_voidage() {
   for (std::size_t c = 0; c < solid_.size(); ++c) solid_[c] /= air.face[c + 1] - air.face[c];
 }
 
+void ColumnPhase::report(Warnings& warnings) const {
+  const std::string told = beyond_measured_winds(scene_, scene_.phases[number_]);
+  if (!feeling_.empty() && !told.empty()) warnings.add("wind of " + scene_.phases[number_].name, told);
+}
+
 /// The profile belongs to the state; what is made of it is made again.
 void ColumnPhase::archive(Archive& a) {
   if (a.loads()) air_->integrate_speed();
