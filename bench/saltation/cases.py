@@ -233,7 +233,9 @@ def impact(bench):
 
 # --- flux in resolved air ------------------------------------------------------------------------------------------------
 
-RESOLVED = ((0.24, 5.25, 1.8, 3.0), (0.40, 21.09, 1.8, 3.0), (0.56, 48.85, 1.8, 3.0))  # u*, Creyssels, averaged from and to, s
+# u*, flux of Creyssels (of 0.50: the line through the points), averaged from and to, s; beds.
+RESOLVED = ((0.24, 5.25, 1.8, 3.0, (1,)), (0.40, 21.09, 1.8, 3.0, (1, 2)), (0.50, 36.9, 1.8, 3.0, (1, 2)), (0.56, 48.85, 1.8, 3.0, (1, 2)))
+DECAYS = ((5, 30), (30, 100))  # diameters over the bed, ranges of a line through the logarithm of the concentration
 RESOLVED_START = 0.35  # m/s: weaker winds need grains in flight to begin with
 
 
@@ -247,25 +249,53 @@ def flat_bed_with_grains_in_flight(bench):
     return file
 
 
+def concentration_decays(folder, d):
+    """Heights (diameters) over which the concentration falls by a factor e, from each range of heights."""
+    import numpy
+    p = table(folder / "saltation_sand.csv")
+    height, density = numpy.array(p["height_over_bed"]) / d, numpy.array(p["concentration"])
+    found = []
+    for low, high in DECAYS:
+        keep = (height > low) & (height < high) & (density > 0)
+        found.append(-1 / numpy.polyfit(height[keep], numpy.log(density[keep]), 1)[0])
+    return found
+
+
+def resolved_run(folder, u, creyssels, begin, seed):
+    h = table(folder / "history.csv")
+    blocks = {}
+    for t, q in zip(h["time"], h["sand_flux"]):
+        if t >= begin:
+            blocks.setdefault(int((t - begin) / BLOCK), []).append(1e3 * q)
+    means = [sum(b) / len(b) for b in blocks.values() if len(b) > 10]
+    mean = sum(means) / len(means)
+    fit = json.loads((folder / "saltation_sand.json").read_text())
+    run = {"u": u, "seed": seed, "creyssels": creyssels, "flux": mean, "error": math.sqrt(sum((m - mean) ** 2 for m in means) / max(len(means) - 1, 1) / len(means)),
+           "flux_decay": fit["flux_decay"]["height"] / fit["diameter"], "concentration_decays": concentration_decays(folder, fit["diameter"]),
+           "from": begin, "to": h["time"][-1]}
+    if "air_equivalent_friction_velocity" in h:
+        held = [e for t, e in zip(h["time"], h["air_equivalent_friction_velocity"]) if t >= begin]
+        run["equivalent_u"] = sum(held) / len(held)
+    if (folder / "profile_wind.csv").exists():
+        wind = table(folder / "profile_wind.csv")
+        run["wind"] = {"height": [y - fit["bed"] for y in wind["y"]], "speed": wind["velocity_mean_x"]}
+    return run
+
+
 def resolved(bench):
-    """flat_bed.toml with nothing that holds the wind: the stress on the lid is rho u*^2, and air and sand find their balance."""
+    """flat_bed.toml, whose wind is held by the stress on the lid, rho u*^2: air and sand find their balance."""
     runs = []
-    for u, creyssels, begin, end in RESOLVED:
-        name = f"rflux_{u:g}"
-        if not (bench.out / name / "saltation_sand.json").exists():
-            scene = flat_bed_with_grains_in_flight(bench) if u < RESOLVED_START else "flat_bed"
-            bench.run(scene, name, f"phases.lid.shear-stress=[{1.225 * u * u:.9g}, 0]", f"fill.4.velocity.log-profile.friction-velocity={u}", "forcing=[]",
-                      f"time.end={end}", "output.every=0.1", f'saltation=[{{ name = "sand", phase = "sand", every = 1e-3, start = {begin} }}]')
-        h = table(bench.out / name / "history.csv")
-        blocks = {}
-        for t, q in zip(h["time"], h["sand_flux"]):
-            if t >= begin:
-                blocks.setdefault(int((t - begin) / BLOCK), []).append(1e3 * q)
-        means = [sum(b) / len(b) for b in blocks.values() if len(b) > 10]
-        mean = sum(means) / len(means)
-        fit = json.loads((bench.out / name / "saltation_sand.json").read_text())
-        runs.append({"u": u, "creyssels": creyssels, "flux": mean, "error": math.sqrt(sum((m - mean) ** 2 for m in means) / max(len(means) - 1, 1) / len(means)),
-                     "flux_decay": fit["flux_decay"]["height"] / fit["diameter"], "from": begin, "to": h["time"][-1]})
+    for u, creyssels, begin, end, seeds in RESOLVED:
+        for seed in seeds:
+            folder = bench.out / f"rflux_{u:g}_{seed}"
+            if not (folder / "saltation_sand.json").exists():
+                scene = flat_bed_with_grains_in_flight(bench) if u < RESOLVED_START else "flat_bed"
+                bed = [] if seed == 1 else [f'fill.3={{ phase = "sand", shape = {{ bed = 0.002 }}, packing = "settled", seed = {seed} }}']
+                bench.run(scene, folder.name, *bed, f"phases.lid.shear-stress=[{1.225 * u * u:.9g}, 0]", f"fill.4.velocity.log-profile.friction-velocity={u}",
+                          f"forcing.0.friction-velocity={u}", f"time.end={end}", "output.every=0.1",
+                          f'saltation=[{{ name = "sand", phase = "sand", every = 1e-3, start = {begin} }}]',
+                          f'profile=[{{ name = "wind", phase = "air", every = 1e-3, start = {begin}, box = {{ min = [0, 0.002], max = [0.12, 0.062] }} }}]')
+            runs.append(resolved_run(folder, u, creyssels, begin, seed))
     return {"block": BLOCK, "runs": runs}
 
 

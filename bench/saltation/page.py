@@ -7,6 +7,9 @@ import pathlib
 HERE = pathlib.Path(__file__).resolve().parent
 DOCS = HERE.parents[1] / "docs"
 
+LIMIT = ("Limit: with u* from 0.24 to 0.67 m/s the flux of a column agrees with measurements; at 0.85 and 1.0 m/s it is 1.5 times too large, and the height over"
+         " which it decays grows with the wind (77 to 94 d), where measured ones do not. The cause is not known. `plan`, the run and run.json warn above 0.7 m/s.")
+
 
 def load(name):
     file = HERE / "results" / f"{name}.json"
@@ -123,7 +126,7 @@ def flux(r):
     means = {u: mean(rows, "flux") for u, rows in of.items()}
     lines += ["", "Means of the two beds: " + ", ".join(f"{means[u]:.2f} g/m/s at {u} ({percent(means[u], rows[0]['creyssels'])})" for u, rows in of.items()) + ". "
               + linear(means) + " Decay of the flux: " + ", ".join(f"{mean(rows, 'flux_decay'):.1f} d" for rows in of.values())
-              + "; Creyssels measured some 40 d at all winds.", "", "![Flux, profiles of flux, wind and stress](saltation.png)", ""]
+              + "; Creyssels measured some 40 d at all winds.", "", LIMIT, "", "![Flux, profiles of flux, wind and stress](saltation.png)", ""]
     plot(r)
     return lines
 
@@ -197,18 +200,42 @@ def kernel_drag(r):
                     "The greatest height of a kernel's run was 5.4 d in another run whose frames stood at other times: few grains, and chaos."]
 
 
+def focus(runs):
+    """Heights (mm over the bed) and speeds (m/s) where the wind of each run crosses that of the one before it, between the least height that both have and 20 mm."""
+    found = []
+    blown = [run for run in runs if "wind" in run]
+    for a, b in zip(blown, blown[1:]):
+        pairs = [(y, u, v) for y, u, v in zip(a["wind"]["height"], a["wind"]["speed"], b["wind"]["speed"]) if y < 0.02]
+        crossing = next((p for p, q in zip(pairs, pairs[1:]) if (p[1] - p[2]) * (q[1] - q[2]) <= 0), None)
+        found.append((a["u"], b["u"], crossing))
+    return found
+
+
 def resolved(r):
-    lines = ["## Flux in resolved air", "", "`scenes/flat_bed.toml` without the forcing that holds the wind, with lift and gusts: a stress of rho u*^2 on the lid drives air of 2 mm, and sand takes its "
-             "share: `bench/saltation/cases.py resolved`. Grains of 0.25 mm, one bed. Wanted: within a factor 1.4 of Creyssels et al. 2009 (0.242 mm).", "",
-             "| u* m/s | flux g/m/s | measured by Creyssels | ratio | decay of flux, d | averaged s |", "| --- " * 6 + "|"]
+    lines = ["## Flux in resolved air", "", "`scenes/flat_bed.toml`, with lift and gusts: a stress of rho u*^2 on the lid drives air of 2 mm, and sand takes its "
+             "share: `bench/saltation/cases.py resolved`. Grains of 0.25 mm. Wanted: within 30 % of Creyssels et al. 2009 (0.242 mm; at 0.5 m/s, where nothing was measured, the line through the points, 36.9 g/m/s). "
+             "Decay of the concentration: of lines through its logarithm from 5 to 30 d and from 30 to 100 d over the bed.", "",
+             "| u* m/s | bed | flux g/m/s | measured by Creyssels | ratio | decay of flux, d | of concentration, 5 to 30 d, 30 to 100 d | averaged s |", "| --- " * 8 + "|"]
     for row in r["runs"]:
-        lines.append(f"| {row['u']} | {row['flux']:.2f} +- {row['error']:.2f} | {row['creyssels']} | {row['flux'] / row['creyssels']:.2f} | {row['flux_decay']:.1f} | {row['from']} to {row['to']:g} |")
-    return lines + ["", "At 0.24 m/s, below the fluid threshold, twelve grains are in flight at the start; without them nothing moves. There the flux falls from 25 g/m/s at 0.3 s to 1 g/m/s at 2.8 s: it has not settled, and its mean is a third of the measured one (missed). "
-                    "At 0.4 m/s the flux first overshoots (0.11 kg/m/s at 0.4 s, for the wind begins as over a bed at rest) and then swings by a fifth about its mean."]
+        decays = ", ".join(f"{d:.1f}" for d in row["concentration_decays"]) if "concentration_decays" in row else "not taken"
+        lines.append(f"| {row['u']} | {row.get('seed', 1)} | {row['flux']:.2f} +- {row['error']:.2f} | {row['creyssels']} | {row['flux'] / row['creyssels']:.2f} | {row['flux_decay']:.1f} | {decays} | {row['from']} to {row['to']:g} |")
+    lines += ["", "At 0.24 m/s, below the fluid threshold, twelve grains are in flight at the start; without them nothing moves. There the flux falls from 25 g/m/s at 0.3 s to 1 g/m/s at 2.8 s: it has not settled, and its mean is a third of the measured one (missed). "
+              "At 0.4 m/s the flux first overshoots (0.11 kg/m/s at 0.4 s, for the wind begins as over a bed at rest) and then swings by a fifth about its mean. "
+              "At 0.5 m/s it overshoots to 207 g/m/s at 0.35 s, falls to 13 g/m/s at 1.15 s and swings between 21 and 36 g/m/s from 1.4 s on; blocks of 0.2 s from 1.8 s on: 34.2, 34.9, 29.6, 23.3, 23.8 and 23.6 g/m/s. "
+              "The error in the table takes blocks for independent, and such a swing is longer: it is too small."]
+    for row in r["runs"]:
+        if "wind" in row:
+            y, v = row["wind"]["height"], row["wind"]["speed"]
+            slope = (v[-1] - v[len(v) // 2 - 1]) / math.log(y[-1] / y[len(v) // 2 - 1])
+            lines += ["", f"The wind of u* = {row['u']} m/s, {1e3 * y[0]:.1f} mm over the bed and every fourth row above, m/s: " + ", ".join(f"{s:.2f}" for s in v[::4]) +
+                      f". In the upper half of the air it is logarithmic with u* = {0.4 * slope:.3f} m/s."]
+    for low, high, at in focus(r["runs"]):
+        lines.append(f"The winds of {low} and {high} m/s " + (f"cross {1e3 * at[0]:.1f} mm over the bed at {at[1]:.1f} m/s." if at else "do not cross below 20 mm."))
+    return lines
 
 
 def storm(r):
-    lines = ["## A dune in a storm", "", "`scenes/dune.toml`: `bench/saltation/storm.py`, one run of 0.5 s, which says how each figure is measured. Momentum along x, N s for each metre of depth:", "",
+    lines = ["## A dune in air of held speed", "", "What holds the mean speed pulls with 22.6 Pa at 0.5 s, 74 times rho u*^2 of the start (0.306 Pa), as a wind of u* = 4.3 m/s would; the flux is then 2,833 g/m/s and grows, 77 times what is measured at u* = 0.5 m/s. It is no steady wind, and the figures below are of the momentum and of the places of the grains.", "", "`scenes/dune.toml`: `bench/saltation/storm.py`, one run of 0.5 s, which says how each figure is measured. Momentum along x, N s for each metre of depth:", "",
              "| put in: held bulk speed, stress on the lid | gained by air and grains | given by grains to the core, to the lid | to the ground by the pressure of the air | rest | largest rest in the run |",
              "| --- " * 6 + "|",
              f"| {r['put']:.4f} | {r['gained']:.4f} | {r['core']:.4f}, {r['lid']:.4f} | {r['pressure']:.4f} | {r['rest']:.4f}, {100 * r['share']:.1f} % of what is put in | {100 * r['largest']:.1f} % |", "",

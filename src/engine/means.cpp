@@ -72,6 +72,10 @@ void keep_mean_density(PhaseParticles& fluid, BlockMean& mean) {
   add_everywhere(rate, fluid.size(), -mean(rate, fluid.size()));
 }
 
+void accelerate(PhaseParticles& fluid, int axis, double amount) {
+  add_everywhere(fluid.column(Field::acceleration, axis), fluid.size(), amount);
+}
+
 void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt, BlockMean& mean) {
   if (fluid.size() == 0) return;
   for (int d = 0; d < fluid.dimensions(); ++d) {

@@ -46,6 +46,9 @@ struct BulkHold {
   bool any() const { return axes[0] || axes[1] || axes[2]; }
 };
 
+/// Adds a uniform acceleration (m/s2) along an axis.
+void accelerate(PhaseParticles& fluid, int axis, double amount);
+
 /// All forces on the fluid must be in its acceleration; its velocities are half a step (dt/2) behind.
 void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt, BlockMean& mean);
 

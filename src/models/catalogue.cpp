@@ -17,6 +17,7 @@
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/force_meter.hpp"
 #include "models/grains/contact_entry.hpp"
+#include "models/grains/grain_flux.hpp"
 #include "models/grains/grain_phase.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "models/grains/spheres.hpp"
@@ -134,6 +135,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
     else if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
       models.push_back(make_contact_entry(scene, layout, e));
   }
+  add_grain_fluxes(scene, layout, models);
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));
   for (std::size_t k = 0; k < scene.markers.size(); ++k)

@@ -25,7 +25,7 @@ std::array<Formula, 3> compile(const VectorExpression& e) { return {Formula(e[0]
 
 Forces::Forces(const Scene& scene, const std::string& phase) {
   for (const auto& f : scene.forcings) {
-    if (f.phase != phase || f.hold_bulk_speed) continue;
+    if (f.phase != phase || f.hold != Hold::none) continue;
     if (f.relaxes()) zones_.push_back({compile(f.velocity), Formula(f.rate), f.box});
     else forces_.push_back({compile(f.acceleration), f.box});
   }

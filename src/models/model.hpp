@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warnings.hpp"
 #include "engine/schedule.hpp"
 #include "models/history_row.hpp"
 #include "models/layout.hpp"
@@ -86,6 +87,8 @@ class Model {
   virtual long searches() const { return 0; }
   /// The contacts of the spheres of a phase, from which a bed that rests can begin again.
   virtual std::vector<RestingContact> resting_contacts(std::size_t) const { return {}; }
+  /// What a user should know of the run so far before its results are used.
+  virtual void report(Warnings&) const {}
   /// Its numbers that a step starts from.
   virtual void archive(Archive&) {}
 };

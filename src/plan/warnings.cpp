@@ -2,6 +2,7 @@
 // wrong for certain, else it would be refused.
 #include <algorithm>
 
+#include "models/drive.hpp"
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
 
@@ -55,12 +56,42 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   }
 }
 
+bool are_grains(const PlanPhase& phase) { return phase.kind == "grains"; }
+
+/// What holds the mean speed of a wind pulls as hard as grains brake, and no friction velocity is given.
+void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
+    const Forcing& f = scene.forcings[k];
+    if (f.hold != Hold::bulk_speed) continue;
+    for (const PlanEntry& e : plan.entries)
+      for (const std::size_t fluid : {e.a, e.b})
+        if (plan.phases[fluid].name == f.phase && (e.law == Law::drag || e.law == Law::coupling) &&
+            are_grains(plan.phases[e.partner(fluid)]))
+          plan.warnings.push_back(
+              "forcing." + std::to_string(k) +
+              ".hold: a wind whose bulk speed is held is pulled as hard as the grains of \"" +
+              plan.phases[e.partner(fluid)].name +
+              "\" brake it: its friction velocity u* is a result, which history.csv tells (" + f.phase +
+              "_equivalent_friction_velocity); hold = \"stress\" or \"pressure-gradient\" keeps u*");
+  }
+}
+
+void warn_of_strong_columns(const Scene& scene, Plan& plan) {
+  for (const PlanEntry& e : plan.entries)
+    for (const std::size_t wind : {e.a, e.b})
+      if (const std::string told = beyond_measured_winds(scene, scene.phases[wind]);
+          e.law == Law::column && !told.empty())
+        plan.warnings.push_back(told);
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, Plan& plan) {
   warn_of_pairing(scene, plan);
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
+  warn_of_held_speed_over_grains(scene, plan);
+  warn_of_strong_columns(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }
 

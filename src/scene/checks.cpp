@@ -178,6 +178,64 @@ void check_domain(const Scene& scene, const Report& report) {
   }
 }
 
+bool fills_top_or_bottom(const Scene& scene, const Phase& wall) {
+  return std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+    const auto* shape = std::get_if<SidesShape>(&fill.shape);
+    return fill.phase != wall.name || (shape && std::all_of(shape->sides.begin(), shape->sides.end(),
+                                                            [](const auto& s) { return s == "bottom" || s == "top"; }));
+  });
+}
+
+/// A held force along x: all that drives the fluid is known, and its sum is what the scene says.
+void check_held_force(const Scene& scene, const Report& report, std::size_t number) {
+  const std::string dotted = "forcing." + std::to_string(number), at = dotted + ".hold";
+  const Forcing& forcing = scene.forcings[number];
+  const Phase& fluid = *find_phase(scene, forcing.phase);
+  const auto tell = [&](const std::string& what) {
+    if (!report.touched(at)) report(at, what);
+  };
+  const bool by_walls = forcing.hold == Hold::stress;
+  if (!report.has(dotted + ".friction-velocity") && !report.touched(dotted + ".friction-velocity"))
+    report(dotted + ".friction-velocity", "missing; expected a number (m/s) or a formula in t beside such a hold");
+  if (!report.touched("domain.periodic") && !scene.domain.periodic[0])
+    tell("the force is held along x, and x is not periodic; expected domain.periodic = [\"x\"]");
+  if (!report.touched("domain.gravity") && scene.domain.gravity[0] != 0.0)
+    tell("gravity pulls along x too; expected nothing else that drives \"" + fluid.name + "\" along x");
+  for (std::size_t other = 0; other < scene.forcings.size(); ++other)
+    if (other != number && scene.forcings[other].phase == fluid.name && scene.forcings[other].hold == Hold::none)
+      tell("forcing." + std::to_string(other) + " drives \"" + fluid.name +
+           "\" too; expected nothing else beside a force that is held");
+  if (report.touched("interactions") || report.touched("phases")) return;
+  bool pulls = false;
+  for (const Phase& wall : scene.phases) {
+    if (wall.kind() != PhaseKind::wall || !entry_between(scene, fluid, wall)) continue;
+    const Expression& along = wall.wall().velocity[0];
+    if (along.is_formula() || along.value != 0.0)
+      tell("the wall \"" + wall.name +
+           "\" moves along x, and what it gives the fluid is not known beforehand; "
+           "expected walls at rest, or no hold where a moving wall drives the fluid");
+    if (!wall.wall().shear_stress || (*wall.wall().shear_stress)[0] == 0.0) continue;
+    pulls = true;
+    if (!fills_top_or_bottom(scene, wall))
+      tell(
+          "the wall \"" + wall.name +
+          "\" with shear-stress is not only the domain's bottom or top, and its area is not known beforehand; expected "
+          "fills with sides = [\"bottom\"] or [\"top\"]");
+  }
+  if (by_walls && !pulls)
+    tell("no wall with shear-stress along x pulls \"" + fluid.name +
+         "\"; expected such a wall, or hold = \"pressure-gradient\"");
+  if (!by_walls && pulls)
+    tell("a wall with shear-stress along x pulls \"" + fluid.name +
+         "\" too; expected no such wall, or hold = \"stress\"");
+  const double u = forcing.friction_velocity.value, wanted = fluid.density * u * std::abs(u);
+  const double given = wall_pull(scene, fluid);
+  if (by_walls && pulls && !forcing.friction_velocity.is_formula() && report.has(dotted + ".friction-velocity") &&
+      (given * wanted < 0.0 || std::abs(given) > 1.01 * std::abs(wanted)))
+    tell("walls with shear-stress alone pull with " + number_text(given) + " Pa, and rho u*^2 is " +
+         number_text(wanted) + " Pa; expected walls that pull with that at most, or a larger friction-velocity");
+}
+
 /// A hold needs a fluid and a periodic axis; a forcing says one thing.
 void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   const std::string dotted = "forcing." + std::to_string(number);
@@ -188,14 +246,17 @@ void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   if (report.has(dotted + ".velocity") && !report.has(dotted + ".rate"))
     report(dotted + ".velocity", "nothing brings the fluid to it; expected rate beside it");
   if (report.has(dotted + ".box") && report.has(dotted + ".hold"))
-    report(dotted + ".box", "the mean velocity is that of the whole fluid; expected no such key beside hold");
+    report(dotted + ".box", "what is held is that of the whole fluid; expected no such key beside hold");
   if (const Phase* phase = find_phase(scene, forcing.phase);
       phase && report.has(dotted + ".rate") && phase->kind() != PhaseKind::fluid)
     report(dotted + ".rate", "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
   for (std::size_t d = 0; forcing.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
     if (!(forcing.box->min[d] < forcing.box->max[d]) && !report.touched(dotted))
       report(dotted + ".box", "the box is empty; expected min < max");
-  if (!forcing.hold_bulk_speed || report.touched(dotted + ".hold")) return;
+  if (report.has(dotted + ".friction-velocity") && !forcing.holds_force() && !report.touched(dotted + ".hold"))
+    report(dotted + ".friction-velocity",
+           "only a force that is held has one; expected hold = \"stress\" or \"pressure-gradient\"");
+  if (forcing.hold == Hold::none || report.touched(dotted + ".hold")) return;
   const Phase* phase = find_phase(scene, forcing.phase);
   if (phase && phase->kind() != PhaseKind::fluid)
     report(dotted + ".hold", "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
@@ -203,9 +264,12 @@ void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   if (!report.touched("domain.periodic") && !periodic[0] && !periodic[1] && !periodic[2])
     report(dotted + ".hold", "no axis is periodic; expected domain.periodic = [\"x\"], along which the fluid flows on");
   for (std::size_t other = 0; other < number; ++other)
-    if (scene.forcings[other].hold_bulk_speed && scene.forcings[other].phase == forcing.phase)
-      report(dotted + ".hold",
-             "the mean velocity of \"" + forcing.phase + "\" is held twice; expected one such forcing");
+    if (scene.forcings[other].hold != Hold::none && scene.forcings[other].phase == forcing.phase)
+      report(dotted + ".hold", (forcing.hold == Hold::bulk_speed && scene.forcings[other].hold == Hold::bulk_speed
+                                    ? "the mean velocity of \"" + forcing.phase + "\" is held twice"
+                                    : "\"" + forcing.phase + "\" is held twice") +
+                                   "; expected one such forcing");
+  if (phase && phase->kind() == PhaseKind::fluid && forcing.holds_force()) check_held_force(scene, report, number);
 }
 
 void check_forcings(const Scene& scene, const Report& report) {

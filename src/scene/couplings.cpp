@@ -74,6 +74,19 @@ bool solids_move_in(const Scene& scene, const Phase& fluid) {
   return false;
 }
 
+double wall_pull(const Scene& scene, const Phase& fluid) {
+  double pull = 0.0;
+  for (const Fill& fill : scene.fills) {
+    const Phase* wall = find_phase(scene, fill.phase);
+    const auto* sides = std::get_if<SidesShape>(&fill.shape);
+    if (!wall || !sides || !wall->if_wall() || !wall->if_wall()->shear_stress || !entry_between(scene, fluid, *wall))
+      continue;
+    for (const std::string& side : sides->sides)
+      if (side == "bottom" || side == "top") pull += (*wall->if_wall()->shear_stress)[0];
+  }
+  return pull;
+}
+
 bool has_eddies(const Scene& scene, const Phase& fluid) {
   if (fluid.kind() != PhaseKind::fluid) return false;
   return fluid.fluid().turbulence != Turbulence::none ||

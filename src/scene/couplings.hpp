@@ -38,6 +38,10 @@ double weight_share(const Scene& scene, const Phase& grains);
 /// Whether particles of grains or bodies are moving walls in the fluid and may leave holes in it.
 bool solids_move_in(const Scene& scene, const Phase& fluid);
 
+/// The force along x (Pa, on the area of the ground) with which walls with `shear-stress` pull a fluid: of the sides
+/// bottom and top that they fill.
+double wall_pull(const Scene& scene, const Phase& fluid);
+
 /// Whether the fluid's viscosity varies or a wall that it feels says how it rubs: `turbulence`, or a wall with
 /// `roughness` or `shear-stress`.
 bool has_eddies(const Scene& scene, const Phase& fluid);

@@ -235,7 +235,10 @@ constexpr Key table[] = {
     {"forcing", "acceleration", at<&Forcing::acceleration>("none"), "m/s2", "Acceleration; this, hold or rate.", {}, "x y z t"},
     {"forcing", "hold", hold("none"), "",
      "bulk-speed: the uniform acceleration that keeps the fluid's initial mean velocity along the periodic axes, as in a channel of "
-     "constant mass flux. history.csv has it."},
+     "constant mass flux. stress, pressure-gradient: the force along x on an area of ground is rho u*^2 (friction-velocity); stress: what walls "
+     "with shear-stress do not give of it is spread uniformly over the fluid's mass; pressure-gradient: all of it is. history.csv has the force."},
+    {"forcing", "friction-velocity", at<&Forcing::friction_velocity>("none"), "m/s",
+     "Only with hold = \"stress\" or \"pressure-gradient\": friction velocity u* of the force on the ground; a negative one blows along -x.", {}, "t"},
 
     {"forcing", "velocity", at<&Forcing::velocity>("zero"), "m/s", "Only with rate: the velocity that a fluid is brought to.", {}, "x y z t"},
     {"forcing", "rate", at<&Forcing::rate>("none"), "1/s",

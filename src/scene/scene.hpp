@@ -161,7 +161,8 @@ struct Phase {
   const GrainsKeys& grains() const { return std::get<GrainsKeys>(own); }
   const WallKeys& wall() const { return std::get<WallKeys>(own); }
   const ColumnKeys& column() const { return std::get<ColumnKeys>(own); }
-  const WallKeys* if_wall() const { return std::get_if<WallKeys>(&own); }  ///< null of another kind
+  const ColumnKeys* if_column() const { return std::get_if<ColumnKeys>(&own); }  ///< null of another kind
+  const WallKeys* if_wall() const { return std::get_if<WallKeys>(&own); }        ///< null of another kind
   const GrainsKeys* if_grains() const { return std::get_if<GrainsKeys>(&own); }
   /// The sizes of its spheres, if it says them.
   std::optional<SphereSize> diameter() const {
@@ -282,14 +283,24 @@ struct Domain {
   Vec3 gravity{};  // m/s2
 };
 
+/// What a [[forcing]] with `hold` keeps.
+enum class Hold {
+  none,
+  bulk_speed,  // the mean velocity of the start, along periodic axes
+  stress,      // the force along x on an area of ground, rho u*^2: walls with shear-stress, and the rest in the bulk
+  pressure_gradient  // the same, all of it in the bulk
+};
+
 struct Forcing {
   std::string phase;              // body force on this phase
   VectorExpression acceleration;  // m/s2, formulas in x, y, z, t
-  bool hold_bulk_speed{};         // instead: what keeps the initial mean velocity along periodic axes
+  Hold hold = Hold::none;         // instead: what drives a fluid
+  Expression friction_velocity;   // m/s, of the holds of a force; a formula in t
   VectorExpression velocity;      // m/s, instead: a fluid is brought to it,
   Expression rate;                // 1/s: dv/dt = rate (velocity - v); both formulas in x, y, z, t
   std::optional<BoxShape> box;    // where the phase feels it; empty: everywhere
   bool relaxes() const { return rate.is_formula() || rate.value > 0.0; }
+  bool holds_force() const { return hold == Hold::stress || hold == Hold::pressure_gradient; }
 };
 
 /// A set of particles of an elastic body, by their places at the start; or the rigid bodies whose centres stand there.

@@ -53,7 +53,9 @@ inline constexpr std::array sides_of_domain{Word{"bottom", 0}, Word{"top", 1},  
 inline constexpr std::array bottom_or_top{sides_of_domain[0], sides_of_domain[1]};
 inline constexpr std::array rest_of_the_domain{Word{"the-rest", 0}};
 inline constexpr std::array hydrostatic{Word{"hydrostatic", 1}};
-inline constexpr std::array bulk_speed{Word{"bulk-speed", 1}};
+inline constexpr std::array holds{Word{"bulk-speed", static_cast<int>(Hold::bulk_speed)},
+                                  Word{"stress", static_cast<int>(Hold::stress)},
+                                  Word{"pressure-gradient", static_cast<int>(Hold::pressure_gradient)}};
 
 // Slots of keys that are more than one member, or that have words for a member of another type.
 
@@ -164,8 +166,8 @@ constexpr Slot placed(Otherwise... text) {
 }
 
 constexpr Slot hold(const char* in_words) {
-  return {.accepts = as_word, .otherwise = otherwise(in_words), .words = bulk_speed, .choose = [](void* forcing, int) {
-            static_cast<Forcing*>(forcing)->hold_bulk_speed = true;
+  return {.accepts = as_word, .otherwise = otherwise(in_words), .words = holds, .choose = [](void* forcing, int word) {
+            static_cast<Forcing*>(forcing)->hold = static_cast<Hold>(word);
           }};
 }
 

@@ -167,6 +167,7 @@ Warnings Simulation::warnings() const {
   Warnings all;
   watch_->report(all);
   budget_->report(state_, all);
+  for (const auto& model : models_) model->report(all);
   return all;
 }
 

@@ -6,7 +6,9 @@
 #include "engine/integrate.hpp"
 #include "engine/pair_loop.hpp"
 #include "kernels/kernel.hpp"
+#include "models/drive.hpp"
 #include "models/walls/sides.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -111,6 +113,10 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   for (const auto& p : see_.scene.phases)
     if (const WallKeys* wall = p.if_wall(); wall && wall->shear_stress)
       pull += norm(*wall->shear_stress) * face / shortest;
+  for (const Forcing& f : see_.scene.forcings)
+    if (const Phase* fluid = find_phase(see_.scene, f.phase); fluid && f.holds_force())
+      pull +=
+          fluid->density * std::pow(largest_friction_velocity(see_.scene, f.friction_velocity), 2) * face / shortest;
   for (const auto& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const PlanPhase& plan = see_.plan.phases[g.phase];

@@ -374,7 +374,7 @@ TEST_F(BedOfAFile, IsAnotherSceneToACheckpointWhenItChanges) {
 /// begins without what contacts remember.
 TEST(SettledBed, OfTheFlatBedStaysAtRestWithoutWind) {
   const Scene scene = read_scene(BARCHAN_SOURCE_DIR "/scenes/flat_bed.toml",
-                                 {"fill.4.velocity=[0, 0]", "phases.lid.shear-stress=[0, 0]"});
+                                 {"fill.4.velocity=[0, 0]", "phases.lid.shear-stress=[0, 0]", "forcing=[]"});
   const auto blocks = make_particles(scene);
   const auto sand = static_cast<std::size_t>(
       std::find_if(scene.phases.begin(), scene.phases.end(), [](const Phase& p) { return p.name == "sand"; }) -

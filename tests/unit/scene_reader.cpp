@@ -317,8 +317,8 @@ TEST(SceneReader, TakesEveryKey) {
   EXPECT_EQ(scene.fills.at(3).pressure.formula, "1000*y");
   EXPECT_EQ(scene.forcings.at(0).phase, "water");
   EXPECT_EQ(scene.forcings.at(0).acceleration[1].formula, "t");
-  EXPECT_FALSE(scene.forcings.at(0).hold_bulk_speed);
-  EXPECT_TRUE(scene.forcings.at(1).hold_bulk_speed);
+  EXPECT_EQ(scene.forcings.at(0).hold, Hold::none);
+  EXPECT_EQ(scene.forcings.at(1).hold, Hold::bulk_speed);
   const Probe& probe = scene.measuring.probes.at(0);
   EXPECT_EQ(probe.name, "crest");
   EXPECT_EQ(probe.phase, "water");

@@ -21,7 +21,9 @@ Air::Air(const Scene& scene, const Layout& layout, std::size_t number)
       number_(number),
       pressure_(pressure_law(scene, layout, number)),
       forces_(scene, phase_.name),
-      viscous_limit_{"viscous " + phase_.name, 0.0, ""} {}
+      viscous_limit_{"viscous " + phase_.name, 0.0, ""} {
+  if (Drive::exists(scene, phase_)) drive_.emplace(scene, phase_);
+}
 
 // ---- the schedule
 // ---------------------------------------------------------------------------------------------------
@@ -56,10 +58,19 @@ void Air::schedule(Schedule& s) {
              advance_energy(*particles_, w_->kick_time);
            }});
   }
-  if (plan_.held)
-    s.add({stage::hold, plan_.name, {velocity}, {acceleration}, [this] {
-             hold_bulk_velocity(*particles_, hold_, w_->state.dt, mean_);
-           }});
+  if (plan_.held) s.add({stage::hold, plan_.name, {velocity}, {acceleration}, [this] { hold(); }});
+}
+
+/// After all other forces: what keeps the mean velocity, or what is missing of the force on the ground.
+void Air::hold() {
+  if (drive_ && drive_->holds_force()) {
+    hold_.acceleration[0] =
+        drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(particles_->size()));
+    accelerate(*particles_, 0, hold_.acceleration[0]);
+  } else {
+    hold_bulk_velocity(*particles_, hold_, w_->state.dt, mean_);
+  }
+  if (drive_) drive_->remember(w_->state, hold_.acceleration[0]);
 }
 
 void Air::kick_and_drift() {
@@ -155,6 +166,12 @@ void Air::history(HistoryRow& row) const {
             particles_->mass() * ordered_sum(n, [&](std::size_t i) { return e[i]; }));
   }
   if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
+  if (drive_)
+    drive_->history(row, *particles_, forces_.sum(*particles_, w_->state.time, w_->state.dt)[0], hold_.acceleration[0]);
+}
+
+void Air::report(Warnings& warnings) const {
+  if (drive_) drive_->report(particles_->mass() * static_cast<double>(particles_->size()), warnings);
 }
 
 void Air::archive(Archive& a) {
@@ -164,6 +181,7 @@ void Air::archive(Archive& a) {
     voids_.archive(a);
     parameters_.ends = voids_.any();
   }
+  if (drive_) drive_->archive(a);
   if (ground_) ground_->archive(a);
 }
 

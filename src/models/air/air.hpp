@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/integrate.hpp"
@@ -12,6 +13,7 @@
 #include "models/air/relief.hpp"
 #include "models/air/surface.hpp"
 #include "models/air/voids.hpp"
+#include "models/drive.hpp"
 #include "models/forces.hpp"
 #include "models/workspace.hpp"
 
@@ -33,6 +35,7 @@ class Air : public Model {
   const StepLimit* moving_limit() override;
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
+  void report(Warnings& warnings) const override;
   void archive(Archive& a) override;
 
  private:
@@ -40,6 +43,7 @@ class Air : public Model {
   void find_eddies();
   void rate();
   void find_surface();
+  void hold();
   void bind_entries();
   void look_for_voids();
   void bind_eddies();
@@ -70,6 +74,7 @@ class Air : public Model {
   std::vector<VoidFinder::Seen> seen_;
   BlockMean mean_;  // of an enclosed fluid's density rates, of a held fluid's velocity
   BulkHold hold_;
+  std::optional<Drive> drive_;  // where something drives it along x
   bool keeps_inside_ = false;
 
   // with eddies

@@ -74,7 +74,7 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   p.friction = Friction::fluid;
   p.physics = phase.fluid().scheme == FluidScheme::plain ? "plain fluid" : "consistent fluid";
   p.eddies = has_eddies(scene, phase);
-  for (const auto& f : scene.forcings) p.held = p.held || (f.hold_bulk_speed && f.phase == phase.name);
+  for (const auto& f : scene.forcings) p.held = p.held || (f.hold != Hold::none && f.phase == phase.name);
   enclose(scene, blocks, number, layout, warnings);
   p.fields = fields_of(scene, phase, p);
   p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
@@ -198,7 +198,7 @@ void Air::attach(Workspace& w) {
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
-  if (plan_.held) hold_as_it_is(hold_, mean_, *particles_, layout_.bounds);
+  if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, mean_, *particles_, layout_.bounds);
 }
 
 void Air::bind_entries() {

@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/means.hpp"
 #include "laws/kept_drag.hpp"
+#include "models/drive.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/log_wind.hpp"
@@ -362,6 +363,11 @@ void ColumnPhase::find_voidage() {
   for (std::size_t c = 0; c < solid_.size(); ++c) solid_[c] /= air.face[c + 1] - air.face[c];
 }
 
+void ColumnPhase::report(Warnings& warnings) const {
+  const std::string told = beyond_measured_winds(scene_, scene_.phases[number_]);
+  if (!feeling_.empty() && !told.empty()) warnings.add("wind of " + scene_.phases[number_].name, told);
+}
+
 /// The profile belongs to the state; what is made of it is made again.
 void ColumnPhase::archive(Archive& a) {
   if (a.loads()) air_->integrate_speed();
@@ -372,6 +378,7 @@ void ColumnPhase::archive(Archive& a) {
 void ColumnPhase::history(HistoryRow& row) const {
   const std::string impulse = scene_.phases[number_].name + "_boundary_impulse_x [kg m/s]";
   const AirProfile& air = profile();
+  if (!keys_.held) add_pull(row, scene_.phases[number_].name, top_stress(w_->state.time), density_);
   if (keys_.averaging) return row.add(impulse, area_ * air.boundary);
   double momentum = air_->momentum();
   for (const double given : air.given) momentum += given;

@@ -25,6 +25,7 @@ class ColumnPhase : public Model {
   void schedule(Schedule& s) override;
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
+  void report(Warnings& warnings) const override;
   void archive(Archive& a) override;
 
  private:

@@ -1,0 +1,81 @@
+// All that drives a fluid along the periodic axis x, as a force on an area of ground: what history.csv tells of it, and
+// what is remembered of a hold.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/warnings.hpp"
+#include "models/forces.hpp"
+#include "models/model.hpp"
+
+namespace barchan {
+
+/// The mean of a number over windows of time that follow each other from t = 0, weighted by the steps. A plain struct:
+/// it is archived as it is.
+struct WindowMean {
+  long window = -1;              // the present one
+  double sum = 0.0, time = 0.0;  // value times s, s
+  double last = 0.0;             // the mean of the window before
+  double last_time = 0.0;        // s, that it had; 0: there was none
+
+  /// Takes the value of a step that ends at `now` (s) in windows of `length` (s).
+  void add(double length, double now, double dt, double value);
+  bool any() const { return time > 0.0 || last_time > 0.0; }
+  /// Of the present window, or of the one before where the present one has had less than half of `length`.
+  double recent(double length) const { return time < 0.5 * length && last_time > 0.0 ? last / last_time : sum / time; }
+};
+
+/// Time between rows of history.csv (s), and the part of a run over which warnings mean (s).
+double row_interval(const Scene& scene);
+double warning_interval(const Scene& scene);
+
+class Drive {
+ public:
+  /// Whether something that a scene states drives this fluid along x, and x is periodic: a [[forcing]], a wall's
+  /// shear-stress, or gravity.
+  static bool exists(const Scene& scene, const Phase& fluid);
+
+  Drive(const Scene& scene, const Phase& fluid);
+
+  /// Whether a [[forcing]] holds the force.
+  bool holds_force() const { return held_.has_value(); }
+  /// The acceleration (m/s2) that a fluid of this mass (kg; in 2D of a metre of depth) gets for what walls do not give
+  /// of rho u*|u*|, at a time (s).
+  double missing(double time, double mass) const;
+  /// Remembers what the hold gave in a step (m/s2).
+  void remember(const State& state, double held);
+  /// NAME_pull [Pa] and NAME_equivalent_friction_velocity [m/s]. `given`: the sum over the particles of what
+  /// [[forcing]] entries without a hold give along x (m/s2); `held`: what the hold gave in the last step (m/s2).
+  void history(HistoryRow& row, const PhaseParticles& p, double given, double held) const;
+  /// The force on the ground (Pa).
+  double pull(double mass, double given, double held) const;
+  /// A hold that pulls with more than twice what the profile of the start or the walls say.
+  void report(double mass, Warnings& warnings) const;
+  void archive(Archive& a);
+
+ private:
+  std::string name_;
+  double density_, area_, gravity_, walls_;  // kg/m3; m2 of ground (2D: of a metre of depth); m/s2 and Pa along x
+  double said_ = 0.0;                        // Pa, rho u*^2 of the profile of the start, or of the walls
+  bool holds_speed_ = false;
+  std::optional<Formula> held_;   // m/s, u* of a force that is held
+  double row_, tenth_;            // s, windows
+  WindowMean in_row_, in_tenth_;  // m/s2, of the hold
+};
+
+/// What wind a scene states over grains (m/s): the friction velocity of a held force, of the profile of the start or of
+/// the walls' stress, the first that is there; of a column its own at the time t (s). 0: none.
+double stated_friction_velocity(const Scene& scene, const Phase& wind, double time);
+
+/// The largest |u*| (m/s) of a force that is held, at 65 times of the run.
+double largest_friction_velocity(const Scene& scene, const Expression& friction_velocity);
+
+/// What plan and run tell of a column of wind that is stronger than those in which its flux agrees with measurements;
+/// empty: it is not.
+std::string beyond_measured_winds(const Scene& scene, const Phase& wind);
+
+/// Columns NAME_pull [Pa] and NAME_equivalent_friction_velocity [m/s].
+void add_pull(HistoryRow& row, const std::string& name, double pull, double density);
+
+}  // namespace barchan
