@@ -15,7 +15,7 @@ class TotalBody {
  public:
   virtual ~TotalBody() = default;
   virtual void set_places(const PhaseParticles& particles) = 0;  // they may have been sorted
-  virtual double pack(const PhaseParticles& particles) = 0;      // see pack_displacements
+  virtual void pack(const PhaseParticles& particles) = 0;        // see pack_displacements
   virtual void load(PhaseParticles& particles) = 0;              // stress, then acceleration
   virtual const TotalDetail& detail() = 0;                       // of what was packed
   virtual const std::vector<std::uint32_t>& places() const = 0;  // by id
@@ -34,7 +34,6 @@ class TotalPhase : public Model {
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
   void derive() override;
-  std::optional<std::string> trouble() const override;
   std::uint64_t pairs(const PlanEntry& entry) const override;
   void archive(Archive& a) override;
 
@@ -54,7 +53,6 @@ class TotalPhase : public Model {
   std::vector<Vec3> start_;  // m, by id
   std::unique_ptr<TotalBody> body_;
   bool must_find_places_ = false;
-  double stretched_ = 0.0;                               // of what the displacements can hold
   double strain_energy_ = 0.0, hourglass_energy_ = 0.0;  // J, of the last derive
 };
 
