@@ -52,5 +52,28 @@ TEST(TotalLagrangianBodies, AStiffPlateInMixedPrecisionKeepsTheEnergyOfASlowMoti
   EXPECT_LT(worst, 1e-3);
 }
 
+/// Two gears under a load, whose contact force alternates from step to step. The means of rows of two steps are what
+/// the angular momentum gained less the load; the torques of every second step are not.
+TEST(Rows, HaveTheMeanOfAForceThatAlternates) {
+  Drive drive("gears", {"motion.1.torque=10000", "time.end=0.02"});
+  Simulation& run = drive.simulation();
+  const auto turning = [&] { return sum_of(run, {"driven_angular_momentum [kg m2/s]"}); };
+  const double start = turning();
+  double impulse = 0.0, size = 0.0;
+  for (int row = 0; row < 60; ++row) {
+    const double before = run.time();
+    run.begin_row();
+    run.step(1.0);
+    run.step(1.0);
+    const double part = sum_of(run, {"driven_torque [N m]"}) * (run.time() - before);
+    impulse += part;
+    size += std::abs(part);
+  }
+  EXPECT_GT(size, 0.0);
+  const double error = (turning() - start - impulse) / (1e4 * run.time()) - 1.0;
+  report("gain of angular momentum less the torques over the load - 1", error, 1e-9);
+  EXPECT_NEAR(error, 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace barchan
