@@ -225,26 +225,38 @@ void stress_of(PhaseParticles& body, const ReferenceBody<T>& reference, TotalWor
   std::array<T*, Dim * Dim> reach{};
   for (std::size_t c = 0; c < Dim * Dim; ++c) reach[c] = work.reach[c].data() + margin<T>;
   Shares shares(static_cast<std::int64_t>(reference.groups.size()), 64);
-#pragma omp parallel
-  for (const std::int64_t g : shares) {
-    const auto group = static_cast<std::size_t>(g);
-    const std::size_t first = group * width, count = std::min(width, reference.size - first);
-    const Matrix<Dim, V> inverse = inverse_of<Dim>(reference, first);
-    const Matrix<Dim, V> h = gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.displacement), inverse, unit);
-    const V jacobian = hyperelastic::dilation<Dim>(h);
-    Matrix<Dim, V> p = Law::template stress<Dim>(h, jacobian, lambda, mu);
-    if constexpr (Damped) {
-      const Matrix<Dim, V> rate =
-          gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.velocity), inverse, V(T(1)));
-      const Matrix<Dim, V> more = hyperelastic::damping_stress<Dim>(h, rate, slow_lambda, slow_mu);
+  double stiffest = 1.0, least = 1.0;
+#pragma omp parallel reduction(max : stiffest) reduction(min : least)
+  {
+    V stiff(T(1)), pressed(T(0));
+    for (const std::int64_t g : shares) {
+      const auto group = static_cast<std::size_t>(g);
+      const std::size_t first = group * width, count = std::min(width, reference.size - first);
+      const Matrix<Dim, V> inverse = inverse_of<Dim>(reference, first);
+      const Matrix<Dim, V> h = gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.displacement), inverse, unit);
+      const V jacobian = hyperelastic::dilation<Dim>(h);
+      Matrix<Dim, V> p = Law::template stress<Dim>(h, jacobian, lambda, mu);
+      if constexpr (Damped) {
+        const Matrix<Dim, V> rate =
+            gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.velocity), inverse, V(T(1)));
+        const Matrix<Dim, V> more = hyperelastic::damping_stress<Dim>(h, rate, slow_lambda, slow_mu);
+        for (std::size_t d = 0; d < Dim; ++d)
+          for (std::size_t e = 0; e < Dim; ++e) p[d][e] += more[d][e];
+      }
+      const Matrix<Dim, V> t = hyperelastic::product<Dim>(p, inverse);
       for (std::size_t d = 0; d < Dim; ++d)
-        for (std::size_t e = 0; e < Dim; ++e) p[d][e] += more[d][e];
+        for (std::size_t e = 0; e < Dim; ++e) (kappa * h[d][e] - t[d][e]).store(reach[d * Dim + e] + first);
+      put(rho / (V(T(1)) + jacobian), work, first, count, density);
+      stiff = simd::max(stiff, Law::template stiffening<Dim>(hyperelastic::green_strain<Dim>(h), jacobian, lambda, mu));
+      pressed = simd::min(pressed, jacobian);
     }
-    const Matrix<Dim, V> t = hyperelastic::product<Dim>(p, inverse);
-    for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e < Dim; ++e) (kappa * h[d][e] - t[d][e]).store(reach[d * Dim + e] + first);
-    put(rho / (V(T(1)) + jacobian), work, first, count, density);
+    for (int lane = 0; lane < V::width; ++lane) {
+      stiffest = std::max(stiffest, static_cast<double>(stiff[lane]));
+      least = std::min(least, 1.0 + static_cast<double>(pressed[lane]));
+    }
   }
+  work.stiffening = stiffest;
+  work.least_volume = least;
 }
 
 template <int Dim, class T>
