@@ -87,7 +87,10 @@ class Run {
   /// A checkpoint, unless the last one says the same.
   void bring_checkpoint_up_to_date();
   void write_frame();
-  void write_row() { history_->row(simulation_.history_row()); }
+  void write_row() {
+    history_->row(simulation_.history_row());
+    simulation_.begin_row();
+  }
   RunReport report(const std::string& reason) const;
   void finish(const std::string& reason);
 

@@ -134,7 +134,58 @@ BARCHAN_SIMD_INLINE Matrix<Dim, V> damping_stress(const Matrix<Dim, V>& h, const
 
 }  // namespace hyperelastic
 
+namespace hyperelastic {
+
+/// A bound on the square of the largest principal stretch, by the circles of Gershgorin (1931) about C = I + 2 E; exact
+/// at rest and in any turn.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V largest_stretch(const Matrix<Dim, V>& e) {
+  using simd::max;
+  V most(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    V row = e[d][d];
+    for (std::size_t f = 0; f < Dim; ++f)
+      if (f != d) row += max(e[d][f], -e[d][f]);
+    most = max(most, V(1.0) + row + row);
+  }
+  return most;
+}
+
+/// Bounds that no body comes to, 2^-40 and 2^40.
+constexpr float smallest_square = 0x1p-40F, largest_square = 0x1p40F;
+
+/// A bound on 1 over the square of the least principal stretch; `jacobian` is J - 1.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE V least_stretch_inverse(const Matrix<Dim, V>& e, V jacobian) {
+  using simd::max;
+  const V j = V(1.0) + jacobian, square = max(j * j, V(smallest_square));
+  if constexpr (Dim == 2) return largest_stretch<Dim>(e) / square;  // the two make J
+  V least(largest_square), trace(0.0), squares(0.0);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    V row = e[d][d];
+    for (std::size_t f = 0; f < Dim; ++f) {
+      const V c = d == f ? V(1.0) + e[d][f] + e[d][f] : e[d][f] + e[d][f];
+      squares = fma(c, c, squares);
+      if (d == f) trace += c;
+      else row -= max(e[d][f], -e[d][f]);
+    }
+    least = simd::min(least, V(1.0) + row + row);
+  }
+  // Or: the sum of the squares of 1/stretch is the second invariant of C over J^2.
+  const V sum = V(0.5) * (trace * trace - squares) / square;
+  return simd::min(sum, V(1.0) / max(least, V(smallest_square)));
+}
+
+}  // namespace hyperelastic
+
 struct NeoHookean {
+  /// A bound on a (x) N : dP/dF : a (x) N over lambda + 2 mu for unit vectors a, N, which is
+  /// mu + [mu + lambda (J^2 + 1)/2] (a . F^-T N)^2: how much stiffer waves find the body than at rest.
+  template <int Dim, class V>
+  static BARCHAN_SIMD_INLINE V stiffening(const hyperelastic::Matrix<Dim, V>& e, V jacobian, V lambda, V mu) {
+    const V j = V(1.0) + jacobian, inverse = hyperelastic::least_stretch_inverse<Dim>(e, jacobian);
+    return (mu + (mu + V(0.5) * lambda * (j * j + V(1.0))) * inverse) / (lambda + mu + mu);
+  }
   /// P in the plane or in space; `jacobian` is J - 1.
   template <int Dim, class V>
   static BARCHAN_SIMD_INLINE hyperelastic::Matrix<Dim, V> stress(const hyperelastic::Matrix<Dim, V>& h, V jacobian,
@@ -172,6 +223,13 @@ struct NeoHookean {
 };
 
 struct SaintVenantKirchhoff {
+  /// The same of this law: lambda (a . F N)^2 + mu [(a . F N)^2 + |F^T a|^2] + N . S N.
+  template <int Dim, class V>
+  static BARCHAN_SIMD_INLINE V stiffening(const hyperelastic::Matrix<Dim, V>& e, V, V lambda, V mu) {
+    const V most = hyperelastic::largest_stretch<Dim>(e), modulus = lambda + mu + mu;
+    const V pull = lambda * simd::max(hyperelastic::trace<Dim>(e), V(0.0)) + mu * simd::max(most - V(1.0), V(0.0));
+    return (modulus * most + pull) / modulus;
+  }
   template <int Dim, class V>
   static BARCHAN_SIMD_INLINE hyperelastic::Matrix<Dim, V> stress(const hyperelastic::Matrix<Dim, V>& h, V, V lambda,
                                                                  V mu) {

@@ -71,18 +71,23 @@ void ForceOn::measure() {
   sum_up();
 }
 
-/// The impulse, and the force by spheres.
+/// The impulse of the step. Before the first step there is none.
 void ForceOn::sum_up() {
-  const double dt = w_->state.dt;
-  impulse_ = impulse_ + 0.5 * dt * (smooth_ + force_);
-  smooth_ = force_;
-  for (const std::size_t k : pushes_) {
-    const auto& push = w_->sphere_pushes[k];
-    impulse_ = impulse_ + 1.0 / layout_.slab * push.impulse;
-    if (!(dt > 0.0)) continue;
-    force_ = force_ + 1.0 / (dt * layout_.slab) * push.impulse;
-    torque_ = torque_ + 1.0 / (dt * layout_.slab) * push.turn;
+  if (w_->state.steps == 0) {
+    smooth_ = force_;
+    mean_force_.start(force_);
+    return mean_torque_.start(torque_);
   }
+  const double dt = w_->state.dt;
+  Vec3 push{}, turn{};  // N s, N m s, of spheres
+  for (const std::size_t k : pushes_) {
+    push = push + 1.0 / layout_.slab * w_->sphere_pushes[k].impulse;
+    turn = turn + 1.0 / layout_.slab * w_->sphere_pushes[k].turn;
+  }
+  impulse_ = impulse_ + 0.5 * dt * (smooth_ + force_) + push;
+  smooth_ = force_;
+  mean_force_.add(force_, dt, push);
+  mean_torque_.add(torque_, dt, turn);
 }
 
 /// By fluids.
@@ -136,17 +141,23 @@ void ForceOn::add_sums(double share, const Vec3& less) {
 }
 
 void ForceOn::history(HistoryRow& row) const {
+  const Vec3 force = mean_force_.value(), torque = mean_torque_.value();
   for (std::size_t d = 0; d < 3 && d < static_cast<std::size_t>(layout_.dimensions); ++d)
-    row.add(meter_.name + "_force_" + axes[d] + " [N]", force_[d]);
+    row.add(meter_.name + "_force_" + axes[d] + " [N]", force[d]);
   for (std::size_t d = layout_.dimensions == 2 ? 2 : 0; d < 3; ++d)
-    row.add(meter_.name + "_torque_" + axes[d] + " [N m]", torque_[d]);
+    row.add(meter_.name + "_torque_" + axes[d] + " [N m]", torque[d]);
   for (std::size_t d = 0; d < 3 && d < static_cast<std::size_t>(layout_.dimensions); ++d)
     row.add(meter_.name + "_impulse_" + axes[d] + " [N s]", impulse_[d]);
 }
 
+void ForceOn::begin_row() {
+  mean_force_.begin_row();
+  mean_torque_.begin_row();
+}
+
 void ForceOn::archive(Archive& a) {
-  a.number("force on " + meter_.name, force_);
-  a.number("torque on " + meter_.name, torque_);
+  mean_force_.archive(a, "force on " + meter_.name);
+  mean_torque_.archive(a, "torque on " + meter_.name);
   a.number("impulse on " + meter_.name, impulse_);
   a.number("force on " + meter_.name + " without spheres", smooth_);
   if (a.loads()) set_.set_places();

@@ -5,6 +5,7 @@
 
 #include "models/air/fluid.hpp"
 #include "models/bodies/sets.hpp"
+#include "models/row_mean.hpp"
 
 namespace barchan {
 
@@ -12,9 +13,10 @@ namespace barchan {
 /// velocity that are continued into the wall (Adami et al. 2012); of a fluid of the consistent scheme over the sum of
 /// the gradient on a lattice, which that scheme divides by too. Such pairs miss what a curved wall does by about dx/(2
 /// R) (docs/method.md). So of a whole wall that is all that its fluids of that scheme touch, the force is what the
-/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of spheres: the mean over the steps of their
-/// contacts within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its
+/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of spheres: the impulse of their contacts over the
+/// steps within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its
 /// particles, less gravity. The torque counts periodic images nearest to its point.
+/// history.csv has the means since its last row.
 class ForceOn : public Model {
  public:
   ForceOn(const Scene& scene, const Layout& layout, std::size_t number);
@@ -22,6 +24,7 @@ class ForceOn : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void history(HistoryRow& row) const override;
+  void begin_row() override;
   void archive(Archive& a) override;
 
  private:
@@ -46,9 +49,10 @@ class ForceOn : public Model {
   std::vector<Felt> fluids_;         // of a wall
   std::vector<std::size_t> pushes_;  // of a wall, by spheres: in Workspace::sphere_pushes
   bool balance_ = false;             // the force is what the fluids lose
-  Vec3 force_{}, torque_{};          // N, N m (per metre of depth in 2D), in the last step
+  Vec3 force_{}, torque_{};          // N, N m (per metre of depth in 2D): of all but spheres, at the end of the step
   Vec3 impulse_{};  // N s: so far, of spheres that of their contacts, else by the trapezoids of the kicks
   Vec3 smooth_{};   // N: of all but spheres, at the end of the last step
+  RowMean mean_force_, mean_torque_;
   Workspace* w_ = nullptr;
 };
 

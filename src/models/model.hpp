@@ -77,6 +77,8 @@ class Model {
   /// the end. The columns are the same in every row of a run. A row may follow the loading of a checkpoint at once,
   /// before records are filled: it reads the fields and what archive() saves.
   virtual void history(HistoryRow&) const {}
+  /// A row of history.csv was written: means over the time between rows begin anew.
+  virtual void begin_row() {}
   /// Brings the fields up to date that only outputs read, and what a row tells of them. Called before every frame and
   /// row.
   virtual void derive() {}

@@ -90,12 +90,12 @@ void Budget::report(const State& state, Warnings& warnings) const {
                                  "at most " +
                                  brief(100.0 * momentum_bound) +
                                  " %: the results are not to be trusted "
-                                 "in what depends on it; a smaller time.safety or spacing may help");
+                                 "in what depends on it; a smaller time.safety may help");
   if (const auto growth = energy_growth(state); growth && *growth > energy_bound)
     warnings.add("energy", "the energy of the motion, of the weight and of the compression together grew by " +
                                brief(100.0 * *growth) +
                                " % of the kinetic energy, although nothing in the scene drives it; expected at most " +
-                               brief(100.0 * energy_bound) + " %: a smaller time.safety or spacing may help");
+                               brief(100.0 * energy_bound) + " %: a smaller time.safety may help");
 }
 
 void Budget::archive(Archive& a) { a.number("budget at the start", start_); }

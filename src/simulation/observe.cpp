@@ -149,6 +149,10 @@ HistoryRow Simulation::history() const {
   return row;
 }
 
+void Simulation::begin_row() {
+  for (const auto& model : models_) model->begin_row();
+}
+
 Frame Simulation::good_frame(int index) {
   KeptState& good = watch_->good();
   const double time = state_.time;

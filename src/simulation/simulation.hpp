@@ -63,6 +63,8 @@ class Simulation {
   HistoryRow history() const;
   std::vector<std::string> history_columns() const { return history().names; }
   std::vector<double> history_row() const { return history().values; }
+  /// Forces and torques of later rows are means from now on; before the first call, from the start on.
+  void begin_row();
   /// Throws BreakdownError if the present state is wrong (simulation/watch.hpp); the watch of step() looks now and then
   /// only.
   void check() { watch_->look_closely(moment()); }

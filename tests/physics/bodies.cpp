@@ -385,7 +385,9 @@ TEST(TotalLagrangianBodies, DiscsPressedTogetherHaveThePressureOfHertz) {
   std::vector<std::array<double, 2>> sums(upper.size());
   double load = 0.0, on_lower = 0.0, held = 0.0;
   constexpr int times = 16;
+  drive.to(0.02);
   for (int time = 1; time <= times; ++time) {
+    drive.simulation().begin_row();
     drive.to(0.02 + 2.5e-4 * time);
     for (std::size_t k = 0; k < upper.size(); ++k) {
       sums[static_cast<std::size_t>(upper.id()[k])][0] += upper.column(Field::position, 0)[k];

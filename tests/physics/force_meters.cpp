@@ -30,7 +30,9 @@ std::string meter(const std::string& name, const std::string& phase, const std::
 TEST(ForceMeters, ForceOnAWallIsWhatTheFluidLoses) {
   const auto run = small::simulation("precision = \"double\"\n" + small::channel + meter("floor", "floor"));
   double worst = 0.0;
+  std::array<double, 2> before{};  // a row has the mean of the force at the beginning and at the end of its only step
   for (int step = 0; step < 50; ++step) {
+    run->begin_row();
     run->step(1.0);
     const PhaseParticles& water = run->phases()[0];
     for (int d = 0; d < 2; ++d) {
@@ -43,7 +45,9 @@ TEST(ForceMeters, ForceOnAWallIsWhatTheFluidLoses) {
       }
       const double force = history(*run, d == 0 ? "floor_force_x [N]" : "floor_force_y [N]");
       if (step > 10) { EXPECT_GT(std::abs(force), 1e-6 * size) << "there is a force"; }
-      worst = std::max(worst, std::abs(gain + force) / size);
+      double& old = before[static_cast<std::size_t>(d)];
+      if (step > 0) worst = std::max(worst, std::abs(0.5 * (gain + old) + force) / size);
+      old = gain;
     }
   }
   report("force on the wall and on the fluid, sum/size", worst, 1e-10);
@@ -96,6 +100,7 @@ TEST(ForceMeters, HydrostaticForceAndMoment) {
   double floor = 0.0, left = 0.0, right = 0.0, moment = 0.0;
   constexpr int rest = 50, mean = 50;  // the particles of a corner belong to the floor: half a row of the sides
   for (int step = 0; step < rest + mean; ++step) {
+    run->begin_row();
     run->step(1.0);
     if (step < rest) continue;
     floor += history(*run, "floor_force_y [N]") / mean;
@@ -147,6 +152,7 @@ double mean_drag(Simulation& run, const std::string& column) {
   double sum = 0.0;
   int count = 0;
   while (run.time() < 3.0) {
+    run.begin_row();
     run.step(1.0);
     if (run.time() < 1.5) continue;
     sum += history(run, column);
@@ -234,7 +240,10 @@ end = 0.1
 largest-speed = 0.1
 )toml" + meter("floor", "floor", "about = [0.01, 0.3]\n") +
                                      meter("by_sand", "floor", "by = \"sand\"\n"));
-  while (run->time() < 0.1) run->step(0.1 - run->time());
+  while (run->time() < 0.1) {
+    run->begin_row();
+    run->step(0.1 - run->time());
+  }
   const double weight = run->phases()[0].mass_of(0) * 9.81;
   const double force = history(*run, "floor_force_y [N]"), torque = history(*run, "floor_torque_z [N m]");
   report("force on the floor over the weight - 1", force / -weight - 1.0, 1e-3);
@@ -268,7 +277,10 @@ end = 1
 )toml" + meter("block", "block", "about = [4.5, 3]\n") +
                            meter("half", "block", "box = { min = [4, 4], max = [5, 5] }\n");
   const auto run = small::simulation(body);
-  for (int step = 0; step < 5; ++step) run->step(1.0);
+  for (int step = 0; step < 5; ++step) {
+    run->begin_row();
+    run->step(1.0);
+  }
   const double mass = 2000.0;
   EXPECT_NEAR(history(*run, "block_force_x [N]"), 3.0 * mass, 1e-6 * mass);
   EXPECT_NEAR(history(*run, "block_force_y [N]"), 0.0, 1e-6 * mass);
@@ -276,7 +288,7 @@ end = 1
   double lever = -3.0;
   for (std::size_t k = 0; k < block.size(); ++k)
     lever += block.column(Field::position, 1)[k] / static_cast<double>(block.size());
-  EXPECT_NEAR(history(*run, "block_torque_z [N m]"), -lever * 3.0 * mass, 1e-4 * mass);
+  EXPECT_NEAR(history(*run, "block_torque_z [N m]"), -lever * 3.0 * mass, 1e-3 * mass);
   EXPECT_NEAR(history(*run, "half_force_x [N]"), 1.5 * mass, 0.01 * mass) << "the whole moves as one";
 }
 

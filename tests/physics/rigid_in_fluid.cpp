@@ -114,6 +114,7 @@ double mean(Simulation& run, const std::string& column, double from, double to) 
   go(run, from);
   double sum = 0.0, before = run.time();
   while (run.time() < to * (1.0 - 1e-12)) {
+    run.begin_row();
     run.step(to - run.time());
     sum += value(run, column) * (run.time() - before);
     before = run.time();

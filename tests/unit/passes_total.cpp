@@ -41,7 +41,6 @@ struct Stage {
     q.density = 1.3;
     for (std::size_t d = 0; d < 3; ++d) q.period[d] = b.periodic[d] ? b.high[d] - b.low[d] : 0.0;
     work.resize(start.size(), reference.width, dimensions, retardation > 0.0);
-    if constexpr (std::is_same_v<T, float>) work.unit = 8.0 * reference.diameter / 4294967296.0;
     for (std::size_t d = 0; d < 3; ++d)
       if (q.period[d] > 0.0) work.displaced[d].assign(start.size(), 0.0);
     for (std::size_t k = 0; k < start.size(); ++k) work.at[k] = static_cast<std::uint32_t>(k);

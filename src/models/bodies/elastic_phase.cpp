@@ -32,7 +32,7 @@ PhaseRules rules_of(const PlanPhase& p, double spacing, const std::string& step_
   r.stops_at_sides = r.solid = true;
   r.one = "particle of a body";
   r.if_not_finite = key + "artificial-viscosity";
-  r.if_passed = r.if_dense = "lower " + step_key;
+  r.if_passed = "raise " + key + "young, lower its speed, or lower " + step_key;
   r.if_dense = "is impossible; the body was torn or pressed into nothing: lower " + step_key + ", or raise " + key +
                "artificial-viscosity";
   r.if_fast = [key, c](double, double) {

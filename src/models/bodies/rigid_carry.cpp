@@ -162,13 +162,24 @@ void RigidPhase::history(HistoryRow& row) const {
       for (std::size_t c = 0; c < 4; ++c) row.add(name + "_turn_" + std::to_string(c), b.now.turn[c]);
     axial(name + "_angular_velocity", rate, "1/s");
     axial(name + "_angular_momentum", axes.to_space(b.now.spin), "kg m2/s");
-    vector(name + "_force", b.now.touch_force, "N");
-    axial(name + "_torque", b.now.touch_torque, "N m");
+    vector(name + "_force", mean_force_[k].value(), "N");
+    axial(name + "_torque", mean_torque_[k].value(), "N m");
     row.add(name + "_work [J]", b.now.touch_work);
   }
 }
 
+void RigidPhase::begin_row() {
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    mean_force_[k].begin_row();
+    mean_torque_[k].begin_row();
+  }
+}
+
 void RigidPhase::archive(Archive& a) {
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    mean_force_[k].archive(a, "force on " + plan_.name);
+    mean_torque_[k].archive(a, "torque on " + plan_.name);
+  }
   if (a.loads()) find_places();
 }
 

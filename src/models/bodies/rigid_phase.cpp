@@ -94,6 +94,8 @@ void RigidPhase::attach(Workspace& w) {
   w_ = &w;
   carriers_.reserve(bodies());
   old_rates_.resize(bodies());
+  mean_force_.resize(bodies());
+  mean_torque_.resize(bodies());
   place_of_.resize(arms_.size());
   find_places();
   w.when_sorted.emplace_back([this] { find_places(); });
@@ -242,8 +244,22 @@ void RigidPhase::end_step(RigidBody& body) const {
   kick(body, w_->kick_time);
 }
 
+/// What touches a body, for the means of rows.
+void RigidPhase::sum_up(std::size_t k) {
+  const RigidMotion& now = body(k).now;
+  if (w_->state.steps == 0) {
+    mean_force_[k].start(now.touch_force);
+    return mean_torque_[k].start(now.touch_torque);
+  }
+  mean_force_[k].add(now.touch_force, w_->state.dt);
+  mean_torque_[k].add(now.touch_torque, w_->state.dt);
+}
+
 void RigidPhase::finish_kick() {
-  for (std::size_t k = 0; k < bodies(); ++k) end_step(body(k));
+  for (std::size_t k = 0; k < bodies(); ++k) {
+    end_step(body(k));
+    sum_up(k);
+  }
   carry_velocities();
 }
 

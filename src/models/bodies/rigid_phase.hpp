@@ -6,6 +6,7 @@
 
 #include "models/bodies/rigid_start.hpp"
 #include "models/forces.hpp"
+#include "models/row_mean.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -31,6 +32,7 @@ class RigidPhase : public Model {
   const StepLimit* moving_limit() override;
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
+  void begin_row() override;
   void archive(Archive& a) override;
 
  private:
@@ -38,6 +40,7 @@ class RigidPhase : public Model {
   void clear_loads();
   void sum_loads();
   void finish_kick();
+  void sum_up(std::size_t number);
   static void kick(RigidBody& body, double time);
   void drive(RigidBody& body, double time) const;
   void end_step(RigidBody& body) const;
@@ -67,13 +70,14 @@ class RigidPhase : public Model {
   const PlanPhase& plan_;
   std::size_t number_, first_body_ = 0;
   Forces forces_;
-  bool felt_ = false;                    // particles feel something by themselves
-  std::vector<Carrier> carriers_;        // by body, of the task that runs
-  std::vector<Vec3> old_rates_;          // 1/s, by body, of the step before its kick
-  std::vector<RigidHold> holds_;         // by [[motion]]
-  std::vector<Vec3> arms_;               // m, from the body's place along its own axes, by id
-  std::vector<std::uint32_t> body_of_;   // by id
-  std::vector<std::uint32_t> place_of_;  // by id
+  bool felt_ = false;                              // particles feel something by themselves
+  std::vector<Carrier> carriers_;                  // by body, of the task that runs
+  std::vector<Vec3> old_rates_;                    // 1/s, by body, of the step before its kick
+  std::vector<RigidHold> holds_;                   // by [[motion]]
+  std::vector<Vec3> arms_;                         // m, from the body's place along its own axes, by id
+  std::vector<std::uint32_t> body_of_;             // by id
+  std::vector<std::uint32_t> place_of_;            // by id
+  std::vector<RowMean> mean_force_, mean_torque_;  // N, N m, of what touches, by body
   StepLimit limit_;
   Workspace* w_ = nullptr;
 };

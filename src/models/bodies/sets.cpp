@@ -89,21 +89,25 @@ void DrivenSet::lead() { set_velocity(w_->state.time + 0.5 * w_->state.dt); }
 /// The forces of the step are known: they are noted, and the set goes on as it is driven.
 void DrivenSet::hold() {
   const PhaseParticles& p = set_.particles();
+  Vec3 force{};
   for (int d = 0; d < layout_.dimensions; ++d) {
     const double* a = p.column(Field::acceleration, d);
-    force_[static_cast<std::size_t>(d)] =
+    force[static_cast<std::size_t>(d)] =
         p.mass() * ordered_sum(set_.places().size(), [&](std::size_t q) { return a[set_.places()[q]]; });
   }
+  if (w_->state.steps == 0) force_.start(force);
+  else force_.add(force, w_->state.dt);
   set_velocity(w_->state.time);
 }
 
 void DrivenSet::history(HistoryRow& row) const {
+  const Vec3 force = force_.value();
   for (int d = 0; d < std::min(layout_.dimensions, 3); ++d)
-    row.add("motion_" + std::to_string(number_) + "_force_" + axes[d] + " [N]", force_[static_cast<std::size_t>(d)]);
+    row.add("motion_" + std::to_string(number_) + "_force_" + axes[d] + " [N]", force[static_cast<std::size_t>(d)]);
 }
 
 void DrivenSet::archive(Archive& a) {
-  a.number("force on a driven set", force_);
+  force_.archive(a, "force on a driven set");
   if (a.loads()) set_.set_places();
 }
 

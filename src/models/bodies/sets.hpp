@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "models/forces.hpp"
+#include "models/row_mean.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -38,6 +39,7 @@ class DrivenSet : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void history(HistoryRow& row) const override;
+  void begin_row() override { force_.begin_row(); }
   void archive(Archive& a) override;
 
  private:
@@ -50,7 +52,7 @@ class DrivenSet : public Model {
   std::size_t number_;
   SetOfBody set_;
   std::array<Formula, 3> velocity_;
-  Vec3 force_{};  // N, of the rest of the body on the set, in the last step
+  RowMean force_;  // N, of the rest of the body on the set
   Workspace* w_ = nullptr;
 };
 

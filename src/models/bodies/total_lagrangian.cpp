@@ -118,6 +118,18 @@ BARCHAN_SIMD_INLINE void put(LanesOf<T> value, const TotalWork<T>& work, std::si
   for (std::size_t k = 0; k < count; ++k) column[work.at[first + k]] = each[k];
 }
 
+/// Whole numbers that a displacement may be: the difference of two is one that 32 bits hold. Beyond it the unit grows;
+/// below `few_units` it shrinks. The unit is set to the middle of the two, so that it seldom changes.
+constexpr double most_units = 1073741824.0, few_units = 67108864.0;  // 2^30, 2^26
+
+/// The power of two (m) of which `largest` (m) holds 2^28 to 2^29; not finer than what a double tells of a place.
+double unit_of(double largest, double diameter) {
+  int exponent = 0, finest = 0;
+  std::frexp(largest, &exponent);
+  std::frexp(diameter, &finest);
+  return std::ldexp(1.0, std::max(exponent - 29, finest - 70));
+}
+
 /// Displacements of an interval of ids that stand in order, less `mean`; returns the largest.
 template <class T>
 double write_in_order(const double* x, const double* start, std::size_t begin, std::size_t end, double mean,
@@ -130,7 +142,8 @@ double write_in_order(const double* x, const double* start, std::size_t begin, s
     largest = simd::max(largest, simd::max(u, -u));
     if constexpr (std::is_integral_v<Place>) {
       const V q = u * V(inverse);
-      simd::convert<Place>(q + select(q < V(0.0), V(-0.5), V(0.5))).store(to + k);
+      const V rounded = simd::min(simd::max(q + select(q < V(0.0), V(-0.5), V(0.5)), V(-most_units)), V(most_units));
+      simd::convert<Place>(rounded).store(to + k);
     } else {
       u.store(to + k);
     }
@@ -146,7 +159,7 @@ double write_in_order(const double* x, const double* start, std::size_t begin, s
 
 template <int Dim, class T>
 double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
-            const TotalParameters& q) {
+            const TotalParameters& q) {  // returns the largest component, m
   using Place = typename TotalWork<T>::Place;
   constexpr bool whole = std::is_integral_v<Place>;
   std::array<const double*, Dim> x{}, v{};
@@ -178,7 +191,8 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
       const auto write = [&](std::size_t k, double u) __attribute__((always_inline)) {
         const double size = std::abs(u);
         most = size > most ? size : most;
-        if constexpr (whole) to[k] = static_cast<Place>(u * inverse + std::copysign(0.5, u));
+        if constexpr (whole)
+          to[k] = static_cast<Place>(std::clamp(u * inverse + std::copysign(0.5, u), -most_units, most_units));
         else to[k] = u;
       };
       if (q.period[d] > 0.0) {
@@ -196,7 +210,7 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
       for (std::size_t k = begin; k < end; ++k) speed[k] = static_cast<T>(v[d][at[k]] - v[d][at[anchor]]);
     }
   }
-  return whole ? most * inverse / 2147483520.0 : 0.0;
+  return most;
 }
 
 template <int Dim, class Law, bool Damped, class T>
@@ -211,26 +225,38 @@ void stress_of(PhaseParticles& body, const ReferenceBody<T>& reference, TotalWor
   std::array<T*, Dim * Dim> reach{};
   for (std::size_t c = 0; c < Dim * Dim; ++c) reach[c] = work.reach[c].data() + margin<T>;
   Shares shares(static_cast<std::int64_t>(reference.groups.size()), 64);
-#pragma omp parallel
-  for (const std::int64_t g : shares) {
-    const auto group = static_cast<std::size_t>(g);
-    const std::size_t first = group * width, count = std::min(width, reference.size - first);
-    const Matrix<Dim, V> inverse = inverse_of<Dim>(reference, first);
-    const Matrix<Dim, V> h = gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.displacement), inverse, unit);
-    const V jacobian = hyperelastic::dilation<Dim>(h);
-    Matrix<Dim, V> p = Law::template stress<Dim>(h, jacobian, lambda, mu);
-    if constexpr (Damped) {
-      const Matrix<Dim, V> rate =
-          gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.velocity), inverse, V(T(1)));
-      const Matrix<Dim, V> more = hyperelastic::damping_stress<Dim>(h, rate, slow_lambda, slow_mu);
+  double stiffest = 1.0, least = 1.0;
+#pragma omp parallel reduction(max : stiffest) reduction(min : least)
+  {
+    V stiff(T(1)), pressed(T(0));
+    for (const std::int64_t g : shares) {
+      const auto group = static_cast<std::size_t>(g);
+      const std::size_t first = group * width, count = std::min(width, reference.size - first);
+      const Matrix<Dim, V> inverse = inverse_of<Dim>(reference, first);
+      const Matrix<Dim, V> h = gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.displacement), inverse, unit);
+      const V jacobian = hyperelastic::dilation<Dim>(h);
+      Matrix<Dim, V> p = Law::template stress<Dim>(h, jacobian, lambda, mu);
+      if constexpr (Damped) {
+        const Matrix<Dim, V> rate =
+            gradient_of<Dim>(gradient_sum<Dim>(reference, group, work.velocity), inverse, V(T(1)));
+        const Matrix<Dim, V> more = hyperelastic::damping_stress<Dim>(h, rate, slow_lambda, slow_mu);
+        for (std::size_t d = 0; d < Dim; ++d)
+          for (std::size_t e = 0; e < Dim; ++e) p[d][e] += more[d][e];
+      }
+      const Matrix<Dim, V> t = hyperelastic::product<Dim>(p, inverse);
       for (std::size_t d = 0; d < Dim; ++d)
-        for (std::size_t e = 0; e < Dim; ++e) p[d][e] += more[d][e];
+        for (std::size_t e = 0; e < Dim; ++e) (kappa * h[d][e] - t[d][e]).store(reach[d * Dim + e] + first);
+      put(rho / (V(T(1)) + jacobian), work, first, count, density);
+      stiff = simd::max(stiff, Law::template stiffening<Dim>(hyperelastic::green_strain<Dim>(h), jacobian, lambda, mu));
+      pressed = simd::min(pressed, jacobian);
     }
-    const Matrix<Dim, V> t = hyperelastic::product<Dim>(p, inverse);
-    for (std::size_t d = 0; d < Dim; ++d)
-      for (std::size_t e = 0; e < Dim; ++e) (kappa * h[d][e] - t[d][e]).store(reach[d * Dim + e] + first);
-    put(rho / (V(T(1)) + jacobian), work, first, count, density);
+    for (int lane = 0; lane < V::width; ++lane) {
+      stiffest = std::max(stiffest, static_cast<double>(stiff[lane]));
+      least = std::min(least, 1.0 + static_cast<double>(pressed[lane]));
+    }
   }
+  work.stiffening = stiffest;
+  work.least_volume = least;
 }
 
 template <int Dim, class T>
@@ -320,13 +346,21 @@ void stress_by_law(PhaseParticles& body, const ReferenceBody<T>& reference, Tota
 
 }  // namespace
 
-double pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& reference, TotalWork<float>& work,
-                          const TotalParameters& q) {
-  return body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
+void pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& reference, TotalWork<float>& work,
+                        const TotalParameters& q) {
+  const auto pack_all = [&] {
+    return body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
+  };
+  const double largest = pack_all(), units = largest / work.unit;
+  if (!(largest > 0.0) || !std::isfinite(largest) || (units >= few_units && units <= most_units)) return;
+  const double unit = unit_of(largest, reference.diameter);
+  if (unit == work.unit) return;
+  work.unit = unit;
+  pack_all();
 }
-double pack_displacements(const PhaseParticles& body, const ReferenceBody<double>& reference, TotalWork<double>& work,
-                          const TotalParameters& q) {
-  return body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
+void pack_displacements(const PhaseParticles& body, const ReferenceBody<double>& reference, TotalWork<double>& work,
+                        const TotalParameters& q) {
+  body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
 }
 
 void total_stress(PhaseParticles& body, const ReferenceBody<float>& reference, TotalWork<float>& work,

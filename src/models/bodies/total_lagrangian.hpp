@@ -21,8 +21,10 @@ struct TotalWork {
   std::array<AlignedVector<Place>, 3> displacement;  // less that of the piece's anchor
   std::array<AlignedVector<T>, 3> velocity;          // of damped bodies, less that of the anchor
   std::array<AlignedVector<T>, 9> reach;             // Q = kappa H - P M^-1, Pa
-  double unit = 1.0;                                 // m
+  double unit = 1.0;                                 // m, a power of two that follows the largest displacement
   std::array<std::vector<double>, 3> displaced;      // m, the whole displacement, of periodic domains: unwrapped
+  double stiffening = 1.0;                           // of the stiffest particle, over the modulus at rest
+  double least_volume = 1.0;                         // det F of the particle that is pressed most
   std::vector<std::uint32_t> at;                     // place of each id in the phase
   bool in_order = true;                              // at[k] == k
 
@@ -44,16 +46,15 @@ struct TotalDetail {
   AlignedVector<double> hourglass;
 };
 
-/// Displacements (and velocities) of the particles' places. Returns the largest component over that which `unit` can
-/// hold.
+/// Displacements (and velocities) of the particles' places. In mixed precision it chooses `unit` anew where the largest
+/// displacement is no longer 2^26 to 2^30 of it: a body that hardly moves keeps the digits of its small strains.
 BARCHAN_PER_INSTRUCTION_SET(pack_displacements,
-                            double pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& reference,
-                                                      TotalWork<float>& work, const TotalParameters& parameters);
-                            double pack_displacements(const PhaseParticles& body,
-                                                      const ReferenceBody<double>& reference, TotalWork<double>& work,
-                                                      const TotalParameters& parameters);)
+                            void pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& reference,
+                                                    TotalWork<float>& work, const TotalParameters& parameters);
+                            void pack_displacements(const PhaseParticles& body, const ReferenceBody<double>& reference,
+                                                    TotalWork<double>& work, const TotalParameters& parameters);)
 
-/// H, the density, and Q.
+/// H, the density, Q, the stiffening and the least volume.
 BARCHAN_PER_INSTRUCTION_SET(total_stress, void total_stress(PhaseParticles& body, const ReferenceBody<float>& reference,
                                                             TotalWork<float>& work, const TotalParameters& parameters);
                             void total_stress(PhaseParticles& body, const ReferenceBody<double>& reference,

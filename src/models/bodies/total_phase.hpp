@@ -15,12 +15,14 @@ class TotalBody {
  public:
   virtual ~TotalBody() = default;
   virtual void set_places(const PhaseParticles& particles) = 0;  // they may have been sorted
-  virtual double pack(const PhaseParticles& particles) = 0;      // see pack_displacements
+  virtual void pack(const PhaseParticles& particles) = 0;        // see pack_displacements
   virtual void load(PhaseParticles& particles) = 0;              // stress, then acceleration
   virtual const TotalDetail& detail() = 0;                       // of what was packed
   virtual const std::vector<std::uint32_t>& places() const = 0;  // by id
   virtual std::uint64_t pairs() const = 0;
-  virtual std::int64_t flat() const = 0;  // see ReferenceBody
+  virtual double stiffening() const = 0;    // see TotalWork
+  virtual double least_volume() const = 0;  // see TotalWork
+  virtual std::int64_t flat() const = 0;    // see ReferenceBody
   virtual void archive(Archive& a) = 0;
 };
 
@@ -31,10 +33,11 @@ class TotalPhase : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void limits(std::vector<StepLimit>& limits) const override;
+  const StepLimit* moving_limit() override;
+  std::optional<std::string> trouble() const override;
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
   void derive() override;
-  std::optional<std::string> trouble() const override;
   std::uint64_t pairs(const PlanEntry& entry) const override;
   void archive(Archive& a) override;
 
@@ -54,7 +57,9 @@ class TotalPhase : public Model {
   std::vector<Vec3> start_;  // m, by id
   std::unique_ptr<TotalBody> body_;
   bool must_find_places_ = false;
-  double stretched_ = 0.0;                               // of what the displacements can hold
+  double rest_limit_ = 1e300;  // s, of the stiffest vibration at rest
+  double stiffening_ = 1.0;    // of the stiffest particle over the modulus at rest, forgotten slowly
+  StepLimit limit_;
   double strain_energy_ = 0.0, hourglass_energy_ = 0.0;  // J, of the last derive
 };
 

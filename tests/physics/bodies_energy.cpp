@@ -1,0 +1,109 @@
+// Energy and angular momentum of elastic bodies: what they begin with is what they keep.
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "physics/drive.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::Drive;
+using testing::report;
+
+/// The sum of the columns with these names.
+double sum_of(const Simulation& run, const std::vector<std::string>& wanted) {
+  const auto names = run.history_columns();
+  const auto row = run.history_row();
+  double sum = 0.0;
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (std::find(wanted.begin(), wanted.end(), names[k]) != wanted.end()) {
+      sum += row[k];
+      ++found;
+    }
+  EXPECT_EQ(found, wanted.size());
+  return sum;
+}
+
+double energy_of(const Simulation& run, const std::string& body) {
+  return sum_of(run, {body + "_kinetic_energy [J]", body + "_strain_energy [J]", body + "_hourglass_energy [J]"});
+}
+
+/// A clamped plate of steel, in mixed precision, whose tip begins with a small share of the wave speed (5,850 m/s).
+/// With displacements in units of the plate's diameter its energy grew by factors of 1.8 to 10^6 in this time.
+TEST(TotalLagrangianBodies, AStiffPlateInMixedPrecisionKeepsTheEnergyOfASlowMotion) {
+  double worst = 0.0;
+  for (const std::string speed : {"6e-8", "6e-3"})
+    for (const bool clamped : {true, false}) {
+      std::vector<std::string> set{"precision=\"mixed\"",
+                                   "phases.plate.young=2e11",
+                                   "phases.plate.poisson=0.3",
+                                   "phases.plate.density=7800",
+                                   "fill.0.velocity=[0, \"" + speed + "*((x - 0.06)/0.2)^2*(x > 0.06)\"]",
+                                   "spacing=4e-3",
+                                   "time.end=5e-5"};
+      if (!clamped) set.emplace_back("motion=[]");
+      Drive drive("verification/cantilever", set);
+      const double start = energy_of(drive.simulation(), "plate");
+      drive.to(5e-5);
+      worst = std::max(worst, std::abs(energy_of(drive.simulation(), "plate") / start - 1.0));
+    }
+  report("energy of a plate of steel, largest error", worst, 1e-3);
+  EXPECT_LT(worst, 1e-3);
+}
+
+/// Soft blocks that are pressed together by a third when they bounce. With a step that does not follow the stretch the
+/// they end with 4.0 and 2.1 times their energy.
+TEST(TotalLagrangianBodies, ASoftBlockThatBouncesKeepsItsEnergy) {
+  double worst = 0.0;
+  for (const std::string young : {"2e5", "1e5"}) {
+    Drive drive("bouncing_block", {"phases.block.young=" + young});
+    const Simulation& run = drive.simulation();
+    const auto energy = [&] { return energy_of(run, "block") + 98.1 * (sum_of(run, {"middle_y [m]"}) - 0.05); };
+    const double start = energy();
+    drive.to(1.2);
+    worst = std::max(worst, std::abs(energy() / start - 1.0));
+  }
+  report("energy of soft blocks, largest error", worst, 0.01);
+  EXPECT_LT(worst, 0.01);
+}
+
+/// A block that squeezes itself as fast as its waves is stopped, with the name of the body and what helps.
+TEST(TotalLagrangianBodies, ABodyPressedThroughItselfIsStopped) {
+  Drive drive("bouncing_block", {"phases.block.young=2e4", "phases.block.elasticity=\"saint-venant-kirchhoff\"",
+                                 "time.safety=0.4", "fill.1.velocity=[0, \"-125*(y - 0.25)\"]"});
+  try {
+    drive.to(0.2);
+    FAIL() << "it went on";
+  } catch (const BreakdownError& e) {
+    EXPECT_NE(std::string(e.what()).find("phases.block.young"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("pressed through itself"), std::string::npos) << e.what();
+  }
+}
+
+/// Two gears under a load, whose contact force alternates from step to step. The means of rows of two steps are what
+/// the angular momentum gained less the load; the torques of every second step are not.
+TEST(Rows, HaveTheMeanOfAForceThatAlternates) {
+  Drive drive("gears", {"motion.1.torque=10000", "time.end=0.02"});
+  Simulation& run = drive.simulation();
+  const auto turning = [&] { return sum_of(run, {"driven_angular_momentum [kg m2/s]"}); };
+  const double start = turning();
+  double impulse = 0.0, size = 0.0;
+  for (int row = 0; row < 60; ++row) {
+    const double before = run.time();
+    run.begin_row();
+    run.step(1.0);
+    run.step(1.0);
+    const double part = sum_of(run, {"driven_torque [N m]"}) * (run.time() - before);
+    impulse += part;
+    size += std::abs(part);
+  }
+  EXPECT_GT(size, 0.0);
+  const double error = (turning() - start - impulse) / (1e4 * run.time()) - 1.0;
+  report("gain of angular momentum less the torques over the load - 1", error, 1e-9);
+  EXPECT_NEAR(error, 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace barchan
