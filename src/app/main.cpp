@@ -88,7 +88,8 @@ int dispatch(int argc, char** argv) {
   auto* c_run = app.add_subcommand("run", "run a scene and write its ParaView series");
   c_run->add_option("scene", run.scene, "scene file (.toml)")->required();
   c_run->add_option("--out", run.out, "output folder (default out/NAME)")->type_name("DIR");
-  c_run->add_option("--threads", run.threads, "number of threads (default: as many as pay, measured as it goes)")->check(CLI::Range(1, 4096));
+  c_run->add_option("--threads", run.threads, "number of threads (default: as many as pay, measured as it goes)")
+      ->check(CLI::Range(1, 4096));
   c_run->add_option("--restart", run.restart, "go on from a checkpoint, or from the latest one")
       ->type_name("FILE|latest");
   c_run->add_option("--instructions", run.instructions, "avx2 or avx512 (default: the best that the machine has)")

@@ -3,7 +3,9 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <vector>
 
 #include "base/thread_chooser.hpp"
@@ -40,6 +42,25 @@ class Team {
   ThreadChooser chooser_;
   bool chosen_;
   ThreadChooser::Use alone_{};  // where nothing is chosen
+};
+
+/// A team for work before the steps of a run: as many threads as pay, of those that so many particles may be worth;
+/// those from before at the end of the block.
+class TeamInside {
+ public:
+  explicit TeamInside(std::size_t particles)
+      : before_(omp_get_max_threads()),
+        team_(std::min(before_, 1 + static_cast<int>(std::min<std::size_t>(particles / 2000, 4095))), true) {
+    omp_set_num_threads(1);
+  }
+  ~TeamInside() { omp_set_num_threads(before_); }
+  TeamInside(const TeamInside&) = delete;
+  TeamInside& operator=(const TeamInside&) = delete;
+  Team& team() { return team_; }
+
+ private:
+  int before_;
+  Team team_;
 };
 
 }  // namespace barchan

@@ -325,24 +325,6 @@ Scene softened(Scene s, double stiffness) {
   return s;
 }
 
-/// As many threads as pay, of those that these grains may be worth; those from before at the end of the block.
-class FewThreads {
- public:
-  explicit FewThreads(std::size_t grains)
-      : before_(omp_get_max_threads()),
-        team_(std::min(before_, 1 + static_cast<int>(std::min<std::size_t>(grains / 2000, 4095))), true) {
-    omp_set_num_threads(1);
-  }
-  ~FewThreads() { omp_set_num_threads(before_); }
-  FewThreads(const FewThreads&) = delete;
-  FewThreads& operator=(const FewThreads&) = delete;
-  Team& team() { return team_; }
-
- private:
-  int before_;
-  Team team_;
-};
-
 }  // namespace
 
 SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
@@ -359,7 +341,7 @@ SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
     for (const double stiffness : soft_stages(s, thickness)) stages.push_back(softened(s, stiffness));
   stages.push_back(s);
   const double place = at_place * s.phases[0].diameter()->mean, latest = (400.0 + 20.0 * fall) * unit;
-  FewThreads threads(blocks[0].position.size());
+  TeamInside threads(blocks[0].position.size());
   const auto tell = [&](const std::string& what) {
     if (words != nullptr)
       *words << "settling  " << scene.fills[k].phase << ": " << blocks[0].position.size() << " grains, " << what

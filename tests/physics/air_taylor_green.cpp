@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "physics/drive.hpp"
 
@@ -101,6 +102,30 @@ TEST(TaylorGreen, KeepsItsMeanDensityForLong) {
   report("largest density error", worst, 0.02);
   EXPECT_LE(std::abs(mean - 1.0), 1e-3);
   EXPECT_LE(worst, 0.02);
+}
+
+/// Vortices that ten to fourteen particles a side cannot resolve, without viscosity: the energy does not grow. With
+/// corrected operators alone it did, five times in 1.2 s, and four of eight runs ended with status 3.
+TEST(TaylorGreen, UnresolvedVorticesGainNoEnergy) {
+  for (const int side : {10, 12, 14})
+    for (const int seed : {1, 2, 4}) {
+      std::ostringstream spacing;
+      spacing.precision(17);
+      spacing << 1.0 / side;
+      Drive drive("verification/taylor_green",
+                  {"spacing=" + spacing.str(), "phases.fluid.viscosity=0", "fill.0.seed=" + std::to_string(seed)});
+      const auto energy = [&] {
+        const auto& p = drive.phase(0);
+        double sum = 0.0;
+        for (int d = 0; d < 2; ++d)
+          for (std::size_t k = 0; k < p.size(); ++k)
+            sum += 0.5 * p.mass() * std::pow(p.column(Field::velocity, d)[k], 2);
+        return sum;
+      };
+      const double before = energy();
+      ASSERT_NO_THROW(drive.to(5.0)) << side << " a side, seed " << seed;
+      EXPECT_LE(energy(), before) << side << " a side, seed " << seed;
+    }
 }
 
 }  // namespace

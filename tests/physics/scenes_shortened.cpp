@@ -84,6 +84,13 @@ int run_program(const std::string& scene, const fs::path& out, const std::vector
 
 nlohmann::json report_of(const fs::path& out) { return nlohmann::json::parse(std::ifstream(out / "run.json")); }
 
+/// A wind whose bulk speed is held may be pulled harder than its profile says, and the program tells it.
+bool is_meant(const Scene& scene, const std::string& warning) {
+  return warning.find("under hold = \"bulk-speed\" u* is a result") != warning.npos &&
+         std::any_of(scene.forcings.begin(), scene.forcings.end(),
+                     [](const Forcing& f) { return f.hold == Hold::bulk_speed; });
+}
+
 class EveryScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryScene, TakesStepsInTheLibrary) {
@@ -92,7 +99,7 @@ TEST_P(EveryScene, TakesStepsInTheLibrary) {
   ASSERT_NO_THROW(simulation.check_start());
   ASSERT_NO_THROW(for (int k = 0; k < 40; ++k) simulation.step(1e300));
   ASSERT_NO_THROW(simulation.check());
-  EXPECT_TRUE(simulation.warnings().texts().empty());
+  for (const std::string& text : simulation.warnings().texts()) EXPECT_TRUE(is_meant(drive.scene(), text)) << text;
   const auto columns = drive.simulation().history_columns();
   const auto row = simulation.history_row();
   ASSERT_EQ(row.size(), columns.size());
@@ -134,9 +141,9 @@ TEST_P(EveryScene, RunsInTheProgram) {
   const auto report = report_of(out);
   EXPECT_EQ(report["end_reason"], "end");
   EXPECT_GE(report["steps"].get<long>(), 6);
-  EXPECT_TRUE(report["warnings"].empty()) << report["warnings"];
-  // What was executed is what the plan promised.
   const Scene scene = read_scene(testing::scene_file(GetParam()));
+  for (const std::string text : report["warnings"]) EXPECT_TRUE(is_meant(scene, text)) << text;
+  // What was executed is what the plan promised.
   EXPECT_EQ(report["passes"].get<std::vector<std::string>>(), plan_of_filled(scene).passes);
 }
 

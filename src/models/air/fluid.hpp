@@ -27,10 +27,13 @@ struct FluidNeighbour {
 
 /// Particles of a fluid that may stand beside a void, collected by the pass over its rates in any order.
 struct LooseParticles {
-  std::vector<std::uint32_t> place;  // room for all
+  static constexpr std::uint32_t broken = 1u << 31;  // with the number of a particle whose neighbourhood is broken
+  std::vector<std::uint32_t> place;                  // room for all
   std::atomic<std::size_t> count{0};
   /// Any thread may call it.
-  void add(std::size_t k) { place[count.fetch_add(1, std::memory_order_relaxed)] = static_cast<std::uint32_t>(k); }
+  void add(std::size_t k, bool is_broken) {
+    place[count.fetch_add(1, std::memory_order_relaxed)] = static_cast<std::uint32_t>(k) | (is_broken ? broken : 0u);
+  }
 };
 
 struct FluidParameters {

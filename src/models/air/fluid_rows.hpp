@@ -206,10 +206,11 @@ struct RateColumns {
   }
 
   static void note_loose(const FourOf& at, const Place<Dim, Four>& place, LooseParticles& loose) {
-    alignas(32) std::array<double, 4> is{};
+    alignas(32) std::array<double, 4> is{}, chi{};
     simd::select(place.loose, Four(1.0), Four(0.0)).store(is.data());
+    place.wholeness.store(chi.data());
     for (std::size_t lane = 0; lane < at.count; ++lane)
-      if (is[lane] > 0.0) loose.add(at.first + lane);
+      if (is[lane] > 0.0) loose.add(at.first + lane, chi[lane] < broken_below);
   }
 };
 

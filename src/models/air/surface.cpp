@@ -24,6 +24,19 @@ double distance2(const ListedParticle<Dim>& entry, const std::array<const double
 
 }  // namespace
 
+/// The particles whose wholeness is below the threshold; nobody is near them yet.
+void SurfaceFinder::take_members(const double* chi, std::size_t n, std::size_t dimensions, double threshold) {
+  if (near_.size() < n) {
+    near_.resize(n);
+    members_.reserve(n);
+    inwards_.resize(n * dimensions);
+  }
+  std::fill_n(near_.begin(), n, std::uint8_t{0});
+  members_.clear();
+  for (std::size_t k = 0; k < n; ++k)
+    if (chi[k] < threshold) members_.push_back(static_cast<std::uint32_t>(k));
+}
+
 template <int Dim>
 void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius,
                             double threshold) {
@@ -37,15 +50,7 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     normal[d] = fluid.column(Field::surface_normal, static_cast<int>(d));
   }
   const double within2 = reach * reach * radius * radius;
-  if (near_.size() < n) {
-    near_.resize(n);
-    members_.reserve(n);
-    inwards_.resize(n * dim);
-  }
-  std::fill_n(near_.begin(), n, std::uint8_t{0});
-  members_.clear();
-  for (std::size_t k = 0; k < n; ++k)
-    if (chi[k] < threshold) members_.push_back(static_cast<std::uint32_t>(k));
+  take_members(chi, n, dim, threshold);
   const auto each_near = [&](std::size_t k, auto&& f) {
     const auto row = own.row(k);
     for (const std::uint32_t* q = row.begin; q != row.end; ++q) {

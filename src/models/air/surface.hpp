@@ -26,6 +26,7 @@ class SurfaceFinder {
   void find(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
 
  private:
+  void take_members(const double* chi, std::size_t n, std::size_t dimensions, double threshold);
   template <int Dim>
   void find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
   std::vector<std::uint8_t> near_;      // by particle

@@ -1,5 +1,6 @@
 #include "models/air/voids.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -74,6 +75,7 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
   double* left = fluid.column(Field::near_void);
   const auto n = static_cast<std::int64_t>(fluid.size());
   int any = 0;
+  std::int64_t broken = 0;
   if (near_ != 0) {
 #pragma omp parallel for schedule(static) reduction(| : any)
     for (std::int64_t k = 0; k < n; ++k) {
@@ -83,10 +85,13 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
   }
   const auto count = static_cast<std::int64_t>(loose.count.load(std::memory_order_relaxed));
   loose.count.store(0, std::memory_order_relaxed);
-#pragma omp parallel for schedule(dynamic, 64) reduction(| : any) if (count > 256)
+#pragma omp parallel for schedule(dynamic, 64) reduction(| : any) reduction(+ : broken) if (count > 256)
   for (std::int64_t q = 0; q < count; ++q) {
-    const std::size_t k = loose.place[static_cast<std::size_t>(q)];
-    if (!beside_void<dim>(fluid, seen, radius, spacing, k)) continue;
+    const std::uint32_t noted = loose.place[static_cast<std::size_t>(q)];
+    const std::size_t k = noted & ~LooseParticles::broken;
+    const bool beside = beside_void<dim>(fluid, seen, radius, spacing, k);
+    if (k == noted && !beside) continue;
+    if (!beside) ++broken;
     any = 1;
     const auto mark = [&](std::size_t b) { std::atomic_ref<double>(left[b]).store(memory, std::memory_order_relaxed); };
     mark(k);
@@ -96,13 +101,22 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
       if (squared<dim>(r) < radius * radius) mark(b);
     });
   }
+  const bool many = broken > 0 && static_cast<double>(broken) >= unresolved_share * static_cast<double>(n);
+  unresolved_ = std::max<std::int64_t>(unresolved_ + (many ? 1 : -1), 0);
+  if (unresolved_ >= unresolved_steps) {
+    unresolved_ = unresolved_steps;
+    std::fill(left, left + n, unresolved_memory);
+  }
   near_ = any;
   return near_ != 0;
 }
 
 bool VoidFinder::find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
                       LooseParticles& loose) {
-  if (near_ == 0 && loose.count.load(std::memory_order_relaxed) == 0) return false;
+  if (near_ == 0 && loose.count.load(std::memory_order_relaxed) == 0) {
+    unresolved_ = std::max<std::int64_t>(unresolved_ - 1, 0);
+    return false;
+  }
   if (fluid.dimensions() == 2) return find_in<2>(fluid, seen, radius, spacing, loose);
   return find_in<3>(fluid, seen, radius, spacing, loose);
 }

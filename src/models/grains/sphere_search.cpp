@@ -42,7 +42,14 @@ void SphereSearch::prepare(const Bounds& bounds, double reach, std::size_t kinds
   cells_.kinds = kinds;
   cells_.laws = laws_.data();
   for (std::size_t d = 0; d < 3; ++d) cells_.period[d] = bounds.periodic[d] ? bounds.high[d] - bounds.low[d] : 0.0;
-  found_.resize(static_cast<std::size_t>(std::max(omp_get_max_threads(), omp_get_num_procs())));
+  make_room_for_threads();
+}
+
+/// The number of threads may change between two searches.
+void SphereSearch::make_room_for_threads() {
+  const auto threads = static_cast<std::size_t>(std::max(omp_get_max_threads(), omp_get_num_procs()));
+  const std::size_t pairs = bounds_.dimensions == 2 ? 6 : 11;  // of a sphere, of two in different chunks both
+  while (found_.size() < threads) found_.emplace_back().reserve(pairs * SphereChunk::most + 64);
 }
 
 void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, SphereChunk* sleeping) {
@@ -70,7 +77,6 @@ void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, Sp
     found_[0].reserve(pairs * all / 2 + 64);
   }
   for (auto& sorted : sorted_) sorted.reserve(all + SphereCells::padding);
-  for (auto& found : found_) found.reserve(pairs * SphereChunk::most + 64);
   kept_.reserve(pairs * all / 2 + 64);
   begin_.reserve(8 * all + 65536 + 1);
   cell_of_.reserve(all);
@@ -237,6 +243,7 @@ void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChun
   keep(s, chunks, before, sleeping);
   if (sleeping) place_sleeping(s, *sleeping);
   sort(s, slack);
+  make_room_for_threads();
   const auto n = static_cast<std::int64_t>(chunks.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::int64_t c = 0; c < n; ++c) {

@@ -48,6 +48,7 @@ class SphereSearch {
     std::uint32_t number, with;  // of both
     double memory[6];
   };
+  void make_room_for_threads();
   void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
             const SphereChunk* sleeping);
   void place_sleeping(const SphereSet& spheres, SphereChunk& sleeping);
