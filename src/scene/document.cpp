@@ -1,6 +1,7 @@
 #include "scene/document.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <tuple>
@@ -66,6 +67,9 @@ void Problems::fail(const toml::source_region& source, const std::string& dotted
 }
 
 namespace {
+
+/// A dotted key makes a section within a section for each of its parts, and who reads them calls himself for each.
+constexpr int most_parts = 100;
 
 std::vector<std::string> split(const std::string& dotted) {
   std::vector<std::string> parts(1);
@@ -135,6 +139,10 @@ void apply(toml::table& document, const std::string& assignment, Problems& probl
     return;
   }
   const std::vector<std::string> parts = split(dotted);
+  if (parts.size() > most_parts) {
+    problems.add(here, dotted, "a key of more than " + std::to_string(most_parts) + " parts");
+    return;
+  }
   toml::node* node = &document;
   std::string so_far;
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -177,13 +185,55 @@ void apply(toml::table& document, const std::string& assignment, Problems& probl
 
 }  // namespace
 
+namespace {
+
+/// The line of a dotted key of more parts; 0: there is none. Blanks and quotes may stand between the parts.
+unsigned line_of_endless_key(std::string_view text) {
+  unsigned line = 1;
+  int parts = 1;
+  for (const char c : text) {
+    const bool of_key =
+        std::isalnum(static_cast<unsigned char>(c)) || std::string_view("_-\"' \t.").find(c) != std::string_view::npos;
+    parts = of_key ? parts + (c == '.') : 1;
+    if (parts > most_parts) return line;
+    line += c == '\n';
+  }
+  return 0;
+}
+
+/// The word without quotes that a line gives to its key, as in kind = fluid; else nothing.
+std::string bare_word(std::string_view text, unsigned line) {
+  for (; line > 1 && !text.empty(); --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  text = text.substr(0, text.find('\n'));
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos) return "";
+  text.remove_prefix(equals + 1);
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos || !std::isalpha(static_cast<unsigned char>(text[begin]))) return "";
+  std::size_t end = begin;
+  while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '-')) ++end;
+  const std::string_view rest = text.substr(end);
+  const std::size_t next = rest.find_first_not_of(" \t\r");
+  const std::string word(text.substr(begin, end - begin));
+  if ((next != std::string_view::npos && rest[next] != '#') || word == "true" || word == "false") return "";
+  return word;
+}
+
+}  // namespace
+
 toml::table parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides,
                            Problems& problems) {
   toml::table document;
+  if (const unsigned line = line_of_endless_key(text))
+    problems.fail({{line, 1}, {line, 1}, nullptr}, "",
+                  "a key of more than " + std::to_string(most_parts) + " parts; expected a key as in docs/scenes.md");
   try {
     document = toml::parse(std::string_view(text), std::string_view(file));
   } catch (const toml::parse_error& error) {
-    problems.fail(error.source(), "", "not TOML: " + std::string(error.description()));
+    const std::string word = bare_word(text, error.source().begin.line);
+    problems.fail(error.source(), "",
+                  "not TOML: " + (word.empty() ? std::string(error.description())
+                                               : word + " stands without quotes; expected \"" + word + "\""));
   }
   for (const std::string& assignment : overrides) apply(document, assignment, problems);
   return document;

@@ -1,98 +1,43 @@
 #include "scene/surface_file.hpp"
 
-#include <vtkCell.h>
-#include <vtkDataSet.h>
-#include <vtkGenericDataObjectReader.h>
-#include <vtkNew.h>
-#include <vtkOBJReader.h>
-#include <vtkPLYReader.h>
-#include <vtkPolyData.h>
-#include <vtkSTLReader.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLPolyDataReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <optional>
+
+#include "scene/mesh_texts.hpp"
+#include "scene/mesh_vtk.hpp"
 
 namespace barchan {
 namespace {
 
 constexpr std::uintmax_t most_of_a_surface = std::uintmax_t{1} << 30;  // bytes
 
-/// Keeps VTK's complaints off the terminal: the scene's message tells what is wrong.
-class Silence {
- public:
-  Silence() : before_(vtkObject::GetGlobalWarningDisplay()) { vtkObject::SetGlobalWarningDisplay(0); }
-  ~Silence() { vtkObject::SetGlobalWarningDisplay(before_); }
-
- private:
-  int before_;
-};
-
-void take_cells(vtkDataSet& data, std::vector<Facet>& triangles, std::vector<Facet>& segments) {
-  const auto point = [&](vtkCell& cell, int i) {
-    Vec3 x;
-    data.GetPoint(cell.GetPointId(i), x.data());
-    return x;
-  };
-  for (vtkIdType k = 0; k < data.GetNumberOfCells(); ++k) {
-    vtkCell& cell = *data.GetCell(k);
-    const int count = static_cast<int>(cell.GetNumberOfPoints());
-    if (cell.GetCellDimension() == 1)
-      for (int i = 0; i + 1 < count; ++i) {
-        const Vec3 a = point(cell, i), b = point(cell, i + 1);
-        segments.push_back({a, b, b});
-      }
-    else if (cell.GetCellType() == VTK_TRIANGLE_STRIP)
-      for (int i = 0; i + 2 < count; ++i) triangles.push_back({point(cell, i), point(cell, i + 1), point(cell, i + 2)});
-    else if (cell.GetCellDimension() == 2)
-      for (int i = 1; i + 1 < count; ++i)  // a fan: convex polygons
-        triangles.push_back({point(cell, 0), point(cell, i), point(cell, i + 1)});
-  }
+/// The bytes of a file; nothing when it cannot be read.
+std::optional<std::string> bytes_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream.is_open() || stream.bad()) return {};
+  return bytes;
 }
 
-template <class Reader>
-void read_with(const std::string& path, SurfaceFile& file, std::vector<Facet>& segments) {
-  vtkNew<Reader> reader;
-  const Silence silence;
-  reader->SetFileName(path.c_str());
-  reader->Update();
-  auto* data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
-  if (data) take_cells(*data, file.facets, segments);
-  if (!data || reader->GetErrorCode() != 0) file.problem = "cannot be read as what its name says it is";
-}
-
-void read_corners(const std::string& path, SurfaceFile& file, std::vector<Facet>& segments) {
-  std::ifstream stream(path);
-  std::vector<Vec3> corners;
-  const auto close = [&] {
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
-      segments.push_back({a, b, b});
-    }
-    corners.clear();
-  };
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) close();
-    if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-    std::replace_if(
-        line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    Vec3 x{};
-    char more = 0;
-    if (std::sscanf(line.c_str(), "%lf %lf %c", &x[0], &x[1], &more) == 2) corners.push_back(x);
-    else if (number > 1 || !std::isalpha(static_cast<unsigned char>(line[line.find_first_not_of(" \t\"")]))) {
-      file.problem = "line " + std::to_string(number) + " is not a corner x, y";
-      return;
-    }
-  }
-  close();
+Mesh mesh_of(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool vtk = suffix == ".vtp" || suffix == ".vtu" || suffix == ".vtk";
+  if (!vtk && suffix != ".stl" && suffix != ".obj" && suffix != ".ply" && suffix != ".csv")
+    return {{}, {}, "a file of an unknown kind"};
+  const auto bytes = bytes_of(path);
+  if (!bytes) return {{}, {}, "cannot be read"};
+  if (suffix == ".stl") return parse_stl(*bytes);
+  if (suffix == ".obj") return parse_obj(*bytes);
+  if (suffix == ".ply") return parse_ply(*bytes);
+  if (suffix == ".csv") return parse_corners(*bytes);
+  if (std::string problem = wrong_number_of_vtk(*bytes, suffix); !problem.empty()) return {{}, {}, problem};
+  return read_vtk_mesh(path, suffix);
 }
 
 /// Points nearer to each other than the tolerance become one: the first.
@@ -133,21 +78,13 @@ SurfaceFile read_surface(const std::string& path) {
   else if (!std::filesystem::is_regular_file(status)) file.problem = "is not a file";
   else if (std::filesystem::file_size(path, error) > most_of_a_surface || error) file.problem = "is larger than 1 GB";
   if (!file.problem.empty()) return file;
-  std::string suffix = std::filesystem::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-  std::vector<Facet> segments;
-  if (suffix == ".stl") read_with<vtkSTLReader>(path, file, segments);
-  else if (suffix == ".obj") read_with<vtkOBJReader>(path, file, segments);
-  else if (suffix == ".ply") read_with<vtkPLYReader>(path, file, segments);
-  else if (suffix == ".vtp") read_with<vtkXMLPolyDataReader>(path, file, segments);
-  else if (suffix == ".vtu") read_with<vtkXMLUnstructuredGridReader>(path, file, segments);
-  else if (suffix == ".vtk") read_with<vtkGenericDataObjectReader>(path, file, segments);
-  else if (suffix == ".csv") read_corners(path, file, segments);
-  else file.problem = "a file of an unknown kind";
+  Mesh mesh = mesh_of(path);
+  file.problem = mesh.problem;
   if (!file.problem.empty()) return file;
+  file.facets = std::move(mesh.triangles);
   file.triangles = !file.facets.empty();
   if (!file.triangles) {
-    file.facets = std::move(segments);
+    file.facets = std::move(mesh.segments);
     for (Facet& f : file.facets)
       for (Vec3& x : f) x[2] = 0.0;
   }

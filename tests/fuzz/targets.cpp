@@ -2,6 +2,8 @@
 
 #include <zlib.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -10,6 +12,8 @@
 #include "output/frame_read.hpp"
 #include "output/pvd.hpp"
 #include "scene/formula.hpp"
+#include "scene/mesh_texts.hpp"
+#include "scene/mesh_vtk.hpp"
 #include "scene/reader.hpp"
 
 namespace barchan::fuzz {
@@ -64,6 +68,18 @@ void series(std::string_view text) {
   try {
     parse_pvd(text);
   } catch (const OutputError&) {}
+}
+
+void mesh(std::string_view text) {
+  for (const auto parse : {parse_stl, parse_obj, parse_ply, parse_corners}) {
+    const Mesh found = parse(text);
+    for (const auto* facets : {&found.triangles, &found.segments})
+      for (const Facet& facet : *facets)
+        for (const Vec3& corner : facet)
+          for (const double x : corner)
+            if (!std::isfinite(x)) std::abort();
+  }
+  for (const char* suffix : {".vtp", ".vtk"}) static_cast<void>(wrong_number_of_vtk(text, suffix));
 }
 
 }  // namespace barchan::fuzz

@@ -10,12 +10,13 @@ void formula(std::string_view text);     // a formula in x, y, z, t
 void checkpoint(std::string_view text);  // a checkpoint as it is, and once more with a checksum that fits
 void frame(std::string_view text);       // a .vtp or .vtu as compare reads it
 void series(std::string_view text);      // a .pvd
+void mesh(std::string_view text);        // a .stl, .obj, .ply or .csv of a shape; the texts of a .vtp and a .vtk
 
 struct Target {
   const char* name;
   void (*run)(std::string_view);
 };
-inline constexpr Target targets[] = {
-    {"scene", scene}, {"formula", formula}, {"checkpoint", checkpoint}, {"frame", frame}, {"series", series}};
+inline constexpr Target targets[] = {{"scene", scene}, {"formula", formula}, {"checkpoint", checkpoint},
+                                     {"frame", frame}, {"series", series},   {"mesh", mesh}};
 
 }  // namespace barchan::fuzz

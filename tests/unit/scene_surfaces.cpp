@@ -1,6 +1,7 @@
 // Shapes from polygons and files: what they hold, where they are, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -9,8 +10,11 @@
 
 #include "base/errors.hpp"
 #include "scene/generate.hpp"
+#include "scene/mesh_texts.hpp"
+#include "scene/mesh_vtk.hpp"
 #include "scene/outline.hpp"
 #include "scene/reader.hpp"
+#include "scene/surface_file.hpp"
 #include "unit/scene_texts.hpp"
 
 namespace barchan {
@@ -146,7 +150,7 @@ TEST(Surfaces, WhatCannotBeFilledIsRefused) {
   says(refusal("{ surface = \"none.stl\" }"),
        "s.toml:11:21: fill.0.shape.surface: \"none.stl\": there is no such file");
   says(refusal("{ surface = \"" + file_with("a.igs", "x") + "\" }"), "a file of an unknown kind");
-  says(refusal("{ surface = \"" + file_with("bad.vtp", "<VTKFile") + "\" }"), "neither triangles nor lines");
+  says(refusal("{ surface = \"" + file_with("bad.vtp", "<VTKFile") + "\" }"), "cannot be read as what its name says");
   says(refusal("{ surface = \"" + file_with("bad.csv", "0,0\n1,q\n") + "\" }"), "line 2 is not a corner x, y");
   says(refusal("{ surface = \"" + file_with("empty.stl", "solid a\nendsolid a\n") + "\" }", 3),
        "neither triangles nor lines");
@@ -156,6 +160,82 @@ TEST(Surfaces, WhatCannotBeFilledIsRefused) {
   says(refusal("{ disc = { centre = [0.5, 0.5], radius = 0.2 }, turn = 3 }"),
        "fill.0.shape.turn: this shape says itself");
   EXPECT_EQ(refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0, 1]] }"), "");
+}
+
+std::string corpus(const std::string& name) {
+  std::ifstream stream(BARCHAN_SOURCE_DIR "/tests/fuzz/corpus/mesh/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// One tetrahedron in every form that is read: the same triangles, in any order.
+TEST(Meshes, AllFormsHoldTheSame) {
+  const auto sorted = [](const std::vector<Facet>& facets) {
+    std::vector<std::vector<Vec3>> all;
+    for (const Facet& f : facets) {
+      all.emplace_back(f.begin(), f.end());
+      std::sort(all.back().begin(), all.back().end());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  const Mesh text = parse_stl(corpus("text.stl"));
+  EXPECT_EQ(text.problem, "");
+  ASSERT_EQ(text.triangles.size(), 4u);
+  for (const Mesh& other :
+       {parse_stl(corpus("binary.stl")), parse_obj(corpus("a.obj")), parse_ply(corpus("text.ply")),
+        parse_ply(corpus("binary_little_endian.ply")), parse_ply(corpus("binary_big_endian.ply"))}) {
+    EXPECT_EQ(other.problem, "");
+    EXPECT_EQ(sorted(other.triangles), sorted(text.triangles));
+  }
+  for (const char* name : {"text.vtk", "text.vtp"}) {
+    const SurfaceFile file = read_surface(BARCHAN_SOURCE_DIR "/tests/fuzz/corpus/mesh/" + std::string(name));
+    EXPECT_EQ(file.problem, "");
+    EXPECT_EQ(sorted(file.facets), sorted(text.triangles));
+  }
+  EXPECT_EQ(parse_ply(corpus("strips.ply")).triangles.size(), 3u);
+  EXPECT_EQ(parse_obj(corpus("a.obj")).segments.size(), 2u);
+  EXPECT_EQ(parse_corners(corpus("corners.csv")).segments.size(), 6u);
+}
+
+// What was read as another shape, or ended the program, before (VTK's readers trust a file).
+TEST(Meshes, DamageIsRefusedByName) {
+  const auto refused = [](const Mesh& mesh, const std::string& why) {
+    EXPECT_NE(mesh.problem.find(why), std::string::npos) << '"' << mesh.problem << "\" lacks " << why;
+  };
+  refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2 4")), "line 19 names vertex 4 of 4, from 0");
+  refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2 -1")), "names vertex -1");
+  refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2")),
+          "line 19 has a list of 3 values, more than the file holds");
+  refused(parse_ply(with(corpus("text.ply"), "1 0 0 7", "1 zz 0 7")), "line 16 has \"zz\" where a number");
+  refused(parse_ply(with(corpus("text.ply"), "1 0 0 7", "1 inf 0 7")), "where a number is expected");
+  refused(parse_ply(with(corpus("text.ply"), "property float x", "property float q")), "has no number \"x\"");
+  refused(parse_ply(with(corpus("text.ply"), "vertex_indices", "vertex_indicet")), "has no list");
+  refused(parse_ply(with(corpus("text.ply"), "vertex 4", "vertex 5")), "line 23 has 2 values, and the head says 1");
+  refused(parse_ply(with(corpus("text.ply"), "vertex 4", "vertex 99999999999999999999")), "a number of elements");
+  refused(parse_ply(corpus("binary_little_endian.ply").substr(0, 330)), "the file ends before its last element");
+  refused(parse_ply(corpus("binary_little_endian.ply") + "x"), "1 bytes follow the last element");
+  refused(parse_obj(with(corpus("a.obj"), "f 1 2 4", "f 1 2 5")), "line 11 names vertex 5 of 4");
+  refused(parse_obj(with(corpus("a.obj"), "f 1 2 4", "f 1 2 0")), "names vertex 0");
+  refused(parse_obj(with(corpus("a.obj"), "v 1 0 0", "v 1 0,0 0")), "line 5 has \"0,0\"");
+  refused(parse_obj(with(corpus("a.obj"), "v 1 0 0", "w 1 0 0")), "line 5 begins with \"w\"");
+  refused(parse_stl(with(corpus("text.stl"), "vertex 1 0 0", "vertex 1 nan 0")), "line 6 has \"nan\"");
+  refused(parse_stl(with(corpus("text.stl"), "endsolid a", "")), "ends before \"endsolid\"");
+  refused(parse_stl(corpus("binary.stl").substr(0, 250)), "says that it has 4 triangles, 284 bytes, and has 250 bytes");
+  refused(parse_corners("x,y0,0\n1,0\n1,1\n0,1\n"), "line 1 is not a corner x, y");
+  refused(parse_corners("x,y\n0,0\n1,0x\n1,1\n"), "line 3 is not a corner");
+  EXPECT_NE(wrong_number_of_vtk(with(corpus("text.vtk"), "1 0 0", "1 zz 0"), ".vtk"), "");
+  EXPECT_NE(wrong_number_of_vtk(with(corpus("text.vtp"), "1 0 0", "1 inf 0"), ".vtp"), "");
+  EXPECT_EQ(wrong_number_of_vtk(corpus("text.vtp"), ".vtp"), "");
+}
+
+TEST(Meshes, DamageOfVtkFilesIsRefused) {
+  for (const auto& [from, to] : {std::pair{"0 2 1 0 1 3", "0 2 1 0 1 9999"}, std::pair{"3 6 9 12", "3 6 9 1200000"},
+                                 std::pair{"NumberOfPoints=\"4\"", "NumberOfPoints=\"4000000000000000\""}}) {
+    const std::string path = file_with("damaged.vtp", with(corpus("text.vtp"), from, to));
+    EXPECT_NE(read_surface(path).problem, "") << to;
+  }
+  const std::string path = file_with("damaged.vtk", with(corpus("text.vtk"), "3 0 1 3", "3 0 1 7"));
+  EXPECT_NE(read_surface(path).problem, "");
 }
 
 TEST(Fills, LeaveOutWhatEarlierFillsHold) {

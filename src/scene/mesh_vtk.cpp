@@ -1,0 +1,262 @@
+#include "scene/mesh_vtk.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vtkCell.h>
+#include <vtkDataSet.h>
+#include <vtkGenericDataObjectReader.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "scene/mesh_words.hpp"
+
+namespace barchan {
+
+using namespace mesh;
+
+namespace {
+
+constexpr unsigned most_seconds = 300;
+constexpr const char* unreadable = "cannot be read as what its name says it is";
+
+/// Hears VTK's complaints and keeps them off the terminal: the scene's message tells what is wrong.
+class Listener : public vtkOutputWindow {
+ public:
+  static Listener* New();
+  vtkTypeMacro(Listener, vtkOutputWindow)  // a whole function
+      void DisplayText(const char*) override {}
+  void DisplayErrorText(const char*) override { heard = true; }
+  void DisplayWarningText(const char*) override {}
+  bool heard = false;
+};
+Listener* Listener::New() { VTK_STANDARD_NEW_BODY(Listener); }
+
+/// The places of a cell's corners in their order around it; its numbers may be wrong.
+std::vector<Vec3> corners_of(vtkDataSet& data, vtkIdType k, vtkIdList& ids) {
+  data.GetCellPoints(k, &ids);
+  std::vector<Vec3> corners(static_cast<std::size_t>(ids.GetNumberOfIds()));
+  for (vtkIdType i = 0; i < ids.GetNumberOfIds(); ++i) {
+    const vtkIdType id = ids.GetId(i);
+    if (id < 0 || id >= data.GetNumberOfPoints())
+      refuse("cell " + std::to_string(k) + " names point " + std::to_string(id) + " of " +
+             std::to_string(data.GetNumberOfPoints()));
+    data.GetPoint(id, corners[static_cast<std::size_t>(i)].data());
+  }
+  return corners;
+}
+
+void take_cells(vtkDataSet& data, Mesh& mesh) {
+  vtkNew<vtkIdList> ids;
+  std::vector<std::size_t> order;
+  for (vtkIdType k = 0; k < data.GetNumberOfCells(); ++k) {
+    const std::vector<Vec3> corners = corners_of(data, k, *ids);
+    order.resize(corners.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto least = [&](std::size_t wanted) {
+      if (corners.size() < wanted) refuse("cell " + std::to_string(k) + " has too few points");
+    };
+    switch (data.GetCellType(k)) {
+      case VTK_LINE:
+      case VTK_POLY_LINE:
+        least(2);
+        for (std::size_t i = 0; i + 1 < corners.size(); ++i) add_segment(mesh, corners[i], corners[i + 1]);
+        break;
+      case VTK_TRIANGLE_STRIP:
+        least(3);
+        add_strip(mesh, corners, order);
+        break;
+      case VTK_PIXEL:  // its corners go to and fro, not around
+        least(4);
+        std::swap(order[2], order[3]);
+        [[fallthrough]];
+      case VTK_TRIANGLE:
+      case VTK_QUAD:
+      case VTK_POLYGON:
+        least(3);
+        add_polygon(mesh, corners, order);
+        break;
+      case VTK_QUADRATIC_EDGE:
+      case VTK_QUADRATIC_TRIANGLE:
+      case VTK_QUADRATIC_QUAD:
+      case VTK_BIQUADRATIC_QUAD: refuse("has curved cells; expected triangles, polygons or lines"); break;
+      default: break;  // points and cells of three dimensions bound nothing
+    }
+  }
+}
+
+template <class Reader>
+void read_with(const std::string& path, Mesh& mesh, const Listener& listener) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  auto* data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  if (!data || reader->GetErrorCode() != 0 || listener.heard) refuse(unreadable);
+  take_cells(*data, mesh);
+}
+
+Mesh read_here(const std::string& path, const std::string& suffix) {
+  return whole([&](Mesh& mesh) {
+    vtkNew<Listener> listener;
+    vtkOutputWindow::SetInstance(listener);
+    if (suffix == ".vtp") read_with<vtkXMLPolyDataReader>(path, mesh, *listener);
+    else if (suffix == ".vtu") read_with<vtkXMLUnstructuredGridReader>(path, mesh, *listener);
+    else read_with<vtkGenericDataObjectReader>(path, mesh, *listener);
+  });
+}
+
+bool send(int to, const void* data, std::size_t size) {
+  const char* from = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t sent = write(to, from, size);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return false;
+    from += sent;
+    size -= static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+bool send_mesh(int to, const Mesh& mesh) {
+  const std::size_t sizes[3] = {mesh.triangles.size(), mesh.segments.size(), mesh.problem.size()};
+  return send(to, sizes, sizeof sizes) && send(to, mesh.triangles.data(), sizes[0] * sizeof(Facet)) &&
+         send(to, mesh.segments.data(), sizes[1] * sizeof(Facet)) && send(to, mesh.problem.data(), sizes[2]);
+}
+
+/// What the child does: nothing that it damages or prints reaches the program.
+[[noreturn]] void be_the_child(int to, const std::string& path, const std::string& suffix) {
+  const int nowhere = open("/dev/null", O_WRONLY);
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGALRM})
+    std::signal(signal, SIG_DFL);
+  alarm(most_seconds);
+  bool sent = false;
+  try {
+    sent = send_mesh(to, read_here(path, suffix));
+  } catch (...) {}  // no memory, for one: the status tells
+  _exit(sent ? 0 : 1);
+}
+
+std::string receive_all(int from) {
+  std::string all;
+  std::vector<char> part(std::size_t{1} << 16);
+  while (true) {
+    const ssize_t count = read(from, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return all;
+    all.append(part.data(), static_cast<std::size_t>(count));
+  }
+}
+
+Mesh unpacked(const std::string& bytes) {
+  Mesh mesh;
+  std::size_t sizes[3] = {};
+  if (bytes.size() < sizeof sizes) return {{}, {}, unreadable};
+  std::memcpy(sizes, bytes.data(), sizeof sizes);
+  if (bytes.size() != sizeof sizes + (sizes[0] + sizes[1]) * sizeof(Facet) + sizes[2]) return {{}, {}, unreadable};
+  const char* from = bytes.data() + sizeof sizes;
+  for (auto* facets : {&mesh.triangles, &mesh.segments}) {
+    facets->resize(facets == &mesh.triangles ? sizes[0] : sizes[1]);
+    if (!facets->empty()) std::memcpy(static_cast<void*>(facets->data()), from, facets->size() * sizeof(Facet));
+    from += facets->size() * sizeof(Facet);
+  }
+  mesh.problem.assign(from, sizes[2]);
+  return mesh;
+}
+
+}  // namespace
+
+Mesh read_vtk_mesh(const std::string& path, const std::string& suffix) {
+  int ends[2];
+  if (pipe(ends) != 0) return {{}, {}, "cannot be read: " + std::string(std::strerror(errno))};
+  const pid_t child = fork();
+  if (child < 0) {
+    close(ends[0]);
+    close(ends[1]);
+    return {{}, {}, "cannot be read: " + std::string(std::strerror(errno))};
+  }
+  if (child == 0) {
+    close(ends[0]);
+    be_the_child(ends[1], path, suffix);
+  }
+  close(ends[1]);
+  const std::string bytes = receive_all(ends[0]);
+  close(ends[0]);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return {{}, {}, unreadable};
+  return unpacked(bytes);
+}
+
+// --- numbers of text
+// ----------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// VTK takes what begins like a number for one, and what does not for the end of the array.
+std::string wrong_number(std::string_view text) {
+  for (const std::string_view word : split_words(text, " \t\r\n\f\v"))
+    if (!coordinate_of(word)) return "has " + quoted(word) + " where a number is expected";
+  return "";
+}
+
+std::string wrong_in_xml(std::string_view text) {
+  for (std::size_t at = text.find("<DataArray"); at != std::string_view::npos; at = text.find("<DataArray", at)) {
+    const std::size_t open = text.find('>', at);
+    if (open == std::string_view::npos) return "";
+    const std::string_view head = text.substr(at, open - at);
+    at = open;
+    if (head.find("format=\"ascii\"") == std::string_view::npos || head.ends_with('/') ||
+        head.find("type=\"String\"") != std::string_view::npos)
+      continue;
+    const std::string_view numbers = text.substr(open + 1, text.find('<', open) - open - 1);
+    if (std::string problem = wrong_number(numbers); !problem.empty()) return problem;
+  }
+  return "";
+}
+
+std::string wrong_in_legacy(std::string_view text) {
+  Lines lines(text);
+  if (!lines.next() || !lines.next() || !lines.next() ||
+      split_words(lines.line()) != std::vector<std::string_view>{"ASCII"})
+    return "";
+  bool numbers = false;
+  while (lines.next_with_words()) {
+    const auto words = split_words(lines.line());
+    static constexpr std::string_view of_cells[] = {"POINTS",   "POLYGONS", "LINES",        "TRIANGLE_STRIPS", "CELLS",
+                                                    "VERTICES", "OFFSETS",  "CONNECTIVITY", "CELL_TYPES"};
+    if (words[0] == "POINT_DATA" || words[0] == "CELL_DATA") return "";  // nothing is read behind it
+    if (std::find(std::begin(of_cells), std::end(of_cells), words[0]) != std::end(of_cells)) {
+      numbers = true;
+    } else if (words[0] == "METADATA" || words[0] == "FIELD") {
+      numbers = false;
+    } else if (numbers) {
+      if (std::string problem = wrong_number(lines.line()); !problem.empty())
+        return "line " + std::to_string(lines.number()) + " " + problem;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string wrong_number_of_vtk(std::string_view text, const std::string& suffix) {
+  return suffix == ".vtk" ? wrong_in_legacy(text) : wrong_in_xml(text);
+}
+
+}  // namespace barchan
