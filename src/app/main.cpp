@@ -48,6 +48,19 @@ std::string not_a_command(const CLI::App& app, const std::string& word) {
          '\n' + list;
 }
 
+/// What is said of an option that does not exist, as --thread; empty: there is none.
+std::string unknown_option(const CLI::App& command, const std::vector<std::string>& words) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (!name.starts_with("--") || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return "unknown option " + barchan::shortened(name) + barchan::did_you_mean(barchan::nearest(name, known)) + '\n';
+  }
+  return "";
+}
+
 /// The status of a command whose answer is what it prints: it has failed when that could not be written.
 int all_was_said(int status) {
   errno = 0;
@@ -141,6 +154,12 @@ int dispatch(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& e) {
+    const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+    const std::string what = unknown_option(*command, words);
+    if (what.empty()) return app.exit(e), 2;
+    std::cerr << "barchan: " << what << "`barchan " << command->get_name() << " --help` says more.\n";
+    return 2;
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);
     return code == 0 ? all_was_said(0) : 2;

@@ -38,12 +38,12 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
 }
 
 int generate(const std::string& file, const std::string& output, const std::vector<std::string>& overrides) {
-  const Scene scene = read_scene(file, overrides);
-  const auto blocks = make_particles(scene, &std::cout);
-  const Plan plan = make_plan(scene, blocks);
   const bool vtu = std::filesystem::path(output).extension() == ".vtu";
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
+  const Scene scene = read_scene(file, overrides);
+  const auto blocks = make_particles(scene, &std::cout);
+  const Plan plan = make_plan(scene, blocks);
   use_threads(0, plan.particles());
   Simulation start(scene, plan, blocks);
   Frame frame = start.frame(0);

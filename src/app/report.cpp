@@ -73,6 +73,7 @@ RunReport start_report(const Scene& scene) {
   r.threads = omp_get_max_threads();
   r.scene_title = scene.title;
   r.scene_file = scene.file;
+  r.overrides = scene.overrides;
   r.scene_state = scene.state;
   r.scene_spacing = scene.spacing;
   r.process = ::getpid();

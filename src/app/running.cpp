@@ -113,7 +113,7 @@ int Run::go(Past* past) {
 int Run::loop(Past* past) {
   const double end = scene_.time.end;
   const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
-  const double row_every = scene_.output.history_every > 0 ? scene_.output.history_every : end / 100.0;
+  const double row_every = row_interval(scene_);
   const auto due = [&](double next) { return simulation_.time() * (1.0 + 1e-12) >= next; };
   const auto next_number = [&](double every) {
     long k = std::max(1L, static_cast<long>(simulation_.time() / every));

@@ -32,6 +32,7 @@ CellGrid::CellGrid(const Bounds& bounds, double cell, double reach, const Blocks
   for (std::size_t d = 0; d < dimensions_; ++d) widest = std::max(widest, blocks.side[d]);
   while (divide(cell, reach, blocks) > static_cast<double>(std::min(most, most_cells)) && cell < widest) cell *= 1.25;
   const std::size_t cells = count_[0] * count_[1] * count_[2];
+  first_run_.assign(blocks.size() + 1, 0);
   begin_.assign(cells, 0);
   end_.assign(cells, 0);
   order_interior(blocks);
@@ -143,6 +144,14 @@ void CellGrid::make_runs() {
     if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin) runs_.back().end = end;
     else runs_.push_back({begin, end, walk_block_[w]});
   }
+  // By blocks, so that threads share the blocks out.
+  std::fill(first_run_.begin(), first_run_.end(), 0u);
+  for (const BlockRun& run : runs_) ++first_run_[run.block + 1];
+  for (std::size_t b = 0; b + 1 < first_run_.size(); ++b) first_run_[b + 1] += first_run_[b];
+  runs_by_block_.resize(runs_.size());
+  for (const BlockRun& run : runs_) runs_by_block_[first_run_[run.block]++] = run;
+  for (std::size_t b = first_run_.size() - 1; b > 0; --b) first_run_[b] = first_run_[b - 1];
+  first_run_[0] = 0;
 }
 
 /// Fills order_: by cell, within a cell as they stand now, whichever thread came first. All threads of a team call it.

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/aligned.hpp"
@@ -58,7 +59,10 @@ class CellGrid {
   void sort(PhaseParticles& particles);
 
   /// The phase's particles by block, as sorted last.
-  const std::vector<BlockRun>& runs() const { return runs_; }
+  /// The runs of a block, side by side.
+  std::span<const BlockRun> runs(std::size_t block) const {
+    return {runs_by_block_.data() + first_run_[block], first_run_[block + 1] - first_run_[block]};
+  }
 
   std::size_t images() const { return images_.size(); }
   const std::vector<Image>& image_list() const { return images_; }
@@ -163,7 +167,8 @@ class CellGrid {
   std::vector<std::uint32_t> walk_;         // interior cells in the order of the sort
   std::vector<std::uint32_t> walk_block_;   // block of each walked cell
   std::vector<HaloCell> halo_cells_;
-  std::vector<BlockRun> runs_;
+  std::vector<BlockRun> runs_, runs_by_block_;
+  std::vector<std::uint32_t> first_run_;  // by block
   std::vector<std::uint32_t> cell_of_, order_;
   std::vector<Image> images_;
   std::array<AlignedVector<float>, 3> search_;

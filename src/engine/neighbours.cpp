@@ -103,8 +103,6 @@ double rebuild_cost(int dimensions) { return dimensions == 2 ? 1.5 : 1.0; }
 
 void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
   const CellGrid& grid = *grids_[phase];
-  const auto& runs = grid.runs();
-  if (run_ranges_.size() < runs.size()) run_ranges_.resize(runs.size() + runs.size() / 2);
   std::array<const double*, 3> x{};
   std::array<const float*, 3> old{};
   const auto dimensions = static_cast<std::size_t>(bounds_.dimensions);
@@ -112,19 +110,20 @@ void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
     x[d] = particles.column(Field::position, static_cast<int>(d));
     old[d] = grid.search_position(static_cast<int>(d));
   }
-  const auto n = static_cast<std::int64_t>(runs.size());
+  const auto n = static_cast<std::int64_t>(blocks_.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t q = 0; q < n; ++q) {
-    const BlockRun& run = runs[static_cast<std::size_t>(q)];
-    Range range;
-    range.low.fill(0.0f);
-    range.high.fill(0.0f);
-    for (std::size_t d = 0; d < dimensions; ++d)
-      displacements(x[d], old[d], run.begin, run.end, bounds_.low[d], range.low[d], range.high[d]);
-    run_ranges_[static_cast<std::size_t>(q)] = range;
+    Range& all = ranges_[phase][static_cast<std::size_t>(q)];
+    all.clear();
+    for (const BlockRun& run : grid.runs(static_cast<std::size_t>(q))) {
+      Range range;
+      range.low.fill(0.0f);
+      range.high.fill(0.0f);
+      for (std::size_t d = 0; d < dimensions; ++d)
+        displacements(x[d], old[d], run.begin, run.end, bounds_.low[d], range.low[d], range.high[d]);
+      all.widen(range);
+    }
   }
-  for (auto& range : ranges_[phase]) range.clear();
-  for (std::size_t q = 0; q < runs.size(); ++q) ranges_[phase][runs[q].block].widen(run_ranges_[q]);
 }
 
 bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {

@@ -78,7 +78,6 @@ class Neighbours {
   std::vector<Chunk> chunks_;  // of all lists
   Blocks blocks_;
   std::vector<std::vector<Range>> ranges_;  // by phase, block
-  std::vector<Range> run_ranges_;
   std::size_t padding_;
   double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
   bool adapts_ = false;

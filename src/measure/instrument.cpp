@@ -21,7 +21,7 @@ class Maker {
     i.stem = prefix + "_" + measured.name;
     i.phase = number(measured.phase);
     i.phase_name = measured.phase;
-    const double history = scene_.output.history_every > 0 ? scene_.output.history_every : scene_.time.end / 100.0;
+    const double history = row_interval(scene_);
     i.every = measured.every > 0 ? measured.every : history;
     i.start = measured.start;
     i.dimensions = scene_.dimensions;

@@ -41,10 +41,6 @@ void WindowMean::add(double length, double now, double dt, double value) {
   time += dt;
 }
 
-double row_interval(const Scene& scene) {
-  return scene.output.history_every > 0.0 ? scene.output.history_every : scene.time.end / 100.0;
-}
-
 double warning_interval(const Scene& scene) { return scene.time.end / 10.0; }
 
 bool Drive::exists(const Scene& scene, const Phase& fluid) {

@@ -26,8 +26,7 @@ struct WindowMean {
   double recent(double length) const { return time < 0.5 * length && last_time > 0.0 ? last / last_time : sum / time; }
 };
 
-/// Time between rows of history.csv (s), and the part of a run over which warnings mean (s).
-double row_interval(const Scene& scene);
+/// The part of a run over which warnings mean (s).
 double warning_interval(const Scene& scene);
 
 class Drive {

@@ -39,8 +39,16 @@ FolderLock::FolderLock(const std::filesystem::path& directory) : file_(directory
     throw OutputError("cannot write '" + file_.string() + "': " + std::strerror(error));
   };
   while (true) {
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    if (descriptor_ < 0 && errno == ELOOP)
+      throw OutputError("cannot write '" + file_.string() + "': is a link; remove it, or choose another --out");
     if (descriptor_ < 0) fail(errno);
+    struct stat kind {};
+    if (::fstat(descriptor_, &kind) != 0 || !S_ISREG(kind.st_mode)) {
+      ::close(descriptor_);
+      descriptor_ = -1;
+      throw OutputError("cannot write '" + file_.string() + "': is not a file; remove it, or choose another --out");
+    }
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       // A file system without locks cannot tell two runs apart; one run is worth more than none.

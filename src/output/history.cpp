@@ -42,6 +42,9 @@ std::string rows_until(std::string_view text, const std::string& expected_header
 History::History(const std::filesystem::path& file, const std::vector<std::string>& columns, bool append, double until)
     : file_(file), columns_(columns.size()) {
   std::string begin = header(columns);
+  std::error_code unseen;
+  if (std::filesystem::is_fifo(file, unseen) || std::filesystem::is_socket(file, unseen))  // nobody may ever read it
+    throw OutputError("cannot write '" + file.string() + "': is not a file");
   if (append && std::filesystem::exists(file)) {
     try {
       begin = rows_until(read_text(file), begin, until);

@@ -1,7 +1,11 @@
 #include "output/run_report.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "output/whole_file.hpp"
 
@@ -19,7 +23,11 @@ std::string to_json(const RunReport& r) {
       {"vtk", r.vtk},
       {"threads", r.threads},
       {"scene",
-       {{"title", r.scene_title}, {"file", r.scene_file}, {"state", r.scene_state}, {"spacing", r.scene_spacing}}},
+       {{"title", r.scene_title},
+        {"file", r.scene_file},
+        {"set", Json(r.overrides)},
+        {"state", r.scene_state},
+        {"spacing", r.scene_spacing}}},
       {"end_reason", r.end_reason},
       {"process", r.process},
       {"host", r.host},
@@ -60,6 +68,7 @@ void write_run_report(const std::filesystem::path& file, const RunReport& report
 
 bool overwrite_run_report(const std::filesystem::path& file, const RunReport& report) {
   std::error_code failed;
+  if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, failed))) return false;
   const auto size = std::filesystem::file_size(file, failed);
   if (failed) return false;
   const nlohmann::ordered_json json{{"version", report.version}, {"end_reason", report.end_reason},
@@ -73,15 +82,35 @@ bool overwrite_run_report(const std::filesystem::path& file, const RunReport& re
   return stream.good();
 }
 
+namespace {
+
+/// A file that an instrument writes: KIND_NAME with one of the suffixes, in the folder itself.
+bool is_measured(const std::string& file) {
+  const std::size_t dot = file.rfind('.'), line = file.find('_');
+  if (dot == std::string::npos || line == std::string::npos || line > dot) return false;
+  const std::string_view kind(file.data(), line), suffix(file.data() + dot, file.size() - dot);
+  const auto is_one_of = [](std::string_view word, std::initializer_list<std::string_view> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  return is_one_of(kind, {"probe", "profile", "grid", "wall_shear", "saltation"}) &&
+         is_one_of(suffix, {".csv", ".vtp", ".vti", ".json"}) &&
+         std::all_of(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(dot),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+}  // namespace
+
 std::vector<std::string> measured_files(const std::filesystem::path& file) {
   std::vector<std::string> files;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return files;
   std::ifstream stream(file, std::ios::binary);
   const auto json = nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("measured") || !json["measured"].is_array()) return files;
   for (const auto& measured : json["measured"]) {
     if (!measured.is_object() || !measured.contains("files") || !measured["files"].is_array()) continue;
-    for (const auto& name : measured["files"])  // a name in the same folder, nothing else
-      if (name.is_string() && name.get<std::string>().find('/') == std::string::npos) files.push_back(name);
+    for (const auto& name : measured["files"])  // what an instrument writes, nothing else: anyone may write a run.json
+      if (name.is_string() && is_measured(name)) files.push_back(name);
   }
   return files;
 }

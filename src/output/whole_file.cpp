@@ -34,7 +34,9 @@ int write_all(int descriptor, const char* bytes, std::size_t count) {
 
 WholeFile::WholeFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
   temporary_ += suffix;
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  // What a killed run left under this name goes; a link or a pipe that somebody put there is not written through.
+  if (::unlink(temporary_.c_str()) != 0 && errno != ENOENT) fail(file_, errno);
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(file_, errno);
 }
 
@@ -78,6 +80,9 @@ void write_whole_file(const std::filesystem::path& file, std::string_view text) 
 }
 
 std::string read_text(const std::filesystem::path& file) {
+  std::error_code unseen;
+  if (std::filesystem::is_fifo(file, unseen) || std::filesystem::is_socket(file, unseen))
+    throw OutputError("cannot read '" + file.string() + "': is not a file");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   std::string text;

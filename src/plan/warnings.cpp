@@ -1,6 +1,7 @@
 // What a scene may mean otherwise, or what will go badly: told by the plan, before and after a run. Nothing here is
 // wrong for certain, else it would be refused.
 #include <algorithm>
+#include <cstdio>
 
 #include "models/drive.hpp"
 #include "plan/plan.hpp"
@@ -56,6 +57,22 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   }
 }
 
+/// What has no entry passes through each other: two fluids, and the grains of one phase.
+void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
+  for (std::size_t a = 0; a < plan.phases.size(); ++a) {
+    const PlanPhase& p = plan.phases[a];
+    if (p.diameter > 0 && p.moves && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]))
+      plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": the grains of \"" + p.name +
+                              "\" pass through each other");
+    for (std::size_t b = 0; b < a; ++b)
+      if (p.flows && plan.phases[b].flows && p.count > 0 && plan.phases[b].count > 0 &&
+          !entry_between(scene, scene.phases[a], scene.phases[b]))
+        plan.warnings.push_back("interactions: no entry " + plan.phases[b].name + "-" + p.name + ": the fluids \"" +
+                                plan.phases[b].name + "\" and \"" + p.name +
+                                "\" do not feel each other and pass through each other");
+  }
+}
+
 bool are_grains(const PlanPhase& phase) { return phase.kind == "grains"; }
 
 /// What holds the mean speed of a wind pulls as hard as grains brake, and no friction velocity is given.
@@ -84,14 +101,60 @@ void warn_of_strong_columns(const Scene& scene, Plan& plan) {
         plan.warnings.push_back(told);
 }
 
+/// Frames and rows cut steps: more often than steps, and the run is as much longer.
+void warn_of_output(const Scene& scene, Plan& plan) {
+  const double step = plan.step(), rows = row_interval(scene);
+  const auto text = [](double x) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.4g", x);
+    return std::string(number);
+  };
+  const auto shorter = [&](const std::string& key, double every, const char* what) {
+    plan.warnings.push_back(key + ": " + text(every) + " s is shorter than the first step, " + text(step) + " s: " +
+                            what + " cut the steps, and the run takes " + text(step / every) + " times as many");
+  };
+  if (scene.output.every > 0.0 && scene.output.every < 0.999 * step)
+    shorter("output.every", scene.output.every, "frames");
+  if (scene.output.history_every > 0.0 && rows < 0.999 * step) shorter("output.history-every", rows, "rows");
+  if (scene.output.every > scene.time.end * (1.0 + 1e-9))
+    plan.warnings.push_back("output.every: " + text(scene.output.every) + " s is beyond time.end, " +
+                            text(scene.time.end) + " s: there are a first frame and a last one only");
+  if (scene.output.history_every > scene.time.end * (1.0 + 1e-9))
+    plan.warnings.push_back("output.history-every: " + text(scene.output.history_every) + " s is beyond time.end, " +
+                            text(scene.time.end) + " s: there is a first row only");
+  if (scene.output.every > 0.0 && scene.time.end / scene.output.every > 1.0001e4)
+    plan.warnings.push_back("output.every: " + text(scene.output.every) + " s makes " +
+                            text(scene.time.end / scene.output.every) + " frames");
+}
+
+void warn_of_weight(const Scene& scene, Plan& plan) {
+  const auto up = static_cast<std::size_t>(1);
+  if (scene.domain.gravity[up] > 0.0)
+    plan.warnings.push_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
+}
+
+/// A radius below one spacing meets no neighbour: it may have been meant in metres.
+void warn_of_small_radius(const Scene& scene, Plan& plan) {
+  for (const Interaction& pair : scene.interactions)
+    if (!of_spheres(pair) && !pair.radius_in_metres && pair.radius > 0.0 && pair.radius < 1.0)
+      plan.warnings.push_back(
+          "interactions." + pair.a + "-" + pair.b +
+          ": a radius below one spacing meets no neighbour of a lattice; radius-in-metres says one in "
+          "metres");
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, Plan& plan) {
   warn_of_pairing(scene, plan);
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
+  warn_of_what_does_not_meet(scene, plan);
   warn_of_held_speed_over_grains(scene, plan);
   warn_of_strong_columns(scene, plan);
+  warn_of_output(scene, plan);
+  warn_of_weight(scene, plan);
+  warn_of_small_radius(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }
 

@@ -143,6 +143,11 @@ void check_bodies(const Scene& scene, const Report& report) {
     check_set(scene.motions[k], "motion." + std::to_string(k), scene, report);
   check_names(scene.markers, "marker.", report);
   for (std::size_t k = 0; k < scene.markers.size(); ++k)
+    if (const std::string dotted = "marker." + std::to_string(k) + ".name";
+        find_phase(scene, scene.markers[k].name) && !report.touched(dotted))
+      report(dotted, "\"" + scene.markers[k].name +
+                         "\" is a phase too, and the columns of both would have one name; expected another name");
+  for (std::size_t k = 0; k < scene.markers.size(); ++k)
     check_set(scene.markers[k], "marker." + std::to_string(k), scene, report);
   check_names(scene.force_meters, "force.", report);
   for (std::size_t k = 0; k < scene.force_meters.size(); ++k) {

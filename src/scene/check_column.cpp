@@ -49,9 +49,34 @@ void check_wind(const Phase& column, const std::string& dotted, const Report& re
   }
 }
 
+/// Lengths that the column, or the domain, cannot hold.
+void check_lengths(const Scene& scene, const Phase& column, const std::string& dotted, const Report& report) {
+  if (report.touched("domain") || report.touched(dotted)) return;
+  const ColumnKeys& own = column.column();
+  const double height = own.height.value_or(scene.domain.size[1]);
+  const auto refuse = [&](const char* key, double value, const std::string& what) {
+    report(dotted + key, number_text(value) + " m " + what);
+  };
+  const std::string of_column = " the height of the column, " + number_text(height) + " m";
+  if (own.resolution && !(*own.resolution < height))
+    refuse(".resolution", *own.resolution, "is not below" + of_column + "; expected cells that it holds");
+  if (own.log_profile && !(own.log_profile->roughness < height))
+    refuse(".log-profile.roughness", own.log_profile->roughness,
+           "is not below" + of_column + ": there is no wind below the roughness length; expected a smaller one");
+  for (const Fill& fill : scene.fills) {
+    const auto* bed = std::get_if<BedShape>(&fill.shape);
+    const Phase* grains = find_phase(scene, fill.phase);
+    if (bed && grains && own.height && entry_between(scene, column, *grains) && !(*own.height > bed->from + bed->depth))
+      return refuse(".height", *own.height,
+                    "ends inside the bed of \"" + grains->name + "\", whose surface is " +
+                        number_text(bed->from + bed->depth) + " m over the bottom; expected a higher one");
+  }
+}
+
 void check_column(const Scene& scene, const Phase& column, const Report& report) {
   const std::string dotted = "phases." + column.name;
   check_wind(column, dotted, report);
+  check_lengths(scene, column, dotted, report);
   for (std::size_t k = 0; k < scene.fills.size(); ++k)
     if (scene.fills[k].phase == column.name)
       report("fill." + std::to_string(k) + ".phase",

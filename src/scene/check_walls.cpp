@@ -87,6 +87,29 @@ void check_keys(const Scene& scene, const Phase& wall, const Report& report) {
   }
 }
 
+/// Walls that fluids cannot be beside, whatever the keys' own bounds say.
+void check_sizes(const Scene& scene, const Phase& wall, const Report& report) {
+  const std::string dotted = "phases." + wall.name;
+  if (const auto roughness = wall.wall().roughness; roughness && !report.touched(dotted + ".roughness"))
+    for (const Phase& fluid : scene.phases)
+      if (fluid.kind() == PhaseKind::fluid && entry_between(scene, wall, fluid) && !(*roughness < fluid.spacing))
+        return report(dotted + ".roughness", number_text(*roughness) + " m reaches beyond the first row of \"" +
+                                                 fluid.name + "\", " + number_text(fluid.spacing) +
+                                                 " m; expected a roughness length below a spacing");
+  if (!wall.wall().shear_stress || report.touched(dotted + ".shear-stress")) return;
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const auto* sides = std::get_if<SidesShape>(&scene.fills[k].shape);
+    if (scene.fills[k].phase != wall.name || !sides) continue;
+    for (const std::string& side : sides->sides) {
+      const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
+      if ((*wall.wall().shear_stress)[axis] != 0.0)
+        return report(dotted + ".shear-stress",
+                      std::string("its part along ") + "xyz"[axis] + " stands across the side \"" + side +
+                          "\" of fill." + std::to_string(k) + "; expected 0 there: a shear stress pulls along a wall");
+    }
+  }
+}
+
 void check_velocity(const Scene& scene, const Phase& wall, const Report& report) {
   const std::string dotted = "phases." + wall.name + ".velocity";
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
@@ -112,6 +135,7 @@ void check_walls(const Scene& scene, const Report& report) {
   for (const Phase& wall : scene.phases) {
     if (wall.kind() != PhaseKind::wall || report.touched("phases." + wall.name + ".kind")) continue;
     check_keys(scene, wall, report);
+    if (!report.touched("fill") && !report.touched("interactions")) check_sizes(scene, wall, report);
     if (report.has("phases." + wall.name + ".velocity") && !report.touched("fill") && !report.touched("domain"))
       check_velocity(scene, wall, report);
   }

@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "scene/couplings.hpp"
+#include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/lattice.hpp"
 #include "scene/nearest.hpp"
@@ -236,6 +237,26 @@ void check_held_force(const Scene& scene, const Report& report, std::size_t numb
          number_text(wanted) + " Pa; expected walls that pull with that at most, or a larger friction-velocity");
 }
 
+/// A formula where a number would have to be 0 or more: looked at in the middle of the domain and at its corners, at
+/// the start, the end and between. What it is elsewhere and at other times nobody knows beforehand.
+void not_negative_formula(const Scene& scene, const Expression& e, const std::string& dotted, const Report& report) {
+  if (!e.is_formula() || report.touched(dotted) || report.touched("domain") || report.touched("time.end")) return;
+  const Formula formula(e);
+  constexpr int times = 20;
+  for (int step = 0; step <= times; ++step)
+    for (unsigned corner = 0; corner < 9; ++corner) {
+      const double t = scene.time.end * step / times;
+      Vec3 x = scene.domain.origin;
+      for (unsigned d = 0; d < 3; ++d)
+        x[d] += (corner == 8 ? 0.5 : static_cast<double>(corner >> d & 1u)) * scene.domain.size[d];
+      const double value = formula(x, t);
+      if (value >= 0.0) continue;
+      return report(dotted, "the formula is " + number_text(value) + " at t = " + number_text(t) + " s, (" +
+                                number_text(x[0]) + ", " + number_text(x[1]) + ", " + number_text(x[2]) +
+                                ") m; expected 0 or more at all times and places");
+    }
+}
+
 /// A hold needs a fluid and a periodic axis; a forcing says one thing.
 void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   const std::string dotted = "forcing." + std::to_string(number);
@@ -253,6 +274,14 @@ void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   for (std::size_t d = 0; forcing.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
     if (!(forcing.box->min[d] < forcing.box->max[d]) && !report.touched(dotted))
       report(dotted + ".box", "the box is empty; expected min < max");
+  for (std::size_t d = 0; forcing.box && d < static_cast<std::size_t>(scene.dimensions); ++d) {
+    const double low = scene.domain.origin[d], high = low + scene.domain.size[d];
+    if (!report.touched(dotted) && !report.touched("domain") &&
+        (forcing.box->max[d] <= low || forcing.box->min[d] >= high))
+      report(dotted + ".box", "the box lies outside the domain, which along " + std::string(1, "xyz"[d]) +
+                                  " goes from " + number_text(low) + " to " + number_text(high) + " m");
+  }
+  not_negative_formula(scene, forcing.rate, dotted + ".rate", report);
   if (report.has(dotted + ".friction-velocity") && !forcing.holds_force() && !report.touched(dotted + ".hold"))
     report(dotted + ".friction-velocity",
            "only a force that is held has one; expected hold = \"stress\" or \"pressure-gradient\"");
@@ -304,6 +333,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_columns(scene, report);
   check_walls(scene, report);
   check_measuring(scene, report);
+  check_run(scene, report);
 }
 
 }  // namespace barchan

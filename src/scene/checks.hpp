@@ -50,6 +50,9 @@ void check_rigid(const Scene& scene, const Report& report);
 /// Reads the files of surfaces into the scene. What is wrong with a file is told where the scene names it.
 void read_surfaces(Scene& scene, const Report& report);
 
+/// Of the run as a whole: names of files, its state in ParaView, how often it writes, its distance from zero.
+void check_run(const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

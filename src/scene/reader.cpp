@@ -31,6 +31,7 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   const toml::table document = parse_document(text, file, overrides, problems);
   validate(document, problems);
   Scene scene = read_document(document, file);
+  scene.overrides = overrides;
   scene.places = places_of_keys(document, file);
   read_surfaces(scene, Report(document, problems));
   scene.identity = identity_of(document, checksums_of_files(scene));

@@ -70,7 +70,7 @@ constexpr Key table[] = {
      "Gradient operators: as they are, or corrected to first order (docs/method.md)."},
     {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",
      "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|."},
-    {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", positive},
+    {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", {.at_most = 1.0, .above = 0.0}},
     {"phases", "young", of<&ElasticKeys::young, &GrainsKeys::young>(required, "required; of grains: from largest-overlap"), "Pa",
      "Young's modulus; of grains for contacts with law = \"hertz\".", positive, "", "grains"},
     {"phases", "poisson", of<&ElasticKeys::poisson, &GrainsKeys::poisson>(0.0), "", "Poisson's ratio; of grains for contacts with law = \"hertz\".", {.above = -1.0, .below = 0.5}},
@@ -96,9 +96,9 @@ constexpr Key table[] = {
     {"phases", "diameter", sizes("none: particles of one spacing"), "m",
      "Grains as spheres, in 2D in a slab as thick as the mean diameter; needs contacts with law = \"linear\" or \"hertz\". Of a wall: what "
      "such grains feel of its particles.", positive},
-    {"phases", "friction", of<&GrainsKeys::friction>(0.0), "", "Coulomb's coefficient of friction of spheres.", not_negative},
+    {"phases", "friction", of<&GrainsKeys::friction>(0.0), "", "Coulomb's coefficient of friction of spheres.", {.at_least = 0.0, .at_most = 10.0}},
     {"phases", "rolling-friction", of<&GrainsKeys::rolling_friction>(0.0), "",
-     "Rolling resistance of spheres: the largest torque over normal force and reduced radius.", not_negative},
+     "Rolling resistance of spheres: the largest torque over normal force and reduced radius.", {.at_least = 0.0, .at_most = 10.0}},
     {"phases", "stiffness", of<&GrainsKeys::stiffness, &RigidKeys::stiffness>("from largest-overlap"), "N/m",
      "Stiffness of a contact of two grains with law = \"linear\"; of a contact of rigid bodies, in 2D per metre of depth.", positive},
     {"phases", "largest-overlap", of<&GrainsKeys::largest_overlap, &RigidKeys::largest_overlap>(0.02), "",
@@ -159,7 +159,7 @@ constexpr Key table[] = {
     {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
      "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
      "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
-    {"interactions.pair", "friction", at<&Interaction::friction>("0"), "", "Coulomb's coefficient of friction of such a contact.", not_negative},
+    {"interactions.pair", "friction", at<&Interaction::friction>("0"), "", "Coulomb's coefficient of friction of such a contact.", {.at_least = 0.0, .at_most = 10.0}},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
 
     {"fill", "phase", at<&Fill::phase>(required), "", "Phase of the particles."},
@@ -328,7 +328,7 @@ constexpr Key table[] = {
      "Largest speed that will occur; sets automatic sound speeds.", not_negative},
 
     {"output", "every", at<&OutputControl::every>("first and last only"), "s", "Time between frames.", not_negative},
-    {"output", "history-every", at<&OutputControl::history_every>("a hundredth of the end time"), "s",
+    {"output", "history-every", at<&OutputControl::history_every>("a tenth of every; a hundredth of the end time where every is not given"), "s",
      "Time between rows of history.csv.", not_negative},
     {"output", "checkpoint-every", at<&OutputControl::checkpoint_every>(600.0), "s",
      "Wall time between checkpoints; 0: at the end and at signals only.", not_negative},

@@ -376,7 +376,7 @@ struct TimeControl {
 
 struct OutputControl {
   double every{};                   // s between frames; 0: first and last only
-  double history_every{};           // s between rows of history.csv; 0: a hundredth of the end time
+  double history_every{};           // s between rows of history.csv; 0: see row_interval()
   std::vector<std::string> fields;  // beside id, phase, velocity, smoothing_length, density, pressure
   FrameFormat format{};
   bool compress{};
@@ -385,8 +385,9 @@ struct OutputControl {
 };
 
 struct Scene {
-  std::string file;  // as given, for messages
-  std::string name;  // file name without directory and suffix
+  std::string file;                    // as given, for messages
+  std::vector<std::string> overrides;  // KEY=VALUE of --set, in their order
+  std::string name;                    // file name without directory and suffix
   std::string
       identity;  // its document with the overrides, less what a run that goes on may change (scene/identity.hpp)
   std::map<std::string, std::string> places;  // dotted key -> FILE:LINE:COLUMN, for messages (scene/located.hpp)
@@ -407,5 +408,13 @@ struct Scene {
   TimeControl time;
   OutputControl output;
 };
+
+/// Seconds between rows of history.csv: as given, or a tenth of output.every, so that a run that goes on to a later end
+/// takes the same steps; without either a hundredth of the end time.
+inline double row_interval(const Scene& scene) {
+  if (scene.output.history_every > 0.0) return scene.output.history_every;
+  const bool frames = scene.output.every > 0.0 && scene.output.every < scene.time.end;
+  return frames ? scene.output.every / 10.0 : scene.time.end / 100.0;
+}
 
 }  // namespace barchan

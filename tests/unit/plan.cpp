@@ -229,7 +229,7 @@ TEST(Plan, EddiesAreThereOnlyIfAsked) {
   EXPECT_FALSE(eddies(plan_of(scene(air + floor, entries, {"air"}, below))));
   EXPECT_TRUE(eddies(plan_of(scene(air + "turbulence = \"mixing-length\"\n" + floor, entries, {"air"}, below))));
   EXPECT_TRUE(eddies(plan_of(scene(air + floor + "roughness = 1e-3\n", entries, {"air"}, below))));
-  EXPECT_TRUE(eddies(plan_of(scene(air + floor + "shear-stress = [1, 0]\n", entries, {"air"}, below))));
+  EXPECT_TRUE(eddies(plan_of(scene(air + floor + "shear-stress = [0, 1]\n", entries, {"air"}, below))));
 }
 
 // Only a fluid that ends somewhere has a free surface: its fields and its pass. Walls below, periodic above.

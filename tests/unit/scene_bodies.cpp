@@ -67,8 +67,8 @@ TEST(SceneBodies, RefusesSetsThatAreNone) {
 void expect_refused_at_start(const std::string& text, const std::string& words) {
   const Scene s = parse_scene(text, "bodies.toml");
   const auto blocks = generate(s);
-  const Plan plan = make_plan(s, blocks);
   try {
+    const Plan plan = make_plan(s, blocks);
     const Simulation simulation(s, plan, blocks);
     ADD_FAILURE() << "not refused: " << words;
   } catch (const SceneError& e) { EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what(); }
@@ -78,6 +78,9 @@ TEST(SceneBodies, RefusesEmptySetsAndBodiesOfOneLayer) {
   expect_refused_at_start(
       text_of({"", "", "[[motion]]\nphase = \"a\"\nbox = { min = [1.8, 0.8], max = [1.9, 0.9] }\n"}),
       "no particle of phase \"a\" stands in the box");
+  expect_refused_at_start(
+      text_of({"", "", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\nvelocity = [1, 0]\n"}),
+      "that motion.0 moves too");
   std::string text = text_of({"", "", ""});
   const std::string cube = "shape = { cube = { centre = [0.5, 0.5], count = 4 } }";
   text.replace(text.find(cube), cube.size(), "shape = { points = [[0.5, 0.5], [0.6, 0.5], [0.7, 0.5]] }");

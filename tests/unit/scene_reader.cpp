@@ -108,7 +108,7 @@ TEST(SceneReader, KeepsTheOrderOfPhasesAndPairsInTheFile) {
 /// default.
 const std::string every_key = R"toml(
 title = "All keys"
-state = "dune"
+state = "airflow"
 dimensions = 3
 spacing = 0.1
 precision = "mixed"
@@ -262,7 +262,7 @@ walls = false
 
 TEST(SceneReader, TakesEveryKey) {
   const Scene scene = parse_scene(every_key, "all.toml");
-  EXPECT_EQ(scene.state, "dune");
+  EXPECT_EQ(scene.state, "airflow");
   EXPECT_EQ(scene.dimensions, 3);
   EXPECT_EQ(scene.precision, Precision::mixed);
   EXPECT_EQ(scene.domain.origin, (Vec3{-1, 0, 0.5}));

@@ -8,6 +8,7 @@
 #include "engine/means.hpp"
 #include "kernels/kernel.hpp"
 #include "models/bodies/body_forces.hpp"
+#include "models/bodies/sets.hpp"
 #include "models/bodies/stress_fields.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -46,10 +47,11 @@ PhaseRules rules_of(const PlanPhase& p, double spacing, const std::string& step_
 
 }  // namespace
 
-void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
+void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                       std::vector<std::string>&) {
   using enum Field;
   const Phase& phase = scene.phases[number];
+  if (number < blocks.size()) refuse_shared_motions(scene, number, blocks[number].position);
   PlanPhase& p = layout.phases[number];
   const auto asked = [&](Field field) {
     const auto& names = scene.output.fields;

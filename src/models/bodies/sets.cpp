@@ -1,6 +1,7 @@
 #include "models/bodies/sets.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/errors.hpp"
 #include "engine/means.hpp"
@@ -12,7 +13,32 @@ namespace {
 
 const char* const axes[] = {"x", "y", "z"};
 
+bool in_set(const BodySet& set, const Vec3& x, double slack, int dimensions) {
+  bool inside = true;
+  for (std::size_t d = 0; set.box && d < static_cast<std::size_t>(dimensions); ++d)
+    inside = inside && x[d] >= set.box->min[d] - slack && x[d] <= set.box->max[d] + slack;
+  return inside;
+}
+
 }  // namespace
+
+void refuse_shared_motions(const Scene& scene, std::size_t phase, const std::vector<Vec3>& places) {
+  const Phase& body = scene.phases[phase];
+  std::vector<std::size_t> motions;
+  for (std::size_t k = 0; k < scene.motions.size(); ++k)
+    if (scene.motions[k].phase == body.name) motions.push_back(k);
+  if (motions.size() < 2) return;
+  for (const Vec3& x : places) {
+    std::optional<std::size_t> first;
+    for (const std::size_t k : motions) {
+      if (!in_set(scene.motions[k], x, 1e-6 * body.spacing, scene.dimensions)) continue;
+      if (first)
+        throw SceneError(located(scene, "motion." + std::to_string(k)) + ": moves particles of \"" + body.name +
+                         "\" that motion." + std::to_string(*first) + " moves too; expected sets apart, or one motion");
+      first = k;
+    }
+  }
+}
 
 SetOfBody::SetOfBody(const Layout& layout, const BodySet& set) : layout_(layout), set_(set) {
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
@@ -23,12 +49,8 @@ void SetOfBody::find(const std::vector<ParticleBlock>& blocks) {
   const std::vector<Vec3>& places = blocks[phase_].position;
   const double slack = 1e-6 * layout_.phases[phase_].spacing;
   ids_.clear();
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    bool inside = true;
-    for (std::size_t d = 0; set_.box && d < static_cast<std::size_t>(layout_.dimensions); ++d)
-      inside = inside && places[k][d] >= set_.box->min[d] - slack && places[k][d] <= set_.box->max[d] + slack;
-    if (inside) ids_.push_back(static_cast<std::uint32_t>(k));
-  }
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (in_set(set_, places[k], slack, layout_.dimensions)) ids_.push_back(static_cast<std::uint32_t>(k));
   places_ = ids_;
 }
 

@@ -31,6 +31,10 @@ class SetOfBody {
   Workspace* w_ = nullptr;
 };
 
+/// Throws SceneError where two motions of an elastic phase hold one of its particles (`places` at the start): the later
+/// would win.
+void refuse_shared_motions(const Scene& scene, std::size_t phase, const std::vector<Vec3>& places);
+
 /// A set that is clamped or driven: its particles have the velocity of the section.
 class DrivenSet : public Model {
  public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/integrate.hpp"
 #include "models/grains/spheres.hpp"
@@ -56,9 +57,17 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound) {
   return r;
 }
 
+constexpr double soft = 0.15;  // diameters; above it a scene is warned
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 /// Spheres: their fields, the speed of waves through their contacts (d sqrt(K/m), of Hertz at the largest speed), and
 /// the speed at which two of them would overlap by half a diameter.
-void describe_spheres(const Scene& scene, std::size_t number, Layout& layout) {
+void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, std::vector<std::string>& warnings) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
   p.physics = "spheres";
@@ -77,6 +86,11 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout) {
     law.stiffness = sphere_stiffness(scene, layout, number, hertz);
     const double v = std::max(layout.largest_speed, 1e-3),
                  overlap = law.largest_overlap(0.5 * mass, 0.25 * p.diameter, v);
+    if (overlap > soft * p.diameter)
+      warnings.push_back("phases." + p.name + (hertz ? ".young" : ".stiffness") + ": two grains that meet at " +
+                         number_text(v) + " m/s, the largest speed of the scene, overlap by " +
+                         number_text(overlap / p.diameter) +
+                         " of a diameter; contacts that soft give other rebounds and packings: raise it");
     bound = std::min(bound, v * std::pow(0.5 * p.diameter / overlap, hertz ? 1.25 : 1.0));
     const double stiffness = hertz ? law.stiffness * std::sqrt(0.25 * p.diameter * overlap) : law.stiffness;
     p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(stiffness / mass));
@@ -87,11 +101,11 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout) {
 }  // namespace
 
 void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
-                     std::vector<std::string>&) {
+                     std::vector<std::string>& warnings) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
   p.friction = Friction::grains;
-  if (p.diameter > 0) return describe_spheres(scene, number, layout);
+  if (p.diameter > 0) return describe_spheres(scene, number, layout, warnings);
   p.physics = "grains";
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
