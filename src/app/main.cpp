@@ -56,7 +56,8 @@ std::string unknown_option(const CLI::App& command, const std::vector<std::strin
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
     if (!name.starts_with("--") || std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return "unknown option " + barchan::shortened(name) + barchan::did_you_mean(barchan::nearest(name, known)) + '\n';
+    const std::string meant = barchan::nearest(name, known);
+    return "unknown option " + barchan::shortened(name) + (meant.empty() ? "" : "; did you mean " + meant + "?") + '\n';
   }
   return "";
 }

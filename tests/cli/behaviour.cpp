@@ -1,5 +1,6 @@
 // How a run ends when it does not reach its end: stopped by a file or a signal, broken down, without room to write.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -184,6 +185,43 @@ TEST_F(Behaviour, FrameThatCannotBeWrittenLeavesTheEarlierOnesWhole) {
   const auto entries = read_pvd(out() / "scene.pvd");
   ASSERT_EQ(entries.size(), 2u);
   for (const auto& e : entries) EXPECT_EQ(read_frame(out() / e.file).time, e.time);
+}
+
+// What somebody put into the folder under our names: a pipe that nobody reads, links to other files.
+TEST_F(Behaviour, PipesAndLinksInTheFolderAreNotWrittenThrough) {
+  fs::create_directories(out());
+  const std::string pipe = (out() / "history.csv").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0666), 0);
+  EXPECT_EQ(status_of(start(falling, out())), 4);
+  EXPECT_NE(said().find("history.csv': is not a file"), std::string::npos) << said();
+  fs::remove(pipe);
+  const fs::path other = place_ / "other";
+  std::ofstream(other) << "mine";
+  fs::create_symlink(other, out() / "barchan.lock");
+  EXPECT_EQ(status_of(start(falling, out())), 4);
+  EXPECT_NE(said().find("barchan.lock': is a link"), std::string::npos) << said();
+  fs::remove(out() / "barchan.lock");
+  for (const char* name :
+       {"scene.checkpoint.part", "scene.pvd.part", "run.json.part", "run.json", "scene.pvd", "history.csv"}) {
+    fs::remove(out() / name);
+    fs::create_symlink(other, out() / name);
+  }
+  EXPECT_EQ(status_of(start(falling, out())), 3) << said();
+  std::ostringstream content;
+  content << std::ifstream(other).rdbuf();
+  EXPECT_EQ(content.str(), "mine");
+}
+
+// Anyone may write a run.json: a new run removes what instruments write, nothing else.
+TEST_F(Behaviour, PlantedReportRemovesNothing) {
+  fs::create_directories(out());
+  std::ofstream(out() / "thesis.tex") << "all";
+  std::ofstream(out() / "probe_old.csv") << "1";
+  std::ofstream(out() / "run.json")
+      << R"({"measured": [{"files": ["thesis.tex", "probe_old.csv", "..", "probe_a.b.csv"]}]})";
+  EXPECT_EQ(status_of(start(falling, out())), 3);
+  EXPECT_TRUE(fs::exists(out() / "thesis.tex"));
+  EXPECT_FALSE(fs::exists(out() / "probe_old.csv"));
 }
 
 }  // namespace

@@ -70,6 +70,30 @@ TEST_F(Commands, SceneWithoutACommand) {
   expect_commands();
 }
 
+TEST_F(Commands, MisspeltOption) {
+  write("s.toml", square_text);
+  EXPECT_EQ(run("run s.toml --thread 1"), 2);
+  EXPECT_EQ(errors_.substr(0, errors_.find('\n')), "barchan: unknown option --thread; did you mean --threads?");
+  EXPECT_EQ(run("plan s.toml --jsn"), 2);
+  EXPECT_EQ(errors_.substr(0, errors_.find('\n')), "barchan: unknown option --jsn; did you mean --json?");
+}
+
+TEST_F(Commands, ReportNamesTheOverrides) {
+  write("s.toml", square_text);
+  ASSERT_EQ(run("run s.toml --quiet --out o --set time.end=1e-3 --set phases.air.density=2"), 0) << errors_;
+  const auto report = nlohmann::json::parse(std::ifstream(place_ / "o" / "run.json"));
+  EXPECT_EQ(report["scene"]["set"], (nlohmann::json{"time.end=1e-3", "phases.air.density=2"}));
+}
+
+TEST_F(Commands, NameThatIsTooLongIsRefusedBeforeTheRun) {
+  const std::string name = std::string(200, 'n') + ".toml";
+  write(name, square_text);
+  for (const char* command : {"plan ", "run "}) {
+    EXPECT_EQ(run(command + name), 2);
+    EXPECT_NE(errors_.find("the name of the scene has 200 letters"), std::string::npos) << errors_;
+  }
+}
+
 TEST_F(Commands, HelpAndVersionAreNoMistakes) {
   EXPECT_EQ(run("--help"), 0);
   EXPECT_NE(said_.find("5 a mistake in Barchan itself"), std::string::npos);
