@@ -86,7 +86,7 @@ namespace {
 
 /// A file that an instrument writes: KIND_NAME with one of the suffixes, in the folder itself.
 bool is_measured(const std::string& file) {
-  const std::size_t dot = file.rfind('.'), line = file.find('_');
+  const std::size_t dot = file.rfind('.'), line = file.find('_', file.starts_with("wall_") ? 5 : 0);
   if (dot == std::string::npos || line == std::string::npos || line > dot) return false;
   const std::string_view kind(file.data(), line), suffix(file.data() + dot, file.size() - dot);
   const auto is_one_of = [](std::string_view word, std::initializer_list<std::string_view> words) {

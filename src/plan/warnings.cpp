@@ -15,6 +15,13 @@ namespace {
 /// neighbours, 2.4 spacings (Dehnen & Aly 2012). Wendland's kernels do not pair.
 constexpr double widest_cubic_spline = 2.4;
 
+/// The scene says that the two do not interact: nobody is told.
+bool meant_apart(const Scene& scene, const std::string& a, const std::string& b) {
+  return std::any_of(scene.apart.begin(), scene.apart.end(), [&](const auto& pair) {
+    return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+  });
+}
+
 bool stands_behind_sides(const Scene& scene, const Phase& wall) {
   return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
     return fill.phase == wall.name && std::holds_alternative<SidesShape>(fill.shape);
@@ -40,10 +47,11 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
     const PlanPhase& phase = plan.phases[k];
     for (std::size_t w = 0; w < plan.phases.size() && phase.moves; ++w) {
       const PlanPhase& wall = plan.phases[w];
-      if (wall.moves || wall.count == 0 || meet(k, w)) continue;
+      if (wall.moves || wall.count == 0 || meet(k, w) || meant_apart(scene, phase.name, wall.name)) continue;
       if (phase.flows && !stands_behind_sides(scene, scene.phases[w])) continue;  // it may lie under a bed
       plan.warnings.push_back("interactions: no entry " + phase.name + "-" + wall.name + ": the wall \"" + wall.name +
-                              "\" does not hold \"" + phase.name + "\", which passes through it");
+                              "\" does not hold \"" + phase.name + "\", which passes through it; " + phase.name + "-" +
+                              wall.name + " = false says that it is meant");
     }
   }
 }
@@ -51,7 +59,8 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
 void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (p.body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]))
+    if (p.body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]) &&
+        !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
                               p.name + "\" together");
   }
@@ -61,12 +70,13 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
 void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
   for (std::size_t a = 0; a < plan.phases.size(); ++a) {
     const PlanPhase& p = plan.phases[a];
-    if (p.diameter > 0 && p.moves && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]))
+    if (p.diameter > 0 && p.moves && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
+        !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": the grains of \"" + p.name +
                               "\" pass through each other");
     for (std::size_t b = 0; b < a; ++b)
       if (p.flows && plan.phases[b].flows && p.count > 0 && plan.phases[b].count > 0 &&
-          !entry_between(scene, scene.phases[a], scene.phases[b]))
+          !entry_between(scene, scene.phases[a], scene.phases[b]) && !meant_apart(scene, p.name, plan.phases[b].name))
         plan.warnings.push_back("interactions: no entry " + plan.phases[b].name + "-" + p.name + ": the fluids \"" +
                                 plan.phases[b].name + "\" and \"" + p.name +
                                 "\" do not feel each other and pass through each other");
@@ -127,6 +137,13 @@ void warn_of_output(const Scene& scene, Plan& plan) {
                             text(scene.time.end / scene.output.every) + " frames");
 }
 
+/// What begins after the end measures nothing.
+void warn_of_late_instruments(const Scene& scene, Plan& plan) {
+  for (const Instrument& i : plan.instruments)
+    if (i.start > scene.time.end)
+      plan.warnings.push_back(kind_name(i.kind) + " \"" + i.name + "\" starts after time.end and measures nothing");
+}
+
 void warn_of_weight(const Scene& scene, Plan& plan) {
   const auto up = static_cast<std::size_t>(1);
   if (scene.domain.gravity[up] > 0.0)
@@ -153,6 +170,7 @@ void add_warnings(const Scene& scene, Plan& plan) {
   warn_of_held_speed_over_grains(scene, plan);
   warn_of_strong_columns(scene, plan);
   warn_of_output(scene, plan);
+  warn_of_late_instruments(scene, plan);
   warn_of_weight(scene, plan);
   warn_of_small_radius(scene, plan);
   warn_outside_stable_ranges(scene, plan);

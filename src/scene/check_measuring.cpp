@@ -34,10 +34,6 @@ class Checker {
       else if (std::any_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(k), same))
         report_(dotted + ".name", "\"" + name + "\" is given twice; expected a name of its own");
     }
-    if (fine(dotted + ".start") && !report_.touched("time.end") && measured.start > scene_.time.end)
-      report_(dotted + ".start", number_text(measured.start) + " s is beyond time.end, " +
-                                     number_text(scene_.time.end) +
-                                     " s: nothing is measured; expected an earlier start");
     if (fine(dotted + ".phase")) {
       const Phase* phase = find_phase(scene_, measured.phase);
       const bool known_kind = phase && !report_.touched("phases." + phase->name + ".kind");

@@ -131,6 +131,15 @@ void check_interactions(const Scene& scene, const Report& report) {
         find_phase(scene, pair.a)->kind() == PhaseKind::wall && find_phase(scene, pair.b)->kind() == PhaseKind::wall;
     if (walls) report(dotted, "walls do not feel each other; expected at least one phase of another kind");
   }
+  for (const auto& pair : scene.apart) {
+    const std::string dotted = "interactions." + pair[0] + "-" + pair[1];
+    for (const std::string& name : pair)
+      if (!find_phase(scene, name) && !report.touched(dotted)) report(dotted, unknown_phase(name, scene));
+    for (const Interaction& other : scene.interactions)
+      if (other.a == pair[1] && other.b == pair[0] && !report.touched(dotted))
+        report(dotted, "the pair is given twice; expected either " + pair[0] + "-" + pair[1] + " or " + other.a + "-" +
+                           other.b);
+  }
   for (const Phase& phase : scene.phases) {
     const bool alone = std::none_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& pair) {
       return pair.a == phase.name || pair.b == phase.name;

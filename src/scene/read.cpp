@@ -183,6 +183,17 @@ class Reader {
   }
 };
 
+/// Pairs that the matrix says do not interact: a-b = false.
+std::vector<std::array<std::string, 2>> read_apart(const toml::table& table) {
+  std::vector<std::array<std::string, 2>> apart;
+  for (const std::string& name : written_order(table)) {
+    const std::size_t dash = name.find('-');
+    if (table[name].is_boolean() && dash != std::string::npos)
+      apart.push_back({name.substr(0, dash), name.substr(dash + 1)});
+  }
+  return apart;
+}
+
 /// The matrix: its entries have names of phases, in place of keys. An entry is a section or, for short, its radius.
 std::vector<Interaction> read_matrix(const toml::table& table, const std::vector<Phase>& phases) {
   static const Key& radius = *find_key("interactions.pair", "radius");
@@ -190,7 +201,7 @@ std::vector<Interaction> read_matrix(const toml::table& table, const std::vector
   Reader::section(table, "interactions", &defaults);
   std::vector<Interaction> interactions;
   for (const std::string& name : written_order(table)) {
-    if (find_key("interactions", name)) continue;
+    if (find_key("interactions", name) || table[name].is_boolean()) continue;
     const std::size_t dash = name.find('-');
     Interaction& pair = interactions.emplace_back(
         recommended(phases, name.substr(0, dash), dash == std::string::npos ? "" : name.substr(dash + 1)));
@@ -211,8 +222,10 @@ Scene read_document(const toml::table& document, const std::string& file) {
   scene.title = scene.name;
   Reader::section(document, "", &scene);
   scene.dimensions = dimensions_of(document);
-  if (const toml::table* matrix = document["interactions"].as_table())
+  if (const toml::table* matrix = document["interactions"].as_table()) {
     scene.interactions = read_matrix(*matrix, scene.phases);
+    scene.apart = read_apart(*matrix);
+  }
   complete(scene);
   return scene;
 }

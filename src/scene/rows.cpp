@@ -27,7 +27,7 @@ constexpr Key table[] = {
     {"", "phases", at<&Scene::phases>(required), "", "One section a phase; a name is a letter followed by letters, digits and underscores."},
     {"", "interactions", pairs(), "",
      "The matrix of kernel radii, Halik et al. 2015 eq. (15)-(17): one entry a pair of phases, as in air-sand = 2.5. "
-     "A pair without an entry does not interact."},
+     "A pair without an entry does not interact; a-b = false says that this is meant."},
     {"", "fill", at<&Scene::fills>(required), "", "What is where at the beginning; fills are carried out in order."},
     {"", "forcing", at<&Scene::forcings>("none"), "", "Body forces on single phases, and zones in which a fluid is brought to a velocity."},
     {"", "motion", at<&Scene::motions>("none"), "", "Sets of particles of bodies that are clamped or driven; rigid bodies that are, or that turn about a place."},

@@ -399,6 +399,7 @@ struct Scene {
   Domain domain;
   std::vector<Phase> phases;
   std::vector<Interaction> interactions;
+  std::vector<std::array<std::string, 2>> apart;  // pairs of phases that do not interact, as the scene says
   std::vector<Fill> fills;
   std::vector<Forcing> forcings;
   std::vector<Motion> motions;

@@ -96,7 +96,7 @@ Json section_schema(const std::string& section) {
     schema.erase("additionalProperties");
     schema["patternProperties"]["^[A-Za-z][A-Za-z0-9_]*-[A-Za-z][A-Za-z0-9_]*$"] = {
         {"description", description(radius)},
-        {"anyOf", Json::array({forms(radius).front(), section_schema("interactions.pair")})}};
+        {"anyOf", Json::array({forms(radius).front(), section_schema("interactions.pair"), {{"const", false}}})}};
     schema["additionalProperties"] = false;
   }
   return schema;

@@ -83,7 +83,11 @@ class Validator {
   void pair(const toml::node& node, const std::string& here) {
     static const Key& radius = *find_key("interactions.pair", "radius");
     if (const auto* table = node.as_table()) section(*table, "interactions.pair", here);
-    else value(radius, node, here);
+    else if (const auto* truth = node.as_boolean(); !truth) value(radius, node, here);
+    else if (truth->get())
+      problems_.add(node.source(), here,
+                    "found true; expected " + expected(radius, dimensions_) +
+                        ", a section, or false where the two do not interact");
   }
 
   /// True when the value has one of the forms that the key accepts; then its contents were checked too.

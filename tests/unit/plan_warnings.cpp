@@ -171,5 +171,47 @@ TEST(PlanWarns, OfWhatTheAtlasFoundUnstable) {
   EXPECT_TRUE(warns(box("end = 1", "end = 1\nstep = 1e-2"), "time.step: ")) << "a fixed step beside the limit";
 }
 
+// What is meant is not told: a-b = false.
+TEST(PlanWarns, OfPairsThatMeetNobodyUnlessTheyAreMeant) {
+  const std::string two =
+      "[phases.oil]\nkind = \"fluid\"\ndensity = 800\n[interactions]\noil-oil = 2.1\noil-wall = 2.1\n";
+  const std::string fill = "[[fill]]\nphase = \"oil\"\nshape = { box = { min = [0, 0.5], max = [1, 0.7] } }\n[time]";
+  const auto plan = [&](const std::string& entry) {
+    const std::string text = R"(spacing = 0.05
+[domain]
+size = [1, 1]
+gravity = [0, -10]
+[phases.water]
+kind = "fluid"
+density = 1000
+[phases.wall]
+kind = "wall"
+)" + two + entry + R"(water-water = 2.1
+water-wall = 2.1
+[[fill]]
+phase = "wall"
+shape = { sides = ["bottom", "top", "left", "right"] }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [1, 0.5] } }
+)" + fill + "\nend = 1\n";
+    const Scene scene = parse_scene(text, "box.toml");
+    return make_plan(scene, generate(scene));
+  };
+  EXPECT_TRUE(warns(plan(""), "the fluids \"water\" and \"oil\" do not feel each other"));
+  EXPECT_FALSE(warns(plan("water-oil = false\n"), "do not feel each other"));
+  EXPECT_FALSE(warns(plan("water-oil = 2.1\n"), "do not feel each other"));
+}
+
+TEST(PlanWarns, OfFramesBeyondTheEndOfWeightUpwardsAndOfRadiiInMetres) {
+  EXPECT_TRUE(warns(box("end = 1", "end = 1\n[output]\nevery = 2"), "is beyond time.end"));
+  EXPECT_TRUE(
+      warns(box("end = 1", "end = 1\n[output]\nevery = 1e-5"), "output.every: 1e-05 s is shorter than the first step"));
+  EXPECT_FALSE(warns(box("end = 1", "end = 1\n[output]\nevery = 0.1"), "output.every"));
+  EXPECT_TRUE(warns(box("[0, -10]", "[0, 10]"), "it points upwards"));
+  EXPECT_TRUE(
+      warns(box("water-wall = 2.1", "water-wall = 0.1"), "interactions.water-wall: a radius below one spacing"));
+}
+
 }  // namespace
 }  // namespace barchan

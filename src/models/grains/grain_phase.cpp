@@ -57,7 +57,7 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound) {
   return r;
 }
 
-constexpr double soft = 0.15;  // diameters; above it a scene is warned
+constexpr double soft = 1.0;  // diameters; above it a scene is warned
 
 std::string number_text(double value) {
   char text[32];
@@ -89,8 +89,7 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, st
     if (overlap > soft * p.diameter)
       warnings.push_back("phases." + p.name + (hertz ? ".young" : ".stiffness") + ": two grains that meet at " +
                          number_text(v) + " m/s, the largest speed of the scene, overlap by " +
-                         number_text(overlap / p.diameter) +
-                         " of a diameter; contacts that soft give other rebounds and packings: raise it");
+                         number_text(overlap / p.diameter) + " diameters and pass through each other: raise it");
     bound = std::min(bound, v * std::pow(0.5 * p.diameter / overlap, hertz ? 1.25 : 1.0));
     const double stiffness = hertz ? law.stiffness * std::sqrt(0.25 * p.diameter * overlap) : law.stiffness;
     p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(stiffness / mass));
