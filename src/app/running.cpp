@@ -114,6 +114,7 @@ int Run::loop(Past* past) {
   const double end = scene_.time.end;
   const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
   const double row_every = row_interval(scene_);
+  const bool rows_cut = scene_.output.history_every > 0.0;
   const auto due = [&](double next) { return simulation_.time() * (1.0 + 1e-12) >= next; };
   const auto next_number = [&](double every) {
     long k = std::max(1L, static_cast<long>(simulation_.time() / every));
@@ -130,12 +131,13 @@ int Run::loop(Past* past) {
     if (past && past->due(simulation_.steps())) past->keep(simulation_, measurements());
     const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
     const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
-    course_.team.step([&] { simulation_.step(std::min(next_frame, next_row) - simulation_.time()); });
+    const double next = rows_cut ? std::min(next_frame, next_row) : next_frame;
+    course_.team.step([&] { simulation_.step(next - simulation_.time()); });
     if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
     if (measurements_) measurements_->sample(simulation_.state());
     if (due(next_row)) {
       write_row();
-      ++rows_due;
+      rows_due = next_number(row_every);
     }
     if (due(next_frame)) {
       write_frame();

@@ -148,6 +148,7 @@ void CellGrid::make_runs() {
   std::fill(first_run_.begin(), first_run_.end(), 0u);
   for (const BlockRun& run : runs_) ++first_run_[run.block + 1];
   for (std::size_t b = 0; b + 1 < first_run_.size(); ++b) first_run_[b + 1] += first_run_[b];
+  if (runs_by_block_.capacity() < runs_.size()) runs_by_block_.reserve(runs_.size() + runs_.size() / 2 + 64);
   runs_by_block_.resize(runs_.size());
   for (const BlockRun& run : runs_) runs_by_block_[first_run_[run.block]++] = run;
   for (std::size_t b = first_run_.size() - 1; b > 0; --b) first_run_[b] = first_run_[b - 1];

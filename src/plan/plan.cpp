@@ -74,7 +74,7 @@ void add_directions(const Scene& scene, Plan& plan, PlanEntry& e) {
     return static_cast<int>(plan.directions.size()) - 1;
   };
   if (e.law == Law::elastic && plan.phases[e.a].fixed_neighbours) return;
-  if (e.of_bodies && (only_sides(scene, scene.phases[e.a]) || only_sides(scene, scene.phases[e.b]))) return;  // planes
+  if (e.of_bodies && (has_surfaces(scene, scene.phases[e.a]) || has_surfaces(scene, scene.phases[e.b]))) return;
   if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
   const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.law == Law::boundary; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);

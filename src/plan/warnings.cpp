@@ -66,6 +66,16 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   }
 }
 
+/// A wall that bodies touch by its particles is rough by their lattice: a ball leaves it sideways.
+void warn_of_lattices(const Scene& scene, Plan& plan) {
+  for (const PlanEntry& e : plan.entries)
+    for (const std::size_t wall : {e.a, e.b})
+      if (e.of_bodies && !e.of_surfaces && scene.phases[wall].if_wall() && !has_surfaces(scene, scene.phases[wall]))
+        plan.warnings.push_back("interactions." + e.name + ": the shape of \"" + scene.phases[wall].name +
+                                "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
+                                "shape with one: sides, box, cube, in 2D also disc, ring, polygon, surface");
+}
+
 /// What has no entry passes through each other: two fluids, and the grains of one phase.
 void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
   for (std::size_t a = 0; a < plan.phases.size(); ++a) {
@@ -167,6 +177,7 @@ void add_warnings(const Scene& scene, Plan& plan) {
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
   warn_of_what_does_not_meet(scene, plan);
+  warn_of_lattices(scene, plan);
   warn_of_held_speed_over_grains(scene, plan);
   warn_of_strong_columns(scene, plan);
   warn_of_output(scene, plan);

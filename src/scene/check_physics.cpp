@@ -159,6 +159,20 @@ class PhysicsChecker {
                      "\" feels, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
   }
 
+  /// Grains that feel a fluid through a kernel are sources of no volume: in a fluid nearly as heavy as they are, what
+  /// they displace and drag along with them is missing, and they outrun free fall.
+  void heavy_fluid(const Phase& fluid, const Phase& grains, const std::string& dotted) {
+    constexpr double most = 0.05;
+    if (fluid.density <= most * grains.density || report_.touched(place(fluid) + ".density") ||
+        report_.touched(place(grains) + ".density"))
+      return;
+    tell(dotted,
+         "a kernel lets grains feel a fluid that is much lighter than they are (at most " + number_text(most) +
+             " times as dense); \"" + fluid.name + "\" is " + number_text(fluid.density / grains.density) +
+             " times as dense as \"" + grains.name +
+             "\"; expected a fluid of kind column with drag by name and buoyancy = true, or bodies of kind rigid");
+  }
+
   void buoyancy(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) {
     if (!pair.buoyancy) return;
     const bool first = a.kind() == PhaseKind::grains;
@@ -198,6 +212,7 @@ class PhysicsChecker {
     if (pair.drag_law != DragLaw::none && is(fluid, grains))
       return wind_over_sand(pair, a.kind() == fluid ? a : b, a.kind() == fluid ? b : a, dotted);
     if (a.kind() == column || b.kind() == column) return;  // check_column.cpp
+    if (is(fluid, grains)) heavy_fluid(a.kind() == fluid ? a : b, a.kind() == fluid ? b : a, dotted);
     if (report_.has(dotted + ".radius") && report_.has(dotted + ".radius-in-metres"))
       tell(dotted + ".radius-in-metres", "a radius in metres beside one in spacings; expected one of the two");
     if (pair.radius_in_metres && !(pair.radius <= 8.0))

@@ -126,9 +126,9 @@ bool touch_by_surfaces(const Phase& a, const Phase& b) {
   return (rigid(a) && rigid(b)) || (rigid(a) && b.if_wall()) || (a.if_wall() && rigid(b));
 }
 
-bool only_sides(const Scene& scene, const Phase& wall) {
+bool has_surfaces(const Scene& scene, const Phase& wall) {
   return wall.if_wall() && std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
-           return fill.phase != wall.name || std::holds_alternative<SidesShape>(fill.shape);
+           return fill.phase != wall.name || has_surface(fill.shape, scene.dimensions);
          });
 }
 

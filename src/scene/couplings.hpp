@@ -56,8 +56,8 @@ bool bodies_may_touch(const Phase& a, const Phase& b);
 bool touch_by_surfaces(const Phase& a, const Phase& b);
 /// Whether the shape says where its surface lies.
 bool has_surface(const Shape& shape, int dimensions);
-/// Whether all particles of a wall stand behind sides of the domain: for a body it is those planes.
-bool only_sides(const Scene& scene, const Phase& wall);
+/// Whether all shapes of a wall say where their surfaces lie: a body then touches those, not the wall's particles.
+bool has_surfaces(const Scene& scene, const Phase& wall);
 /// Whether this entry is one: it says restitution, or a total Lagrangian or rigid body has no other.
 bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b);
 /// Whether the own entry of a total Lagrangian body says restitution: parts of it that are far apart in its first shape

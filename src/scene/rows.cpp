@@ -328,7 +328,7 @@ constexpr Key table[] = {
      "Largest speed that will occur; sets automatic sound speeds.", not_negative},
 
     {"output", "every", at<&OutputControl::every>("first and last only"), "s", "Time between frames.", not_negative},
-    {"output", "history-every", at<&OutputControl::history_every>("a tenth of every; a hundredth of the end time where every is not given"), "s",
+    {"output", "history-every", at<&OutputControl::history_every>("a hundredth of the end time, at the first step from then on"), "s",
      "Time between rows of history.csv.", not_negative},
     {"output", "checkpoint-every", at<&OutputControl::checkpoint_every>(600.0), "s",
      "Wall time between checkpoints; 0: at the end and at signals only.", not_negative},

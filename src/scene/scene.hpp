@@ -410,12 +410,10 @@ struct Scene {
   OutputControl output;
 };
 
-/// Seconds between rows of history.csv: as given, or a tenth of output.every, so that a run that goes on to a later end
-/// takes the same steps; without either a hundredth of the end time.
+/// Seconds between rows of history.csv: as given, or a hundredth of the end time. Where it is not given, rows do not cut
+/// steps, so that a run that goes on to a later end takes the same ones.
 inline double row_interval(const Scene& scene) {
-  if (scene.output.history_every > 0.0) return scene.output.history_every;
-  const bool frames = scene.output.every > 0.0 && scene.output.every < scene.time.end;
-  return frames ? scene.output.every / 10.0 : scene.time.end / 100.0;
+  return scene.output.history_every > 0.0 ? scene.output.history_every : scene.time.end / 100.0;
 }
 
 }  // namespace barchan

@@ -56,6 +56,7 @@ velocity = ["1 + 0.1*sin(2*pi*x/0.4)", 0]
 end = {end}
 [output]
 every = 0.01
+history-every = {rows}
 """
 
 MEASURING = """
@@ -142,7 +143,7 @@ class Measuring(unittest.TestCase):
     @classmethod
     def start(cls, name, measuring, end):
         scene = cls.place / f"{name}.toml"
-        scene.write_text(SCENE.format(measuring=measuring, end=end))
+        scene.write_text(SCENE.format(measuring=measuring, end=end, rows=end / 100))
         out = cls.place / f"out_{name}"
         return out, subprocess.Popen(
             [cls.program, "run", scene, "--out", out, "--threads", "1", "--quiet", "--set", "title=scene"]
@@ -163,7 +164,7 @@ class Measuring(unittest.TestCase):
             self.assertTrue((self.out / file).exists(), file)
         samples = {m["name"]: m["samples"] for m in report["measured"]}
         self.assertEqual(samples["late"], 0)
-        self.assertEqual(samples["slices"], 101)  # as history.csv: a hundredth of the end, and the beginning
+        self.assertEqual(samples["slices"], 101)  # as history.csv, and the beginning
         self.assertIn("measuring", report["seconds"])
 
     def test_csv_and_vtp_hold_the_same_numbers(self):

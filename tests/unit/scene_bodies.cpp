@@ -81,6 +81,14 @@ TEST(SceneBodies, RefusesEmptySetsAndBodiesOfOneLayer) {
   expect_refused_at_start(
       text_of({"", "", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\nvelocity = [1, 0]\n"}),
       "that motion.0 moves too");
+  std::string turns = text_of({"", "", ""});
+  const std::string updated = "formulation = \"updated-lagrangian\"";
+  if (turns.find(updated) == std::string::npos)
+    turns.replace(turns.find("kind = \"elastic\""), 16, "kind = \"elastic\"\n" + updated);
+  turns.replace(turns.find("a-a = {}"), 8, "a-a = 2.1");
+  const std::string still = "shape = { cube = { centre = [0.5, 0.5], count = 4 } }";
+  turns.replace(turns.find(still), still.size(), still + "\nvelocity = [\"-10*(y - 0.5)\", \"10*(x - 0.5)\"]");
+  expect_refused_at_start(turns, "an updated Lagrangian body cannot turn");
   std::string text = text_of({"", "", ""});
   const std::string cube = "shape = { cube = { centre = [0.5, 0.5], count = 4 } }";
   text.replace(text.find(cube), cube.size(), "shape = { points = [[0.5, 0.5], [0.6, 0.5], [0.7, 0.5]] }");

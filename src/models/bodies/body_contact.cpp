@@ -33,13 +33,12 @@ namespace {
 
 std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const Phase& wall) {
   std::vector<BodySide> sides;
-  if (!only_sides(scene, wall)) return sides;
   const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
   for (const Fill& fill : scene.fills)
     for (std::size_t axis = 0; fill.phase == wall.name && axis < static_cast<std::size_t>(layout.dimensions); ++axis)
       for (const bool high : {false, true}) {
-        const auto& all = std::get<SidesShape>(fill.shape).sides;
-        if (std::find(all.begin(), all.end(), names[axis][high]) != all.end())
+        const auto* planes = std::get_if<SidesShape>(&fill.shape);
+        if (planes && std::find(planes->sides.begin(), planes->sides.end(), names[axis][high]) != planes->sides.end())
           sides.push_back({axis, high ? -1.0 : 1.0, high ? layout.bounds.high[axis] : layout.bounds.low[axis]});
       }
   return sides;
@@ -50,7 +49,10 @@ std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const P
 BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
     : scene_(scene), layout_(layout), entry_(entry), law_(law_of(scene, layout, entry)) {
   for (const std::size_t k : {entry.a, entry.b})
-    if (!layout.phases[k].moves) sides_ = sides_of(scene, layout, scene.phases[k]);
+    if (const Phase& wall = scene.phases[k]; !layout.phases[k].moves && has_surfaces(scene, wall)) {
+      sides_ = sides_of(scene, layout, wall);
+      surfaces_.emplace(scene, layout, wall);
+    }
 }
 
 void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
@@ -82,6 +84,10 @@ void BodyContact::schedule(Schedule& s) {
     if (!sides_.empty())
       s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
                push_from_sides(phase);
+             }});
+    if (surfaces_ && !surfaces_->empty())
+      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
+               surfaces_->push(w_->particles(phase), layout_.phases[phase].spacing, law_, w_->state.dt);
              }});
     if (entry_.direction(phase) < 0) continue;
     s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {

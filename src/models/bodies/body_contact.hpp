@@ -2,7 +2,10 @@
 // (laws/body_contact.hpp).
 #pragma once
 
+#include <optional>
+
 #include "models/bodies/body_forces.hpp"
+#include "models/bodies/wall_surfaces.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -26,7 +29,8 @@ class BodyContact : public Model {
   const Layout& layout_;
   const PlanEntry& entry_;
   BodyContactLaw law_;
-  std::vector<BodySide> sides_;  // of a wall that is nothing else
+  std::vector<BodySide> sides_;           // of a wall
+  std::optional<WallSurfaces> surfaces_;  // of one whose shapes all have surfaces
   Workspace* w_ = nullptr;
   // Of a body with itself:
   bool itself() const { return entry_.a == entry_.b; }
