@@ -110,7 +110,7 @@ int dispatch(int argc, char** argv) {
       ->type_name("NAME");
   c_run->add_option("--retreats", run.retreats, "how often to go back after a failed step and take smaller ones (10)")
       ->check(CLI::Range(0, 1000));
-  c_run->add_flag("--quiet", run.quiet, "print errors only");
+  c_run->add_flag("--quiet", run.quiet, "print warnings and errors only");
   add_set(c_run);
   c_run->callback([&] {
     run.overrides = overrides;

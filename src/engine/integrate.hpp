@@ -31,6 +31,9 @@ double kick(PhaseParticles& phase, double half_kick);
 struct Sides {
   Vec3 low{-far, -far, -far}, high{far, far, far};  // m
   double margin = 0.0;                              // m
+  double margin_of_off = 0.0;  // m, of particles whose density is off by more than `off`; 0: as of all
+  double rest = 0.0;           // kg/m3, density at rest
+  static constexpr double off = 0.02;
   static constexpr double far = 1e300;
   bool any() const {
     for (std::size_t d = 0; d < 3; ++d)
@@ -41,7 +44,7 @@ struct Sides {
 
 /// Puts particles that came nearer to a closed side than the margin back to it and stops their motion outwards. The
 /// consistent scheme has no pressure that a particle at the wall would feel; where the flow drives them on, as into the
-/// corner between a moving lid and a wall, they would leave.
+/// corner between a moving lid and a wall, they would leave. Where that has thrown a density off, more room is kept.
 void hold_inside(PhaseParticles& phase, const Sides& sides);
 
 }  // namespace barchan

@@ -57,7 +57,7 @@ struct Default {
 };
 
 /// Where a key's value goes. Every function takes the object of the key's section: of "domain" a Domain, of
-/// "fill.shape" a Shape. Those that the key does not need are null. rows.hpp makes them from a pointer to a member.
+/// "fill.shape" a Shape. Those that the key does not need are null. rows.cpp makes them from a pointer to a member.
 struct Slot {
   unsigned accepts = 0;  // of Accepts
   Default otherwise{};

@@ -195,6 +195,11 @@ void Air::attach(Workspace& w) {
   q.ends = true;
   if (particles_->has(Field::near_void)) look_for_voids();
   held_.margin = 0.02 * plan_.spacing;
+  if (corrected && plan_.enclosed) {
+    parameters_.calming = 0.5 * parameters_.sound_speed / parameters_.smoothing_length;
+    held_.margin_of_off = 0.2 * plan_.spacing;
+    held_.rest = phase_.density;
+  }
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();

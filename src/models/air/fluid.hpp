@@ -50,6 +50,7 @@ struct FluidParameters {
   double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
   double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
   double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
+  double calming = 0.0;    // 1/s, of a fluid that fills its space: see calm() in fluid_finish.hpp; 0: none
   double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
   bool ends;               // a void or a free surface is near some particle, or solids move in the fluid
   LooseParticles* loose;   // where particles that may stand beside a void are noted; null: nobody asks
