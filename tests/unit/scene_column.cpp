@@ -26,7 +26,7 @@ kind = "wall"
 density = 2650
 [phases.water]
 kind = "fluid"
-density = 1000
+density = 100
 sound-speed = 10
 [interactions]
 air-sand = {}

@@ -94,7 +94,7 @@ TEST(SceneReader, DefaultsAreTheBestWeKnow) {
 
 TEST(SceneReader, KeepsTheOrderOfPhasesAndPairsInTheFile) {
   const std::string text =
-      with(with(square_text, "[phases.air]", "[phases.zinc]\nkind = \"grains\"\ndensity = 7\n[phases.air]"),
+      with(with(square_text, "[phases.air]", "[phases.zinc]\nkind = \"grains\"\ndensity = 70\n[phases.air]"),
            "air-air = 3.0", "zinc-zinc = 1.1\nair-zinc = 2\nair-air = 3.0") +
       "[[fill]]\nphase = \"zinc\"\nshape = { points = [[0.5, 0.5]] }\n";
   const Scene scene = parse_scene(text, "s.toml");
@@ -149,7 +149,7 @@ artificial-viscosity-beta = 2
 energy = true
 [phases.sand]
 kind = "grains"
-density = 2650
+density = 26500
 restitution = 0.8
 contact-speed = 12
 spacing = 0.05
