@@ -4,6 +4,7 @@
 
 #include "base/errors.hpp"
 #include "models/air/air.hpp"
+#include "models/air/open_sides.hpp"
 #include "models/bodies/body_contact.hpp"
 #include "models/bodies/elastic_phase.hpp"
 #include "models/bodies/rigid_contact.hpp"
@@ -23,6 +24,7 @@
 #include "models/grains/spheres.hpp"
 #include "models/walls/wall.hpp"
 #include "scene/couplings.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -83,6 +85,11 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   }
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
+  bool leaves = scene.domain.open.empty() || scene.domain.open.front() == "none";
+  for (std::size_t k = 0; k < layout.phases.size(); ++k) leaves = leaves || layout.leaves(k);
+  if (!leaves)
+    throw SceneError(located(scene, "domain.open") +
+                     ": nothing leaves through it; expected a scene with a fluid that has a free surface");
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if (scene.phases[k].kind() == PhaseKind::rigid && meets(scene, scene.phases[k], PhaseKind::fluid))
       for (const Field f :
@@ -117,6 +124,8 @@ Models make_models(const Scene& scene, const Layout& layout) {
       models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (layout.leaves(k)) models.push_back(std::make_unique<OpenSides>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     if (std::none_of(layout.entries.begin(), layout.entries.end(),
                      [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))

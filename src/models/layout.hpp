@@ -1,6 +1,8 @@
 // What the models of a scene made of its phases and entries: the sizes and rules that all later work takes from here.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -116,22 +118,23 @@ struct PlanPhase {
   double mass = 0;              // kg a particle (per metre of depth in 2D); of spheres that of the mean diameter
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
   double smoothing_length = 0;  // m
-  Friction friction = Friction::smooth;  // of a turbulent fluid on it
-  bool moves = true;                     // false: its particles stay in place
-  bool flows = false;                    // a fluid: has a pressure of its own
-  bool held = false;                     // a fluid whose bulk speed is held
-  bool free_surface = false;             // a fluid that does not fill its space
-  bool eddies = false;                   // a fluid whose viscosity varies, or with a wall whose stress is given
-  bool body = false;                     // elastic
-  bool fixed_neighbours = false;         // a body whose neighbours are those of its first shape: nobody searches them
-  bool heats = false;                    // a solid in a fluid whose internal energy is asked for
-  bool enclosed = false;                 // a fluid whose mean density is kept
-  double wind = 0;                       // m/s, what a column of air can reach: a bound for the watch
-  std::string enclosure = "";            // why it is enclosed or not, of a fluid
-  std::string physics = "";              // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
-  std::vector<RigidBody> rigid_bodies;   // at the start; none of a phase of another kind
-  double weight_share = 1.0;             // of gravity, that grains feel: less than 1 with buoyancy
-  double contact_stiffness = 0;          // N/m, of a rigid body with another (2D: N/m a metre)
+  Friction friction = Friction::smooth;       // of a turbulent fluid on it
+  bool moves = true;                          // false: its particles stay in place
+  bool flows = false;                         // a fluid: has a pressure of its own
+  bool held = false;                          // a fluid whose bulk speed is held
+  bool free_surface = false;                  // a fluid that does not fill its space
+  std::array<std::array<bool, 2>, 3> open{};  // sides of the domain through which it leaves, by axis: {lower, upper}
+  bool eddies = false;                        // a fluid whose viscosity varies, or with a wall whose stress is given
+  bool body = false;                          // elastic
+  bool fixed_neighbours = false;        // a body whose neighbours are those of its first shape: nobody searches them
+  bool heats = false;                   // a solid in a fluid whose internal energy is asked for
+  bool enclosed = false;                // a fluid whose mean density is kept
+  double wind = 0;                      // m/s, what a column of air can reach: a bound for the watch
+  std::string enclosure = "";           // why it is enclosed or not, of a fluid
+  std::string physics = "";             // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
+  std::vector<RigidBody> rigid_bodies;  // at the start; none of a phase of another kind
+  double weight_share = 1.0;            // of gravity, that grains feel: less than 1 with buoyancy
+  double contact_stiffness = 0;         // N/m, of a rigid body with another (2D: N/m a metre)
   std::vector<Field> fields;
   PhaseRules rules;
 };
@@ -145,6 +148,10 @@ struct Layout {
   std::vector<PlanPhase> phases;
   std::vector<PlanEntry> entries;
   std::vector<Direction> directions;
+  bool leaves(std::size_t phase) const {  // some side is open to it
+    const auto& o = phases[phase].open;
+    return std::any_of(o.begin(), o.end(), [](const auto& ends) { return ends[0] || ends[1]; });
+  }
   double particles() const;
 };
 

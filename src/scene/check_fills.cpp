@@ -107,14 +107,7 @@ void check_dune(const DuneShape& dune, const std::string& dotted, const Scene& s
 void check_sides(const SidesShape& sides, const Phase* phase, const std::string& dotted, const Scene& scene,
                  const Report& report) {
   if (sides.sides.empty() && !report.touched(dotted)) report(dotted, "no side; expected at least one");
-  for (const std::string& side : sides.sides) {
-    const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
-    if (axis == 2 && scene.dimensions == 2)
-      report(dotted, "\"" + side + "\" needs three dimensions; expected \"bottom\", \"top\", \"left\" or \"right\"");
-    else if (scene.domain.periodic[axis])
-      report(dotted, "\"" + side + "\" lies on the periodic axis " + std::string(1, static_cast<char>('x' + axis)) +
-                         "; expected a side of an axis that is not periodic");
-  }
+  check_side_names(sides.sides, dotted, scene, report);
   if (phase && phase->kind() != PhaseKind::wall)
     report(dotted, "only walls lie outside the domain; expected a phase of kind wall");
 }

@@ -57,6 +57,18 @@ void Report::operator()(const std::string& dotted, const std::string& what) cons
   problems_.add(node ? node->source() : document_.source(), dotted, what);
 }
 
+void check_side_names(const std::vector<std::string>& sides, const std::string& dotted, const Scene& scene,
+                      const Report& report) {
+  for (const std::string& side : sides) {
+    const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
+    if (axis == 2 && scene.dimensions == 2)
+      report(dotted, "\"" + side + "\" needs three dimensions; expected \"bottom\", \"top\", \"left\" or \"right\"");
+    else if (scene.domain.periodic[axis])
+      report(dotted, "\"" + side + "\" lies on the periodic axis " + std::string(1, static_cast<char>('x' + axis)) +
+                         "; expected a side of an axis that is not periodic");
+  }
+}
+
 namespace {
 
 std::vector<std::string> phase_names(const Scene& scene) {
@@ -149,6 +161,13 @@ void check_interactions(const Scene& scene, const Report& report) {
       report("phases." + phase.name,
              "nothing feels this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
   }
+}
+
+void check_open(const Scene& scene, const Report& report) {
+  if (report.touched("domain.open")) return;
+  const auto& open = scene.domain.open;
+  if (std::find(open.begin(), open.end(), "none") == open.end()) check_side_names(open, "domain.open", scene, report);
+  else if (open.size() > 1) report("domain.open", "\"none\" stands beside a side; expected it alone, or sides only");
 }
 
 /// A whole number of spacings along a periodic axis, and room for two of the largest kernels.
@@ -334,6 +353,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_fills(scene, report);
   check_phases(scene, report);
   check_interactions(scene, report);
+  check_open(scene, report);
   check_domain(scene, report);
   check_forcings(scene, report);
   check_physics(scene, report);

@@ -31,6 +31,10 @@ std::string number_text(double value);  ///< ten digits at most
 /// "there is no phase ...; expected ...; did you mean ...".
 std::string unknown_phase(const std::string& name, const Scene& scene);
 
+/// Sides of the domain by name: they are of an axis that is there and does not repeat.
+void check_side_names(const std::vector<std::string>& sides, const std::string& dotted, const Scene& scene,
+                      const Report& report);
+
 /// Of what is measured: places outside the domain, phases that cannot be measured, names that two files would share.
 void check_measuring(const Scene& scene, const Report& report);
 

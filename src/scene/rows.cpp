@@ -45,6 +45,8 @@ constexpr Key table[] = {
     {"domain", "size", at<&Domain::size>(required), "m",
      "Lengths along x, y (and z). Along a periodic axis a whole number of spacings, and more than two kernel radii.", positive},
     {"domain", "periodic", periodic("none"), "", "Axes along which the domain repeats itself."},
+    {"domain", "open", open_sides_of_domain("the side away from gravity, where no wall stands"), "",
+     "Sides through which a fluid with a free surface leaves the run: what passes one is counted and gone."},
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},

@@ -280,7 +280,8 @@ struct Domain {
   Vec3 origin{};  // m
   Vec3 size{};    // m
   std::array<bool, 3> periodic{};
-  Vec3 gravity{};  // m/s2
+  Vec3 gravity{};                 // m/s2
+  std::vector<std::string> open;  // sides through which fluids leave, or "none"; empty: as the scene shows
 };
 
 /// What a [[forcing]] with `hold` keeps.
@@ -410,8 +411,8 @@ struct Scene {
   OutputControl output;
 };
 
-/// Seconds between rows of history.csv: as given, or a hundredth of the end time. Where it is not given, rows do not cut
-/// steps, so that a run that goes on to a later end takes the same ones.
+/// Seconds between rows of history.csv: as given, or a hundredth of the end time. Where it is not given, rows do not
+/// cut steps, so that a run that goes on to a later end takes the same ones.
 inline double row_interval(const Scene& scene) {
   return scene.output.history_every > 0.0 ? scene.output.history_every : scene.time.end / 100.0;
 }

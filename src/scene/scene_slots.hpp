@@ -50,6 +50,9 @@ inline constexpr auto kinds_with_particles = find_with_particles(Kinds{});
 inline constexpr std::array axes{Word{"x", 0}, Word{"y", 1}, Word{"z", 2}};
 inline constexpr std::array sides_of_domain{Word{"bottom", 0}, Word{"top", 1},   Word{"left", 2},
                                             Word{"right", 3},  Word{"front", 4}, Word{"back", 5}};
+inline constexpr std::array sides_or_none{sides_of_domain[0], sides_of_domain[1], sides_of_domain[2],
+                                          sides_of_domain[3], sides_of_domain[4], sides_of_domain[5],
+                                          Word{"none", 6}};
 inline constexpr std::array bottom_or_top{sides_of_domain[0], sides_of_domain[1]};
 inline constexpr std::array rest_of_the_domain{Word{"the-rest", 0}};
 inline constexpr std::array hydrostatic{Word{"hydrostatic", 1}};
@@ -138,6 +141,12 @@ constexpr Slot drag(const char* in_words) {
 constexpr Slot sides() {
   Slot slot = in_shape<&SidesShape::sides>();
   slot.words = sides_of_domain;
+  return slot;
+}
+
+constexpr Slot open_sides_of_domain(const char* in_words) {
+  Slot slot = at<&Domain::open>(in_words);
+  slot.words = sides_or_none;
   return slot;
 }
 

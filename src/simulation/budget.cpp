@@ -63,6 +63,10 @@ Budget::Sums Budget::sums(const State& state) const {
                   });
     }
   }
+  for (const Departed& gone : state.departed) {
+    s.potential += gone.kinetic + gone.potential + gone.stored;
+    for (std::size_t d = 0; d < 3; ++d) s.momentum[d] += gone.momentum[d];
+  }
   return s;
 }
 

@@ -18,6 +18,7 @@ KeptState::KeptState(const std::vector<PhaseParticles>& particles, std::vector<F
 
 void KeptState::keep(const std::vector<PhaseParticles>& particles, double time, long step) {
   for (auto& column : columns_) {
+    column.values.resize(particles[column.phase].size());  // some may have left
     const double* from = particles[column.phase].column(column.field, column.component);
     double* to = column.values.data();
     const auto n = static_cast<std::int64_t>(column.values.size());
@@ -25,17 +26,30 @@ void KeptState::keep(const std::vector<PhaseParticles>& particles, double time, 
     for (std::int64_t i = 0; i < n; ++i) to[i] = from[i];
   }
   for (std::size_t k = 0; k < ids_.size(); ++k)
-    if (!ids_[k].empty()) std::copy(particles[k].id().begin(), particles[k].id().end(), ids_[k].begin());
+    if (!ids_[k].empty()) ids_[k].assign(particles[k].id().begin(), particles[k].id().end());
   time_ = time;
   step_ = step;
 }
 
 void KeptState::exchange(std::vector<PhaseParticles>& particles) {
-  for (auto& column : columns_)
+  std::vector<std::size_t> now(particles.size()), kept(particles.size());
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    now[k] = particles[k].size();
+    kept[k] = ids_[k].empty() ? now[k] : ids_[k].size();
+    if (kept[k] > now[k]) particles[k].resize(kept[k]);  // some have left since
+  }
+  for (auto& column : columns_) {
+    column.values.resize(std::max(now[column.phase], kept[column.phase]));
     std::swap_ranges(column.values.begin(), column.values.end(),
                      particles[column.phase].column(column.field, column.component));
-  for (std::size_t k = 0; k < ids_.size(); ++k)
-    if (!ids_[k].empty()) ids_[k].swap(particles[k].id());
+    column.values.resize(now[column.phase]);
+  }
+  for (std::size_t k = 0; k < ids_.size(); ++k) {
+    if (ids_[k].empty()) continue;
+    ids_[k].swap(particles[k].id());
+    ids_[k].resize(now[k]);
+    if (kept[k] < now[k]) particles[k].resize(kept[k]);
+  }
 }
 
 std::size_t KeptState::bytes() const {

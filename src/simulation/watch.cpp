@@ -99,6 +99,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   std::size_t most = 0;
   for (const auto& g : guards_) most = std::max(most, see_.particles[g.phase].size());
   parts_.resize((most + block - 1) / block);
+  fastest_of_.resize(see_.particles.size());
   for (const auto& f : see_.scene.forcings)
     for (const auto& g : guards_)
       if (see_.plan.phases[g.phase].name == f.phase)
@@ -126,6 +127,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
       double v2 = 0.0;
       for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
       start_energy_ += 0.5 * p.mass() * v2;
+      start_fastest_ = std::max(start_fastest_, std::sqrt(v2));
       if (plan.rules.pressure_stores_energy)
         start_energy_ +=
             0.5 * p.mass() *
@@ -156,6 +158,8 @@ void Watch::make_guards() {
       g.closed[d] = {-1, -1};
       g.low[d] = plan.bounds.periodic[d] ? -1e300 : plan.bounds.low[d] - margin;
       g.high[d] = plan.bounds.periodic[d] ? 1e300 : plan.bounds.high[d] + margin;
+      if (p.open[d][0]) g.low[d] = -1e300;  // models/air/open_sides.hpp takes what passes it
+      if (p.open[d][1]) g.high[d] = 1e300;
     }
     for (const auto& e : plan.entries) {
       if (!e.has(k)) continue;
@@ -265,6 +269,7 @@ double Watch::look_at_phases(const Moment& now) {
       all.densest = std::max(all.densest, part.densest);
     }
     energy += 0.5 * p.mass() * all.squares;
+    fastest_of_[g.phase] = std::sqrt(all.fastest);
     wrong += all.wrong;
     const PhaseRules& rules = see_.plan.phases[g.phase].rules;
     if (rules.solid) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));

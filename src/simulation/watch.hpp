@@ -31,6 +31,7 @@ struct WatchBounds {
   static constexpr double paired = 0.05;              // of a fluid's particles
   static constexpr double energy = 4.0;               // kinetic energy over what laws can have fed
   static constexpr double remarkable_density = 0.05;  // a density error that is worth a warning at the end
+  static constexpr double remarkable_speed = 3.0;     // the same of a fluid particle, over what it can have been given
 };
 
 /// Where a run stands when the watch looks.
@@ -107,9 +108,9 @@ class Watch {
     std::size_t phase, number;  // number: of the [[forcing]]
     std::array<Formula, 3> acceleration;
   };
-  /// The largest density error of the run so far.
+  /// The particle with the largest density error of the run so far, or with the largest speed.
   struct Extreme {
-    double error = 0.0, density = 0.0, time = 0.0;
+    double error = 0.0, value = 0.0, time = 0.0;  // error: of the density, or speed over what was given
     std::size_t phase = 0;
     std::int64_t id = 0;
     Vec3 place{};
@@ -130,12 +131,14 @@ class Watch {
   template <std::size_t Dim>
   double nearest_in(const Guard& g, std::size_t k) const;
   void note_density(const Guard& g, double error, const Moment& now);
+  void note_speed(double given, const Moment& now);
 
   // the slow part: finds the particle and makes the message
   std::optional<std::string> wrong_with(const Guard& g, std::size_t k, double dt) const;
   std::optional<std::string> wrong_place(const Guard& g, std::size_t k) const;
   std::string who(std::size_t phase, std::size_t k, const Moment& now) const;
   std::optional<std::string> formula_to_blame(const Moment& now) const;
+  std::string unpairing(const Guard& g) const;
   std::string step_key() const;
   [[noreturn]] void tell_worst(const Moment& now) const;
   [[noreturn]] void tell_pair(const Apart& pair, const Moment& now) const;
@@ -147,15 +150,17 @@ class Watch {
   std::vector<Force> forces_;
   KeptState good_;
   long next_ = 1, looks_ = 0;
-  double mass_ = 0.0;          // kg of what moves
-  double start_energy_ = 0.0;  // J: kinetic and elastic at the beginning, and what disorder may free
-  double start_speed_ = 0.0;   // m/s, from it
-  double drag_ = 0.0;          // m/s2, of walls that pull with a given stress
-  double forced_ = 0.0;        // m/s that forces can have given so far
+  double mass_ = 0.0;               // kg of what moves
+  double start_energy_ = 0.0;       // J: kinetic and elastic at the beginning, and what disorder may free
+  double start_speed_ = 0.0;        // m/s, from it
+  double start_fastest_ = 0.0;      // m/s
+  std::vector<double> fastest_of_;  // m/s, by phase, at the last look
+  double drag_ = 0.0;               // m/s2, of walls that pull with a given stress
+  double forced_ = 0.0;             // m/s that forces can have given so far
   double last_time_ = 0.0, last_fastest_ = 0.0, wall_speed_ = 0.0;  // s, m/s
   bool torques_ = false;  // what turns on an axle may get energy without bound
   double energy_ = 0.0;   // J, kinetic, at the last look
-  Extreme extreme_;
+  Extreme extreme_, fastest_;
 };
 
 /// The fields that frames hold beside the position.

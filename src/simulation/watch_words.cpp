@@ -219,10 +219,25 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
   }
   throw BreakdownError(who(g.phase, first, now) + " and " + brief(100.0 * paired) +
                        " % of its phase stand in pairs, nearer than " + brief(WatchBounds::pair_distance) +
-                       " spacings to another (bound " + brief(100.0 * WatchBounds::paired) +
-                       " %); the kernel does not keep particles apart: choose kernel = \"wendland-c2\" for "
-                       "interactions." +
-                       p.name() + "-" + p.name() + ", or raise phases." + p.name() + ".shifting");
+                       " spacings to another (bound " + brief(100.0 * WatchBounds::paired) + " %); " + unpairing(g));
+}
+
+/// What keeps particles from standing in pairs.
+std::string Watch::unpairing(const Guard& g) const {
+  const Plan& plan = see_.plan;
+  const std::string& name = plan.phases[g.phase].name;
+  double stable = 1e300;
+  for (const auto& l : plan.limits) stable = std::min(stable, l.value);
+  if (plan.fixed_step > 1.001 * stable)
+    return "the step is longer than the one that is stable (" + brief(plan.fixed_step) + " s and " + brief(stable) +
+           " s): lower time.step, or leave it out";
+  const auto own = std::find_if(plan.entries.begin(), plan.entries.end(),
+                                [&](const PlanEntry& e) { return e.a == g.phase && e.b == g.phase; });
+  return "the kernel does not keep particles apart: " +
+         std::string(own->kernel == KernelKind::wendland_c2
+                         ? ""
+                         : "choose kernel = \"wendland-c2\" for interactions." + name + "-" + name + ", or ") +
+         "raise phases." + name + ".shifting or lower " + step_key();
 }
 
 /// The largest kinetic energy that laws can have fed: with forces f per mass, sqrt(2 E/M) grows by no more than the
@@ -244,6 +259,7 @@ void Watch::look_at_energy(const Moment& now) {
       walls = std::max(walls, size_of(see_.particles[k], 0, Field::velocity));
   wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
+  note_speed(speed - start_speed_, now);
   const double bound = WatchBounds::energy * 0.5 * mass_ * speed * speed;
   if (energy_ <= bound) return;
   throw BreakdownError("the kinetic energy of all particles, " + brief(energy_) + " J, is more than " +
@@ -263,14 +279,43 @@ void Watch::note_density(const Guard& g, double error, const Moment& now) {
     const double e = std::abs(rho[k] / g.reference_density - 1.0);
     if (!(e > found.error) && !(e == found.error && p.id()[k] < found.id)) continue;
     found.error = e;
-    found.density = rho[k];
+    found.value = rho[k];
     found.id = p.id()[k];
     found.place = place_of(p, k);
   }
   extreme_ = found;
 }
 
+/// Of a fluid particle that is much faster than gravity, forcings, walls and the start can have made it (m/s).
+void Watch::note_speed(double given, const Moment& now) {
+  given = std::max({given, see_.plan.largest_speed, start_fastest_});
+  for (const Guard& g : guards_) {
+    const PhaseParticles& p = see_.particles[g.phase];
+    const double speed = fastest_of_[g.phase];
+    if (!see_.plan.phases[g.phase].flows || !(speed > WatchBounds::remarkable_speed * given) ||
+        speed < 1.01 * fastest_.value)
+      continue;
+    Extreme found{speed / given, -1.0, now.time, g.phase, 0, {}, now.step};
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double v = size_of(p, k, Field::velocity);
+      if (v < found.value || (v == found.value && p.id()[k] > found.id)) continue;
+      found.value = v;
+      found.id = p.id()[k];
+      found.place = place_of(p, k);
+    }
+    fastest_ = found;
+  }
+}
+
 void Watch::report(Warnings& warnings) const {
+  if (fastest_.error > 0.0)
+    warnings.add("speed", "a particle of \"" + see_.particles[fastest_.phase].name() + "\" reached " +
+                              brief(fastest_.value) + " m/s, " + brief(fastest_.error) +
+                              " times what gravity, forcings, walls and the start can give (particle " +
+                              std::to_string(fastest_.id) + " at " + text_of(fastest_.place, see_.plan.dimensions) +
+                              ", t = " + brief(fastest_.time) + " s, step " + std::to_string(fastest_.step) +
+                              "): single drops are not to be trusted there; scheme = \"consistent\" or slip = "
+                              "\"no-slip\" of the wall may help");
   if (extreme_.error < WatchBounds::remarkable_density) return;
   const PhaseParticles& p = see_.particles[extreme_.phase];
   warnings.add("density", "the density of \"" + p.name() + "\" was off by " + brief(100.0 * extreme_.error) +
@@ -291,6 +336,8 @@ void Watch::archive(Archive& a) {
   a.number("watch: fastest", last_fastest_);
   a.number("watch: fastest wall", wall_speed_);
   a.number("watch: largest density error", extreme_);
+  a.number("watch: fastest of a fluid", fastest_);
+  a.number("watch: fastest at the start", start_fastest_);
 }
 
 std::size_t Watch::bytes() const { return good_.bytes() + parts_.size() * sizeof(Part); }

@@ -2,12 +2,15 @@
 
 #include <numeric>
 
+#include "base/errors.hpp"
+
 namespace barchan {
 
 PhaseParticles::PhaseParticles(std::string name, int dimensions, std::size_t size, double mass, std::int64_t first_id)
     : name_(std::move(name)),
       dimensions_(dimensions),
       size_(size),
+      start_size_(size),
       first_id_(first_id),
       mass_(mass),
       id_(size),
@@ -44,7 +47,24 @@ void PhaseParticles::permute(const std::uint32_t* order) {
   id_.swap(id_scratch_);
 }
 
+void PhaseParticles::resize(std::size_t size) {
+  size_ = size;
+  id_.resize(size);
+  id_scratch_.resize(size);
+  scratch_.resize(size);
+  for (auto& columns : columns_)
+    for (auto& column : columns) column.resize(size);
+}
+
 void PhaseParticles::archive(Archive& a) {
+  if (may_shrink_) {
+    std::uint64_t count = size_;
+    a.number("particles of " + name_, count);
+    if (count > start_size_)
+      throw SceneError("the checkpoint does not fit this scene: it has " + std::to_string(count) + " particles of \"" +
+                       name_ + "\", the scene has " + std::to_string(start_size_));
+    if (count != size_) resize(static_cast<std::size_t>(count));
+  }
   a.values("id of " + name_, id_.data(), id_.size());
   for (std::size_t f = 0; f < field_count; ++f)
     for (auto& column : columns_[f])

@@ -24,7 +24,8 @@ class PhaseParticles {
   int dimensions() const { return dimensions_; }
   std::size_t size() const { return size_; }
   double mass() const { return mass_; }  ///< kg a particle (kg per metre of depth in 2D); of spheres of the mean radius
-  std::int64_t first_id() const { return first_id_; }  ///< ids are first_id() .. first_id() + size() - 1
+  /// Ids are from first_id() on, as many as there were particles at the start; some are gone where may_shrink().
+  std::int64_t first_id() const { return first_id_; }
   /// kg, of the particle at a place: spheres have their own where the phase has the field radius.
   double mass_of(std::size_t k) const {
     if (!has(Field::radius)) return mass_;
@@ -53,9 +54,17 @@ class PhaseParticles {
   /// Reorders every array: new[k] = old[order[k]]. Allocates nothing.
   void permute(const std::uint32_t* order);
 
+  /// The first `size` particles of the arrays are there; what a larger size adds has no values yet. At most as many as
+  /// at the start.
+  void resize(std::size_t size);
+  /// Particles may leave: an archive may hold fewer than there were at the start.
+  void may_shrink() { may_shrink_ = true; }
+
   std::size_t bytes() const;  ///< memory of the arrays
 
-  void archive(Archive& a);  ///< ids and all fields, in the present order
+  /// Ids and all fields, in the present order. Throws SceneError where an archive has another number of particles and
+  /// the phase may not shrink, or more than there were at the start.
+  void archive(Archive& a);
 
  private:
   static void check([[maybe_unused]] Field field) {
@@ -67,7 +76,8 @@ class PhaseParticles {
 
   std::string name_;
   int dimensions_;
-  std::size_t size_;
+  std::size_t size_, start_size_;
+  bool may_shrink_ = false;
   std::int64_t first_id_;
   double mass_, mean_radius_ = 1.0;
   std::vector<std::int64_t> id_, id_scratch_;

@@ -26,6 +26,7 @@ void State::archive(Archive& a) {
   for (auto& p : phases) p.archive(a);
   for (auto& profile : air) profile.archive(a);
   for (auto& body : bodies) a.number("rigid body", body.now);
+  for (auto& one : departed) a.number("departed", one);
 }
 
 }  // namespace barchan

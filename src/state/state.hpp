@@ -31,11 +31,20 @@ struct Retreat {
   void archive(Archive& a);
 };
 
+/// What left the run through open sides, of one phase: as it was when it left (SI; by metre of depth in 2D).
+struct Departed {
+  std::int64_t phase = 0, particles = 0;
+  double first = 0.0;  // s, when the first one left
+  double mass = 0.0, kinetic = 0.0, potential = 0.0, stored = 0.0;
+  Vec3 momentum{};
+};
+
 struct State {
   std::vector<PhaseParticles> phases;
-  std::deque<AirProfile> air;     // wind by height: of phases that are air without particles, of layers over sand
-  std::vector<RigidBody> bodies;  // rigid, in the order of their phases and fills
-  double time = 0.0, dt = 0.0;    // s
+  std::deque<AirProfile> air;      // wind by height: of phases that are air without particles, of layers over sand
+  std::vector<RigidBody> bodies;   // rigid, in the order of their phases and fills
+  std::vector<Departed> departed;  // of the phases that may leave
+  double time = 0.0, dt = 0.0;     // s
   long steps = 0;
   double largest_acceleration = 0.0;         // m/s2, of the last kick
   std::string ruling_limit;                  // of the last step

@@ -40,7 +40,7 @@ const std::vector<Case>& broken_on_the_way() {
        {"phase \"fluid\"", "is faster", "than sound (10 m/s)", "raise phases.fluid.sound-speed"}},
       {"TooFewNeighbours",
        &vortices,
-       {"interactions.fluid-fluid=1.2", "phases.fluid.sound-speed=2.5"},  // with 2.6 spacings the same fluid lives
+       {"phases.fluid.scheme='plain'", "interactions.fluid-fluid=1.2", "phases.fluid.sound-speed=2.5"},
        {"phase \"fluid\"", ": density ", "out of bounds (0.7 to 1.3)", "the radius of interactions.fluid-fluid"}},
       {"CubicSplinePairing",
        &vortices,

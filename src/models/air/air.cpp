@@ -79,6 +79,7 @@ void Air::kick_and_drift() {
   if (keys_.energy) advance_energy(*particles_, 0.5 * dt);
   if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
   if (keeps_inside_) hold_inside(*particles_, held_);
+  if (!boxes_.empty()) hold_outside(*particles_, boxes_, layout_.bounds);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
 }
 

@@ -10,6 +10,7 @@
 #include "engine/means.hpp"
 #include "models/air/eddies.hpp"
 #include "models/air/energy.hpp"
+#include "models/air/held_boxes.hpp"
 #include "models/air/relief.hpp"
 #include "models/air/surface.hpp"
 #include "models/air/voids.hpp"
@@ -76,6 +77,7 @@ class Air : public Model {
   BulkHold hold_;
   std::optional<Drive> drive_;  // where something drives it along x
   bool keeps_inside_ = false;
+  std::vector<HeldBox> boxes_;
 
   // with eddies
   std::vector<EddyNeighbour> eddy_neighbours_;

@@ -6,6 +6,7 @@
 #include "kernels/kernel.hpp"
 #include "models/air/air.hpp"
 #include "models/air/enclosed.hpp"
+#include "models/air/open_sides.hpp"
 #include "models/walls/sides.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -24,6 +25,7 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
   p.enclosed = said.value_or(seen.shut_in);
   p.enclosure = said ? "as the scene says" : seen.why;
   p.free_surface = !p.enclosed && seen.open;
+  p.open = open_sides(scene, fluid, p.free_surface);
   if (said.value_or(false) && !seen.free_space.empty())
     warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
                        ", so that the mean density should be free; leave the key out");
@@ -201,6 +203,7 @@ void Air::attach(Workspace& w) {
     held_.rest = phase_.density;
   }
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
+  if (plan_.free_surface) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
   if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, mean_, *particles_, layout_.bounds);

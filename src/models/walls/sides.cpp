@@ -6,15 +6,21 @@
 namespace barchan {
 
 bool behind_a_side(const PhaseParticles& wall, std::size_t k, const Bounds& bounds, double spacing) {
-  double outside2 = 0.0;
+  Vec3 out{};
   for (int d = 0; d < wall.dimensions(); ++d) {
     const auto c = static_cast<std::size_t>(d);
     if (bounds.periodic[c]) continue;
     const double x = wall.column(Field::position, d)[k];
-    const double out = std::max({bounds.low[c] - x, x - bounds.high[c], 0.0});
-    outside2 += out * out;
+    out[c] = std::max({bounds.low[c] - x, x - bounds.high[c], 0.0});
   }
-  return outside2 > 0.0 && std::abs(std::sqrt(outside2) - wall.column(Field::wall_depth)[k]) < 1e-6 * spacing;
+  // Past the end of a side that no wall closes the depth is that of the walled one alone (wall.cpp).
+  for (unsigned some = 1; some < 8; ++some) {
+    Vec3 behind{};
+    for (std::size_t d = 0; d < 3; ++d) behind[d] = (some >> d & 1u) != 0 ? out[d] : 0.0;
+    const double depth = norm(behind);
+    if (depth > 0.0 && std::abs(depth - wall.column(Field::wall_depth)[k]) < 1e-6 * spacing) return true;
+  }
+  return false;
 }
 
 void close_sides(Sides& sides, const PhaseParticles& wall, const Bounds& bounds, double spacing) {

@@ -37,6 +37,31 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
 }
 
+namespace {
+
+bool is_walled(const Scene& scene, std::size_t axis, bool above) {
+  constexpr std::array<std::array<const char*, 2>, 3> names{{{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+  return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+    const auto* shape = std::get_if<SidesShape>(&fill.shape);
+    return shape &&
+           std::find(shape->sides.begin(), shape->sides.end(), names[axis][above ? 1 : 0]) != shape->sides.end();
+  });
+}
+
+/// How far a place is outside the domain, by axis (m). A wall goes on past the end of its side where no wall closes the
+/// next one: what is behind a walled side counts as outside of that one only.
+Vec3 out_of_walled_sides(const Scene& scene, const Bounds& bounds, const Vec3& x) {
+  Vec3 all{}, walled{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(bounds.dimensions); ++d) {
+    if (bounds.periodic[d]) continue;
+    all[d] = x[d] < bounds.low[d] ? x[d] - bounds.low[d] : x[d] > bounds.high[d] ? x[d] - bounds.high[d] : 0.0;
+    if (all[d] != 0.0 && is_walled(scene, d, all[d] > 0.0)) walled[d] = all[d];
+  }
+  return norm(walled) > 0.0 ? walled : all;
+}
+
+}  // namespace
+
 /// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
 /// particle outside the domain.
 void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
@@ -50,16 +75,10 @@ void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
         wall.column(Field::wall_normal, d)[k] = block.normal[k][static_cast<std::size_t>(d)];
       continue;
     }
-    double depth2 = 0;
-    std::array<double, 3> out{};
-    for (int d = 0; d < wall.dimensions(); ++d) {
-      const auto c = static_cast<std::size_t>(d);
-      if (bounds.periodic[c]) continue;
-      const double x = wall.column(Field::position, d)[k];
-      out[c] = x < bounds.low[c] ? x - bounds.low[c] : x > bounds.high[c] ? x - bounds.high[c] : 0.0;
-      depth2 += out[c] * out[c];
-    }
-    const double depth = std::sqrt(depth2);
+    Vec3 x{};
+    for (int d = 0; d < wall.dimensions(); ++d) x[static_cast<std::size_t>(d)] = wall.column(Field::position, d)[k];
+    const Vec3 out = out_of_walled_sides(scene_, bounds, x);
+    const double depth = norm(out);
     wall.column(Field::wall_depth)[k] = depth;
     if (depth > 0)
       for (int d = 0; d < wall.dimensions(); ++d)
