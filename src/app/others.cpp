@@ -1,4 +1,5 @@
 // barchan plan, generate, compare, schema.
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 
@@ -18,7 +19,9 @@ namespace barchan {
 int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
   const Scene scene = read_scene(file, overrides);
   if (threads > 0) use_threads(threads, 0);
+  const auto start = std::chrono::steady_clock::now();
   const auto blocks = make_particles(scene, json ? nullptr : &std::cout);
+  const std::chrono::duration<double> making = std::chrono::steady_clock::now() - start;
   Plan plan = make_plan(scene, blocks);
   use_threads(threads, plan.particles());
   const MemoryNeed memory = memory_need(scene, plan, !scene.time.fixed_step);
@@ -27,6 +30,7 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   try {
     check_memory(scene, memory);
     estimate = measure(scene, plan, blocks);
+    estimate.start_seconds = making.count();
   } catch (const SceneError& error) {
     if (json) throw;
     std::cout << "not measured\n";

@@ -77,6 +77,7 @@ struct PlanEntry {
   double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
   bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
   bool of_surfaces = false;          // of these: their outlines touch, not their particles
+  bool of_many_elastic = false;      // of these: an elastic body of several particles is in it
   double restitution = 1, friction = 0;  // of such
   int forward = -1, backward = -1;       // directions: a looks for b, b looks for a; -1: not needed
   bool has(std::size_t phase) const { return a == phase || b == phase; }

@@ -20,7 +20,7 @@ struct RunReport {
 
   // the scene and the plan
   std::string scene_title, scene_file, scene_state;
-  std::vector<std::string> overrides;  // of the command line
+  std::vector<std::string> overrides;     // of the command line
   double scene_spacing = 0;               // m
   std::map<std::string, long> particles;  // by phase
   std::map<std::string, long> pairs;      // by matrix entry, "air-sand": directed pairs of the last list

@@ -14,6 +14,7 @@ struct Estimate {
   double seconds = 0;  // s if the threads share it evenly and nothing else runs on the machine
   double particle_steps_per_second = 0;
   double bytes = 0;                                          // memory of particles, records and lists
+  double start_seconds = 0;                                  // s before the first step: particles are made, beds settle
   std::vector<std::pair<std::string, std::uint64_t>> pairs;  // directed pairs by entry
 };
 

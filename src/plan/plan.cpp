@@ -103,6 +103,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.gusts = i.gusts;
     e.of_bodies = touch_as_bodies(i, scene.phases[e.a], scene.phases[e.b]);
     e.of_surfaces = e.of_bodies && touch_by_surfaces(scene.phases[e.a], scene.phases[e.b]);
+    for (const PlanPhase& p : {plan.phases[e.a], plan.phases[e.b]}) e.of_many_elastic |= p.body && p.count > 1;
     e.restitution = i.restitution.value_or(1.0);
     e.friction = i.friction.value_or(0.0);
     classify(scene, e);
@@ -201,7 +202,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   if (plan.limits.empty() && plan.fixed_step == 0)
     throw SceneError(located(scene, "time.step") + ": missing: nothing limits the step; expected a number > 0 (s)");
   check_steps(scene, plan);
-  add_warnings(scene, plan);
+  add_warnings(scene, blocks, plan);
   return plan;
 }
 

@@ -27,7 +27,7 @@ struct Plan : Layout {
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks);
 
 /// Fills Plan::warnings; the last work of make_plan.
-void add_warnings(const Scene& scene, Plan& plan);
+void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan);
 
 /// Adds warnings of what lies outside the ranges of the stability atlas (docs/stability.md).
 void warn_outside_stable_ranges(const Scene& scene, Plan& plan);

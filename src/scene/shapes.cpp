@@ -160,11 +160,15 @@ void check_room(const Scene& scene, std::size_t k, double cells) {
   if (!(cells <= 1e9))
     throw SceneError(located(scene, "fill." + std::to_string(k)) + ": more than 10^9 particles of phase \"" +
                      fill.phase + "\"; expected a larger spacing or a smaller shape");
-  if (const AvailableMemory there = available_memory(); cells * sizeof(Vec3) > there.bytes)
+  // Of a shape that fills its bounds: the particle's place, velocity and id, and what a sort writes them into.
+  const bool fills_bounds =
+      std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<TheRestShape>(fill.shape);
+  const double least = fills_bounds ? 150.0 : sizeof(Vec3);  // bytes a cell
+  if (const AvailableMemory there = available_memory(); cells * least > there.bytes)
     throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
                      std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
-                     memory_text(cells * sizeof(Vec3)) + " at least, " + there.of + " leaves " +
-                     memory_text(there.bytes) + "; expected a larger spacing or a smaller shape");
+                     memory_text(cells * least) + " at least, " + there.of + " leaves " + memory_text(there.bytes) +
+                     "; expected a larger spacing or a smaller shape");
 }
 
 /// Cells between two corners.

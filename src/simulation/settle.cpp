@@ -15,6 +15,7 @@
 #include "scene/places.hpp"
 #include "scene/shapes.hpp"
 #include "simulation/grains_file.hpp"
+#include "simulation/settle_room.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -37,35 +38,8 @@ constexpr double soft_impact = 0.03;    // diameters: of grains that fall into i
 constexpr double stiffer = 8.0;         // contacts from stage to stage
 const char* const box_name = "settling_box";
 
-/// The box that a fill's grains fall into, and its height when they have settled.
-struct Container {
-  Vec3 low{}, high{};
-  double from = 0.0;  // m, where the grains begin
-};
-
-Container container_of(const Scene& scene, const Fill& fill, std::size_t k) {
-  Container c;
-  c.low = scene.domain.origin;
-  c.high = scene.domain.origin + scene.domain.size;
-  c.from = c.low[1];
-  if (const auto* box = std::get_if<BoxShape>(&fill.shape)) {
-    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) {
-      if (d != 1) c.low[d] = std::max(c.low[d], box->min[d]);
-      c.high[d] = std::min(c.high[d], box->max[d]);
-    }
-    c.from = std::max(c.low[1], box->min[1]);
-  } else if (const auto* bed = std::get_if<BedShape>(&fill.shape)) {
-    if (bed->dune && bed->dune->form == DuneShape::Form::formula)
-      throw SceneError(scene.file + ": fill." + std::to_string(k) +
-                       ".packing: a settled bed needs a height; expected a dune of another form");
-    c.high[1] = c.low[1] + bed->depth + (bed->dune ? bed->dune->height : 0.0);
-    c.from = c.low[1] + bed->from;
-  }
-  return c;
-}
-
 /// The scene in which the grains settle: they alone, the walls that they feel, and a box.
-Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
+Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
   const Fill& fill = scene.fills[k];
   const Phase& phase =
       *std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
@@ -145,7 +119,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const Container& c) {
 }
 
 /// The loose lattice from which the grains fall: `s` is the scene in which they do.
-Fill loose_lattice(const Scene& s, const Fill& fill, const Container& c, const SphereSize& size) {
+Fill loose_lattice(const Scene& s, const Fill& fill, const SettlingRoom& c, const SphereSize& size) {
   Fill grains = fill;
   BoxShape loosely{c.low, c.high};
   loosely.min[1] = c.from;
@@ -165,7 +139,7 @@ Fill loose_lattice(const Scene& s, const Fill& fill, const Container& c, const S
 
 /// Walls as they are; grains of the lattice that are over the ground of the walls, not much higher than they shall lie.
 /// `thickness`: becomes that of the bed where it is largest (m).
-std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, const Scene& s, const Container& c,
+std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, const Scene& s, const SettlingRoom& c,
                                          double& thickness) {
   const SphereSize size = *s.phases[0].diameter();
   Scene alone = s;
@@ -328,7 +302,7 @@ Scene softened(Scene s, double stiffness) {
 }  // namespace
 
 SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
-  const Container c = container_of(scene, scene.fills[k], k);
+  const SettlingRoom c = settling_room(scene, k);
   const Scene s = settling_scene(scene, k, c);
   double thickness = 0.0;
   const bool from_file = std::holds_alternative<FileShape>(scene.fills[k].shape);
@@ -380,6 +354,7 @@ void SettledBeds::archive(Archive& a, const Scene& scene) {
 }
 
 std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words, SettledBeds* beds) {
+  refuse_beds_in_one_place(scene);
   return generate(scene, [&](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
     if (of.fills[fill].packing != Packing::settled) return grains_of_file(of, fill);
     if (!beds) return settle(of, fill, words);

@@ -14,6 +14,8 @@
 #include "output/series.hpp"
 #include "physics/small_scenes.hpp"
 #include "simulation/grains_file.hpp"
+#include "simulation/settle_room.hpp"
+#include "unit/scene_texts.hpp"
 
 namespace barchan {
 namespace {
@@ -383,6 +385,49 @@ TEST(SettledBed, OfTheFlatBedStaysAtRestWithoutWind) {
 }
 
 // Motions, markers, forces and what is measured belong to the run: the bed is the one that settles without them.
+// The highest grain of each of ten columns of the domain (m).
+std::vector<double> heights_of(const std::vector<ParticleBlock>& blocks, double width) {
+  std::vector<double> highest(10, 0.0);
+  for (const Vec3& x : blocks[0].position) {
+    double& here = highest[std::min<std::size_t>(static_cast<std::size_t>(10.0 * x[0] / width), 9)];
+    here = std::max(here, x[1]);
+  }
+  return highest;
+}
+
+TEST(SettledBed, OfAFormulaHasItsTwoDunes) {
+  const std::string formula = "0.004 * (exp(-((x - 0.0125) / 0.004)^2) + exp(-((x - 0.0375) / 0.004)^2))";
+  const Scene scene = parse_scene(
+      testing::with(flat, "bed = 0.008", "bed = 0.008, dune = { form = \"formula\", formula = \"" + formula + "\" }"),
+      "two.toml");
+  const auto top = heights_of(make_particles(scene, nullptr), 0.05);
+  for (const std::size_t crest : {2U, 7U}) EXPECT_NEAR(top[crest], 0.0115, 1e-3) << "column " << crest;
+  for (const std::size_t plain : {0U, 4U, 5U, 9U}) EXPECT_NEAR(top[plain], 0.008, 1e-3) << "column " << plain;
+}
+
+TEST(SettledBed, TwoInOnePlaceAreRefusedBeforeTheySettle) {
+  const std::string second = "\n[[fill]]\nphase = \"sand\"\npacking = \"settled\"\nshape = { ";
+  const auto refusal = [&](const std::string& shape) -> std::string {
+    try {
+      refuse_beds_in_one_place(parse_scene(testing::with(flat, "\n[time]", second + shape + " }\n[time]"), "two.toml"));
+    } catch (const SceneError& error) { return error.what(); }
+    return "";
+  };
+  EXPECT_NE(refusal("bed = 0.01").find("its grains settle where those of fill.1 do, by 0.008 m"), std::string::npos)
+      << refusal("bed = 0.01");
+  EXPECT_NE(refusal("box = { min = [0.01, 0], max = [0.02, 0.02] }"), "");
+  EXPECT_EQ(refusal("bed = 0.016, from = 0.008"), "") << "one over the other";
+  EXPECT_EQ(refusal("box = { min = [0.01, 0.0081], max = [0.02, 0.02] }"), "");
+}
+
+TEST(SettledBed, BoxesSideBySideAreNotInOnePlace) {
+  const std::string boxes =
+      "shape = { box = { min = [0, 0], max = [0.025, 0.01] } }\npacking = \"settled\"\n[[fill]]\nphase = \"sand\"\n"
+      "shape = { box = { min = [0.025, 0], max = [0.05, 0.01] } }\n";
+  const Scene scene = parse_scene(testing::with(flat, "shape = { bed = 0.008 }\n", boxes), "boxes.toml");
+  EXPECT_NO_THROW(refuse_beds_in_one_place(scene));
+}
+
 TEST(SettledBed, SettlesAloneWhateverStandsBesideIt) {
   const std::vector<std::string> shallow{"fill.1.shape={ bed = 0.003 }"};
   const auto alone = make_particles(parse_scene(flat, "bed.toml", shallow));

@@ -213,5 +213,44 @@ TEST(PlanWarns, OfFramesBeyondTheEndOfWeightUpwardsAndOfRadiiInMetres) {
       warns(box("water-wall = 2.1", "water-wall = 0.1"), "interactions.water-wall: a radius below one spacing"));
 }
 
+/// A bar of rubber in a box of this height (m), rows of 1.6 mm; which warnings it has.
+std::vector<std::string> bar(const std::string& height) {
+  const Scene scene = parse_scene(R"(spacing = 0.0016
+[domain]
+size = [0.4, 0.2]
+[phases.bar]
+kind = "elastic"
+density = 1100
+young = 1e6
+poisson = 0.4
+[interactions]
+bar-bar = 1.6
+[[fill]]
+phase = "bar"
+shape = { box = { min = [0.08, 0.08], max = [0.24, )" +
+                                      height +
+                                      R"(] } }
+[time]
+end = 1
+)",
+                                  "bar.toml");
+  return make_plan(scene, generate(scene)).warnings;
+}
+
+TEST(PlanWarns, OfABarThatIsNotWholeRowsThick) {
+  ASSERT_EQ(bar("0.1").size(), 1U);
+  EXPECT_NE(bar("0.1").front().find("along y the box is 0.02 m and the body 12 rows of 0.0016 m, 0.0192 m (-4.0 %)"),
+            std::string::npos)
+      << bar("0.1").front();
+  EXPECT_TRUE(bar("0.0992").empty()) << bar("0.0992").front() << ": twelve rows";
+}
+
+TEST(PlanWarns, OfABarOfTwoParticlesAcross) {
+  ASSERT_EQ(bar("0.0832").size(), 1U);
+  EXPECT_NE(bar("0.0832").front().find("phases.bar: 2 particles across along y"), std::string::npos)
+      << bar("0.0832").front();
+  EXPECT_TRUE(bar("0.0864").empty()) << "four";
+}
+
 }  // namespace
 }  // namespace barchan
