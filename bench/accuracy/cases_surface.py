@@ -6,12 +6,12 @@ import numpy
 
 from harness import attempt, document, local_fit, options, report, run, tell
 
-SCHEMES = {"consistent": [], "plain": ["phases.{0}.scheme=plain", "interactions.{0}-{0}=3.0", "interactions.{0}-{1}=3.0"]}
+SCHEMES = {"consistent": [], "plain, radius 3.0": ["phases.{0}.scheme=plain", "interactions.{0}-{0}=3.0", "interactions.{0}-{1}=3.0"]}
 
 
-def both(name, case, n, fluid="water", wall="tank"):
-    """Runs case(scheme, overrides) for each scheme: the scene as it is, and the plain sums with a radius of 3."""
-    for scheme, overrides in SCHEMES.items():
+def both(name, case, n, fluid="water", wall="tank", more=None):
+    """Runs case(scheme, overrides) for each scheme: the scene as it is, the plain sums with a radius of 3, and those of `more`."""
+    for scheme, overrides in (SCHEMES | (more or {})).items():
         overrides = [o.format(fluid, wall) for o in overrides if wall or "{1}" not in o]
         attempt(name, scheme, n, lambda: case(scheme, overrides))
 
@@ -80,7 +80,7 @@ def standing_wave(n):
         loss = 1 - math.exp(-gamma * 2 * math.pi / exact)
         report("standing wave", scheme, n, "amplitude that a period takes (below 0: gives)", loss, .01 if n >= 50 else None, seconds)
         report_gain("standing wave", scheme, n, total, seconds)
-    both("standing wave", case, n, wall="floor")
+    both("standing wave", case, n, wall="floor", more={"plain, the scene's radius of 2.6": ["phases.{0}.scheme=plain"]})
 
 
 # ---- rotating square patch -------------------------------------------------------------------------------------------

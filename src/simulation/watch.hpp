@@ -157,6 +157,7 @@ class Watch {
   std::vector<double> fastest_of_;  // m/s, by phase, at the last look
   double drag_ = 0.0;               // m/s2, of walls that pull with a given stress
   double forced_ = 0.0;             // m/s that forces can have given so far
+  double given_ = 0.0;              // m/s that all together can have given; 0: not known
   double last_time_ = 0.0, last_fastest_ = 0.0, wall_speed_ = 0.0;  // s, m/s
   bool torques_ = false;  // what turns on an axle may get energy without bound
   double energy_ = 0.0;   // J, kinetic, at the last look

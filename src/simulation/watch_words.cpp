@@ -104,6 +104,12 @@ std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) con
              " (a bound at " + brief(low ? g.low[c] : g.high[c]) +
              " m); the wall could not stop it, it was too fast or pressed too hard: " +
              see_.plan.phases[g.phase].rules.if_passed;
+    const double speed = size_of(p, k, Field::velocity);
+    if (given_ > 0.0 && speed > WatchBounds::remarkable_speed * given_)
+      return " escaped through the " + side + " at " + brief(speed) + " m/s, " + brief(speed / given_) +
+             " times what gravity, forcings, walls and the start can give: the computation gained that energy, no wall "
+             "would help: lower " +
+             step_key() + " or the spacing";
     return " escaped through the " + side +
            "; no wall with which it interacts holds it there: add a wall on that side and an entry of \"" + p.name() +
            "\" with it in [interactions], or enlarge domain.size";
@@ -288,7 +294,7 @@ void Watch::note_density(const Guard& g, double error, const Moment& now) {
 
 /// Of a fluid particle that is much faster than gravity, forcings, walls and the start can have made it (m/s).
 void Watch::note_speed(double given, const Moment& now) {
-  given = std::max({given, see_.plan.largest_speed, start_fastest_});
+  given = given_ = std::max({given, see_.plan.largest_speed, start_fastest_});
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const double speed = fastest_of_[g.phase];
@@ -323,7 +329,9 @@ void Watch::report(Warnings& warnings) const {
                               text_of(extreme_.place, p.dimensions()) + ", t = " + brief(extreme_.time) + " s, step " +
                               std::to_string(extreme_.step) +
                               "); a weakly compressible fluid should stay within 1 %: raise phases." + p.name() +
-                              ".sound-speed or the radius of interactions." + p.name() + "-" + p.name());
+                              ".sound-speed where the flow is faster than a tenth of it, else lower the spacing or "
+                              "raise the radius of interactions." +
+                              p.name() + "-" + p.name());
 }
 
 void Watch::archive(Archive& a) {

@@ -118,5 +118,36 @@ TEST(BulkSpeed, CostsNothingWhereNothingIsHeld) {
   }
 }
 
+// A body of four particles flies with one speed: its mean is that speed, and every frame has half the kernel radius.
+TEST(HistoryAndFrames, HaveTheMeanSpeedAndTheSmoothingLengthAsTheyAre) {
+  const std::string four = R"toml(
+spacing = 0.1
+[domain]
+size = [2, 2]
+[phases.body]
+kind = "elastic"
+density = 1000
+young = 1e5
+poisson = 0.3
+[interactions]
+body-body = 1.6
+[[fill]]
+phase = "body"
+shape = { box = { min = [0.5, 0.5], max = [0.7, 0.7] } }
+velocity = [0.75, 0]
+[time]
+end = 0.1
+)toml";
+  const auto run = small::simulation("precision = \"double\"\n" + four);
+  ASSERT_EQ(run->phases()[0].size(), 4U);
+  EXPECT_DOUBLE_EQ(history(*run, "body_mean_vx [m/s]"), 0.75);
+  const Frame frame = run->frame(0);
+  const auto length = std::find_if(frame.fields.begin(), frame.fields.end(),
+                                   [](const FrameField& f) { return f.name == "smoothing_length"; });
+  ASSERT_NE(length, frame.fields.end());
+  ASSERT_EQ(length->values.size(), 4U);
+  for (const double h : length->values) EXPECT_DOUBLE_EQ(h, 0.5 * 1.6 * 0.1) << "half the radius of body-body";
+}
+
 }  // namespace
 }  // namespace barchan

@@ -102,6 +102,13 @@ TEST(PlanWarns, OfKernelsUnderWhichParticlesPair) {
   EXPECT_NE(to_text(square, scene).find("warning: " + square.warnings.front()), std::string::npos);
 }
 
+TEST(PlanWarns, OfAPressureThatBlowsASurfaceAway) {
+  const std::string pressed = "density = 1000\nbackground-pressure = 0.01", plain = pressed + "\nscheme = \"plain\"";
+  EXPECT_TRUE(warns(box("density = 1000", plain, "0.8"), "phases.water.background-pressure: it blows"));
+  EXPECT_FALSE(warns(box("density = 1000", pressed, "0.8"), "background-pressure")) << "the consistent scheme";
+  EXPECT_FALSE(warns(box("density = 1000", plain), "background-pressure")) << "no free surface";
+}
+
 TEST(PlanWarns, OfWallsThatHoldNobody) {
   const std::string sand = R"(spacing = 0.05
 [domain]

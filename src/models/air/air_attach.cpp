@@ -56,8 +56,9 @@ PhaseRules rules_of(const PlanPhase& p, const std::string& step_key) {
   r.pressure_stores_energy = r.pairs_up = true;
   r.if_not_finite = key + "sound-speed or " + key + "density-diffusion";
   r.if_passed = "lower " + step_key + " or raise " + key + "sound-speed";
-  r.if_dense = "the pressure ran away, or neighbours are too few: raise " + key +
-               "sound-speed or the radius of interactions." + p.name + "-" + p.name + ", or lower " + step_key;
+  r.if_dense = "the pressure ran away, or neighbours are too few: lower the spacing or " + step_key +
+               ", raise the radius of interactions." + p.name + "-" + p.name + ", or " + key +
+               "sound-speed where the flow is faster than " + brief(0.1 * c) + " m/s, a tenth of it";
   r.if_fast = [key, step_key, c](double, double) {
     return "sound (" + brief(c) + " m/s); the flow ran away, or the scene has too slow a sound: raise " + key +
            "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
