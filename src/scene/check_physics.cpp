@@ -130,33 +130,37 @@ class PhysicsChecker {
   void wind_over_sand(const Interaction& pair, const Phase& fluid, const Phase& grains, const std::string& dotted) {
     const std::string drag = dotted + ".drag", why = "a law of drag by name needs ";
     const Vec3& g = scene_.domain.gravity;
+    const bool wrong_itself = report_.touched(drag);
+    const auto needs = [&](const std::string& what) {  // all of them at once, though they stand at one key
+      if (!wrong_itself) report_(drag, why + what);
+    };
     for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
       if (report_.has(dotted + key))
         tell(dotted + key, "beside a law of drag by name a grain feels the mean wind about it; expected no such key");
     if (pair.drag_law == DragLaw::di_felice)
       tell(drag, "crowded drag acts in air of kind column; expected stokes, schiller-naumann, cheng or duran");
     if (scene_.dimensions != 2 || !scene_.domain.periodic[0])
-      tell(drag, why + "two dimensions and a periodic x, with a fluid of particles; expected those, or a number");
-    if (!(g[1] < 0.0) || g[0] != 0.0) tell(drag, why + "gravity along -y; expected domain.gravity = [0, -9.81]");
+      needs("two dimensions and a periodic x, with a fluid of particles; expected those, or a number");
+    if (!(g[1] < 0.0) || g[0] != 0.0) needs("gravity along -y; expected domain.gravity = [0, -9.81]");
     if (!grains.diameter()) tell(place(grains) + ".diameter", why + "spheres; expected a number > 0 (m)");
     else if (fluid.spacing < 2.0 * grains.diameter()->mean)
-      tell(drag, why + "air coarser than the grains; expected a spacing of \"" + fluid.name +
-                     "\" of two diameters or more, or a number");
+      needs("air coarser than the grains; expected a spacing of \"" + fluid.name +
+            "\" of two diameters or more, or a number");
     if (fluid.fluid().turbulence != Turbulence::mixing_length || fluid.fluid().scheme != FluidScheme::consistent ||
         !(fluid.fluid().viscosity > 0.0))
-      tell(drag,
-           why +
-               "a turbulent wind; expected scheme = \"consistent\", turbulence = \"mixing-length\" and a viscosity "
-               "above 0 of \"" +
-               fluid.name + "\"");
+      needs(
+          "a turbulent wind; expected scheme = \"consistent\", turbulence = \"mixing-length\" and a viscosity above 0 "
+          "of "
+          "\"" +
+          fluid.name + "\"");
     const bool ground = std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
       const Phase* wall = find_phase(scene_, fill.phase);
       return wall && wall->if_wall() && wall->wall().roughness && fill.packing == Packing::fitted &&
              std::holds_alternative<BedShape>(fill.shape) && entry_between(scene_, fluid, *wall);
     });
     if (!ground)
-      tell(drag, why + "ground under the wind; expected a wall that \"" + fluid.name +
-                     "\" feels, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
+      needs("ground under the wind; expected a wall that \"" + fluid.name +
+            "\" feels, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
   }
 
   /// Grains that feel a fluid through a kernel are sources of no volume: in a fluid nearly as heavy as they are, what

@@ -118,7 +118,8 @@ TEST(SceneColumn, LawsOfDragByNameNeedIt) {
   text.erase(text.find("[phases.air]"), text.find("[phases.sand]") - text.find("[phases.air]"));
   const std::string message = refusal(text);
   for (const char* words : {"phases.sand.diameter: a law of drag by name needs spheres",
-                            "interactions.water-sand.drag: a law of drag by name needs a turbulent wind"})
+                            "interactions.water-sand.drag: a law of drag by name needs a turbulent wind",
+                            "interactions.water-sand.drag: a law of drag by name needs ground under the wind"})
     EXPECT_NE(message.find(words), std::string::npos) << message;
 }
 
