@@ -59,16 +59,18 @@ TEST(OpenSides, WhatSplashesOutIsCountedAndGone) {
 }
 
 TEST(OpenSides, TheBooksStayClosedWhenFluidLeaves) {
-  Drive tank("verification/dam_break", low_tank());
-  double most = -1.0;
-  for (int k = 1; k <= 40; ++k) {
-    tank.to(0.01 * k);
-    if (const auto growth = tank.simulation().budget().energy_growth(tank.simulation().state()))
-      most = std::max(most, *growth);
+  for (const char* seed : {"1", "2", "3"}) {  // no lattice: that of the scene is one start among many
+    Drive tank("verification/dam_break", low_tank({"fill.1.perturb=0.01", std::string("fill.1.seed=") + seed}));
+    double most = -1.0;
+    for (int k = 1; k <= 40; ++k) {
+      tank.to(0.01 * k);
+      if (const auto growth = tank.simulation().budget().energy_growth(tank.simulation().state()))
+        most = std::max(most, *growth);
+    }
+    ASSERT_GT(left_mass(tank.simulation()), 0.0);
+    report("growth of energy, with what left", most, 0.02);
+    EXPECT_LT(most, 0.02) << "seed " << seed;
   }
-  ASSERT_GT(left_mass(tank.simulation()), 0.0);
-  report("growth of energy, with what left", most, 0.02);
-  EXPECT_LT(most, 0.02);
 }
 
 void expect_the_same(const PhaseParticles& a, const PhaseParticles& b) {

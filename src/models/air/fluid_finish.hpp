@@ -127,9 +127,13 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::templat
   Rates<Dim, V> r;
   r.shift = shift_of<Dim, V>(s.concentration, q);
   const V specific = V(1.0) / rho;
-  for (std::size_t d = 0; d < Dim; ++d)
-    r.acceleration[d] = (V(2.0) * s.viscous[d] - s.pressure[d]) * specific + V(q.gravity[d] + q.acceleration[d]);
-  r.density = rho * s.divergence + V(2.0 * q.diffusivity / (q.sound_speed * q.sound_speed)) * s.diffusion;
+  // What is fused is written, so that a fluid with a surface has the same bits inside, whatever the compiler chooses.
+  const V diffusivity(2.0 * q.diffusivity / (q.sound_speed * q.sound_speed));
+  for (std::size_t d = 0; d < Dim; ++d) {
+    const V push = simd::fma(V(2.0), s.viscous[d], -s.pressure[d]);
+    r.acceleration[d] = simd::fma(push, specific, V(q.gravity[d] + q.acceleration[d]));
+  }
+  r.density = simd::fma(rho, s.divergence, diffusivity * s.diffusion);
   return r;
 }
 
