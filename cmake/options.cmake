@@ -29,6 +29,6 @@ endif()
 if(BARCHAN_SANITIZE)
   target_compile_options(barchan_options INTERFACE -fsanitize=${BARCHAN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(barchan_options INTERFACE -fsanitize=${BARCHAN_SANITIZE})
-  # Checks in every operation, all inlined into one loop, take g++ 12 minutes a file (models/air/fluid.cpp: 165 s, so 51 s).
+  # Checks in every operation, all inlined into one loop, take g++ 12 minutes a file (models/fluid/fluid_rates.cpp: 165 s, so 51 s).
   target_compile_definitions(barchan_options INTERFACE BARCHAN_SIMD_INLINE=inline)
 endif()

@@ -9,7 +9,7 @@
 
 #include "engine/integrate.hpp"
 #include "engine/neighbours.hpp"
-#include "models/air/fluid.hpp"
+#include "models/fluid/fluid_rates.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {

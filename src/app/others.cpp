@@ -9,8 +9,8 @@
 #include "output/compare.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
-#include "simulation/estimate.hpp"
 #include "simulation/grains_file.hpp"
+#include "simulation/measure_cost.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 

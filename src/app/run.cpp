@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/report.hpp"
+#include "app/make_report.hpp"
 #include "app/running.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
@@ -15,7 +15,7 @@
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
-#include "plan/memory.hpp"
+#include "plan/memory_need.hpp"
 #include "scene/identity.hpp"
 #include "scene/reader.hpp"
 #include "simulation/settle.hpp"

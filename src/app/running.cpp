@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "app/report.hpp"
+#include "app/make_report.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/instructions.hpp"

@@ -4,9 +4,9 @@
 //   drho_a/dt = sum m_b v_ab . grad W,   grad v_a = -sum V_b v_ab (x) grad W
 //   Pi_ab     = (-alpha c mu + beta mu^2) / rho,  mu = h v.r/(r^2 + 0.01 h^2) on approach, else 0   (Monaghan 1992)
 // The stress rate is Hooke's law with Jaumann's rotation, s_dot = 2 G dev(D) + s.W^T + W.s (eq. 11 prints G for 2G and
-// no rotation), in models/bodies/elastic.cpp. No kernel corrections: momentum and angular momentum of a pair are exact.
-// Where a body is pulled, particles of SPH clump (Swegle's tensile instability). With artificial stress a pair has
-// besides
+// no rotation), in models/bodies/updated_lagrangian.cpp. No kernel corrections: momentum and angular momentum of a pair
+// are exact. Where a body is pulled, particles of SPH clump (Swegle's tensile instability). With artificial stress a
+// pair has besides
 //   sum m_b (R_a + R_b) f^4 . grad W,   f = W(r)/W(dx),   R = -epsilon [s/rho^2]+      (Gray, Monaghan & Swift 2001)
 // [ ]+ keeps the principal stresses that pull: particles nearer than dx repel each other.
 //   de_a/dt   = -1/2 sum m_b v_ab . [s_a/rho_a^2 + s_b/rho_b^2 - Pi_ab] . grad W   (eq. 13 with the whole stress, and

@@ -12,7 +12,7 @@
 //
 // Pair by pair this is the power of the force on a and on b and of the torque on b, with the sign changed. A force is
 // computed with velocities half a step old (v, w0), its power is that with the velocities of now: u_b and w are those,
-// and of a the pass takes f_a . a_a dt/2 away, f_a = sum V_b F [2 mu v_ab - (p_a + p_b) r] (models/air/energy.hpp).
+// and of a the pass takes f_a . a_a dt/2 away, f_a = sum V_b F [2 mu v_ab - (p_a + p_b) r] (models/fluid/energy.hpp).
 #pragma once
 
 #include "laws/pair.hpp"

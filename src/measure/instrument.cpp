@@ -126,7 +126,7 @@ class Maker {
     i.flight = s.flight * i.diameter;
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)
-      if (e.law == Law::column && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
+      if (e.kind == EntryKind::column && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
     const double height = i.high[1] - i.low[1];
     const double slices = s.count > 0 ? s.count : std::max(std::round(height / i.diameter), 1.0);
     for (double k = 0.5; k < slices; ++k) {

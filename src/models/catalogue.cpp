@@ -3,9 +3,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "models/air/air.hpp"
-#include "models/air/open_sides.hpp"
-#include "models/bodies/body_contact.hpp"
+#include "models/bodies/body_contact_entry.hpp"
 #include "models/bodies/elastic_phase.hpp"
 #include "models/bodies/rigid_contact.hpp"
 #include "models/bodies/rigid_phase.hpp"
@@ -16,6 +14,8 @@
 #include "models/coupling/rigid_in_fluid.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
+#include "models/fluid/fluid_phase.hpp"
+#include "models/fluid/open_sides.hpp"
 #include "models/force_meter.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_flux.hpp"
@@ -44,7 +44,7 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
-    case PhaseKind::fluid: return {true, true, describe_air, make<Air>};
+    case PhaseKind::fluid: return {true, true, describe_air, make<FluidPhase>};
     case PhaseKind::elastic:
       return {true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
     case PhaseKind::rigid: return {true, false, describe_rigid, make<RigidPhase>};
@@ -55,20 +55,21 @@ Kind kind_of(const Phase& phase) {
   return {};
 }
 
-Law law_of(const Phase& a, const Phase& b) {
+EntryKind kind_of_entry(const Phase& a, const Phase& b) {
   const auto is = [&](PhaseKind k, PhaseKind l) {
     return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
   };
   using enum PhaseKind;
-  if (is(fluid, fluid)) return Law::fluid;
-  if (is(fluid, wall)) return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? Law::boundary : Law::repulsive;
-  if (is(column, grains)) return Law::column;
-  if (is(fluid, grains) || is(fluid, elastic) || is(fluid, rigid)) return Law::coupling;
-  if (is(elastic, elastic)) return Law::elastic;
+  if (is(fluid, fluid)) return EntryKind::fluid;
+  if (is(fluid, wall))
+    return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? EntryKind::boundary : EntryKind::repulsive;
+  if (is(column, grains)) return EntryKind::column;
+  if (is(fluid, grains) || is(fluid, elastic) || is(fluid, rigid)) return EntryKind::coupling;
+  if (is(elastic, elastic)) return EntryKind::elastic;
   const auto touches = [](const Phase& p) {
     return p.kind() == elastic || p.kind() == rigid || p.kind() == grains || p.kind() == wall;
   };
-  if (touches(a) && touches(b)) return Law::contact;
+  if (touches(a) && touches(b)) return EntryKind::contact;
   throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + a.kind_word() + ", and \"" + b.name +
                    "\", of kind " + b.kind_word() + "; expected no such entry");
 }
@@ -105,13 +106,13 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
 
 void classify(const Scene& scene, PlanEntry& e) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
-  e.law = e.of_bodies ? Law::contact : law_of(a, b);
-  if (e.law == Law::coupling && e.drag_law != DragLaw::none) e.law = Law::drag;
+  e.kind = e.of_bodies ? EntryKind::contact : kind_of_entry(a, b);
+  if (e.kind == EntryKind::coupling && e.drag_law != DragLaw::none) e.kind = EntryKind::drag;
   e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
   e.other = e.partner(e.fluid);
-  e.corrected = (e.law == Law::fluid || e.law == Law::boundary || e.law == Law::coupling) &&
+  e.corrected = (e.kind == EntryKind::fluid || e.kind == EntryKind::boundary || e.kind == EntryKind::coupling) &&
                 scene.phases[e.fluid].fluid().scheme == FluidScheme::consistent;
-  e.corrected = e.corrected || (e.law == Law::elastic && e.a == e.b && is_total(a));
+  e.corrected = e.corrected || (e.kind == EntryKind::elastic && e.a == e.b && is_total(a));
 }
 
 Models make_models(const Scene& scene, const Layout& layout) {
@@ -128,7 +129,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
     if (layout.leaves(k)) models.push_back(std::make_unique<OpenSides>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     if (std::none_of(layout.entries.begin(), layout.entries.end(),
-                     [&](const PlanEntry& e) { return e.law == Law::coupling && e.other == k; }))
+                     [&](const PlanEntry& e) { return e.kind == EntryKind::coupling && e.other == k; }))
       continue;
     if (scene.phases[k].kind() == PhaseKind::rigid)  // its surface moves before the fluid is extended into it
       models.push_back(std::make_unique<RigidInFluid>(scene, layout, k));
@@ -137,11 +138,11 @@ Models make_models(const Scene& scene, const Layout& layout) {
   if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.diameter > 0; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) {
-    if (e.law == Law::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
+    if (e.kind == EntryKind::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
     if (e.drag > 0) models.push_back(make_drag_entry(scene, layout, e));
     if (e.of_surfaces) models.push_back(std::make_unique<RigidContact>(scene, layout, e));
     else if (e.of_bodies) models.push_back(std::make_unique<BodyContact>(scene, layout, e));
-    else if ((e.law == Law::contact && !e.of_spheres()) || e.law == Law::repulsive)
+    else if ((e.kind == EntryKind::contact && !e.of_spheres()) || e.kind == EntryKind::repulsive)
       models.push_back(make_contact_entry(scene, layout, e));
   }
   add_grain_fluxes(scene, layout, models);

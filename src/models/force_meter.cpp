@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/means.hpp"
-#include "models/air/air.hpp"
+#include "models/fluid/fluid_phase.hpp"
 
 namespace barchan {
 
@@ -36,7 +36,7 @@ void ForceOn::attach(Workspace& w) {
       pushes_.push_back(w.sphere_pushes.size());
       w.sphere_pushes.push_back({phase_, e.partner(phase_), meter_.about});
     }
-    if (e.law != Law::boundary || e.other != phase_) continue;
+    if (e.kind != EntryKind::boundary || e.other != phase_) continue;
     w.need_motion(e.fluid);
     fluids_.push_back({{&w.list(e.direction(phase_)), &w.motion[e.fluid], e.kernel, e.radius,
                         pair_viscosity(scene_, layout_, phase_, e.fluid), false},

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "models/air/fluid.hpp"
 #include "models/bodies/sets.hpp"
+#include "models/fluid/fluid_rates.hpp"
 #include "models/row_mean.hpp"
 
 namespace barchan {

@@ -17,7 +17,7 @@
 namespace barchan {
 
 /// What an entry of the matrix does; it follows from the kinds of its two phases (models/catalogue.cpp).
-enum class Law {
+enum class EntryKind {
   fluid,      // fluid-fluid: pressure, viscosity, density diffusion
   boundary,   // fluid-wall: pressure and velocity extended into the wall (Adami et al. 2012)
   repulsive,  // fluid-wall: one row of ghosts that push (Halik et al. 2015, section 6; Monaghan 1994)
@@ -27,21 +27,21 @@ enum class Law {
   contact,    // grains with grains, walls or bodies
   elastic,    // elastic-elastic: stress
 };
-inline std::string to_string(Law law) {
-  switch (law) {
-    case Law::fluid: return "fluid";
-    case Law::boundary: return "boundary";
-    case Law::repulsive: return "repulsive";
-    case Law::coupling: return "coupling";
-    case Law::column: return "column";
-    case Law::drag: return "drag";
-    case Law::contact: return "contact";
-    case Law::elastic: return "elastic";
+inline std::string to_string(EntryKind kind) {
+  switch (kind) {
+    case EntryKind::fluid: return "fluid";
+    case EntryKind::boundary: return "boundary";
+    case EntryKind::repulsive: return "repulsive";
+    case EntryKind::coupling: return "coupling";
+    case EntryKind::column: return "column";
+    case EntryKind::drag: return "drag";
+    case EntryKind::contact: return "contact";
+    case EntryKind::elastic: return "elastic";
   }
   return "";
 }
 
-/// How a turbulent fluid rubs on the other side of an entry (models/air/eddies.hpp).
+/// How a turbulent fluid rubs on the other side of an entry (models/fluid/turbulence.hpp).
 enum class Friction {
   fluid,   // through the viscosity of both particles
   smooth,  // no slip: eddies vanish at the surface
@@ -64,9 +64,9 @@ Consistency lattice_consistency(KernelKind kernel, double radius_in_spacings, in
 struct PlanEntry {
   std::size_t a = 0, b = 0;  // phase numbers, a <= b
   std::string name;          // "air-sand"
-  Law law = Law::fluid;
+  EntryKind kind = EntryKind::fluid;
   std::size_t fluid = 0, other = 0;         // of laws between a fluid and something else: which is which
-  ContactLaw contact = ContactLaw::kernel;  // of Law::contact
+  ContactLaw contact = ContactLaw::kernel;  // of EntryKind::contact
   KernelKind kernel = KernelKind::cubic_spline;
   double radius = 0;   // m; of spheres the distance at which the largest touch
   double spacing = 0;  // m, of its coarser phase
@@ -75,7 +75,7 @@ struct PlanEntry {
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a column
   double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
-  bool of_bodies = false;            // of Law::contact: bodies that touch at their spacings
+  bool of_bodies = false;            // of EntryKind::contact: bodies that touch at their spacings
   bool of_surfaces = false;          // of these: their outlines touch, not their particles
   bool of_many_elastic = false;      // of these: an elastic body of several particles is in it
   double restitution = 1, friction = 0;  // of such
@@ -84,10 +84,10 @@ struct PlanEntry {
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
-  bool of_spheres() const { return law == Law::contact && barchan::of_spheres(contact); }
-  bool sees_solid() const { return law == Law::boundary || law == Law::coupling; }
+  bool of_spheres() const { return kind == EntryKind::contact && barchan::of_spheres(contact); }
+  bool sees_solid() const { return kind == EntryKind::boundary || kind == EntryKind::coupling; }
   /// The other phase is part of the neighbourhood in which a fluid sums its rates.
-  bool continues_fluid() const { return law == Law::fluid || sees_solid(); }
+  bool continues_fluid() const { return kind == EntryKind::fluid || sees_solid(); }
 };
 
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.

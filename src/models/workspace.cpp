@@ -6,7 +6,7 @@
 
 #include "engine/integrate.hpp"
 #include "models/bodies/artificial_stress.hpp"
-#include "models/bodies/elastic.hpp"
+#include "models/bodies/updated_lagrangian.hpp"
 
 namespace barchan {
 
@@ -143,7 +143,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
     if (e.sees_solid()) seen[e.other] = true;
-    if (e.law != Law::fluid) read[e.a] = read[e.b] = true;
+    if (e.kind != EntryKind::fluid) read[e.a] = read[e.b] = true;
   }
   eddies.resize(phases);
   ground_stress.resize(phases);

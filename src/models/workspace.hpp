@@ -8,7 +8,7 @@
 
 #include "engine/neighbours.hpp"
 #include "engine/records.hpp"
-#include "models/air/eddies.hpp"
+#include "models/fluid/turbulence.hpp"
 #include "models/model.hpp"
 
 namespace barchan {
@@ -26,7 +26,7 @@ class Workspace {
   std::vector<RecordArray> motion, extended, stress;     // by phase; extended: a solid as the fluid sees it
   std::vector<RecordArray> carried;                      // by phase: how a solid moves at the end of the step
   std::vector<RecordArray> artificial;                   // by phase: artificial stress of bodies
-  std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/air reads
+  std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/fluid reads
   std::vector<EddyRecords> eddies;                       // by phase
   std::vector<AlignedVector<double>> ground_stress;      // Pa, by fluid and particle; empty: walls say it themselves
 

@@ -67,16 +67,16 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 
 /// The first direction of an entry, and its opposite. A wall searches only the fluid that is extended into it.
 void add_directions(const Scene& scene, Plan& plan, PlanEntry& e) {
-  if (e.law == Law::column || e.law == Law::drag) return;  // the wind is found by height: no search
-  if (e.of_surfaces) return;                               // models/bodies/rigid_contact.hpp looks at outlines
+  if (e.kind == EntryKind::column || e.kind == EntryKind::drag) return;  // the wind is found by height: no search
+  if (e.of_surfaces) return;  // models/bodies/rigid_contact.hpp looks at outlines
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
-  if (e.law == Law::elastic && plan.phases[e.a].fixed_neighbours) return;
+  if (e.kind == EntryKind::elastic && plan.phases[e.a].fixed_neighbours) return;
   if (e.of_bodies && (has_surfaces(scene, scene.phases[e.a]) || has_surfaces(scene, scene.phases[e.b]))) return;
   if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
-  const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.law == Law::boundary; };
+  const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.kind == EntryKind::boundary; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);
   if (e.a != e.b && looks(e.b)) e.backward = direction(e.b, e.a);
 }
@@ -112,18 +112,18 @@ void add_entries(const Scene& scene, Plan& plan) {
         return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
       };
       e.radius = 0.5 * (across(e.a) + across(e.b));
-    } else if (e.law != Law::column && e.law != Law::drag) {
+    } else if (e.kind != EntryKind::column && e.kind != EntryKind::drag) {
       e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
     }
     add_directions(scene, plan, e);
     plan.entries.push_back(e);
-    if (e.a == e.b || (e.law == Law::contact && !e.of_bodies)) {
+    if (e.a == e.b || (e.kind == EntryKind::contact && !e.of_bodies)) {
       for (const std::size_t p : {e.a, e.b})
         if (e.a == e.b || plan.phases[p].smoothing_length == 0) plan.phases[p].smoothing_length = 0.5 * e.radius;
     }
     if (touches_itself(i, scene.phases[e.a], scene.phases[e.b])) {  // an entry of its own: it is searched
       e.name += " contact";
-      e.law = Law::contact;
+      e.kind = EntryKind::contact;
       e.of_bodies = true;
       e.corrected = false;
       e.consistency = {};

@@ -55,7 +55,7 @@ class Comparison {
   }
 
   void entry(const PlanEntry& e) {
-    if (e.law != Law::fluid || e.a == e.b) return;
+    if (e.kind != EntryKind::fluid || e.a == e.b) return;
     const double a = scene_.phases[e.a].density, b = scene_.phases[e.b].density;
     compare(plan_.phases[e.a].physics, "density ratio", std::max(a, b) / std::min(a, b), "interactions." + e.name,
             ", the ratio of the densities,");

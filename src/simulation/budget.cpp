@@ -30,7 +30,7 @@ Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravi
     }
   }
   const bool blown = std::any_of(plan.entries.begin(), plan.entries.end(),
-                                 [](const PlanEntry& e) { return e.law == Law::column; });  // it gives and takes
+                                 [](const PlanEntry& e) { return e.kind == EntryKind::column; });  // it gives and takes
   const bool forced = !scene.forcings.empty() || !scene.motions.empty() || blown;
   keeps_energy_ = !forced && !moving_walls;
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan.dimensions); ++d) {

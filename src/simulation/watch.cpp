@@ -158,14 +158,14 @@ void Watch::make_guards() {
       g.closed[d] = {-1, -1};
       g.low[d] = plan.bounds.periodic[d] ? -1e300 : plan.bounds.low[d] - margin;
       g.high[d] = plan.bounds.periodic[d] ? 1e300 : plan.bounds.high[d] + margin;
-      if (p.open[d][0]) g.low[d] = -1e300;  // models/air/open_sides.hpp takes what passes it
+      if (p.open[d][0]) g.low[d] = -1e300;  // models/fluid/open_sides.hpp takes what passes it
       if (p.open[d][1]) g.high[d] = 1e300;
     }
     for (const auto& e : plan.entries) {
       if (!e.has(k)) continue;
       if (rules.pairs_up && e.a == e.b) g.own_list = e.forward;
       const std::size_t other = e.partner(k);
-      if (rules.contacts_limit_speed && e.law == Law::contact) {
+      if (rules.contacts_limit_speed && e.kind == EntryKind::contact) {
         // The largest energy that the contact can store, 1/2 K g(0)^2 with K = m c^2/d^2 (laws/kernel_contact.hpp).
         with_kernel<double>(e.kernel, e.radius, plan.dimensions, [&](const auto& kernel) {
           const double d = 0.5 * (p.spacing + plan.phases[other].spacing),
@@ -199,11 +199,13 @@ void Watch::make_pairs() {
   };
   const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
   for (const auto& e : see_.plan.entries) {
-    if ((e.law != Law::contact && e.law != Law::elastic) || e.of_spheres()) continue;  // spheres: Model::trouble
-    if (e.forward < 0 && e.backward < 0) continue;                                     // first neighbours for ever
+    if ((e.kind != EntryKind::contact && e.kind != EntryKind::elastic) || e.of_spheres())
+      continue;                                     // spheres: Model::trouble
+    if (e.forward < 0 && e.backward < 0) continue;  // first neighbours for ever
     const bool turned = wall(e.a);
     const bool at_wall = wall(e.a) || wall(e.b);
-    pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward, e.law == Law::elastic,
+    pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward,
+                      e.kind == EntryKind::elastic,
                       (at_wall ? WatchBounds::wall_depth : WatchBounds::coincidence) * between(e.a, e.b), e.radius});
   }
 }

@@ -15,7 +15,7 @@ DOWN = "app simulation plan measure models output engine laws state scene kernel
 
 
 def climbs(src):
-    """Includes that point up, "models/air/air.cpp includes plan/plan.hpp"."""
+    """Includes that point up, "models/fluid/fluid_phase.cpp includes plan/plan.hpp"."""
     found = []
     for file in sorted(src.rglob("*.?pp")):
         own = file.relative_to(src).parts[0]
@@ -32,7 +32,52 @@ def kinds(src):
             if "PhaseKind" in f.read_text() and f.relative_to(src).parts[0] != "scene" and f.name != "catalogue.cpp"]
 
 
+def twins(src):
+    """Names of files that stand in two folders: each name says one thing."""
+    where = {}
+    for f in sorted(src.rglob("*.?pp")):
+        where.setdefault(f.stem, set()).add(str(f.relative_to(src).parent))
+    return {name: sorted(folders) for name, folders in where.items() if len(folders) > 1}
+
+
+def circles(src):
+    """Circles of includes among the files of src, each as the list of its files."""
+    includes = {}
+    for f in src.rglob("*.?pp"):
+        names = re.findall(r'^\s*#\s*include\s+"([^"]+)"', f.read_text(), re.M)
+        includes[str(f.relative_to(src))] = [n for n in names if (src / n).exists()]
+    found, done = [], set()
+
+    def walk(file, way):
+        if file in way:
+            found.append(way[way.index(file):] + [file])
+        elif file not in done:
+            for other in includes.get(file, []):
+                walk(other, way + [file])
+            done.add(file)
+
+    for file in sorted(includes):
+        walk(file, [])
+    return found
+
+
 class Layers(unittest.TestCase):
+    def test_a_name_of_a_file_stands_once(self):
+        self.assertEqual(twins(ROOT / "src"), {})
+
+    def test_no_circle_of_includes(self):
+        self.assertEqual(circles(ROOT / "src"), [])
+
+    def test_planted_twins_and_circles_are_found(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            src = pathlib.Path(scratch)
+            for name, text in {"laws/x.hpp": '#include "base/y.hpp"\n', "base/y.hpp": '#include "base/z.hpp"\n',
+                               "base/z.hpp": '#include "laws/x.hpp"\n', "models/x.hpp": ""}.items():
+                (src / name).parent.mkdir(exist_ok=True)
+                (src / name).write_text(text)
+            self.assertEqual(twins(src), {"x": ["laws", "models"]})
+            self.assertEqual(circles(src), [["base/y.hpp", "base/z.hpp", "laws/x.hpp", "base/y.hpp"]])
+
     def test_includes_point_down(self):
         self.assertEqual(climbs(ROOT / "src"), [])
 

@@ -21,11 +21,11 @@ LONG_FILES = {
 }
 LONG_FUNCTIONS = {
     "app/main.cpp: dispatch": "one statement an option of the command line",
-    "plan/report.cpp: to_json": "one statement a value of the report",
+    "plan/plan_report.cpp: to_json": "one statement a value of the report",
     "simd/vec.hpp: load_transposed": "one case a width of the registers, in the order of the shuffles",
-    "models/air/fluid_finish.hpp: finish_consistent": "the formulas that close the sums of the consistent scheme, in the order of "
+    "models/fluid/fluid_finish.hpp: finish_consistent": "the formulas that close the sums of the consistent scheme, in the order of "
                                                       "docs/method.md; each uses what the ones before it found",
-    "models/bodies/elastic.cpp: strain": "loop and closing terms of the strain of a body, an in-place update of its stress",
+    "models/bodies/updated_lagrangian.cpp: strain": "loop and closing terms of the strain of a body, an in-place update of its stress",
     "models/grains/sphere_forces.cpp: group_of": "contacts side by side: their geometry, springs and dashpots share registers",
     "laws/sphere_contact.hpp: touch": "one contact from geometry to torque: each formula uses what the ones before it found",
     "simulation/settle.cpp: settling_scene": "one statement a key of the scene in which a bed settles",

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "models/air/fluid.hpp"
-#include "models/bodies/elastic.hpp"
+#include "models/bodies/updated_lagrangian.hpp"
+#include "models/fluid/fluid_rates.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace {

@@ -57,7 +57,7 @@ TEST(Cavity, NearsTheConvergedSolution) {
 }
 
 // The default radius: a particle was squeezed into the corner where the lid begins, and 12 of 12 runs ended with status
-// 3 (calm() in models/air/fluid_finish.hpp). Twenty spacings do not resolve these flows; the run has to hold.
+// 3 (calm() in models/fluid/fluid_finish.hpp). Twenty spacings do not resolve these flows; the run has to hold.
 TEST(Cavity, CornersHoldWithTheDefaultRadius) {
   for (const char* viscosity : {"0.001", "0.0003125"})
     for (const char* seed : {"1", "2"}) {

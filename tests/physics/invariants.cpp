@@ -3,9 +3,9 @@
 // elastic forces against the work of stress; and action and reaction between a fluid and grains.
 #include <gtest/gtest.h>
 
-#include "models/air/energy.hpp"
-#include "models/air/fluid.hpp"
-#include "models/bodies/elastic.hpp"
+#include "models/bodies/updated_lagrangian.hpp"
+#include "models/fluid/energy.hpp"
+#include "models/fluid/fluid_rates.hpp"
 #include "models/pair_forces.hpp"
 #include "unit/naive_fluid.hpp"
 

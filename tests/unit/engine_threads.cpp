@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "engine/means.hpp"
-#include "models/air/ground_distance.hpp"
+#include "models/fluid/ground_distance.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace barchan {

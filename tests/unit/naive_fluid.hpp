@@ -1,5 +1,5 @@
 // The fluid pass written the slow way, from the formulas in the heads of src/laws/plain_fluid.hpp,
-// src/laws/consistent_fluid.hpp and the comments of src/models/air/fluid_finish.hpp: every pair and every image, one
+// src/laws/consistent_fluid.hpp and the comments of src/models/fluid/fluid_finish.hpp: every pair and every image, one
 // number at a time.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "kernels/kernel.hpp"
-#include "models/air/fluid.hpp"
+#include "models/fluid/fluid_rates.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace barchan::naive {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "models/air/ground_distance.hpp"
-#include "models/air/relief.hpp"
+#include "models/fluid/ground_distance.hpp"
+#include "models/fluid/relief.hpp"
 #include "models/walls/wall_normals.hpp"
 #include "models/walls/walls.hpp"
 #include "unit/particle_sets.hpp"

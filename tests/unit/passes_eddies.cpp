@@ -1,6 +1,6 @@
 // Eddies: the pair's viscosity is the logarithmic mean, the distance to the ground that of a search through everything,
 // and without eddies the pass gives what the laminar one gives.
-#include "models/air/eddies.hpp"
+#include "models/fluid/turbulence.hpp"
 
 #include <gtest/gtest.h>
 

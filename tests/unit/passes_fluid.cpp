@@ -1,6 +1,6 @@
 // The fluid pass against naive twins written from the formulas in the heads of the laws, plain and consistent, in two
 // and three dimensions, with a wall as second entry; and the exactness that the consistent operators promise.
-#include "models/air/fluid.hpp"
+#include "models/fluid/fluid_rates.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "kernels/kernel.hpp"
 #include "laws/elastic.hpp"
 #include "models/bodies/artificial_stress.hpp"
-#include "models/bodies/elastic.hpp"
+#include "models/bodies/updated_lagrangian.hpp"
 #include "models/pair_forces.hpp"
 #include "models/walls/walls.hpp"
 #include "unit/naive_fluid.hpp"

@@ -1,6 +1,6 @@
 // Fluids that end somewhere: the blended operators against their naive twins, the free surface against a search through
 // all pairs, and what is done to particles of it (shift, tension, loose fluid).
-#include "models/air/surface.hpp"
+#include "models/fluid/surface.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -9,8 +9,8 @@
 #include <cstring>
 
 #include "engine/fours.hpp"
-#include "models/air/fluid_finish.hpp"
-#include "models/air/voids.hpp"
+#include "models/fluid/fluid_finish.hpp"
+#include "models/fluid/voids.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {

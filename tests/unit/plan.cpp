@@ -137,15 +137,15 @@ TEST(Plan, LawsFollowFromTheKinds) {
                         "sand-steel = 1.1\nsteel-steel = 2.4\n",
                         {"air", "sand", "steel"}, "[[fill]]\nphase = \"floor\"\nshape = { sides = [\"left\"] }\n");
   const Plan plan = plan_of(s);
-  const std::vector<std::pair<std::string, Law>> laws{{"air-air", Law::fluid},      {"air-sand", Law::coupling},
-                                                      {"air-floor", Law::boundary}, {"air-steel", Law::coupling},
-                                                      {"sand-sand", Law::contact},  {"sand-steel", Law::contact},
-                                                      {"steel-steel", Law::elastic}};
-  for (const auto& [name, law] : laws) EXPECT_EQ(entry(plan, name).law, law) << name;
+  const std::vector<std::pair<std::string, EntryKind>> laws{
+      {"air-air", EntryKind::fluid},      {"air-sand", EntryKind::coupling}, {"air-floor", EntryKind::boundary},
+      {"air-steel", EntryKind::coupling}, {"sand-sand", EntryKind::contact}, {"sand-steel", EntryKind::contact},
+      {"steel-steel", EntryKind::elastic}};
+  for (const auto& [name, law] : laws) EXPECT_EQ(entry(plan, name).kind, law) << name;
   EXPECT_NEAR(entry(plan, "air-sand").radius, 0.25, 1e-15) << "2.5 spacings";
   const Plan repelled = plan_of(scene(air + ghosts, "air-air = 3.0\nair-floor = 1.5\n", {"air"},
                                       "[[fill]]\nphase = \"floor\"\nshape = { sides = [\"left\"], layers = 1 }\n"));
-  EXPECT_EQ(entry(repelled, "air-floor").law, Law::repulsive);
+  EXPECT_EQ(entry(repelled, "air-floor").kind, EntryKind::repulsive);
   expect_runs(repelled, {"wall repulsion"});
   expect_skips(repelled, {"extension into walls"});
 }

@@ -135,7 +135,7 @@ void ElasticPhase::attach(Workspace& w) {
   const bool pulled = has_artificial_stress(scene_);
   if (pulled) w.artificial[number_] = RecordArray(ArtificialStressRecord::size);
   for (const auto& e : layout_.entries) {
-    if (!e.has(number_) || e.law != Law::elastic) continue;
+    if (!e.has(number_) || e.kind != EntryKind::elastic) continue;
     const std::size_t other = e.partner(number_);
     const double dx = 0.5 * (plan_.spacing + layout_.phases[other].spacing);
     const double weight = with_kernel<double>(e.kernel, e.radius, layout_.dimensions,
@@ -169,7 +169,7 @@ void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
   if (plan_.count == 0) return;
   double smallest = plan_.smoothing_length;
   for (const auto& e : layout_.entries)
-    if (e.law == Law::elastic && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
+    if (e.kind == EntryKind::elastic && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
   limits.push_back({"elastic " + plan_.name,
                     scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
                     "0.25 h/c_P: compression waves"});

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "models/bodies/elastic.hpp"
+#include "models/bodies/updated_lagrangian.hpp"
 #include "models/forces.hpp"
 #include "models/workspace.hpp"
 

@@ -108,7 +108,7 @@ TotalPhase::TotalPhase(const Scene& scene, const Layout& layout, std::size_t num
       forces_(scene, phase_.name),
       limit_{"stretch " + phase_.name, 1e300, "its stiffest vibration, as deformed"} {
   for (const auto& e : layout.entries)
-    if (e.law == Law::elastic && e.a == number && e.b == number) own_ = &e;
+    if (e.kind == EntryKind::elastic && e.a == number && e.b == number) own_ = &e;
   const ElasticKeys& keys = phase_.elastic();
   parameters_.law = keys.elasticity;
   parameters_.moduli = ElasticModuli::of(keys.young, keys.poisson, keys.retardation);

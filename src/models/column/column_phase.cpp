@@ -58,7 +58,7 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
       area_(scene.domain.size[0] * (layout.dimensions == 3 ? scene.domain.size[2] : 1.0)),
       friction_velocity_(keys_.friction_velocity) {
   for (const PlanEntry& e : layout.entries) {
-    if (e.law != Law::column || !e.has(number)) continue;
+    if (e.kind != EntryKind::column || !e.has(number)) continue;
     const std::size_t grains = e.partner(number);
     const PlanPhase& plan = layout.phases[grains];
     const double d = plan.diameter > 0.0 ? plan.diameter : plan.spacing;

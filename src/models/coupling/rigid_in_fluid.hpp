@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "models/air/fluid.hpp"
+#include "models/fluid/fluid_rates.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {

@@ -1,6 +1,6 @@
 #include "models/coupling/solid_in_fluid.hpp"
 
-#include "models/air/air.hpp"
+#include "models/fluid/fluid_phase.hpp"
 
 namespace barchan {
 
@@ -11,7 +11,7 @@ void SolidInFluid::attach(Workspace& w) {
   w_ = &w;
   sources_ = extension_sources(w, solid_);
   for (const auto& e : layout_.entries) {
-    if (e.law != Law::coupling || e.other != solid_) continue;
+    if (e.kind != EntryKind::coupling || e.other != solid_) continue;
     fluids_.push_back(e.fluid);
     felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
                      pair_viscosity(scene_, layout_, solid_, e.fluid), false});

@@ -44,7 +44,7 @@ KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEn
 
 std::unique_ptr<Model> make_contact_entry(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
   KernelContacts law{{}, contact_law(scene, layout, entry)};
-  const bool ghosts = entry.law == Law::repulsive;
+  const bool ghosts = entry.kind == EntryKind::repulsive;
   if (ghosts) {
     // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
     // automatic.

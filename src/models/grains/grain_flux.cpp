@@ -67,8 +67,8 @@ void add_grain_fluxes(const Scene& scene, const Layout& layout, Models& models) 
     for (const std::size_t wind : {e.a, e.b}) {
       const std::size_t grains = e.partner(wind);
       const ColumnKeys* column = scene.phases[wind].if_column();
-      const bool blows = (e.law == Law::column && column && !column->held) ||
-                         ((e.law == Law::drag || e.law == Law::coupling) && layout.phases[wind].flows &&
+      const bool blows = (e.kind == EntryKind::column && column && !column->held) ||
+                         ((e.kind == EntryKind::drag || e.kind == EntryKind::coupling) && layout.phases[wind].flows &&
                           Drive::exists(scene, scene.phases[wind]));
       if (!blows || done[grains] || layout.phases[grains].kind != "grains") continue;
       done[grains] = true;

@@ -16,7 +16,7 @@ double ground_area(const Scene& scene) {
 const AirProfile* air_around(const Layout& layout, const State& state, std::size_t grains) {
   for (const PlanEntry& e : layout.entries)
     for (const AirProfile& air : state.air)
-      if (e.law == Law::column && e.has(grains) && e.partner(grains) == air.phase) return &air;
+      if (e.kind == EntryKind::column && e.has(grains) && e.partner(grains) == air.phase) return &air;
   return nullptr;
 }
 

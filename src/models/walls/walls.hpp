@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "laws/extension.hpp"
-#include "models/air/fluid.hpp"
+#include "models/fluid/fluid_rates.hpp"
 
 namespace barchan {
 

@@ -1,0 +1,114 @@
+#include "app/make_report.hpp"
+
+#include <omp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "base/errors.hpp"
+#include "base/version.hpp"
+#include "output/folder_lock.hpp"
+
+namespace barchan {
+
+namespace {
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+void add_plan(RunReport& r, const Simulation& simulation) {
+  for (const auto& p : simulation.plan().phases) {
+    r.particles[p.name] = static_cast<long>(p.count);
+    for (const Field f : p.fields) r.fields[p.name].emplace_back(info(f).name);
+  }
+  for (const auto& e : simulation.plan().entries) r.pairs[e.name] = static_cast<long>(simulation.pairs(e));
+}
+
+/// Adds the passes and their seconds; returns the seconds of all steps.
+double add_passes(RunReport& r, const Simulation& simulation) {
+  double stepping = 0;
+  for (std::size_t k = 0; k < simulation.seconds().size(); ++k) {
+    const auto& [name, seconds] = simulation.seconds()[k];
+    stepping += seconds;
+    if (simulation.executed()[k] == 0) continue;
+    r.passes.push_back(name);
+    r.seconds.emplace_back(name, seconds);
+  }
+  return stepping;
+}
+
+void add_measured(RunReport& r, const Plan& plan, const Measurements& measurements) {
+  r.seconds.emplace_back("measuring", measurements.seconds());
+  for (std::size_t k = 0; k < plan.instruments.size(); ++k) {
+    const Instrument& i = plan.instruments[k];
+    r.measured.push_back(
+        {kind_name(i.kind), i.name, i.files(), static_cast<long>(measurements.accumulators().moments[k])});
+  }
+}
+
+void add_budgets(RunReport& r, const Simulation& simulation) {
+  const HistoryRow row = simulation.history();
+  for (std::size_t c = HistoryRow::dt; c < row.names.size(); ++c)
+    r.budgets[row.names[c].substr(0, row.names[c].find(" ["))] = row.values[c];
+  if (const auto drift = simulation.budget().momentum_drift(simulation.state())) r.budgets["momentum_drift"] = *drift;
+  if (const auto growth = simulation.budget().energy_growth(simulation.state())) r.budgets["energy_growth"] = *growth;
+  r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation.searches());
+  r.budgets["bytes_per_particle"] =
+      static_cast<double>(simulation.bytes()) / std::max(simulation.plan().particles(), 1.0);
+}
+
+}  // namespace
+
+RunReport start_report(const Scene& scene) {
+  RunReport r;
+  r.version = version();
+  r.commit = commit();
+  r.compiler = compiler();
+  r.instruction_set = instruction_set();
+  r.vtk = vtk_version();
+  r.threads = omp_get_max_threads();
+  r.scene_title = scene.title;
+  r.scene_file = scene.file;
+  r.overrides = scene.overrides;
+  r.scene_state = scene.state;
+  r.scene_spacing = scene.spacing;
+  r.process = ::getpid();
+  r.host = host_name();
+  return r;
+}
+
+RunReport make_report(const Simulation& simulation, const SeriesWriter& series, const Measurements* measurements,
+                      const Progress& progress) {
+  RunReport r = start_report(simulation.scene());
+  add_plan(r, simulation);
+  r.steps = simulation.steps();
+  r.simulated_time = simulation.time();
+  const double stepping = add_passes(r, simulation);
+  r.seconds.emplace_back("output (waiting)", series.seconds_waiting());
+  r.seconds.emplace_back("output (behind)", series.seconds_writing());
+  if (measurements) add_measured(r, simulation.plan(), *measurements);
+  r.wall_seconds = progress.seconds();
+  r.cpu_seconds = cpu_seconds();
+  double pairs = 0;
+  for (const auto& [name, count] : r.pairs) pairs += static_cast<double>(count);
+  const double steps = static_cast<double>(std::max(simulation.steps(), 1L));
+  r.particle_steps_per_second = simulation.plan().particles() * steps / std::max(stepping, 1e-9);
+  r.pair_interactions_per_second = pairs * steps / std::max(stepping, 1e-9);
+  for (const auto& [limit, count] : simulation.limit_counts())
+    if (count > 0) r.time_step_limits[limit] = count;
+  add_budgets(r, simulation);
+  r.warnings = simulation.warnings().texts();
+  return r;
+}
+
+void try_to_write(const std::filesystem::path& file, const RunReport& report) {
+  try {
+    write_run_report(file, report);
+  } catch (const OutputError&) { overwrite_run_report(file, report); }
+}
+
+}  // namespace barchan

@@ -1,0 +1,134 @@
+#include "models/bodies/body_contact_entry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/couplings.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// The spring of two facing particles is a quarter of what continues the material, (lambda + 2 mu) dx^(D - 2) of the
+/// softer body. A stiffer one sends waves into the bodies that are shorter than their lattice can carry: of two bars of
+/// 40 particles a length A then keeps 1.7 % of its speed, in place of 0.6 % (docs/impacts.md).
+constexpr double softness = 0.25;
+
+BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  double stiffness = 1e300, inverse_mass = 0.0;
+  for (const std::size_t k : {e.a, e.b}) {  // of a body with itself twice
+    const PlanPhase& p = layout.phases[k];
+    if (!p.moves || !p.rigid_bodies.empty()) continue;  // as hard and as heavy as a wall
+    const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
+    stiffness = std::min(stiffness, softness * modulus * std::pow(p.spacing, layout.dimensions - 2));
+    inverse_mass += 1.0 / p.mass;
+  }
+  const double distance = 0.5 * (layout.phases[e.a].spacing + layout.phases[e.b].spacing);
+  return BodyContactLaw::of(distance, stiffness, 1.0 / inverse_mass, e.restitution, e.friction);
+}
+
+}  // namespace
+
+namespace {
+
+std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const Phase& wall) {
+  std::vector<BodySide> sides;
+  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  for (const Fill& fill : scene.fills)
+    for (std::size_t axis = 0; fill.phase == wall.name && axis < static_cast<std::size_t>(layout.dimensions); ++axis)
+      for (const bool high : {false, true}) {
+        const auto* planes = std::get_if<SidesShape>(&fill.shape);
+        if (planes && std::find(planes->sides.begin(), planes->sides.end(), names[axis][high]) != planes->sides.end())
+          sides.push_back({axis, high ? -1.0 : 1.0, high ? layout.bounds.high[axis] : layout.bounds.low[axis]});
+      }
+  return sides;
+}
+
+}  // namespace
+
+BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
+    : scene_(scene), layout_(layout), entry_(entry), law_(law_of(scene, layout, entry)) {
+  for (const std::size_t k : {entry.a, entry.b})
+    if (const Phase& wall = scene.phases[k]; !layout.phases[k].moves && has_surfaces(scene, wall)) {
+      sides_ = sides_of(scene, layout, wall);
+      surfaces_.emplace(scene, layout, wall);
+    }
+}
+
+void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
+  if (!itself()) return;
+  const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+    return e.kind == EntryKind::elastic && e.a == entry_.a && e.b == entry_.b;
+  });
+  far_ = FarPairs(blocks[entry_.a].position, layout_.bounds, layout_.phases[entry_.a].spacing, held->radius);
+}
+
+void BodyContact::attach(Workspace& w) {
+  w_ = &w;
+  if (itself()) w.when_sorted.emplace_back([this] { must_choose_ = true; });
+}
+
+void BodyContact::archive(Archive& a) {
+  if (a.loads()) must_choose_ = true;
+}
+
+void BodyContact::schedule(Schedule& s) {
+  using enum Field;
+  if (itself()) {
+    s.add(
+        {stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this] { push_itself(); }});
+    return;
+  }
+  for (const std::size_t phase : {entry_.a, entry_.b}) {
+    if (!layout_.phases[phase].moves) continue;
+    if (!sides_.empty())
+      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
+               push_from_sides(phase);
+             }});
+    if (surfaces_ && !surfaces_->empty())
+      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
+               surfaces_->push(w_->particles(phase), layout_.phases[phase].spacing, law_, w_->state.dt);
+             }});
+    if (entry_.direction(phase) < 0) continue;
+    s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
+             push(phase);
+           }});
+  }
+}
+
+/// Whether a body of this entry is made of particles that nothing holds together.
+bool BodyContact::of_single_particles() const {
+  return std::any_of(layout_.phases.begin(), layout_.phases.end(), [&](const PlanPhase& p) {
+    const auto k = static_cast<std::size_t>(&p - layout_.phases.data());
+    if (!entry_.has(k) || !p.moves || !p.rigid_bodies.empty()) return false;
+    return p.count == 1 || std::none_of(layout_.entries.begin(), layout_.entries.end(),
+                                        [&](const PlanEntry& e) { return e.a == k && e.b == k; });
+  });
+}
+
+void BodyContact::limits(std::vector<StepLimit>& limits) const {
+  // The restitution of two particles needs a tenth; how bodies part is decided by their own waves.
+  const bool single = of_single_particles();
+  const double share = single ? StepConstants::restitution : StepConstants::body_contact;
+  limits.push_back({itself() ? entry_.name : "contact " + entry_.name, scene_.time.safety * share * law_.time_scale(),
+                    single ? "0.1 sqrt(m/K): keeps the restitution" : "0.35 sqrt(m/K): a contact of bodies"});
+}
+
+void BodyContact::push(std::size_t phase) {
+  body_contact_forces(w_->particles(phase), w_->motion[phase], w_->list(entry_.direction(phase)),
+                      w_->motion[entry_.partner(phase)], law_, w_->state.dt);
+}
+
+void BodyContact::push_itself() {
+  PhaseParticles& body = w_->particles(entry_.a);
+  if (must_choose_) far_.choose(body, w_->list(entry_.forward), w_->neighbours.grid(entry_.a));
+  must_choose_ = false;
+  body_contact_forces(body, w_->motion[entry_.a], far_, law_, w_->state.dt);
+}
+
+void BodyContact::push_from_sides(std::size_t phase) {
+  const double half = 0.5 * layout_.phases[entry_.partner(phase)].spacing;
+  for (const BodySide& side : sides_) body_side_forces(w_->particles(phase), side, half, law_, w_->state.dt);
+}
+
+}  // namespace barchan

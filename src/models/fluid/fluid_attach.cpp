@@ -1,0 +1,316 @@
+// A fluid phase before its first step: its description for the plan, and the records and lists of its tasks.
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "kernels/kernel.hpp"
+#include "models/fluid/enclosed.hpp"
+#include "models/fluid/fluid_phase.hpp"
+#include "models/fluid/open_sides.hpp"
+#include "models/walls/sides.hpp"
+#include "output/numbers.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// Enclosed as the scene says, or else as the particles show; a fluid that is neither and ends somewhere has a free
+/// surface.
+void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Layout& layout,
+             std::vector<std::string>& warnings) {
+  PlanPhase& p = layout.phases[fluid];
+  const std::optional<bool>& said = scene.phases[fluid].fluid().enclosed;
+  const Enclosure seen = find_enclosure(scene, layout, blocks, fluid);
+  p.enclosed = said.value_or(seen.shut_in);
+  p.enclosure = said ? "as the scene says" : seen.why;
+  p.free_surface = !p.enclosed && seen.open;
+  p.open = open_sides(scene, fluid, p.free_surface);
+  if (said.value_or(false) && !seen.free_space.empty())
+    warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
+                       ", so that the mean density should be free; leave the key out");
+}
+
+std::vector<Field> fields_of(const Scene& scene, const Phase& phase, const PlanPhase& plan) {
+  using enum Field;
+  const FluidKeys& keys = phase.fluid();
+  std::vector<Field> f{position, velocity, density, pressure, acceleration, density_rate};
+  if (keys.shifting > 0) f.push_back(shift_velocity);
+  if (keys.scheme == FluidScheme::consistent) f.push_back(anisotropy);
+  if (keys.scheme == FluidScheme::consistent && !plan.free_surface && !solids_move_in(scene, phase))
+    f.push_back(near_void);
+  if (plan.free_surface) f.insert(f.end(), {wholeness, surface_normal});
+  if (plan.eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
+  if (keys.energy) f.insert(f.end(), {energy, energy_rate});
+  return f;
+}
+
+/// How the watch guards a fluid.
+PhaseRules rules_of(const PlanPhase& p, const std::string& step_key) {
+  const std::string key = "phases." + p.name + ".";
+  const double c = p.sound_speed;
+  PhaseRules r;
+  r.signal_speed = c;
+  r.density_share = 0.3;
+  r.idle = 0.1;
+  r.pressure_stores_energy = r.pairs_up = true;
+  r.if_not_finite = key + "sound-speed or " + key + "density-diffusion";
+  r.if_passed = "lower " + step_key + " or raise " + key + "sound-speed";
+  r.if_dense = "the pressure ran away, or neighbours are too few: lower the spacing or " + step_key +
+               ", raise the radius of interactions." + p.name + "-" + p.name + ", or " + key +
+               "sound-speed where the flow is faster than " + brief(0.1 * c) + " m/s, a tenth of it";
+  r.if_fast = [key, step_key, c](double, double) {
+    return "sound (" + brief(c) + " m/s); the flow ran away, or the scene has too slow a sound: raise " + key +
+           "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
+           "artificial-viscosity, or lower " + step_key;
+  };
+  r.if_far = [step_key](double) { return "lower " + step_key; };
+  return r;
+}
+
+}  // namespace
+
+void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                  std::vector<std::string>& warnings) {
+  const Phase& phase = scene.phases[number];
+  PlanPhase& p = layout.phases[number];
+  p.friction = Friction::fluid;
+  p.physics = phase.fluid().scheme == FluidScheme::plain ? "plain fluid" : "consistent fluid";
+  p.eddies = has_eddies(scene, phase);
+  for (const auto& f : scene.forcings) p.held = p.held || (f.hold != Hold::none && f.phase == phase.name);
+  enclose(scene, blocks, number, layout, warnings);
+  p.fields = fields_of(scene, phase, p);
+  p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
+  if (p.sound_speed <= 0)
+    throw SceneError(scene.file + ": phases." + p.name +
+                     ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
+                     "can be chosen; give sound-speed or time.largest-speed");
+  p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety");
+}
+
+PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid) {
+  const FluidKeys& keys = scene.phases[fluid].fluid();
+  const double c = layout.phases[fluid].sound_speed, density = scene.phases[fluid].density;
+  return {density, c, keys.equation_of_state == EquationOfState::linear ? 1.0 : keys.tait_exponent,
+          keys.background_pressure * density * c * c};
+}
+
+double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b) {
+  const auto of = [&](std::size_t k) {
+    const FluidKeys& keys = scene.phases[k].fluid();
+    const PlanPhase& p = layout.phases[k];
+    const double artificial =
+        keys.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (layout.dimensions + 2));
+    return scene.phases[k].density * (keys.viscosity + artificial);
+  };
+  const bool a_fluid = layout.phases[a].flows, b_fluid = layout.phases[b].flows;
+  if (a_fluid && b_fluid) return a == b ? of(a) : 2.0 * of(a) * of(b) / std::max(of(a) + of(b), 1e-300);
+  return of(a_fluid ? a : b);
+}
+
+void FluidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  PhaseParticles& p = state.phases[number_];
+  const ParticleBlock& block = blocks[number_];
+  const std::vector<double> rest = pressure_at_rest(scene_, layout_, blocks, number_);
+  const double c2 = plan_.sound_speed * plan_.sound_speed;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double pressure = !rest.empty() ? rest[i] : block.pressure.empty() ? 0.0 : block.pressure[i];
+    p.column(Field::density)[i] =
+        keys_.equation_of_state == EquationOfState::linear
+            ? phase_.density + pressure / c2
+            : phase_.density *
+                  std::pow(1.0 + keys_.tait_exponent * pressure / (phase_.density * c2), 1.0 / keys_.tait_exponent);
+    p.column(Field::pressure)[i] = pressure_(p.column(Field::density)[i]);
+  }
+}
+
+/// The ground of fitted rows, if the fluid feels the wall that it is of.
+Relief FluidPhase::relief() const {
+  for (const auto& e : layout_.entries) {
+    if (e.kind != EntryKind::boundary || e.fluid != number_) continue;
+    const std::string& wall = scene_.phases[e.other].name;
+    for (const auto& fill : scene_.fills) {
+      if (fill.phase != wall || fill.packing != Packing::fitted) continue;
+      std::array<int, 2> counts{};
+      for (std::size_t c = 0; c < (layout_.dimensions == 3 ? 2 : 1); ++c)
+        counts[c] = static_cast<int>(std::ceil(2.0 * scene_.domain.size[2 * c] / plan_.spacing));
+      return {layout_.bounds, counts, fitted_heights(scene_, counts)};
+    }
+  }
+  return {};
+}
+
+namespace {
+
+/// From now on the fluid keeps the mean velocity along periodic axes that it has.
+void hold_as_it_is(BulkHold& hold, BlockMean& mean, const PhaseParticles& fluid, const Bounds& bounds) {
+  for (int d = 0; d < fluid.dimensions() && fluid.size() > 0; ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    hold.axes[c] = bounds.periodic[c];
+    if (hold.axes[c]) hold.velocity[c] = mean(fluid.column(Field::velocity, d), fluid.size());
+  }
+}
+
+/// -tr M/Dim of a fluid's own entry on a lattice.
+double lattice_moment(const Layout& layout, std::size_t fluid) {
+  for (const auto& e : layout.entries)
+    if (e.a == fluid && e.b == fluid) return e.consistency.gradient_sum;
+  return 1.0;
+}
+
+}  // namespace
+
+double FluidPhase::largest_speed() const {
+  return layout_.largest_speed > 0 ? layout_.largest_speed : 0.1 * plan_.sound_speed;
+}
+
+void FluidPhase::attach(Workspace& w) {
+  w_ = &w;
+  particles_ = &w.particles(number_);
+  const bool corrected = keys_.scheme == FluidScheme::consistent;
+  // The consistent operators weigh neighbours by the spacing's volume: what they sum is exact for any weights.
+  w.packing[number_] = {true, corrected};
+  auto& q = parameters_;
+  q.reference_density = phase_.density;
+  q.sound_speed = plan_.sound_speed;
+  q.smoothing_length = plan_.smoothing_length;
+  const double speed = largest_speed();
+  // Strengths measured in docs/method.md: 2 in the consistent scheme, 4 in the plain one, whose sums need more order.
+  const double pace = speed + keys_.viscosity / q.smoothing_length;
+  q.shift_speed = (corrected ? 2.0 : 4.0) * keys_.shifting * pace;
+  q.shift_limit = 0.2 * pace;
+  q.gravity = scene_.domain.gravity;
+  q.acceleration = forces_.uniform();
+  for (const auto& e : layout_.entries)
+    if (e.kind == EntryKind::coupling && e.fluid == number_) q.pores = 0.5 * q.sound_speed / q.smoothing_length;
+  q.lattice_moment = lattice_moment(layout_, number_);
+  if (plan_.free_surface) {
+    surface_ = std::make_unique<SurfaceFinder>();
+    if (!plan_.eddies)
+      q.least_viscosity =
+          phase_.density * q.smoothing_length * std::sqrt(norm(scene_.domain.gravity) * q.smoothing_length);
+    q.loosening = 4.0 * q.sound_speed / q.smoothing_length;
+    q.void_pressure = pressure_(phase_.density);
+  } else {
+    q.void_pressure = -0.2 * phase_.density * speed * speed;
+  }
+  bind_entries();
+  q.ends = true;
+  if (particles_->has(Field::near_void)) look_for_voids();
+  held_.margin = 0.02 * plan_.spacing;
+  if (corrected && plan_.enclosed) {
+    parameters_.calming = 0.5 * parameters_.sound_speed / parameters_.smoothing_length;
+    held_.margin_of_off = 0.2 * plan_.spacing;
+    held_.rest = phase_.density;
+  }
+  keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
+  if (plan_.free_surface) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+  if (corrected) relief_ = relief();
+  if (plan_.eddies) bind_eddies();
+  if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, mean_, *particles_, layout_.bounds);
+}
+
+void FluidPhase::bind_entries() {
+  for (const auto& e : layout_.entries) {
+    if (!e.has(number_) || !e.continues_fluid()) continue;
+    const std::size_t other = e.partner(number_);
+    const bool solid = !layout_.phases[other].flows;
+    if (keys_.energy && !solid) w_->need_motion(other);
+    FluidNeighbour n{
+        &w_->list(e.direction(number_)),
+        solid ? &w_->extended[other] : &w_->motion[other],
+        e.kernel,
+        e.radius,
+        pair_viscosity(scene_, layout_, number_, other),
+        solid || other == number_,
+        w_->compact[other].get(),
+        !solid && other != number_ && keys_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
+    // The phase's own entry comes first: its viscosity is the phase's.
+    if (other == number_) neighbours_.insert(neighbours_.begin(), n);
+    else neighbours_.push_back(n);
+    if (!keys_.energy) continue;
+    if (solid) solids_.push_back({n, &w_->carried[other]});
+    else fluids_.push_back(n);
+  }
+  for (const auto& e : layout_.entries)
+    if (e.kind == EntryKind::boundary && e.fluid == number_)
+      close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
+}
+
+/// The fluid is whole until a void is found.
+void FluidPhase::look_for_voids() {
+  parameters_.ends = false;
+  parameters_.loose = &loose_;
+  loose_.place.resize(particles_->size());
+  for (const auto& e : layout_.entries) {
+    if (!e.has(number_) || !e.continues_fluid()) continue;
+    const std::size_t other = e.partner(number_);
+    const VoidFinder::Seen seen{&w_->list(e.direction(number_)), &w_->particles(other), &w_->neighbours.grid(other),
+                                VoidFinder::ball * std::max(plan_.spacing, layout_.phases[other].spacing)};
+    seen_.insert(other == number_ ? seen_.begin() : seen_.end(), seen);
+  }
+}
+
+/// Its entries again with the friction of each, and the ground under it.
+void FluidPhase::bind_eddies() {
+  eddies_.model = keys_.turbulence;
+  eddies_.density = phase_.density;
+  eddies_.viscosity = neighbours_.front().viscosity / phase_.density;
+  eddies_.spacing = plan_.spacing;
+  eddies_.length = keys_.smagorinsky * plan_.spacing;
+  Sides sides;
+  bool particles = false;
+  for (const auto& n : neighbours_) {
+    EddyNeighbour e;
+    e.pair = n;
+    for (std::size_t other = 0; other < layout_.phases.size(); ++other)
+      if (n.records == &w_->motion[other] || n.records == &w_->extended[other])
+        bind_friction(e, other, sides, particles);
+    eddy_neighbours_.push_back(e);
+  }
+  if (keys_.turbulence == Turbulence::mixing_length && ground_phases_.empty())
+    throw SceneError(scene_.file + ": phases." + plan_.name +
+                     ".turbulence: a mixing length needs ground, and this fluid touches no wall with friction and no "
+                     "grains; expected such an entry in [interactions], or \"smagorinsky\"");
+  double cell = plan_.spacing;
+  for (const auto& phase : ground_phases_) cell = std::max(cell, phase.spacing);
+  ground_ = std::make_unique<GroundDistance>(layout_.bounds, sides, cell, particles);
+  w_->when_sorted.emplace_back([this] { ground_->refresh(ground_phases_); });
+}
+
+/// How this fluid rubs on another phase, and whether that is ground.
+void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles) {
+  const Phase& o = scene_.phases[other];
+  e.friction = layout_.phases[other].friction;
+  if (e.friction == Friction::fluid) {
+    if (layout_.phases[other].eddies) e.eddies = &w_->eddies[other];
+    e.root = std::sqrt(e.pair.viscosity);
+  }
+  const WallKeys* wall = o.if_wall();
+  if (wall) {
+    e.wall = &w_->particles(other);
+    e.stress = wall->shear_stress.value_or(Vec3{});
+    e.roughness = wall->roughness.value_or(0.0);
+    if (e.friction == Friction::rough && drags_by_law(scene_, phase_)) e.given = &w_->ground_stress[number_];
+  }
+  if (e.friction == Friction::grains) {
+    // A form drag is the whole friction of the grains. The logarithmic law of rough ground beside it would take the
+    // same momentum twice.
+    const bool drag = std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& entry) {
+      return entry.drag > 0 && entry.has(number_) && entry.has(other);
+    });
+    e.roughness = eddies_.roughness = drag ? 0.0 : o.grains().roughness.value_or(o.spacing / 30.0);
+    eddies_.grain_reach = std::max(eddies_.grain_reach, e.pair.radius);
+  }
+  if (e.friction != Friction::rough && e.friction != Friction::smooth && e.friction != Friction::grains) return;
+  ground_phases_.push_back({&w_->particles(other), o.spacing});
+  if (!wall) {
+    particles = true;
+    return;
+  }
+  close_sides(sides, w_->particles(other), layout_.bounds, o.spacing);
+  for (std::size_t i = 0; i < w_->particles(other).size() && !particles; ++i)
+    particles = !behind_a_side(w_->particles(other), i, layout_.bounds, o.spacing);
+}
+
+}  // namespace barchan

@@ -1,0 +1,189 @@
+#include "models/fluid/fluid_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/errors.hpp"
+#include "kernels/kernel.hpp"
+#include "models/fluid/energy.hpp"
+#include "models/walls/walls.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+
+FluidPhase::FluidPhase(const Scene& scene, const Layout& layout, std::size_t number)
+    : scene_(scene),
+      layout_(layout),
+      phase_(scene.phases[number]),
+      keys_(phase_.fluid()),
+      plan_(layout.phases[number]),
+      number_(number),
+      pressure_(pressure_law(scene, layout, number)),
+      forces_(scene, phase_.name),
+      viscous_limit_{"viscous " + phase_.name, 0.0, ""} {
+  if (Drive::exists(scene, phase_)) drive_.emplace(scene, phase_);
+}
+
+// ---- the schedule
+// ---------------------------------------------------------------------------------------------------
+
+void FluidPhase::schedule(Schedule& s) {
+  using enum Field;
+  const bool corrected = keys_.scheme == FluidScheme::consistent;
+  FieldSet own;
+  for (const Field f : plan_.fields) own = own | FieldSet{f};
+  s.add({stage::kick_and_drift, plan_.name, own, own, [this] { kick_and_drift(); }});
+  if (plan_.eddies)
+    s.add({stage::eddies, plan_.name, {position, velocity, eddy_viscosity}, {ground_distance}, [this] {
+             find_eddies();
+           }});
+  FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
+  if (corrected) writes = writes | FieldSet{anisotropy};
+  if (plan_.eddies) {
+    reads = reads | FieldSet{ground_distance};
+    writes = writes | FieldSet{eddy_viscosity};
+  }
+  if (plan_.free_surface) writes = writes | FieldSet{wholeness, surface_normal};
+  if (std::find(plan_.fields.begin(), plan_.fields.end(), near_void) != plan_.fields.end())
+    writes = writes | FieldSet{near_void};
+  s.add({stage::fluid, plan_.name, reads, writes, [this] { rate(); }});
+  if (plan_.free_surface)
+    s.add({stage::surface, plan_.name, {position, wholeness}, {surface_normal}, [this] { find_surface(); }});
+  if (keys_.energy) {
+    s.add({stage::energy, plan_.name, {position, velocity, density, pressure, acceleration}, {energy_rate}, [this] {
+             fluid_energy(*particles_, w_->motion[number_], fluids_, solids_, w_->kick_time);
+           }});
+    s.add({stage::kick, plan_.name, {energy_rate}, {Field::energy}, [this] {
+             advance_energy(*particles_, w_->kick_time);
+           }});
+  }
+  if (plan_.held) s.add({stage::hold, plan_.name, {velocity}, {acceleration}, [this] { hold(); }});
+}
+
+/// After all other forces: what keeps the mean velocity, or what is missing of the force on the ground.
+void FluidPhase::hold() {
+  if (drive_ && drive_->holds_force()) {
+    hold_.acceleration[0] =
+        drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(particles_->size()));
+    accelerate(*particles_, 0, hold_.acceleration[0]);
+  } else {
+    hold_bulk_velocity(*particles_, hold_, w_->state.dt, mean_);
+  }
+  if (drive_) drive_->remember(w_->state, hold_.acceleration[0]);
+}
+
+void FluidPhase::kick_and_drift() {
+  const double dt = w_->state.dt;
+  barchan::kick_and_drift(*particles_, 0.5 * dt, dt, &pressure_);
+  if (keys_.energy) advance_energy(*particles_, 0.5 * dt);
+  if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
+  if (keeps_inside_) hold_inside(*particles_, held_);
+  if (!boxes_.empty()) hold_outside(*particles_, boxes_, layout_.bounds);
+  if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
+}
+
+void FluidPhase::find_eddies() {
+  auto& records = w_->eddies[number_];
+  largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
+  records.fill_images(particles_->size(), w_->neighbours.grid(number_));
+  if (layout_.dimensions == 2) {
+    const std::size_t count = w_->records(number_);
+    if (w_->compact[number_]) records.give_roots(*w_->compact[number_], count);
+    else records.give_roots(w_->motion[number_], count);
+  }
+  for (auto& e : eddy_neighbours_)
+    if (e.wall && e.wall->size() > 0)
+      for (int d = 0; d < layout_.dimensions; ++d)
+        e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
+}
+
+void FluidPhase::rate() {
+  auto& q = parameters_;
+  // c^2 dt makes the one-pass step the leapfrog that its velocities, half a step old, would miss; the rest is
+  // delta-SPH's own diffusion.
+  const double centring = q.sound_speed * q.sound_speed * w_->state.dt;
+  const double delta = keys_.density_diffusion * q.smoothing_length * q.sound_speed;
+  q.diffusivity = StepConstants::theta * centring + delta;
+  q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
+  const auto rates = [&](const auto& own) {
+    if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, keys_.scheme);
+    else eddy_rates(*particles_, own, w_->eddies[number_], eddy_neighbours_, q, eddies_);
+  };
+  if (w_->compact[number_]) rates(*w_->compact[number_]);
+  else rates(w_->motion[number_]);
+  if (q.loose) q.ends = voids_.find(*particles_, seen_, neighbours_.front().radius, plan_.spacing, loose_);
+  if (plan_.enclosed) keep_mean_density(*particles_, mean_);
+  forces_.add(*particles_, w_->state.time, false);
+  forces_.relax(*particles_, w_->state.time, w_->state.dt);
+}
+
+void FluidPhase::find_surface() {
+  const FluidNeighbour& own = neighbours_.front();
+  surface_->find(*particles_, w_->neighbours.grid(number_), *own.list, own.radius, surface_wholeness(keys_.scheme));
+}
+
+// ---- limits, history, state
+// -----------------------------------------------------------------------------------------
+
+void FluidPhase::limits(std::vector<StepLimit>& limits) const {
+  if (plan_.count == 0) return;
+  const double h = plan_.smoothing_length;
+  limits.push_back({"acoustic " + plan_.name,
+                    scene_.time.safety * (StepConstants::acoustic * h / (plan_.sound_speed + layout_.largest_speed)),
+                    "0.4 h/(c + u): sound crosses a spacing"});
+  const double nu =
+      keys_.viscosity + keys_.artificial_viscosity * h * plan_.sound_speed / (2.0 * (layout_.dimensions + 2));
+  if (nu > 0)
+    limits.push_back({"viscous " + plan_.name, scene_.time.safety * (StepConstants::viscous * h * h / nu),
+                      "0.125 h2/nu: momentum diffuses"});
+}
+
+const StepLimit* FluidPhase::moving_limit() {
+  if (!(largest_viscosity_ > 0)) return nullptr;
+  const double h = parameters_.smoothing_length;
+  viscous_limit_.value = scene_.time.safety * StepConstants::viscous * h * h / largest_viscosity_;
+  return &viscous_limit_;
+}
+
+void FluidPhase::history(HistoryRow& row) const {
+  const std::size_t n = particles_->size();
+  const auto count = static_cast<double>(n);
+  const double* rho = std::as_const(*particles_).column(Field::density);
+  const double* pressure = std::as_const(*particles_).column(Field::pressure);
+  double worst = 0.0;
+  const double squares = ordered_sum(n, [&](std::size_t i) {
+    const double e = std::abs(rho[i] / phase_.density - 1.0);
+    worst = std::max(worst, e);
+    return e * e;
+  });
+  row.raise(HistoryRow::largest_density_error, worst);
+  row.add(plan_.name + "_mean_pressure [Pa]",
+          n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
+  row.add(plan_.name + "_density_error_rms", n > 0 ? std::sqrt(squares / count) : 0.0);
+  if (keys_.energy) {
+    const double* e = std::as_const(*particles_).column(Field::energy);
+    row.add(plan_.name + "_internal_energy [J]",
+            particles_->mass() * ordered_sum(n, [&](std::size_t i) { return e[i]; }));
+  }
+  if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
+  if (drive_)
+    drive_->history(row, *particles_, forces_.sum(*particles_, w_->state.time, w_->state.dt)[0], hold_.acceleration[0]);
+}
+
+void FluidPhase::report(Warnings& warnings) const {
+  if (drive_) drive_->report(particles_->mass() * static_cast<double>(particles_->size()), warnings);
+}
+
+void FluidPhase::archive(Archive& a) {
+  a.number(plan_.name + ": largest viscosity", largest_viscosity_);
+  a.number(plan_.name + ": bulk hold", hold_);
+  if (parameters_.loose) {
+    voids_.archive(a);
+    parameters_.ends = voids_.any();
+  }
+  if (drive_) drive_->archive(a);
+  if (ground_) ground_->archive(a);
+}
+
+}  // namespace barchan

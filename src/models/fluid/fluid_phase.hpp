@@ -1,0 +1,103 @@
+// A fluid phase: its tasks in a step, and the numbers that it keeps from step to step.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/integrate.hpp"
+#include "engine/means.hpp"
+#include "models/drive.hpp"
+#include "models/fluid/energy.hpp"
+#include "models/fluid/held_boxes.hpp"
+#include "models/fluid/relief.hpp"
+#include "models/fluid/surface.hpp"
+#include "models/fluid/turbulence.hpp"
+#include "models/fluid/voids.hpp"
+#include "models/forces.hpp"
+#include "models/workspace.hpp"
+
+namespace barchan {
+
+/// What the plan has to know of a fluid before anything else: mass, sound speed, fields, whether it is shut in.
+/// Throws SceneError when no sound speed can be chosen. `warnings`: what the scene may mean otherwise.
+void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                  std::vector<std::string>& warnings);
+
+class FluidPhase : public Model {
+ public:
+  FluidPhase(const Scene& scene, const Layout& layout, std::size_t number);
+
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void limits(std::vector<StepLimit>& limits) const override;
+  const StepLimit* moving_limit() override;
+  int phase() const override { return static_cast<int>(number_); }
+  void history(HistoryRow& row) const override;
+  void report(Warnings& warnings) const override;
+  void archive(Archive& a) override;
+
+ private:
+  void kick_and_drift();
+  void find_eddies();
+  void rate();
+  void find_surface();
+  void hold();
+  void bind_entries();
+  void look_for_voids();
+  void bind_eddies();
+  void bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles);
+  Relief relief() const;
+  double largest_speed() const;
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const Phase& phase_;
+  const FluidKeys& keys_;  // of phase_
+  const PlanPhase& plan_;
+  std::size_t number_;
+  Workspace* w_ = nullptr;
+  PhaseParticles* particles_ = nullptr;
+
+  PressureLaw pressure_;
+  std::vector<FluidNeighbour> neighbours_;  // its entry with itself first
+  std::vector<FluidNeighbour> fluids_;      // of these, what the energy asks for: fluids, and solids
+  std::vector<SolidNeighbour> solids_;
+  FluidParameters parameters_{};
+  Forces forces_;
+  Sides held_;                              // the domain's sides that a wall closes
+  Relief relief_;                           // curved ground
+  std::unique_ptr<SurfaceFinder> surface_;  // null: no free surface
+  LooseParticles loose_;                    // of a fluid that fills its space, consistent scheme
+  VoidFinder voids_;
+  std::vector<VoidFinder::Seen> seen_;
+  BlockMean mean_;  // of an enclosed fluid's density rates, of a held fluid's velocity
+  BulkHold hold_;
+  std::optional<Drive> drive_;  // where something drives it along x
+  bool keeps_inside_ = false;
+  std::vector<HeldBox> boxes_;
+
+  // with eddies
+  std::vector<EddyNeighbour> eddy_neighbours_;
+  EddyParameters eddies_;
+  std::vector<GroundDistance::Ground> ground_phases_;
+  std::unique_ptr<GroundDistance> ground_;
+  double largest_viscosity_ = 0;  // m2/s
+  StepLimit viscous_limit_;
+};
+
+/// The viscosity of a pair of particles of two phases, at least one of which is a fluid (Pa s): the fluid's own, with
+/// the artificial one; of two fluids the harmonic mean.
+double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
+
+/// The equation of state of a fluid phase.
+PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid);
+
+/// The pressure of the start where fills ask for the hydrostatic one, by phase and particle (Pa); empty for a phase
+/// whose fills do not. A fluid under another fluid with which it has an entry carries its weight.
+std::vector<double> pressure_at_rest(const Scene& scene, const Layout& layout, const std::vector<ParticleBlock>& blocks,
+                                     std::size_t fluid);
+
+}  // namespace barchan

@@ -1,0 +1,146 @@
+#include "models/fluid/fluid_rates.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/shares.hpp"
+#include "kernels/kernel.hpp"
+#include "laws/consistent_fluid.hpp"
+#include "laws/joined_fluids.hpp"
+#include "laws/plain_fluid.hpp"
+#include "models/fluid/fluid_rows.hpp"
+
+namespace barchan::BARCHAN_TARGET {
+
+namespace {
+
+/// The first particle of pairs across an interface; rho: its density, so that it carries its own weight exactly.
+template <int Dim, class T>
+BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_own(
+    const typename ConsistentFluid<Dim>::template Own<LanesOf<T>>& own, const FluidNeighbour& e,
+    const FluidParameters& q, double rho) {
+  using V = LanesOf<T>;
+  typename JoinedFluids<Dim>::template Own<V> joined{own, {}, {}, {}};
+  for (std::size_t d = 0; d < Dim; ++d) joined.weight[d] = simd::broadcast<V>(rho * q.gravity[d]);
+  joined.ratio = simd::broadcast<V>(e.joined / q.reference_density);
+  joined.share = simd::broadcast<V>(2.0 * q.reference_density / (q.reference_density + e.joined));
+  return joined;
+}
+
+template <int Dim, template <int> class Law, class T, Beside beside, bool Joined = false>
+void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
+           const FluidParameters& q) {
+  using L = Law<Dim>;
+  using V = LanesOf<T>;
+  constexpr auto record_size = static_cast<std::size_t>(MotionRecord<Dim>::size);
+  const V unit = simd::broadcast<V>(length_unit);
+  const Vec3 weight{q.reference_density * q.gravity[0], q.reference_density * q.gravity[1],
+                    q.reference_density * q.gravity[2]};
+  const double mu = neighbours.empty() ? 0.0 : neighbours.front().viscosity;
+  const auto& kernels = ready_kernels<T>(neighbours, Dim);
+  const RateColumns<Dim, L::corrected> columns(fluid);
+  const std::size_t n = fluid.size();
+  const std::int64_t blocks = FourOf::blocks(n);
+  Shares shares(blocks, 64);
+#pragma omp parallel
+  for (const std::int64_t block : shares) {
+    const FourOf at(block, n);
+    const auto own_of = [&](std::size_t k) __attribute__((always_inline)) {
+      auto own = load_own<Dim, Law>(own_records + k * record_size);
+      if constexpr (L::corrected) columns.weigh(own, k);
+      return own;
+    };
+    typename L::template Sums<Four> s{}, raw;
+    Four company(0.0);
+    for (std::size_t c = 0; c < neighbours.size(); ++c) {
+      const auto& e = neighbours[c];
+      if constexpr (Joined) {
+        if (e.joined > 0) {
+          const auto across = [&](std::size_t k) __attribute__((always_inline)) {
+            return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k]);
+          };
+          if (!sum_rows<Dim, JoinedFluids, T>(at, e, kernels[c], unit, across, raw)) continue;
+          for (std::size_t d = 0; d < Dim; ++d) {  // the Laplacian's own factor is this phase's viscosity
+            raw.viscous[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
+            raw.weighted[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
+          }
+          s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+          continue;
+        }
+      }
+      if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw))
+        s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+      if constexpr (L::corrected && beside == Beside::ends)
+        if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);  // the fluid's own entry is the first
+    }
+    auto anisotropy = columns.anisotropy(at);
+    auto place = columns.template place<beside>(at, company);
+    const auto r = finish<Dim, beside, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);
+    columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
+  }
+}
+
+template <int Dim>
+void reaction(PhaseParticles& solid, const RecordArray& own_records, const FluidNeighbour& e, bool pores) {
+  using R = MotionRecord<Dim>;
+  using L = PlainFluid<Dim>;
+  std::array<double*, Dim> a{};
+  for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = solid.column(Field::acceleration, d);
+  const double inverse_mass = 1.0 / solid.mass();
+  const ReadyKernel kernel(e.kernel, e.radius, Dim);
+  const auto n = static_cast<std::int64_t>(solid.size());
+  Shares shares(n, 256);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto row = e.list->row(k);
+    if (row.begin == row.end) continue;
+    const double* record = own_records[k];
+    typename L::template Sums<Lanes> raw, s{};
+    sum_row<Dim, PlainFluid, double>(row, e, kernel, load_own<Dim, PlainFluid>(record), Lanes(1.0), raw);
+    s.take(raw, kernel.slope_factor(), e.viscosity, 0.0, {0, 0, 0});
+    const Lanes closing(pores ? 2.0 * record[R::pressure] : 0.0);
+    for (std::size_t d = 0; d < Dim; ++d)
+      a[d][k] += record[R::volume] * inverse_mass *
+                 simd::sum(Lanes(2.0) * s.viscous[d] - s.pressure[d] + closing * s.concentration[d]);
+  }
+}
+
+template <class T>
+void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
+              const FluidParameters& q, FluidScheme scheme) {
+  const bool plain = scheme == FluidScheme::plain, flat = fluid.dimensions() == 2;
+  const bool joined = std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
+  const bool surface = plain && fluid.has(Field::wholeness);
+  constexpr Beside nothing = Beside::nothing, ends = Beside::ends;
+  if (joined && flat) rates<2, ConsistentFluid, T, ends, true>(fluid, own, unit, neighbours, q);
+  else if (joined) rates<3, ConsistentFluid, T, ends, true>(fluid, own, unit, neighbours, q);
+  else if (flat && surface) rates<2, PlainSurface, T, ends>(fluid, own, unit, neighbours, q);
+  else if (flat && plain) rates<2, PlainFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  else if (flat && q.ends) rates<2, ConsistentFluid, T, ends>(fluid, own, unit, neighbours, q);
+  else if (flat) rates<2, ConsistentFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  else if (surface) rates<3, PlainSurface, T, ends>(fluid, own, unit, neighbours, q);
+  else if (plain) rates<3, PlainFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  else if (q.ends) rates<3, ConsistentFluid, T, ends>(fluid, own, unit, neighbours, q);
+  else rates<3, ConsistentFluid, T, nothing>(fluid, own, unit, neighbours, q);
+}
+
+}  // namespace
+
+void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& q, FluidScheme scheme) {
+  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme);
+}
+
+void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& q, FluidScheme scheme) {
+  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme);
+}
+
+void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores) {
+  if (solid.dimensions() == 2) reaction<2>(solid, own, fluid, pores);
+  else reaction<3>(solid, own, fluid, pores);
+}
+
+}  // namespace barchan::BARCHAN_TARGET

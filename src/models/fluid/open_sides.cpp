@@ -1,0 +1,178 @@
+#include "models/fluid/open_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "models/workspace.hpp"
+#include "output/numbers.hpp"
+#include "scene/couplings.hpp"
+#include "scene/located.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr std::array<std::array<const char*, 2>, 3> side_names{
+    {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+
+/// The wall behind a side that the fluid feels; null: there is none.
+const Phase* wall_behind(const Scene& scene, const Phase& fluid, const std::string& side) {
+  for (const Fill& fill : scene.fills) {
+    const auto* sides = std::get_if<SidesShape>(&fill.shape);
+    const Phase* wall = find_phase(scene, fill.phase);
+    if (sides && wall && entry_between(scene, fluid, *wall) &&
+        std::find(sides->sides.begin(), sides->sides.end(), side) != sides->sides.end())
+      return wall;
+  }
+  return nullptr;
+}
+
+/// The side away from gravity, where gravity is along one axis that does not repeat; empty: there is none.
+std::string upper_side(const Scene& scene) {
+  std::string side;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) {
+    const double g = scene.domain.gravity[d];
+    if (g == 0.0) continue;
+    if (!side.empty() || scene.domain.periodic[d]) return "";
+    side = side_names[d][g < 0.0 ? 1 : 0];
+  }
+  return side;
+}
+
+}  // namespace
+
+std::array<std::array<bool, 2>, 3> open_sides(const Scene& scene, std::size_t fluid, bool free_surface) {
+  std::array<std::array<bool, 2>, 3> open{};
+  const bool said = !scene.domain.open.empty();
+  const std::vector<std::string> sides = said ? scene.domain.open : std::vector<std::string>{upper_side(scene)};
+  for (std::size_t d = 0; d < 3; ++d)
+    for (std::size_t end = 0; end < 2; ++end) {
+      const std::string name = side_names[d][end];
+      if (!free_surface || std::find(sides.begin(), sides.end(), name) == sides.end()) continue;
+      const Phase* wall = wall_behind(scene, scene.phases[fluid], name);
+      if (wall && said)
+        throw SceneError(located(scene, "domain.open") + ": the wall \"" + wall->name + "\" closes \"" + name +
+                         "\" to \"" + scene.phases[fluid].name + "\"; expected a side without such a wall");
+      open[d][end] = !wall;
+    }
+  return open;
+}
+
+OpenSides::OpenSides(const Scene& scene, const Layout& layout, std::size_t fluid)
+    : scene_(scene), plan_(layout.phases[fluid]), fluid_(fluid) {
+  const double margin = beyond * plan_.spacing;
+  for (std::size_t d = 0; d < 3; ++d) {
+    low_[d] = plan_.open[d][0] ? layout.bounds.low[d] - margin : -1e300;
+    high_[d] = plan_.open[d][1] ? layout.bounds.high[d] + margin : 1e300;
+  }
+}
+
+void OpenSides::begin(State& state, const std::vector<ParticleBlock>&) {
+  place_ = state.departed.size();
+  state.departed.emplace_back();
+  state.departed.back().phase = static_cast<std::int64_t>(fluid_);
+  PhaseParticles& p = state.phases[fluid_];
+  p.may_shrink();
+  start_mass_ = p.mass() * static_cast<double>(p.size());
+}
+
+void OpenSides::attach(Workspace& w) {
+  w_ = &w;
+  order_.resize(w.particles(fluid_).size());
+}
+
+void OpenSides::schedule(Schedule& s) {
+  FieldSet all;
+  for (const Field f : plan_.fields) all = all | FieldSet{f};
+  s.add({stage::walls, plan_.name + ", open sides", all, all, [this] { leave(); }});
+}
+
+bool OpenSides::is_beyond(const PhaseParticles& p, std::size_t k) const {
+  for (int d = 0; d < p.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    const double x = p.column(Field::position, d)[k];
+    if (x < low_[c] || x > high_[c]) return true;
+  }
+  return false;
+}
+
+bool OpenSides::any_beyond(const PhaseParticles& p) const {
+  bool any = false;
+  const auto n = static_cast<std::int64_t>(p.size());
+  for (int d = 0; d < p.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    if (!plan_.open[c][0] && !plan_.open[c][1]) continue;
+    const double *x = p.column(Field::position, d), low = low_[c], high = high_[c];
+    int beyond_here = 0;
+#pragma omp parallel for simd schedule(static) reduction(| : beyond_here)
+    for (std::int64_t k = 0; k < n; ++k) beyond_here |= static_cast<int>(x[k] < low) | static_cast<int>(x[k] > high);
+    any = any || beyond_here != 0;
+  }
+  return any;
+}
+
+void OpenSides::book(const PhaseParticles& p, std::size_t k, Departed& departed) const {
+  const double m = p.mass();
+  if (departed.particles++ == 0) departed.first = w_->state.time;
+  departed.mass += m;
+  for (int d = 0; d < p.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    const double v = p.column(Field::velocity, d)[k];
+    departed.momentum[c] += m * v;
+    departed.kinetic += 0.5 * m * v * v;
+    departed.potential -= m * scene_.domain.gravity[c] * p.column(Field::position, d)[k];
+  }
+  const double strain = p.column(Field::density)[k] / scene_.phases[fluid_].density - 1.0;
+  departed.stored += 0.5 * m * std::pow(plan_.sound_speed * strain, 2);
+}
+
+void OpenSides::leave() {
+  PhaseParticles& p = w_->particles(fluid_);
+  if (!any_beyond(p)) return;
+  Departed& departed = w_->state.departed[place_];
+  std::size_t kept = 0, last = p.size();
+  for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;
+  if (kept == 0) {
+    trouble_ = "all particles of \"" + plan_.name + "\" are beyond " + sides_text() +
+               ": nothing is left to compute; close a side with a wall, or enlarge domain.size";
+    return;
+  }
+  kept = 0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    if (is_beyond(p, k)) {
+      book(p, k, departed);
+      order_[--last] = static_cast<std::uint32_t>(k);
+    } else {
+      order_[kept++] = static_cast<std::uint32_t>(k);
+    }
+  }
+  p.permute(order_.data());
+  p.resize(kept);
+  w_->must_search = true;
+}
+
+std::string OpenSides::sides_text() const {
+  std::string text;
+  for (std::size_t d = 0; d < 3; ++d)
+    for (std::size_t end = 0; end < 2; ++end)
+      if (plan_.open[d][end]) text += std::string(text.empty() ? "" : " or ") + side_names[d][end];
+  return "the open side (" + text + ")";
+}
+
+void OpenSides::history(HistoryRow& row) const {
+  if (!scene_.domain.open.empty())
+    row.add(plan_.name + "_left [" + (w_->particles(fluid_).dimensions() == 2 ? "kg/m]" : "kg]"),
+            w_->state.departed[place_].mass);
+}
+
+void OpenSides::report(Warnings& warnings) const {
+  const Departed& departed = w_->state.departed[place_];
+  if (departed.particles == 0) return;
+  warnings.add("left " + plan_.name,
+               brief(static_cast<double>(departed.particles)) + " particles of \"" + plan_.name + "\", " +
+                   brief(100.0 * departed.mass / start_mass_) + " % of its mass, left through " + sides_text() +
+                   ", the first at t = " + brief(departed.first) + " s; domain.open says which sides are open");
+}
+
+}  // namespace barchan

@@ -1,0 +1,124 @@
+#include "models/fluid/voids.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "engine/entry_of_list.hpp"
+
+namespace barchan {
+
+namespace {
+
+using Seen = VoidFinder::Seen;
+
+template <std::size_t Dim>
+std::array<const double*, Dim> places(const PhaseParticles& particles) {
+  std::array<const double*, Dim> x{};
+  for (std::size_t d = 0; d < Dim; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
+  return x;
+}
+
+/// Calls f(source, r) for every neighbour of a particle at x_a that is listed; r = x_a - x_b.
+template <std::size_t Dim, class F>
+void each_neighbour(const Seen& seen, std::size_t k, const std::array<double, Dim>& x_a, F&& f) {
+  const auto x = places<Dim>(*seen.particles);
+  const std::size_t n = seen.particles->size(), dummy = n + seen.grid->images();
+  const auto row = seen.list->row(k);
+  for (const std::uint32_t* q = row.begin; q != row.end; ++q) {
+    const std::size_t index = *q / PairList::stride;
+    if (index == dummy) continue;
+    const auto entry = look_up<Dim>(index, *seen.grid, n);
+    std::array<double, Dim> r;
+    for (std::size_t d = 0; d < Dim; ++d) r[d] = x_a[d] - x[d][entry.source] - entry.shift[d];
+    f(entry.source, r);
+  }
+}
+
+template <std::size_t Dim>
+double squared(const std::array<double, Dim>& r) {
+  double sum = 0.0;
+  for (const double x : r) sum += x * x;
+  return sum;
+}
+
+/// Whether a ball without particles lies beside particle k.
+template <std::size_t Dim>
+bool beside_void(const PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
+                 std::size_t k) {
+  std::array<double, Dim> x{}, out{};
+  for (std::size_t d = 0; d < Dim; ++d) x[d] = fluid.column(Field::position, static_cast<int>(d))[k];
+  for (const Seen& s : seen)
+    each_neighbour<Dim>(s, k, x, [&](std::size_t, const std::array<double, Dim>& r) {
+      const double distance = std::sqrt(squared<Dim>(r)), weight = radius / std::max(distance, 1e-3 * radius) - 1.0;
+      if (weight > 0.0)
+        for (std::size_t d = 0; d < Dim; ++d) out[d] += weight * r[d];
+    });
+  const double length = std::sqrt(squared<Dim>(out));
+  if (!(length > 0.0)) return false;
+  bool empty = true;
+  for (const Seen& s : seen)
+    each_neighbour<Dim>(s, k, x, [&](std::size_t, std::array<double, Dim> r) {
+      for (std::size_t d = 0; d < Dim; ++d) r[d] += VoidFinder::outside * spacing / length * out[d];
+      empty = empty && squared<Dim>(r) > s.width * s.width;
+    });
+  return empty;
+}
+
+}  // namespace
+
+template <int Dim>
+bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
+                         LooseParticles& loose) {
+  constexpr std::size_t dim = Dim;
+  double* left = fluid.column(Field::near_void);
+  const auto n = static_cast<std::int64_t>(fluid.size());
+  int any = 0;
+  std::int64_t broken = 0;
+  if (near_ != 0) {
+#pragma omp parallel for schedule(static) reduction(| : any)
+    for (std::int64_t k = 0; k < n; ++k) {
+      left[k] = left[k] > 1.0 ? left[k] - 1.0 : 0.0;
+      any |= left[k] > 0.0 ? 1 : 0;
+    }
+  }
+  const auto count = static_cast<std::int64_t>(loose.count.load(std::memory_order_relaxed));
+  loose.count.store(0, std::memory_order_relaxed);
+#pragma omp parallel for schedule(dynamic, 64) reduction(| : any) reduction(+ : broken) if (count > 256)
+  for (std::int64_t q = 0; q < count; ++q) {
+    const std::uint32_t noted = loose.place[static_cast<std::size_t>(q)];
+    const std::size_t k = noted & ~LooseParticles::broken;
+    const bool beside = beside_void<dim>(fluid, seen, radius, spacing, k);
+    if (k == noted && !beside) continue;
+    if (!beside) ++broken;
+    any = 1;
+    const auto mark = [&](std::size_t b) { std::atomic_ref<double>(left[b]).store(memory, std::memory_order_relaxed); };
+    mark(k);
+    std::array<double, dim> x{};
+    for (std::size_t d = 0; d < dim; ++d) x[d] = fluid.column(Field::position, static_cast<int>(d))[k];
+    each_neighbour<dim>(seen.front(), k, x, [&](std::size_t b, const std::array<double, dim>& r) {
+      if (squared<dim>(r) < radius * radius) mark(b);
+    });
+  }
+  const bool many = broken > 0 && static_cast<double>(broken) >= unresolved_share * static_cast<double>(n);
+  unresolved_ = std::max<std::int64_t>(unresolved_ + (many ? 1 : -1), 0);
+  if (unresolved_ >= unresolved_steps) {
+    unresolved_ = unresolved_steps;
+    std::fill(left, left + n, unresolved_memory);
+  }
+  near_ = any;
+  return near_ != 0;
+}
+
+bool VoidFinder::find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
+                      LooseParticles& loose) {
+  if (near_ == 0 && loose.count.load(std::memory_order_relaxed) == 0) {
+    unresolved_ = std::max<std::int64_t>(unresolved_ - 1, 0);
+    return false;
+  }
+  if (fluid.dimensions() == 2) return find_in<2>(fluid, seen, radius, spacing, loose);
+  return find_in<3>(fluid, seen, radius, spacing, loose);
+}
+
+}  // namespace barchan

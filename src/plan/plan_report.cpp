@@ -1,0 +1,170 @@
+// The plan as a person reads it, and as JSON.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "plan/run_cost.hpp"
+
+namespace barchan {
+
+namespace {
+
+template <class... A>
+std::string line(const char* format, A... a) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, a...);
+  return text;
+}
+
+const char* kernel_name(KernelKind k) { return k == KernelKind::wendland_c2 ? "wendland-c2" : "cubic-spline"; }
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const auto& w : words) all += (all.empty() ? "" : ", ") + w;
+  return all.empty() ? "none" : all;
+}
+
+/// A contact with a law by name has this name.
+std::string law_of(const PlanEntry& e) {
+  if (e.kind == EntryKind::contact && e.contact != ContactLaw::kernel)
+    for (const Word& w : words_of<ContactLaw>)
+      if (w.meaning == static_cast<int>(e.contact)) return std::string(w.word);
+  return to_string(e.kind);
+}
+
+std::string number(double value) { return line("%.3g", value); }
+
+/// What the kernel sums of an entry mean.
+std::string meaning(const PlanEntry& e) {
+  if (e.kind == EntryKind::drag) return "no kernel: the mean wind about the grain, in layers near the ground";
+  if (e.kind == EntryKind::column) return "no kernel: the wind of the grain's height";
+  if (e.corrected && e.kind == EntryKind::elastic) return "corrected to first order in the body's first shape";
+  if (e.corrected) return "corrected to first order by the consistent scheme";
+  if (e.of_spheres()) return "spheres: touching decides";
+  if (e.of_bodies && e.restitution < 1.0 && e.of_many_elastic)
+    return "bodies: touching decides; restitution " + number(e.restitution) +
+           " is of two particles, bodies of many keep more (0.91 to 0.93 measured)";
+  if (e.of_bodies) return "bodies: touching decides";
+  if (e.kind == EntryKind::contact || e.kind == EntryKind::repulsive) return "a contact law, not an approximation";
+  if (e.consistency.consistent()) return "consistent";
+  if (e.kind == EntryKind::elastic && e.a != e.b) return "a contact law, not an approximation";
+  return "off by more than 3 %, and nothing corrects it";
+}
+
+}  // namespace
+
+std::string to_text(const Plan& plan, const Scene& scene) {
+  std::string t = scene.title.empty() ? scene.name + "\n" : scene.title + "\n";
+  t += line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, scene.spacing, plan.particles(),
+            scene.time.end);
+  t += line("%-12s %-8s %10s %10s %12s %10s  %s\n", "phase", "kind", "particles", "dx [m]", "mass [kg]", "c [m/s]",
+            "fields");
+  for (const auto& p : plan.phases) {
+    std::vector<std::string> names;
+    for (const Field f : p.fields) names.emplace_back(info(f).name);
+    t += line("%-12s %-8s %10zu %10.4g %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.spacing, p.mass,
+              p.sound_speed);
+    t += joined(names) + "\n";
+  }
+  t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
+            "gradient", "(on a lattice; the truth is 1 and 1)");
+  for (const auto& e : plan.entries)
+    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), law_of(e).c_str(),
+              e.of_spheres() ? "-" : kernel_name(e.kernel), e.radius / e.spacing, e.consistency.neighbours,
+              e.consistency.volume_sum, e.consistency.gradient_sum, meaning(e).c_str());
+  t += "\n";
+  for (const auto& p : plan.phases)
+    if (p.flows) t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
+  t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
+  for (const auto& i : plan.instruments)
+    t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
+  t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
+  if (plan.fixed_step > 0) t += line("step    %.4g s, fixed by the scene\n", plan.fixed_step);
+  for (const auto& l : plan.limits)
+    t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value,
+              l.name.c_str(), l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
+  for (const auto& w : plan.warnings) t += "warning: " + w + "\n";
+  return t + "\n";
+}
+
+std::string to_text(const Estimate& e) {
+  if (!e.measured) return "not measured: " + e.failure + "\n";
+  std::string t = e.failure.empty() ? "pairs  " : "measured as far as it goes: " + e.failure + "\npairs  ";
+  for (const auto& [name, count] : e.pairs)
+    t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
+  t += line("\narrays  %.1f MB of the memory, measured\n", e.bytes * 1e-6);
+  t +=
+      line("run     about %.0f steps, %.3g s of processor time at %.2f M particle-steps/s (medians of the first steps)",
+           e.steps, e.processor_seconds, e.particle_steps_per_second * 1e-6);
+  t += e.threads == 1 ? "\n" : line(": %.3g s if %d threads share it evenly\n", e.seconds, e.threads);
+  if (e.start_seconds > 1.0)
+    t += line("start   %.3g s to make the particles, beds that settle included\n", e.start_seconds);
+  const double all = e.seconds + e.start_seconds, hour = 3600.0;
+  if (all > hour) t += line("warning: the run takes about %.1f hours\n", all / hour);
+  return t;
+}
+
+std::string to_json(const Plan& plan, const Scene& scene, const MemoryNeed& memory, const Estimate& estimate) {
+  nlohmann::ordered_json j;
+  j["title"] = scene.title;
+  j["dimensions"] = plan.dimensions;
+  j["spacing"] = scene.spacing;
+  j["end"] = scene.time.end;
+  for (const auto& p : plan.phases) {
+    nlohmann::ordered_json q;
+    q["kind"] = p.kind;
+    q["particles"] = p.count;
+    q["spacing"] = p.spacing;
+    q["mass"] = p.mass;
+    q["sound_speed"] = p.sound_speed;
+    q["smoothing_length"] = p.smoothing_length;
+    if (p.flows) {
+      q["enclosed"] = p.enclosed;
+      q["enclosure"] = p.enclosure;
+    }
+    q["fields"] = nlohmann::ordered_json::array();
+    for (const Field f : p.fields) q["fields"].push_back(info(f).name);
+    j["phases"][p.name] = q;
+  }
+  for (const auto& e : plan.entries) {
+    nlohmann::ordered_json q;
+    q["law"] = law_of(e);
+    q["kernel"] = e.of_spheres() ? "none" : kernel_name(e.kernel);
+    q["radius"] = e.radius;
+    q["neighbours"] = e.consistency.neighbours;
+    q["volume_sum"] = e.consistency.volume_sum;
+    q["gradient_sum"] = e.consistency.gradient_sum;
+    q["consistent"] = e.consistency.consistent();
+    q["corrected"] = e.corrected;
+    q["meaning"] = meaning(e);
+    j["interactions"][e.name] = q;
+  }
+  for (const auto& [name, count] : estimate.pairs) j["interactions"][name]["pairs"] = count;
+  j["passes"] = plan.passes;
+  j["skipped"] = plan.skipped;
+  j["measured"] = nlohmann::ordered_json::array();
+  for (const auto& i : plan.instruments)
+    j["measured"].push_back({{"kind", kind_name(i.kind)},
+                             {"name", i.name},
+                             {"phase", i.phase_name},
+                             {"rows", i.rows.size()},
+                             {"every", i.every},
+                             {"start", i.start},
+                             {"files", i.files()}});
+  j["not_measured"] = not_measured(plan.instruments);
+  j["warnings"] = plan.warnings;
+  j["step"] = plan.step();
+  for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
+  j["memory"]["bytes"] = memory.bytes();
+  for (const auto& [name, bytes] : memory.parts) j["memory"]["parts"][name] = bytes;
+  if (!estimate.failure.empty()) j["failure"] = estimate.failure;
+  j["estimate"] = {{"steps", estimate.steps},
+                   {"threads", estimate.threads},
+                   {"seconds", estimate.seconds},
+                   {"start_seconds", estimate.start_seconds},
+                   {"processor_seconds", estimate.processor_seconds},
+                   {"particle_steps_per_second", estimate.particle_steps_per_second},
+                   {"bytes", estimate.bytes}};
+  return j.dump(2) + "\n";
+}
+
+}  // namespace barchan

@@ -1,0 +1,241 @@
+// What a scene may mean otherwise, or what will go badly: told by the plan, before and after a run. Nothing here is
+// wrong for certain, else it would be refused.
+#include <algorithm>
+#include <cstdio>
+
+#include "models/drive.hpp"
+#include "plan/plan.hpp"
+#include "scene/couplings.hpp"
+
+namespace barchan {
+namespace {
+
+/// Under the cubic spline particles pair when the kernel is wide: of the perturbed Taylor-Green vortices (plain scheme,
+/// t = 1) 0, 11, 30 and 61 % stood nearer than half a spacing with 2.4, 2.5, 2.6 and 3 spacings; in 3D from 57
+/// neighbours, 2.4 spacings (Dehnen & Aly 2012). Wendland's kernels do not pair.
+constexpr double widest_cubic_spline = 2.4;
+
+/// The scene says that the two do not interact: nobody is told.
+bool meant_apart(const Scene& scene, const std::string& a, const std::string& b) {
+  return std::any_of(scene.apart.begin(), scene.apart.end(), [&](const auto& pair) {
+    return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+  });
+}
+
+bool stands_behind_sides(const Scene& scene, const Phase& wall) {
+  return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+    return fill.phase == wall.name && std::holds_alternative<SidesShape>(fill.shape);
+  });
+}
+
+void warn_of_pairing(const Scene& scene, Plan& plan) {
+  for (const PlanEntry& e : plan.entries)
+    if (e.kind == EntryKind::fluid && e.kernel == KernelKind::cubic_spline &&
+        e.radius > widest_cubic_spline * e.spacing * (1.0 + 1e-9))
+      plan.warnings.push_back(
+          "interactions." + e.name +
+          ": under the cubic spline particles pair with more than 2.4 spacings, and the run may die of "
+          "it; take kernel = \"wendland-c2\"" +
+          (scene.phases[e.a].fluid().scheme == FluidScheme::plain ? " or a smaller radius" : ""));
+}
+
+void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
+  const auto meet = [&](std::size_t a, std::size_t b) {
+    return entry_between(scene, scene.phases[a], scene.phases[b]);
+  };
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& phase = plan.phases[k];
+    for (std::size_t w = 0; w < plan.phases.size() && phase.moves; ++w) {
+      const PlanPhase& wall = plan.phases[w];
+      if (wall.moves || wall.count == 0 || meet(k, w) || meant_apart(scene, phase.name, wall.name)) continue;
+      if (phase.flows && !stands_behind_sides(scene, scene.phases[w])) continue;  // it may lie under a bed
+      plan.warnings.push_back("interactions: no entry " + phase.name + "-" + wall.name + ": the wall \"" + wall.name +
+                              "\" does not hold \"" + phase.name + "\", which passes through it; " + phase.name + "-" +
+                              wall.name + " = false says that it is meant");
+    }
+  }
+}
+
+void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& p = plan.phases[k];
+    if (p.body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]) &&
+        !meant_apart(scene, p.name, p.name))
+      plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
+                              p.name + "\" together");
+  }
+}
+
+/// A wall that bodies touch by its particles is rough by their lattice: a ball leaves it sideways.
+void warn_of_lattices(const Scene& scene, Plan& plan) {
+  for (const PlanEntry& e : plan.entries)
+    for (const std::size_t wall : {e.a, e.b})
+      if (e.of_bodies && !e.of_surfaces && scene.phases[wall].if_wall() && !has_surfaces(scene, scene.phases[wall]))
+        plan.warnings.push_back("interactions." + e.name + ": the shape of \"" + scene.phases[wall].name +
+                                "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
+                                "shape with one: sides, box, cube, in 2D also disc, ring, polygon, surface");
+}
+
+/// A bar in a box is as thick as its rows of particles, and bends as those do. docs/impacts.md has the cantilever.
+void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
+  constexpr double share = 0.01;  // of the thickness: 3 % of what bends
+  constexpr double few = 4.0;     // particles across
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const auto is_own = [&](const Fill& fill) { return fill.phase == plan.phases[k].name; };
+    const auto fill = std::find_if(scene.fills.begin(), scene.fills.end(), is_own);
+    if (!plan.phases[k].body || std::count_if(scene.fills.begin(), scene.fills.end(), is_own) != 1) continue;
+    const auto* box = std::get_if<BoxShape>(&fill->shape);
+    if (!box || fill->packing != Packing::square || blocks[k].position.size() < 2) continue;
+    const double dx = plan.phases[k].spacing;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(plan.dimensions); ++d) {
+      double low = 1e300, high = -1e300;
+      for (const Vec3& x : blocks[k].position) low = std::min(low, x[d]), high = std::max(high, x[d]);
+      const double said = box->max[d] - box->min[d], rows = std::round((high - low) / dx) + 1.0;
+      char text[400];
+      if (std::abs(rows * dx / said - 1.0) > share) {
+        std::snprintf(
+            text, sizeof text,
+            "fill.%zu.shape.box: along %c the box is %.4g m and the body %.0f rows of %.4g m, %.4g m (%+.1f %%): its "
+            "mass and what bends it are of the rows; a spacing of %.6g m fits",
+            static_cast<std::size_t>(fill - scene.fills.begin()), "xyz"[d], said, rows, dx, rows * dx,
+            100.0 * (rows * dx / said - 1.0), said / rows);
+        plan.warnings.emplace_back(text);
+      }
+      if (rows < few && rows > 1.0) {
+        std::snprintf(
+            text, sizeof text,
+            "phases.%s: %.0f particles across along %c: a bar of two bends 26 %% too little; expected %.0f at least",
+            plan.phases[k].name.c_str(), rows, "xyz"[d], few);
+        plan.warnings.emplace_back(text);
+      }
+    }
+  }
+}
+
+/// The pressure of a fluid at rest pushes its free surface; plain sums have nothing that holds it.
+void warn_of_background_pressure(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& p = plan.phases[k];
+    if (!p.flows || !p.free_surface || scene.phases[k].fluid().scheme != FluidScheme::plain) continue;
+    if (scene.phases[k].fluid().background_pressure > 0)
+      plan.warnings.push_back("phases." + p.name +
+                              ".background-pressure: it blows the free surface of a fluid of the plain scheme away (a "
+                              "still tank lost 71 % of its water in 1 s with 0.01); expected 0, or scheme = "
+                              "\"consistent\"");
+  }
+}
+
+/// What has no entry passes through each other: two fluids, and the grains of one phase.
+void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
+  for (std::size_t a = 0; a < plan.phases.size(); ++a) {
+    const PlanPhase& p = plan.phases[a];
+    if (p.diameter > 0 && p.moves && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
+        !meant_apart(scene, p.name, p.name))
+      plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": the grains of \"" + p.name +
+                              "\" pass through each other");
+    for (std::size_t b = 0; b < a; ++b)
+      if (p.flows && plan.phases[b].flows && p.count > 0 && plan.phases[b].count > 0 &&
+          !entry_between(scene, scene.phases[a], scene.phases[b]) && !meant_apart(scene, p.name, plan.phases[b].name))
+        plan.warnings.push_back("interactions: no entry " + plan.phases[b].name + "-" + p.name + ": the fluids \"" +
+                                plan.phases[b].name + "\" and \"" + p.name +
+                                "\" do not feel each other and pass through each other");
+  }
+}
+
+bool are_grains(const PlanPhase& phase) { return phase.kind == "grains"; }
+
+/// What holds the mean speed of a wind pulls as hard as grains brake, and no friction velocity is given.
+void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
+    const Forcing& f = scene.forcings[k];
+    if (f.hold != Hold::bulk_speed) continue;
+    for (const PlanEntry& e : plan.entries)
+      for (const std::size_t fluid : {e.a, e.b})
+        if (plan.phases[fluid].name == f.phase && (e.kind == EntryKind::drag || e.kind == EntryKind::coupling) &&
+            are_grains(plan.phases[e.partner(fluid)]))
+          plan.warnings.push_back(
+              "forcing." + std::to_string(k) +
+              ".hold: a wind whose bulk speed is held is pulled as hard as the grains of \"" +
+              plan.phases[e.partner(fluid)].name +
+              "\" brake it: its friction velocity u* is a result, which history.csv tells (" + f.phase +
+              "_equivalent_friction_velocity); hold = \"stress\" or \"pressure-gradient\" keeps u*");
+  }
+}
+
+void warn_of_strong_columns(const Scene& scene, Plan& plan) {
+  for (const PlanEntry& e : plan.entries)
+    for (const std::size_t wind : {e.a, e.b})
+      if (const std::string told = beyond_measured_winds(scene, scene.phases[wind]);
+          e.kind == EntryKind::column && !told.empty())
+        plan.warnings.push_back(told);
+}
+
+/// Frames and rows cut steps: more often than steps, and the run is as much longer.
+void warn_of_output(const Scene& scene, Plan& plan) {
+  const double step = plan.step(), rows = row_interval(scene);
+  const auto text = [](double x) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.4g", x);
+    return std::string(number);
+  };
+  const auto shorter = [&](const std::string& key, double every, const char* what) {
+    plan.warnings.push_back(key + ": " + text(every) + " s is shorter than the first step, " + text(step) + " s: " +
+                            what + " cut the steps, and the run takes " + text(step / every) + " times as many");
+  };
+  if (scene.output.every > 0.0 && scene.output.every < 0.999 * step)
+    shorter("output.every", scene.output.every, "frames");
+  if (scene.output.history_every > 0.0 && rows < 0.999 * step) shorter("output.history-every", rows, "rows");
+  if (scene.output.every > scene.time.end * (1.0 + 1e-9))
+    plan.warnings.push_back("output.every: " + text(scene.output.every) + " s is beyond time.end, " +
+                            text(scene.time.end) + " s: there are a first frame and a last one only");
+  if (scene.output.history_every > scene.time.end * (1.0 + 1e-9))
+    plan.warnings.push_back("output.history-every: " + text(scene.output.history_every) + " s is beyond time.end, " +
+                            text(scene.time.end) + " s: there is a first row only");
+  if (scene.output.every > 0.0 && scene.time.end / scene.output.every > 1.0001e4)
+    plan.warnings.push_back("output.every: " + text(scene.output.every) + " s makes " +
+                            text(scene.time.end / scene.output.every) + " frames");
+}
+
+/// What begins after the end measures nothing.
+void warn_of_late_instruments(const Scene& scene, Plan& plan) {
+  for (const Instrument& i : plan.instruments)
+    if (i.start > scene.time.end)
+      plan.warnings.push_back(kind_name(i.kind) + " \"" + i.name + "\" starts after time.end and measures nothing");
+}
+
+void warn_of_weight(const Scene& scene, Plan& plan) {
+  const auto up = static_cast<std::size_t>(1);
+  if (scene.domain.gravity[up] > 0.0)
+    plan.warnings.push_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
+}
+
+/// A radius below one spacing meets no neighbour: it may have been meant in metres.
+void warn_of_small_radius(const Scene& scene, Plan& plan) {
+  for (const Interaction& pair : scene.interactions)
+    if (!of_spheres(pair) && !pair.radius_in_metres && pair.radius > 0.0 && pair.radius < 1.0)
+      plan.warnings.push_back(
+          "interactions." + pair.a + "-" + pair.b +
+          ": a radius below one spacing meets no neighbour of a lattice; radius-in-metres says one in "
+          "metres");
+}
+
+}  // namespace
+
+void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
+  warn_of_pairing(scene, plan);
+  warn_of_walls_that_let_through(scene, plan);
+  warn_of_loose_bodies(scene, plan);
+  warn_of_what_does_not_meet(scene, plan);
+  warn_of_lattices(scene, plan);
+  warn_of_background_pressure(scene, plan);
+  warn_of_thickness(scene, blocks, plan);
+  warn_of_held_speed_over_grains(scene, plan);
+  warn_of_strong_columns(scene, plan);
+  warn_of_output(scene, plan);
+  warn_of_late_instruments(scene, plan);
+  warn_of_weight(scene, plan);
+  warn_of_small_radius(scene, plan);
+  warn_outside_stable_ranges(scene, plan);
+}
+
+}  // namespace barchan

@@ -1,0 +1,13 @@
+// The time and memory of a run, estimated from a few of its own steps.
+#pragma once
+
+#include "plan/run_cost.hpp"
+#include "scene/generate.hpp"
+
+namespace barchan {
+
+/// Runs batches of steps with one thread (at most about two seconds) on a copy and scales their medians up. Processor
+/// time, so that other programs on the machine do not count. `threads` are those that OpenMP is set to. Writes nothing.
+Estimate measure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks);
+
+}  // namespace barchan
