@@ -91,7 +91,7 @@ void CellGrid::sort(PhaseParticles& particles) {
     find_cells(particles);
 #pragma omp single
     place_cells();
-    fill_cells(n);
+    fill_cells(particles.id());
   }
   make_runs();
   particles.permute(order_.data());
@@ -155,23 +155,27 @@ void CellGrid::make_runs() {
   first_run_[0] = 0;
 }
 
-/// Fills order_: by cell, within a cell as they stand now, whichever thread came first. All threads of a team call it.
-void CellGrid::fill_cells(std::size_t particles) {
-  const auto n = static_cast<std::int64_t>(particles), cells = static_cast<std::int64_t>(walk_.size());
+/// Fills order_: by cell, within a cell by id, whatever the storage was and whichever thread came first. All threads of
+/// a team call it.
+void CellGrid::fill_cells(const std::vector<std::int64_t>& id) {
+  const auto n = static_cast<std::int64_t>(id.size()), cells = static_cast<std::int64_t>(walk_.size());
   if (omp_get_num_threads() == 1) {
-    for (std::size_t k = 0; k < particles; ++k) order_[end_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
-    return;
-  }
+    for (std::size_t k = 0; k < id.size(); ++k) order_[end_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
+  } else {
 #pragma omp for schedule(static)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    order_[std::atomic_ref(end_[cell_of_[k]]).fetch_add(1, std::memory_order_relaxed)] = static_cast<std::uint32_t>(k);
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      order_[std::atomic_ref(end_[cell_of_[k]]).fetch_add(1, std::memory_order_relaxed)] =
+          static_cast<std::uint32_t>(k);
+    }
   }
 #pragma omp for schedule(static)
   for (std::int64_t w = 0; w < cells; ++w) {
     const std::uint32_t cell = walk_[static_cast<std::size_t>(w)];
-    std::uint32_t* const first = order_.data() + begin_[cell];
-    std::sort(first, order_.data() + end_[cell]);
+    std::uint32_t *const first = order_.data() + begin_[cell], *const last = order_.data() + end_[cell];
+    if (last - first < 2) continue;
+    const auto before = [&id](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; };
+    if (!std::is_sorted(first, last, before)) std::sort(first, last, before);
   }
 }
 

@@ -3,7 +3,8 @@
 // A padded grid of cells covers the domain and `halo` cells beyond it on every side. Cells divide a periodic side
 // exactly, so a halo cell there holds the shifted images of one interior cell, in the same order. Interior cells are
 // walked in strips `strip` cells wide, which keeps the neighbours of a particle near in memory in large scenes.
-// After sort() the particles of a cell are contiguous; images follow behind the last particle.
+// After sort() the particles of a cell are contiguous, in the order of their ids; images follow behind the last
+// particle. So the order of the storage, of the lists and of every sum follows from places and ids alone.
 #pragma once
 
 #include <algorithm>
@@ -58,8 +59,7 @@ class CellGrid {
   /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm.
   void sort(PhaseParticles& particles);
 
-  /// The phase's particles by block, as sorted last.
-  /// The runs of a block, side by side.
+  /// The runs of a block, as sorted last, side by side.
   std::span<const BlockRun> runs(std::size_t block) const {
     return {runs_by_block_.data() + first_run_[block], first_run_[block + 1] - first_run_[block]};
   }
@@ -152,7 +152,7 @@ class CellGrid {
   void find_halo();
   void find_cells(PhaseParticles& particles);
   void place_cells();
-  void fill_cells(std::size_t particles);
+  void fill_cells(const std::vector<std::int64_t>& id);
   void make_runs();
   void make_images(const PhaseParticles& particles);
 

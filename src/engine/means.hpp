@@ -1,41 +1,15 @@
-// Means over the particles of a phase, the same on any number of threads.
+// What is subtracted from, or added to, all particles of a fluid alike: means over them and uniform accelerations.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <vector>
 
 #include "state/particles.hpp"
 
 namespace barchan {
 
-/// Sum of f(k) over k < n in blocks, an order that only n decides.
-template <class F>
-double ordered_sum(std::size_t n, F&& f) {
-  constexpr std::size_t block = 1024;
-  double total = 0.0;
-  for (std::size_t first = 0; first < n; first += block) {
-    double part = 0.0;
-    for (std::size_t k = first; k < std::min(first + block, n); ++k) part += f(k);
-    total += part;
-  }
-  return total;
-}
-
-/// Sums in blocks whose order the number of values decides. Keeps its memory from step to step.
-class BlockMean {
- public:
-  /// Mean of n > 0 values.
-  double operator()(const double* values, std::size_t n);
-
- private:
-  std::vector<double> parts_;
-};
-
 /// Subtracts the mean from the density rates: mass and volume of an enclosed fluid are given, and the truncation error
 /// of the divergence must not change them.
-void keep_mean_density(PhaseParticles& fluid, BlockMean& mean);
+void keep_mean_density(PhaseParticles& fluid);
 
 /// Holds the mean velocity of a fluid along some axes, as a channel flow of constant mass flux is held: adds the
 /// uniform acceleration that makes the mean velocity, half a step later, the wanted one.
@@ -50,6 +24,6 @@ struct BulkHold {
 void accelerate(PhaseParticles& fluid, int axis, double amount);
 
 /// All forces on the fluid must be in its acceleration; its velocities are half a step (dt/2) behind.
-void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt, BlockMean& mean);
+void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt);
 
 }  // namespace barchan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "models/fluid/fluid_phase.hpp"
 
 namespace barchan {
@@ -106,7 +106,8 @@ void ForceOn::measure_wall() {
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
       const double* a = fluid.column(Field::acceleration, static_cast<int>(d));
       const double weight = scene_.domain.gravity[d];
-      force_[d] -= fluid.mass() * (ordered_sum(fluid.size(), [&](std::size_t k) { return a[k] - weight; }) - given[d]);
+      force_[d] -=
+          fluid.mass() * (reproducible_sum(fluid.size(), [&](std::size_t k) { return a[k] - weight; }) - given[d]);
     }
   }
 }
@@ -114,7 +115,6 @@ void ForceOn::measure_wall() {
 /// Adds `share` of mass times (acceleration - less), and its moment.
 void ForceOn::add_sums(double share, const Vec3& less) {
   const PhaseParticles& p = set_.particles();
-  const auto& places = set_.places();
   const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
   std::array<const double*, 3> x{}, a{};
   for (std::size_t d = 0; d < dimensions; ++d) {
@@ -132,9 +132,9 @@ void ForceOn::add_sums(double share, const Vec3& less) {
   };
   for (std::size_t d = 0; d < 3; ++d) {
     const std::size_t e = (d + 1) % 3, f = (d + 2) % 3;
-    force_[d] += mass * ordered_sum(places.size(), [&](std::size_t q) { return push(d, places[q]); });
-    torque_[d] += mass * ordered_sum(places.size(), [&](std::size_t q) {
-                    const std::size_t k = places[q];
+    force_[d] += mass * reproducible_sum(set_.size(), [&](std::size_t q) { return push(d, set_.place(q)); });
+    torque_[d] += mass * reproducible_sum(set_.size(), [&](std::size_t q) {
+                    const std::size_t k = set_.place(q);
                     return lever(e, k) * push(f, k) - lever(f, k) * push(e, k);
                   });
   }
@@ -160,7 +160,6 @@ void ForceOn::archive(Archive& a) {
   mean_torque_.archive(a, "torque on " + meter_.name);
   a.number("impulse on " + meter_.name, impulse_);
   a.number("force on " + meter_.name + " without spheres", smooth_);
-  if (a.loads()) set_.set_places();
 }
 
 }  // namespace barchan

@@ -187,6 +187,15 @@ void Workspace::archive(Archive& a) {
   if (!a.loads()) return;
   fit_records();
   must_search = false;
+  changes_of_lists = 0;
+  for (const auto& p : state.phases) changes_of_lists += p.changes();
+}
+
+/// Phases that no list needs have no cells: they begin in the order of their ids.
+void CommonWork::attach(Workspace& w) {
+  w_ = &w;
+  for (std::size_t k = 0; k < w.state.phases.size(); ++k)
+    if (!w.neighbours.has_grid(k)) w.particles(k).sort_by_id();
 }
 
 void CommonWork::schedule(Schedule& s) {
@@ -206,7 +215,11 @@ void CommonWork::find_neighbours() {
     for (const auto& call : w_->when_sorted) call();
   };
   if (layout_.directions.empty()) return;
-  const bool sorted = w_->neighbours.update(w_->state.phases, w_->must_search, beside);
+  long changes = 0;
+  for (const auto& p : w_->state.phases) changes += p.changes();
+  const bool others = w_->must_search || changes != w_->changes_of_lists;  // particles than the lists are of
+  const bool sorted = w_->neighbours.update(w_->state.phases, others, beside);
+  w_->changes_of_lists = changes;
   w_->must_search = false;
   if (sorted) w_->fit_records();
 }

@@ -45,9 +45,10 @@ class Workspace {
   };
   std::vector<Packing> packing;  // by phase
   std::vector<std::function<void()>>
-      when_sorted;          // called when particles have new places, beside the search: may only read them
-  bool must_search = true;  // sort and search whatever the motion was
-  double kick_time = 0.0;   // s, of the kick that ends a step
+      when_sorted;            // called when particles have new places, beside the search: may only read them
+  bool must_search = true;    // sort and search whatever the motion was
+  long changes_of_lists = 0;  // of the numbers of particles (PhaseParticles::changes) when the lists were made
+  double kick_time = 0.0;     // s, of the kick that ends a step
 
   PhaseParticles& particles(std::size_t phase) { return state.phases[phase]; }
   const PairList& list(int direction) const { return neighbours.list(static_cast<std::size_t>(direction)); }
@@ -67,7 +68,7 @@ class Workspace {
 class CommonWork : public Model {
  public:
   explicit CommonWork(const Layout& layout) : layout_(layout) {}
-  void attach(Workspace& w) override { w_ = &w; }
+  void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
 
  private:

@@ -36,7 +36,7 @@ void KeptState::exchange(std::vector<PhaseParticles>& particles) {
   for (std::size_t k = 0; k < particles.size(); ++k) {
     now[k] = particles[k].size();
     kept[k] = ids_[k].empty() ? now[k] : ids_[k].size();
-    if (kept[k] > now[k]) particles[k].resize(kept[k]);  // some have left since
+    particles[k].resize(std::max(now[k], kept[k]));  // some may have been made or removed since
   }
   for (auto& column : columns_) {
     column.values.resize(std::max(now[column.phase], kept[column.phase]));
@@ -46,9 +46,8 @@ void KeptState::exchange(std::vector<PhaseParticles>& particles) {
   }
   for (std::size_t k = 0; k < ids_.size(); ++k) {
     if (ids_[k].empty()) continue;
-    ids_[k].swap(particles[k].id());
-    ids_[k].resize(now[k]);
-    if (kept[k] < now[k]) particles[k].resize(kept[k]);
+    particles[k].resize(now[k]);  // the ids of the present state go into ids_[k]
+    particles[k].set_ids(ids_[k]);
   }
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -106,7 +106,7 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
   double fastest = 0.0;
   const bool sizes = p.has(Field::radius);
-  const double square = ordered_sum(n, [&](std::size_t i) {
+  const double square = reproducible_sum(n, [&](std::size_t i) {
     double s = 0;
     for (int d = 0; d < plan_.dimensions; ++d)
       s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
@@ -116,9 +116,9 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   std::array<double, 3> mean{};
   for (int d = 0; d < plan_.dimensions; ++d) {
     const auto c = static_cast<std::size_t>(d);
-    const double total = ordered_sum(n, [&](std::size_t i) { return v[c][i]; });
+    const double total = reproducible_sum(n, [&](std::size_t i) { return v[c][i]; });
     row.values[HistoryRow::momentum_x + c] +=
-        sizes ? ordered_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
+        sizes ? reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
     mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
   }
   fastest = std::sqrt(fastest);

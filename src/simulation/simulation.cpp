@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
@@ -11,9 +13,23 @@
 
 namespace barchan {
 
-Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks)
-    : scene_(scene), plan_(plan), models_(make_models(scene_, plan_)), schedule_(make_schedule(models_)) {
+namespace {
+
+Models joined(Models models, Models more) {
+  for (auto& model : more) models.push_back(std::move(model));
+  return models;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks, Storage storage,
+                       Models more)
+    : scene_(scene),
+      plan_(plan),
+      models_(joined(make_models(scene_, plan_), std::move(more))),
+      schedule_(make_schedule(models_)) {
   make_state(blocks);
+  if (storage == Storage::shuffled) shuffle();
   work_ = std::make_unique<Workspace>(scene_, plan_, state_);
   for (const auto& model : models_) model->attach(*work_);
   for (const auto& l : plan_.limits) state_.limit_counts[l.name] = 0;
@@ -51,8 +67,19 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
       }
     state_.phases.push_back(std::move(p));
   }
+  state_.ids.next = first;
   for (const auto& model : models_) model->begin(state_, blocks);
   face_walls(scene_, plan_, state_);
+}
+
+/// Puts the particles of every phase into an order without meaning, the same in every run.
+void Simulation::shuffle() {
+  for (PhaseParticles& p : state_.phases) {
+    std::vector<std::uint32_t> order(p.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::shuffle(order.begin(), order.end(), std::mt19937(20261124));
+    p.permute(order.data());
+  }
 }
 
 void Simulation::step(double largest) {

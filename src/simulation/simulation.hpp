@@ -18,8 +18,13 @@ namespace barchan {
 
 class Simulation {
  public:
-  /// Makes the planned fields and carries the initial state over; evaluates the first rates.
-  Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks);
+  /// Makes the planned fields and carries the initial state over; evaluates the first rates. `storage`: how the
+  /// particles stand in memory at the start; results must not depend on it, and a test compares.
+  enum class Storage { as_filled, shuffled };
+  /// `more`: models beside those of the scene, for programs that use the library; their tasks come behind the others of
+  /// a stage.
+  Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks,
+             Storage storage = Storage::as_filled, Models more = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -88,6 +93,7 @@ class Simulation {
   void choose_step(double largest);
   Moment moment() const { return {state_.time, state_.dt, state_.steps}; }
   void make_state(const std::vector<ParticleBlock>& blocks);
+  void shuffle();
   FrameField values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const;
   /// What all phases that move have in a row of history.csv.
   void add_phase(std::size_t number, HistoryRow& row) const;

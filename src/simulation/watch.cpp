@@ -96,9 +96,6 @@ std::vector<Field> kept_fields(const Scene& scene) {
 Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fields(sight.scene)) {
   make_guards();
   make_pairs();
-  std::size_t most = 0;
-  for (const auto& g : guards_) most = std::max(most, see_.particles[g.phase].size());
-  parts_.resize((most + block - 1) / block);
   fastest_of_.resize(see_.particles.size());
   for (const auto& f : see_.scene.forcings)
     for (const auto& g : guards_)
@@ -253,6 +250,7 @@ double Watch::look_at_phases(const Moment& now) {
     const PhaseParticles& p = see_.particles[g.phase];
     const double bound = speed_bound(g, now.dt), bound2 = bound * bound;
     const auto n = static_cast<std::int64_t>((p.size() + block - 1) / block);
+    if (parts_.size() < static_cast<std::size_t>(n)) parts_.resize(static_cast<std::size_t>(n));
     const bool flat = see_.plan.dimensions == 2;
     const auto look = flat ? (g.dense ? look_at_block<2, true, Part, Guard> : look_at_block<2, false, Part, Guard>)
                            : (g.dense ? look_at_block<3, true, Part, Guard> : look_at_block<3, false, Part, Guard>);

@@ -1,6 +1,8 @@
 #include "state/particles.hpp"
 
+#include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 
@@ -10,7 +12,6 @@ PhaseParticles::PhaseParticles(std::string name, int dimensions, std::size_t siz
     : name_(std::move(name)),
       dimensions_(dimensions),
       size_(size),
-      start_size_(size),
       first_id_(first_id),
       mass_(mass),
       id_(size),
@@ -26,6 +27,42 @@ void PhaseParticles::add(Field field) {
   for (auto& column : columns) column.assign(size_, 0.0);
 }
 
+std::size_t PhaseParticles::add_own_bytes(const std::string& name, Kept kept, std::size_t width, const void* of_new) {
+  if (std::any_of(own_.begin(), own_.end(), [&](const OwnValues& v) { return v.name == name; }))
+    throw std::logic_error("the phase \"" + name_ + "\" has a column \"" + name + "\" already");
+  OwnValues& v = own_.emplace_back();
+  v.name = name;
+  v.kept = kept;
+  v.width = width;
+  v.of_new.resize(width);
+  std::memcpy(v.of_new.data(), of_new, width);
+  v.values.resize(size_ * width);
+  for (std::size_t k = 0; k < size_; ++k) std::memcpy(v.values.data() + k * width, of_new, width);
+  if (own_scratch_.size() < v.values.size()) own_scratch_.resize(v.values.size());
+  return own_.size() - 1;
+}
+
+namespace {
+
+/// to[k] = from[order[k]] for values of `width` bytes. All threads of a team call it.
+template <class T>
+void gather(const void* from, void* to, const std::uint32_t* order, std::int64_t n) {
+  const T* source = static_cast<const T*>(from);
+  T* target = static_cast<T*>(to);
+#pragma omp for schedule(static)
+  for (std::int64_t k = 0; k < n; ++k) target[k] = source[order[k]];
+}
+
+void gather_bytes(const std::byte* from, std::byte* to, std::size_t width, const std::uint32_t* order, std::int64_t n) {
+  if (width == 8) return gather<std::uint64_t>(from, to, order, n);
+  if (width == 4) return gather<std::uint32_t>(from, to, order, n);
+#pragma omp for schedule(static)
+  for (std::int64_t k = 0; k < n; ++k)
+    std::memcpy(to + static_cast<std::size_t>(k) * width, from + order[k] * width, width);
+}
+
+}  // namespace
+
 void PhaseParticles::permute(const std::uint32_t* order) {
   const auto n = static_cast<std::int64_t>(size_);
 #pragma omp parallel
@@ -34,47 +71,134 @@ void PhaseParticles::permute(const std::uint32_t* order) {
     double* to = scratch_.data();
     for (auto& columns : columns_)
       for (auto& column : columns) {
-        double* from = column.data();
-#pragma omp for schedule(static)
-        for (std::int64_t k = 0; k < n; ++k) to[k] = from[order[k]];
-        to = from;
+        gather<double>(column.data(), to, order, n);
+        to = column.data();
       }
-#pragma omp for schedule(static)
-    for (std::int64_t k = 0; k < n; ++k) id_scratch_[static_cast<std::size_t>(k)] = id_[order[k]];
+    gather<std::int64_t>(id_.data(), id_scratch_.data(), order, n);
   }
   for (auto& columns : columns_)
     for (auto& column : columns) column.swap(scratch_);
   id_.swap(id_scratch_);
+  for (OwnValues& v : own_) {
+#pragma omp parallel
+    gather_bytes(v.values.data(), own_scratch_.data(), v.width, order, n);
+    if (own_scratch_.size() == v.values.size()) v.values.swap(own_scratch_);
+    else std::memcpy(v.values.data(), own_scratch_.data(), v.values.size());
+  }
+  find_places();
+}
+
+void PhaseParticles::sort_by_id() {
+  if (std::is_sorted(id_.begin(), id_.end())) return;
+  std::vector<std::uint32_t> order(size_);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) { return id_[a] < id_[b]; });
+  permute(order.data());
+}
+
+void PhaseParticles::set_ids(std::vector<std::int64_t>& ids) {
+  id_.swap(ids);
+  resize(id_.size());
+  find_places();
+}
+
+void PhaseParticles::keep_places() {
+  if (may_change_)
+    throw std::logic_error("the particles of \"" + name_ + "\" may change in number: their ids have gaps");
+  keeps_places_ = true;
+  places_.resize(size_);
+  find_places();
+}
+
+void PhaseParticles::find_places() {
+  if (!keeps_places_) return;
+  const auto n = static_cast<std::int64_t>(size_);
+  bool in_order = true;
+#pragma omp parallel for schedule(static) reduction(&& : in_order)
+  for (std::int64_t k = 0; k < n; ++k) {
+    const std::int64_t number = id_[static_cast<std::size_t>(k)] - first_id_;
+    places_[static_cast<std::size_t>(number)] = static_cast<std::uint32_t>(k);
+    in_order = in_order && number == k;
+  }
+  in_order_ = in_order;
+}
+
+void PhaseParticles::number_may_change() {
+  if (keeps_places_)
+    throw std::logic_error("the places of the particles of \"" + name_ + "\" are kept: their number may not change");
+  may_change_ = true;
+}
+
+std::size_t PhaseParticles::create(std::size_t count, IdSource& ids) {
+  if (!may_change_) throw std::logic_error("nobody said that the number of \"" + name_ + "\" may change");
+  const std::size_t first = size_;
+  resize(size_ + count);
+  for (std::size_t k = first; k < size_; ++k) id_[k] = ids.next++;
+  for (auto& columns : columns_)
+    for (auto& column : columns) std::fill(column.begin() + static_cast<std::ptrdiff_t>(first), column.end(), 0.0);
+  for (OwnValues& v : own_)
+    for (std::size_t k = first; k < size_; ++k) std::memcpy(v.values.data() + k * v.width, v.of_new.data(), v.width);
+  if (count > 0) ++changes_;
+  return first;
+}
+
+std::size_t PhaseParticles::remove_if(const std::function<bool(std::size_t)>& leaves) {
+  if (!may_change_) throw std::logic_error("nobody said that the number of \"" + name_ + "\" may change");
+  if (order_.size() < size_) order_.resize(size_);
+  std::size_t kept = 0, last = size_;
+  for (std::size_t k = 0; k < size_; ++k) order_[leaves(k) ? --last : kept++] = static_cast<std::uint32_t>(k);
+  const std::size_t removed = size_ - kept;
+  if (removed == 0) return 0;
+  permute(order_.data());
+  resize(kept);
+  ++changes_;
+  return removed;
 }
 
 void PhaseParticles::resize(std::size_t size) {
   size_ = size;
-  id_.resize(size);
-  id_scratch_.resize(size);
-  scratch_.resize(size);
+  const auto fit = [size](auto& values, std::size_t width) {
+    // Room grows by half, so that a phase that grows steadily allocates seldom.
+    if (values.capacity() < size * width) values.reserve(std::max(size, size + size / 2) * width);
+    values.resize(size * width);
+  };
+  fit(id_, 1);
+  fit(id_scratch_, 1);
+  fit(scratch_, 1);
   for (auto& columns : columns_)
-    for (auto& column : columns) column.resize(size);
+    for (auto& column : columns) fit(column, 1);
+  for (OwnValues& v : own_) {
+    fit(v.values, v.width);
+    if (own_scratch_.size() < v.values.size()) fit(own_scratch_, v.width);
+  }
 }
 
 void PhaseParticles::archive(Archive& a) {
-  if (may_shrink_) {
-    std::uint64_t count = size_;
-    a.number("particles of " + name_, count);
-    if (count > start_size_)
-      throw SceneError("the checkpoint does not fit this scene: it has " + std::to_string(count) + " particles of \"" +
-                       name_ + "\", the scene has " + std::to_string(start_size_));
-    if (count != size_) resize(static_cast<std::size_t>(count));
+  std::uint64_t count = size_;
+  a.number("particles of " + name_, count);
+  if (count != size_ && !may_change_)
+    throw SceneError("the checkpoint does not fit this scene: it has " + std::to_string(count) + " particles of \"" +
+                     name_ + "\", the scene has " + std::to_string(size_));
+  if (count != size_) {
+    resize(static_cast<std::size_t>(count));
+    ++changes_;
   }
   a.values("id of " + name_, id_.data(), id_.size());
   for (std::size_t f = 0; f < field_count; ++f)
     for (auto& column : columns_[f])
       a.values(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), column.size());
+  for (OwnValues& v : own_)
+    if (v.kept == Kept::state) a.values(name_ + "." + v.name, v.values.data(), v.values.size());
+  if (a.loads()) find_places();
 }
 
 std::size_t PhaseParticles::bytes() const {
-  std::size_t total = (id_.size() + id_scratch_.size()) * sizeof(std::int64_t) + scratch_.size() * sizeof(double);
+  std::size_t total = (id_.capacity() + id_scratch_.capacity()) * sizeof(std::int64_t) +
+                      scratch_.capacity() * sizeof(double) + own_scratch_.capacity() +
+                      (places_.capacity() + order_.capacity()) * sizeof(std::uint32_t);
   for (const auto& columns : columns_)
-    for (const auto& column : columns) total += column.size() * sizeof(double);
+    for (const auto& column : columns) total += column.capacity() * sizeof(double);
+  for (const OwnValues& v : own_) total += v.values.capacity();
   return total;
 }
 

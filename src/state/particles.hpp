@@ -1,8 +1,12 @@
-// The particles of a run: one block a phase, one array a component of a field, and only the planned fields.
+// The particles of a run: one set a phase. Every array by particle is a column of its phase: fields, which all may
+// read, and columns of a model's own. Sorting, creation, removal, checkpoint and memory follow from what was registered
+// here and are written nowhere else.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,20 +15,22 @@
 #include "base/vec3.hpp"
 #include "state/access.hpp"
 #include "state/archive.hpp"
+#include "state/columns.hpp"
 
 namespace barchan {
 
-/// The particles of one phase as a structure of arrays. Arrays hold size() values in the current (sorted) order; `id`
+/// The particles of one phase as a structure of arrays. Columns hold size() values in the current (sorted) order; `id`
 /// says which particle stands where.
 class PhaseParticles {
  public:
+  /// `size` particles at the start, with the ids first_id, first_id + 1, ...
   PhaseParticles(std::string name, int dimensions, std::size_t size, double mass, std::int64_t first_id);
 
   const std::string& name() const { return name_; }
   int dimensions() const { return dimensions_; }
   std::size_t size() const { return size_; }
   double mass() const { return mass_; }  ///< kg a particle (kg per metre of depth in 2D); of spheres of the mean radius
-  /// Ids are from first_id() on, as many as there were particles at the start; some are gone where may_shrink().
+  /// The ids of the start are from first_id() on.
   std::int64_t first_id() const { return first_id_; }
   /// kg, of the particle at a place: spheres have their own where the phase has the field radius.
   double mass_of(std::size_t k) const {
@@ -48,22 +54,57 @@ class PhaseParticles {
     return columns_[index(field)][static_cast<std::size_t>(component)].data();
   }
 
-  std::vector<std::int64_t>& id() { return id_; }
+  /// Registers a column of a model's own; all its values are `of_new`. Throws std::logic_error when the name is there
+  /// already.
+  template <class T>
+  OwnColumn<T> add_own(const std::string& name, Kept kept, const T& of_new = T{}) {
+    return {add_own_bytes(name, kept, sizeof(T), &of_new)};
+  }
+  template <class T>
+  T* own(OwnColumn<T> column) {
+    return reinterpret_cast<T*>(own_[column.number].values.data());
+  }
+  template <class T>
+  const T* own(OwnColumn<T> column) const {
+    return reinterpret_cast<const T*>(own_[column.number].values.data());
+  }
+
   const std::vector<std::int64_t>& id() const { return id_; }
 
-  /// Reorders every array: new[k] = old[order[k]]. Allocates nothing.
+  /// Reorders every column: new[k] = old[order[k]]. Allocates nothing.
   void permute(const std::uint32_t* order);
 
-  /// The first `size` particles of the arrays are there; what a larger size adds has no values yet. At most as many as
-  /// at the start.
+  /// Puts the particles into the order of their ids.
+  void sort_by_id();
+
+  /// From now on the phase knows where each of its particles stands. Throws std::logic_error of a phase whose number of
+  /// particles may change: its ids have gaps.
+  void keep_places();
+  /// Where the particle with the id first_id() + n stands, by n; after keep_places().
+  const std::uint32_t* places() const { return places_.data(); }
+  bool in_order() const { return in_order_; }  ///< every particle stands at the place of its id; after keep_places()
+
+  /// In Model::begin: particles will be made or removed, so that checkpoints have other numbers than the start.
+  void number_may_change();
+  /// Makes `count` particles behind the last one and returns the place of the first. They have new ids; their fields
+  /// are zero, their own columns have the values of new particles. Allocates only where there was never so much room.
+  std::size_t create(std::size_t count, IdSource& ids);
+  /// Removes the particles for whose place `leaves` is true; the others keep their order. Returns how many were
+  /// removed. Allocates nothing once warm.
+  std::size_t remove_if(const std::function<bool(std::size_t)>& leaves);
+  /// How often particles were made or removed: lists of an older count are not those of these particles.
+  long changes() const { return changes_; }
+
+  /// The first `size` particles are there; what a larger size adds has no values yet. For who gives it the values of
+  /// another state at once (simulation/kept_state.hpp).
   void resize(std::size_t size);
-  /// Particles may leave: an archive may hold fewer than there were at the start.
-  void may_shrink() { may_shrink_ = true; }
+  /// Swaps the ids with those of another state, as many as there are particles then; the columns are the caller's.
+  void set_ids(std::vector<std::int64_t>& ids);
 
-  std::size_t bytes() const;  ///< memory of the arrays
+  std::size_t bytes() const;  ///< memory of all columns
 
-  /// Ids and all fields, in the present order. Throws SceneError where an archive has another number of particles and
-  /// the phase may not shrink, or more than there were at the start.
+  /// Ids, all fields and the own columns that are kept, in the present order. Throws SceneError where an archive has
+  /// another number of particles and the number may not change.
   void archive(Archive& a);
 
  private:
@@ -73,16 +114,22 @@ class PhaseParticles {
 #endif
   }
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }
+  std::size_t add_own_bytes(const std::string& name, Kept kept, std::size_t width, const void* of_new);
+  void find_places();
 
   std::string name_;
   int dimensions_;
-  std::size_t size_, start_size_;
-  bool may_shrink_ = false;
+  std::size_t size_;
+  bool may_change_ = false, keeps_places_ = false, in_order_ = false;
+  long changes_ = 0;
   std::int64_t first_id_;
   double mass_, mean_radius_ = 1.0;
   std::vector<std::int64_t> id_, id_scratch_;
   std::array<std::vector<AlignedVector<double>>, field_count> columns_;
+  std::vector<OwnValues> own_;
   AlignedVector<double> scratch_;
+  AlignedVector<std::byte> own_scratch_;  // as wide as the widest own column
+  std::vector<std::uint32_t> places_, order_;
 };
 
 }  // namespace barchan

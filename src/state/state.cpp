@@ -18,6 +18,7 @@ void State::archive(Archive& a) {
   a.number("time", time);
   a.number("dt", dt);
   a.number("steps", steps);
+  a.number("next id", ids.next);
   a.number("largest acceleration", largest_acceleration);
   a.text("ruling limit", ruling_limit);
   for (auto& [name, count] : limit_counts) a.number("steps by " + name, count);

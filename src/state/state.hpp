@@ -44,6 +44,7 @@ struct State {
   std::deque<AirProfile> air;      // wind by height: of phases that are air without particles, of layers over sand
   std::vector<RigidBody> bodies;   // rigid, in the order of their phases and fills
   std::vector<Departed> departed;  // of the phases that may leave
+  IdSource ids;                    // of the particles that will be made
   double time = 0.0, dt = 0.0;     // s
   long steps = 0;
   double largest_acceleration = 0.0;         // m/s2, of the last kick

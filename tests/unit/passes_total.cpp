@@ -43,7 +43,8 @@ struct Stage {
     work.resize(start.size(), reference.width, dimensions, retardation > 0.0);
     for (std::size_t d = 0; d < 3; ++d)
       if (q.period[d] > 0.0) work.displaced[d].assign(start.size(), 0.0);
-    for (std::size_t k = 0; k < start.size(); ++k) work.at[k] = static_cast<std::uint32_t>(k);
+    p.keep_places();
+    work.at = p.places();
   }
   void shake(double size, Uniform& random) {
     for (int d = 0; d < p.dimensions(); ++d)

@@ -6,7 +6,7 @@
 
 #include "base/errors.hpp"
 #include "engine/integrate.hpp"
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/sets.hpp"
@@ -234,7 +234,7 @@ double ElasticPhase::strain_energy() const {
   std::array<const double*, 6> s{};
   for (int c = 0; c < 6; ++c) s[static_cast<std::size_t>(c)] = p.column(Field::stress, c);
   const double bulk = parameters_.bulk_modulus / parameters_.reference_density, shear = 4.0 * parameters_.shear_modulus;
-  return p.mass() * ordered_sum(p.size(), [&](std::size_t k) {
+  return p.mass() * reproducible_sum(p.size(), [&](std::size_t k) {
            const double x = rho[k] / parameters_.reference_density - 1.0;
            double squares = 0.0;
            for (std::size_t c = 0; c < 6; ++c) squares += (c < 3 ? 1.0 : 2.0) * s[c][k] * s[c][k];
@@ -247,7 +247,8 @@ void ElasticPhase::history(HistoryRow& row) const {
   if (!phase_.elastic().energy) return;
   const PhaseParticles& p = w_->particles(number_);
   const double* e = p.column(Field::energy);
-  row.add(plan_.name + "_internal_energy [J]", p.mass() * ordered_sum(p.size(), [&](std::size_t k) { return e[k]; }));
+  row.add(plan_.name + "_internal_energy [J]",
+          p.mass() * reproducible_sum(p.size(), [&](std::size_t k) { return e[k]; }));
 }
 
 }  // namespace barchan

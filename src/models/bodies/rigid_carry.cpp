@@ -27,16 +27,6 @@ void RigidPhase::renew_carriers() {
   for (std::size_t k = 0; k < bodies(); ++k) carriers_.emplace_back(body(k));
 }
 
-std::size_t RigidPhase::id_of(std::size_t place) const {
-  const PhaseParticles& p = w_->particles(number_);
-  return static_cast<std::size_t>(p.id()[place] - p.first_id());
-}
-
-void RigidPhase::find_places() {
-  const PhaseParticles& p = w_->particles(number_);
-  for (std::size_t k = 0; k < p.size(); ++k) place_of_[id_of(k)] = static_cast<std::uint32_t>(k);
-}
-
 /// Places of the particles; along periodic axes the nearest images to where they are.
 void RigidPhase::carry_places() {
   PhaseParticles& p = w_->particles(number_);
@@ -48,13 +38,14 @@ void RigidPhase::carry_places() {
     x[d] = p.column(Field::position, static_cast<int>(d));
     if (bounds.periodic[d]) period[d] = bounds.high[d] - bounds.low[d];
   }
+  const Vec3* const arm = p.own(arm_);
+  const std::uint32_t* const body_of = p.own(body_of_);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const std::size_t id = id_of(k);
-    const Carrier& c = carriers_[body_of_[id]];
-    const Vec3 at = c.place + c.axes.to_space(arms_[id]);
+    const Carrier& c = carriers_[body_of[k]];
+    const Vec3 at = c.place + c.axes.to_space(arm[k]);
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
       const double turns = period[d] > 0.0 ? std::round((at[d] - x[d][k]) / period[d]) : 0.0;
       x[d][k] = at[d] - turns * period[d];
@@ -67,13 +58,14 @@ void RigidPhase::carry_velocities() {
   renew_carriers();
   std::array<double*, 3> v{};
   for (int d = 0; d < layout_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
+  const Vec3* const arm = p.own(arm_);
+  const std::uint32_t* const body_of = p.own(body_of_);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const std::size_t id = id_of(k);
-    const Carrier& c = carriers_[body_of_[id]];
-    const Vec3 speed = c.velocity + cross(c.rate, c.axes.to_space(arms_[id]));
+    const Carrier& c = carriers_[body_of[k]];
+    const Vec3 speed = c.velocity + cross(c.rate, c.axes.to_space(arm[k]));
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) v[d][k] = speed[d];
   }
 }
@@ -88,13 +80,14 @@ void RigidPhase::carry_accelerations() {
   }
   std::array<double*, 3> a{};
   for (int d = 0; d < layout_.dimensions; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
+  const Vec3* const arm = p.own(arm_);
+  const std::uint32_t* const body_of = p.own(body_of_);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const std::size_t id = id_of(k);
-    const Carrier& c = carriers_[body_of_[id]];
-    const Vec3 r = c.axes.to_space(arms_[id]);
+    const Carrier& c = carriers_[body_of[k]];
+    const Vec3 r = c.axes.to_space(arm[k]);
     const Vec3 total = c.acceleration + cross(c.turning, r) + cross(c.rate, cross(c.rate, r));
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) a[d][k] = total[d];
   }
@@ -117,13 +110,14 @@ void RigidPhase::tell_fluids() {
   }
   std::array<const double*, Dim> x{};
   for (std::size_t d = 0; d < Dim; ++d) x[d] = p.column(Field::position, static_cast<int>(d));
+  const Vec3* const arm = p.own(arm_);
+  const std::uint32_t* const body_of = p.own(body_of_);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const std::size_t id = id_of(k);
-    const Carrier& c = carriers_[body_of_[id]];
-    const Vec3 turning = cross(c.rate, c.axes.to_space(arms_[id]));
+    const Carrier& c = carriers_[body_of[k]];
+    const Vec3 turning = cross(c.rate, c.axes.to_space(arm[k]));
     double* r = records[k];
     for (std::size_t d = 0; d < Dim; ++d) {
       r[R::position + d] = x[d][k];
@@ -132,7 +126,7 @@ void RigidPhase::tell_fluids() {
     }
     for (std::size_t d = 0; d < axes; ++d) {
       r[R::rate + d] = c.rate[first + d];
-      r[R::old_rate + d] = old_rates_[body_of_[id]][first + d];
+      r[R::old_rate + d] = old_rates_[body_of[k]][first + d];
     }
   }
   records.fill_images(w_->neighbours.grid(number_), Dim);
@@ -180,7 +174,6 @@ void RigidPhase::archive(Archive& a) {
     mean_force_[k].archive(a, "force on " + plan_.name);
     mean_torque_[k].archive(a, "torque on " + plan_.name);
   }
-  if (a.loads()) find_places();
 }
 
 }  // namespace barchan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "output/numbers.hpp"
 
 namespace barchan {
@@ -80,11 +80,14 @@ RigidPhase::RigidPhase(const Scene& scene, const Layout& layout, std::size_t num
 void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   first_body_ = state.bodies.size();
   const std::vector<Vec3>& x = blocks[number_].position;
+  PhaseParticles& p = state.phases[number_];
+  arm_ = p.add_own<Vec3>("arm", Kept::state);
+  body_of_ = p.add_own<std::uint32_t>("body", Kept::state);
   for (const RigidBody& body : plan_.rigid_bodies) {
     const OwnAxes axes(body);
     for (std::size_t k = 0; k < body.count; ++k) {
-      arms_.push_back(axes.to_own(x[body.first + k] - body.now.place));
-      body_of_.push_back(static_cast<std::uint32_t>(state.bodies.size() - first_body_));
+      p.own(arm_)[body.first + k] = axes.to_own(x[body.first + k] - body.now.place);
+      p.own(body_of_)[body.first + k] = static_cast<std::uint32_t>(state.bodies.size() - first_body_);
     }
     state.bodies.push_back(body);
   }
@@ -96,9 +99,7 @@ void RigidPhase::attach(Workspace& w) {
   old_rates_.resize(bodies());
   mean_force_.resize(bodies());
   mean_torque_.resize(bodies());
-  place_of_.resize(arms_.size());
-  find_places();
-  w.when_sorted.emplace_back([this] { find_places(); });
+  w.particles(number_).keep_places();
   for (std::size_t k = 0; k < bodies(); ++k) drive(body(k), w.state.time);
   carry_velocities();
 }
@@ -192,21 +193,22 @@ void RigidPhase::clear_loads() {
   for (std::size_t k = 0; k < bodies(); ++k) body(k).now.touch_force = body(k).now.touch_torque = Vec3{};
 }
 
-/// What its particles feel by themselves, by id.
+/// What its particles feel by themselves.
 void RigidPhase::add_particles(RigidBody& body) const {
   const PhaseParticles& p = w_->particles(number_);
   const OwnAxes axes(body);
-  const auto force_on = [&](std::size_t id) {
+  const Vec3* const arm = p.own(arm_);
+  const auto force_on = [&](std::size_t place) {
     Vec3 f{};
     for (int d = 0; d < layout_.dimensions; ++d)
-      f[static_cast<std::size_t>(d)] = p.mass() * p.column(Field::acceleration, d)[place_of_[id]];
+      f[static_cast<std::size_t>(d)] = p.mass() * p.column(Field::acceleration, d)[place];
     return f;
   };
+  const std::uint32_t* const place_of = p.places() + body.first;
   for (std::size_t d = 0; d < 3; ++d) {
-    body.now.touch_force[d] += ordered_sum(body.count, [&](std::size_t k) { return force_on(body.first + k)[d]; });
-    body.now.touch_torque[d] += ordered_sum(body.count, [&](std::size_t k) {
-      return cross(axes.to_space(arms_[body.first + k]), force_on(body.first + k))[d];
-    });
+    body.now.touch_force[d] += reproducible_sum(body.count, [&](std::size_t k) { return force_on(place_of[k])[d]; });
+    body.now.touch_torque[d] += reproducible_sum(
+        body.count, [&](std::size_t k) { return cross(axes.to_space(arm[place_of[k]]), force_on(place_of[k]))[d]; });
   }
 }
 

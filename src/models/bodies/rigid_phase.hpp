@@ -55,7 +55,6 @@ class RigidPhase : public Model {
     Vec3 acceleration{}, turning{};  // m/s2, 1/s2: where accelerations are carried
   };
   void renew_carriers();
-  void find_places();
   void carry_places();
   void carry_velocities();
   void carry_accelerations();
@@ -63,7 +62,6 @@ class RigidPhase : public Model {
   void tell_fluids();
   std::size_t bodies() const { return plan_.rigid_bodies.size(); }
   RigidBody& body(std::size_t k) const { return w_->state.bodies[first_body_ + k]; }
-  std::size_t id_of(std::size_t place) const;
 
   const Scene& scene_;
   const Layout& layout_;
@@ -74,9 +72,8 @@ class RigidPhase : public Model {
   std::vector<Carrier> carriers_;                  // by body, of the task that runs
   std::vector<Vec3> old_rates_;                    // 1/s, by body, of the step before its kick
   std::vector<RigidHold> holds_;                   // by [[motion]]
-  std::vector<Vec3> arms_;                         // m, from the body's place along its own axes, by id
-  std::vector<std::uint32_t> body_of_;             // by id
-  std::vector<std::uint32_t> place_of_;            // by id
+  OwnColumn<Vec3> arm_;                            // m, from the body's place along its own axes
+  OwnColumn<std::uint32_t> body_of_;               // number of the body, from the phase's first
   std::vector<RowMean> mean_force_, mean_torque_;  // N, N m, of what touches, by body
   StepLimit limit_;
   Workspace* w_ = nullptr;

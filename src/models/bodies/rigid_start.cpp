@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -18,7 +18,7 @@ constexpr std::size_t nobody = static_cast<std::size_t>(-1);
 template <class F>
 Vec3 sum(std::size_t n, F&& f) {
   Vec3 total{};
-  for (std::size_t d = 0; d < 3; ++d) total[d] = ordered_sum(n, [&](std::size_t k) { return f(k)[d]; });
+  for (std::size_t d = 0; d < 3; ++d) total[d] = reproducible_sum(n, [&](std::size_t k) { return f(k)[d]; });
   return total;
 }
 
@@ -48,7 +48,7 @@ std::size_t motion_of(const Scene& scene, const Layout& layout, std::size_t phas
 /// Principal moments and axes about the body's place.
 void find_inertia(RigidBody& body, const Vec3* x, double mass) {
   if (body.dimensions == 2) {
-    body.inertia[2] = mass * ordered_sum(body.count, [&](std::size_t k) {
+    body.inertia[2] = mass * reproducible_sum(body.count, [&](std::size_t k) {
                         const Vec3 r = x[k] - body.first_place;
                         return r[0] * r[0] + r[1] * r[1];
                       });
@@ -57,7 +57,7 @@ void find_inertia(RigidBody& body, const Vec3* x, double mass) {
   Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = i; j < 3; ++j) {
-      const double entry = mass * ordered_sum(body.count, [&](std::size_t k) {
+      const double entry = mass * reproducible_sum(body.count, [&](std::size_t k) {
                              const Vec3 r = x[k] - body.first_place;
                              return (i == j ? dot(r, r) : 0.0) - r[i] * r[j];
                            });

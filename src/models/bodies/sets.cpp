@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -51,7 +51,6 @@ void SetOfBody::find(const std::vector<ParticleBlock>& blocks) {
   ids_.clear();
   for (std::size_t k = 0; k < places.size(); ++k)
     if (in_set(set_, places[k], slack, layout_.dimensions)) ids_.push_back(static_cast<std::uint32_t>(k));
-  places_ = ids_;
 }
 
 void SetOfBody::attach(Workspace& w, const std::string& section) {
@@ -59,16 +58,7 @@ void SetOfBody::attach(Workspace& w, const std::string& section) {
   if (ids_.empty())
     throw SceneError(located(w.scene, section) + ": no particle of phase \"" + set_.phase +
                      "\" stands in the box at the start; expected a box that holds some");
-  place_of_.resize(particles().size());
-  set_places();
-  w.when_sorted.emplace_back([this] { set_places(); });
-}
-
-void SetOfBody::set_places() {
-  const PhaseParticles& p = particles();
-  for (std::size_t k = 0; k < p.size(); ++k)
-    place_of_[static_cast<std::size_t>(p.id()[k] - p.first_id())] = static_cast<std::uint32_t>(k);
-  for (std::size_t q = 0; q < ids_.size(); ++q) places_[q] = place_of_[ids_[q]];
+  particles().keep_places();
 }
 
 DrivenSet::DrivenSet(const Scene& scene, const Layout& layout, std::size_t number)
@@ -98,7 +88,8 @@ void DrivenSet::set_velocity(double time) {
   for (int d = 0; d < layout_.dimensions; ++d) {
     const double speed = velocity_[static_cast<std::size_t>(d)]({0, 0, 0}, time);
     double *v = p.column(Field::velocity, d), *a = p.column(Field::acceleration, d);
-    for (const std::uint32_t k : set_.places()) {
+    for (std::size_t q = 0; q < set_.size(); ++q) {
+      const std::uint32_t k = set_.place(q);
       v[k] = speed;
       a[k] = 0.0;
     }
@@ -115,7 +106,7 @@ void DrivenSet::hold() {
   for (int d = 0; d < layout_.dimensions; ++d) {
     const double* a = p.column(Field::acceleration, d);
     force[static_cast<std::size_t>(d)] =
-        p.mass() * ordered_sum(set_.places().size(), [&](std::size_t q) { return a[set_.places()[q]]; });
+        p.mass() * reproducible_sum(set_.size(), [&](std::size_t q) { return a[set_.place(q)]; });
   }
   if (w_->state.steps == 0) force_.start(force);
   else force_.add(force, w_->state.dt);
@@ -128,10 +119,7 @@ void DrivenSet::history(HistoryRow& row) const {
     row.add("motion_" + std::to_string(number_) + "_force_" + axes[d] + " [N]", force[static_cast<std::size_t>(d)]);
 }
 
-void DrivenSet::archive(Archive& a) {
-  force_.archive(a, "force on a driven set");
-  if (a.loads()) set_.set_places();
-}
+void DrivenSet::archive(Archive& a) { force_.archive(a, "force on a driven set"); }
 
 MarkedSet::MarkedSet(const Scene& scene, const Layout& layout, std::size_t number)
     : layout_(layout), marker_(scene.markers[number]), number_(number), set_(layout, scene.markers[number]) {}
@@ -142,16 +130,12 @@ void MarkedSet::attach(Workspace& w) { set_.attach(w, "marker." + std::to_string
 
 void MarkedSet::history(HistoryRow& row) const {
   const PhaseParticles& p = set_.particles();
-  const auto n = static_cast<double>(set_.places().size());
+  const auto n = static_cast<double>(set_.size());
   for (int d = 0; d < std::min(layout_.dimensions, 3); ++d) {
     const double* x = p.column(Field::position, d);
     row.add(marker_.name + "_" + axes[d] + " [m]",
-            ordered_sum(set_.places().size(), [&](std::size_t q) { return x[set_.places()[q]]; }) / n);
+            reproducible_sum(set_.size(), [&](std::size_t q) { return x[set_.place(q)]; }) / n);
   }
-}
-
-void MarkedSet::archive(Archive& a) {
-  if (a.loads()) set_.set_places();
 }
 
 }  // namespace barchan

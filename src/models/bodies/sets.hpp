@@ -17,17 +17,17 @@ class SetOfBody {
   /// Throws SceneError when nobody stands in the box.
   void attach(Workspace& w, const std::string& section);
   /// Where they stand after a sort or a load.
-  void set_places();
   std::size_t phase() const { return phase_; }
-  const std::vector<std::uint32_t>& places() const { return places_; }
+  std::size_t size() const { return ids_.size(); }
+  /// Where its particle number q stands, q below size().
+  std::uint32_t place(std::size_t q) const { return particles().places()[ids_[q]]; }
   PhaseParticles& particles() const { return w_->particles(phase_); }
 
  private:
   const Layout& layout_;
   const BodySet& set_;
   std::size_t phase_ = 0;
-  std::vector<std::uint32_t> ids_, places_;  // ids from the phase's first
-  std::vector<std::uint32_t> place_of_;      // by id
+  std::vector<std::uint32_t> ids_;  // from the phase's first
   Workspace* w_ = nullptr;
 };
 
@@ -68,7 +68,6 @@ class MarkedSet : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule&) override {}
   void history(HistoryRow& row) const override;
-  void archive(Archive& a) override;
 
  private:
   const Layout& layout_;

@@ -26,7 +26,8 @@ double stiffest_vibration(KernelKind kernel, double radius, double spacing, int 
   work.resize(places.size(), reference.width, dimensions, false);
   PhaseParticles block("block", dimensions, places.size(), 1.0, 0);
   for (const Field f : {Field::position, Field::velocity, Field::acceleration, Field::density}) block.add(f);
-  for (std::size_t k = 0; k < places.size(); ++k) work.at[k] = static_cast<std::uint32_t>(k);
+  block.keep_places();
+  work.at = block.places();
   Random random(1);
   const double amplitude = 1e-6 * spacing;  // of a component, in the mean
   std::vector<double> u(places.size() * static_cast<std::size_t>(dimensions));

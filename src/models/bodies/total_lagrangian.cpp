@@ -167,7 +167,7 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
     x[static_cast<std::size_t>(d)] = body.column(Field::position, d);
     v[static_cast<std::size_t>(d)] = body.column(Field::velocity, d);
   }
-  const std::uint32_t* at = work.at.data();
+  const std::uint32_t* at = work.at;
   for (std::size_t d = 0; d < Dim; ++d) {
     if (!(q.period[d] > 0.0)) continue;
     // Sorting puts particles back into a periodic domain: displacements go on from where they were.

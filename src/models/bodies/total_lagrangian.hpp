@@ -25,7 +25,7 @@ struct TotalWork {
   std::array<std::vector<double>, 3> displaced;      // m, the whole displacement, of periodic domains: unwrapped
   double stiffening = 1.0;                           // of the stiffest particle, over the modulus at rest
   double least_volume = 1.0;                         // det F of the particle that is pressed most
-  std::vector<std::uint32_t> at;                     // place of each id in the phase
+  const std::uint32_t* at = nullptr;                 // place of each id in the phase (PhaseParticles::places)
   bool in_order = true;                              // at[k] == k
 
   void resize(std::size_t size, std::size_t width, int dimensions, bool damped);

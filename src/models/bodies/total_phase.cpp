@@ -5,7 +5,7 @@
 
 #include "base/errors.hpp"
 #include "engine/integrate.hpp"
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/stiffest_vibration.hpp"
 #include "models/bodies/stress_fields.hpp"
@@ -40,15 +40,11 @@ class BodyOf : public TotalBody {
     for (std::size_t c = 0; c < numbers; ++c) detail_.gradient[c].assign(padded, 0.0);
     detail_.hourglass.assign(padded, 0.0);
   }
-  void set_places(const PhaseParticles& p) override {
-    work_.in_order = true;
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      const auto id = static_cast<std::size_t>(p.id()[k] - p.first_id());
-      work_.at[id] = static_cast<std::uint32_t>(k);
-      work_.in_order = work_.in_order && id == k;
-    }
+  void pack(const PhaseParticles& p) override {
+    work_.at = p.places();
+    work_.in_order = p.in_order();
+    pack_displacements(p, reference_, work_, parameters_);
   }
-  void pack(const PhaseParticles& p) override { pack_displacements(p, reference_, work_, parameters_); }
   void load(PhaseParticles& p) override {
     total_stress(p, reference_, work_, parameters_);
     total_forces(p, reference_, work_, parameters_);
@@ -57,7 +53,6 @@ class BodyOf : public TotalBody {
     total_detail(reference_, work_, parameters_, detail_);
     return detail_;
   }
-  const std::vector<std::uint32_t>& places() const override { return work_.at; }
   std::uint64_t pairs() const override { return reference_.pairs; }
   double stiffening() const override { return work_.stiffening; }
   double least_volume() const override { return work_.least_volume; }
@@ -94,7 +89,6 @@ void TotalWork<T>::resize(std::size_t size, std::size_t width, int dimensions, b
     if (damped) velocity[d].assign(room, T(0));
   }
   for (std::size_t c = 0; c < dim * dim; ++c) reach[c].assign(room, T(0));
-  at.assign(size, 0);
 }
 template struct TotalWork<float>;
 template struct TotalWork<double>;
@@ -143,8 +137,7 @@ void TotalPhase::attach(Workspace& w) {
   if (own_ && plan_.count > 0)
     rest_limit_ = scene_.time.safety * StepConstants::total * 2.0 /
                   stiffest_vibration(own_->kernel, own_->radius, plan_.spacing, layout_.dimensions, parameters_);
-  body_->set_places(w.particles(number_));
-  w.when_sorted.emplace_back([this] { body_->set_places(w_->particles(number_)); });
+  w.particles(number_).keep_places();
 }
 
 void TotalPhase::schedule(Schedule& s) {
@@ -188,8 +181,6 @@ void TotalPhase::kick_and_drift() {
 
 void TotalPhase::load() {
   PhaseParticles& p = w_->particles(number_);
-  if (must_find_places_) body_->set_places(p);
-  must_find_places_ = false;
   body_->pack(p);
   body_->load(p);
   stiffening_ = std::max(body_->stiffening(), 1.0 + (1.0 - forgotten) * (stiffening_ - 1.0));
@@ -204,8 +195,6 @@ void TotalPhase::history(HistoryRow& row) const {
 
 void TotalPhase::derive() {
   PhaseParticles& p = w_->particles(number_);
-  body_->set_places(p);
-  must_find_places_ = true;  // these may be the particles of an earlier state
   body_->pack(p);
   const TotalDetail& detail = body_->detail();
   const double volume = std::pow(plan_.spacing, layout_.dimensions);
@@ -213,9 +202,9 @@ void TotalPhase::derive() {
   const auto solid = [&](std::size_t id) {
     return solid_of(detail.gradient, id, layout_.dimensions, parameters_.law, parameters_.moduli);
   };
-  for (std::size_t id = 0; id < p.size(); ++id) fields.write(body_->places()[id], solid(id));
-  strain_energy_ = volume * ordered_sum(p.size(), [&](std::size_t id) { return solid(id).energy; });
-  hourglass_energy_ = volume * ordered_sum(p.size(), [&](std::size_t id) { return detail.hourglass[id]; });
+  for (std::size_t id = 0; id < p.size(); ++id) fields.write(p.places()[id], solid(id));
+  strain_energy_ = volume * reproducible_sum(p.size(), [&](std::size_t id) { return solid(id).energy; });
+  hourglass_energy_ = volume * reproducible_sum(p.size(), [&](std::size_t id) { return detail.hourglass[id]; });
 }
 
 std::uint64_t TotalPhase::pairs(const PlanEntry& entry) const { return &entry == own_ && body_ ? body_->pairs() : 0; }
@@ -223,7 +212,6 @@ std::uint64_t TotalPhase::pairs(const PlanEntry& entry) const { return &entry ==
 void TotalPhase::archive(Archive& a) {
   body_->archive(a);
   a.number("stiffening", stiffening_);
-  if (a.loads()) body_->set_places(w_->particles(number_));
 }
 
 }  // namespace barchan

@@ -14,11 +14,9 @@ namespace barchan {
 class TotalBody {
  public:
   virtual ~TotalBody() = default;
-  virtual void set_places(const PhaseParticles& particles) = 0;  // they may have been sorted
-  virtual void pack(const PhaseParticles& particles) = 0;        // see pack_displacements
-  virtual void load(PhaseParticles& particles) = 0;              // stress, then acceleration
-  virtual const TotalDetail& detail() = 0;                       // of what was packed
-  virtual const std::vector<std::uint32_t>& places() const = 0;  // by id
+  virtual void pack(const PhaseParticles& particles) = 0;  // see pack_displacements
+  virtual void load(PhaseParticles& particles) = 0;        // stress, then acceleration
+  virtual const TotalDetail& detail() = 0;                 // of what was packed
   virtual std::uint64_t pairs() const = 0;
   virtual double stiffening() const = 0;    // see TotalWork
   virtual double least_volume() const = 0;  // see TotalWork
@@ -56,7 +54,6 @@ class TotalPhase : public Model {
   TotalParameters parameters_;
   std::vector<Vec3> start_;  // m, by id
   std::unique_ptr<TotalBody> body_;
-  bool must_find_places_ = false;
   double rest_limit_ = 1e300;  // s, of the stiffest vibration at rest
   double stiffening_ = 1.0;    // of the stiffest particle over the modulus at rest, forgotten slowly
   StepLimit limit_;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "laws/kept_drag.hpp"
 #include "models/drive.hpp"
 #include "output/numbers.hpp"
@@ -387,7 +387,7 @@ void ColumnPhase::history(HistoryRow& row) const {
     const PhaseParticles& p = w_->particles(grains.phase);
     const double* drag = p.column(Field::drag_acceleration, 0);
     const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
-    momentum -= time * ordered_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
+    momentum -= time * reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }
   row.add(scene_.phases[number_].name + "_momentum_x [kg m/s]", momentum);
   row.add(impulse, area_ * air.boundary);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "models/bodies/contact_surface.hpp"
 #include "models/fluid/fluid_phase.hpp"
 
@@ -29,6 +29,7 @@ void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks)
   const auto first = std::find_if(state.bodies.begin(), state.bodies.end(),
                                   [&](const RigidBody& body) { return body.phase == solid_; });
   first_body_ = static_cast<std::size_t>(first - state.bodies.begin());
+  of_body_ = state.phases[solid_].add_own<OfBody>("surface", Kept::state);
   for (std::size_t k = 0; k < bodies_; ++k) {
     const RigidBody& body = state.bodies[first_body_ + k];
     find_surface(body, blocks[solid_].position, state.phases[solid_]);
@@ -85,7 +86,7 @@ void RigidInFluid::find_surface(const RigidBody& body, const std::vector<Vec3>& 
       particle.normal = axes.to_own(gap->normal);
     }
     p.column(Field::wall_depth)[k] = particle.depth;
-    particles_.push_back(particle);
+    p.own(of_body_)[k] = particle;
   }
 }
 
@@ -95,18 +96,11 @@ void RigidInFluid::attach(Workspace& w) {
     if (e.kind == EntryKind::coupling && e.other == solid_)
       felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
                        pair_viscosity(scene_, layout_, solid_, e.fluid), false});
-  place_of_.resize(particles_.size());
-  rates_.resize(particles_.size());
-  areas_.resize(particles_.size());
-  couples_.resize(particles_.size());
-  find_places();
-  w.when_sorted.emplace_back([this] { find_places(); });
-}
-
-void RigidInFluid::find_places() {
-  const PhaseParticles& p = w_->particles(solid_);
-  for (std::size_t k = 0; k < p.size(); ++k)
-    place_of_[static_cast<std::size_t>(p.id()[k] - p.first_id())] = static_cast<std::uint32_t>(k);
+  const std::size_t n = w.particles(solid_).size();
+  rates_.resize(n);
+  areas_.resize(n);
+  couples_.resize(n);
+  w.particles(solid_).keep_places();
 }
 
 void RigidInFluid::schedule(Schedule& s) {
@@ -128,10 +122,10 @@ void RigidInFluid::move_surface() {
     const OwnAxes axes(body);
     const Vec3 rate = axes.to_space(own_angular_velocity(body));
     for (std::size_t id = body.first; id < body.first + body.count; ++id) {
-      const OfBody& particle = particles_[id];
+      const std::size_t k = p.places()[id];
+      const OfBody& particle = p.own(of_body_)[k];
       const Vec3 normal = axes.to_space(particle.normal);
       const Vec3 speed = body.now.velocity + cross(rate, axes.to_space(particle.arm) + particle.depth * normal);
-      const std::size_t k = place_of_[id];
       rates_[k] = rate;
       for (int d = 0; d < layout_.dimensions; ++d) {
         p.column(Field::wall_normal, d)[k] = normal[static_cast<std::size_t>(d)];
@@ -146,20 +140,17 @@ void RigidInFluid::move_surface() {
 /// Adds to the torques on the bodies.
 void RigidInFluid::turn() {
   turning_friction(w_->extended[solid_], felt_, rates_, areas_, couples_, layout_.dimensions);
+  const PhaseParticles& p = w_->particles(solid_);
   for (std::size_t b = 0; b < bodies_; ++b) {
     RigidBody& body = w_->state.bodies[first_body_ + b];
     const OwnAxes axes(body);
     const Vec3 rate = axes.to_space(own_angular_velocity(body));
     for (std::size_t d = layout_.dimensions == 2 ? 2 : 0; d < 3; ++d)
-      body.now.touch_torque[d] += ordered_sum(body.count, [&](std::size_t q) {
-        const std::size_t id = body.first + q, k = place_of_[id];
-        return couples_[k][d] - cross(axes.to_space(particles_[id].arm), cross(rate, areas_[k]))[d];
+      body.now.touch_torque[d] += reproducible_sum(body.count, [&](std::size_t q) {
+        const std::size_t k = p.places()[body.first + q];
+        return couples_[k][d] - cross(axes.to_space(p.own(of_body_)[k].arm), cross(rate, areas_[k]))[d];
       });
   }
-}
-
-void RigidInFluid::archive(Archive& a) {
-  if (a.loads()) find_places();
 }
 
 }  // namespace barchan

@@ -18,11 +18,9 @@ class RigidInFluid : public Model {
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void limits(std::vector<StepLimit>& limits) const override;
-  void archive(Archive& a) override;
 
  private:
   void find_surface(const RigidBody& body, const std::vector<Vec3>& x, PhaseParticles& p);
-  void find_places();
   void move_surface();
   void turn();
 
@@ -36,10 +34,9 @@ class RigidInFluid : public Model {
     Vec3 normal;   // of the nearest place of the surface, into the fluid; zero where it is not known
     double depth;  // m, to that place
   };
-  std::vector<OfBody> particles_;        // by id
-  std::vector<double> following_;        // by body: share of a change of its acceleration that the pressure follows
-  std::vector<std::uint32_t> place_of_;  // by id
-  std::vector<FluidNeighbour> felt_;     // by fluid
+  OwnColumn<OfBody> of_body_;
+  std::vector<double> following_;     // by body: share of a change of its acceleration that the pressure follows
+  std::vector<FluidNeighbour> felt_;  // by fluid
   /// What turning_friction makes of the sums of a particle, by place.
   std::vector<Vec3> areas_, couples_;
   std::vector<Vec3> rates_;  // 1/s, by place

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/enclosed.hpp"
 #include "models/fluid/fluid_phase.hpp"
@@ -143,11 +144,11 @@ Relief FluidPhase::relief() const {
 namespace {
 
 /// From now on the fluid keeps the mean velocity along periodic axes that it has.
-void hold_as_it_is(BulkHold& hold, BlockMean& mean, const PhaseParticles& fluid, const Bounds& bounds) {
+void hold_as_it_is(BulkHold& hold, const PhaseParticles& fluid, const Bounds& bounds) {
   for (int d = 0; d < fluid.dimensions() && fluid.size() > 0; ++d) {
     const auto c = static_cast<std::size_t>(d);
     hold.axes[c] = bounds.periodic[c];
-    if (hold.axes[c]) hold.velocity[c] = mean(fluid.column(Field::velocity, d), fluid.size());
+    if (hold.axes[c]) hold.velocity[c] = reproducible_mean(fluid.column(Field::velocity, d), fluid.size());
   }
 }
 
@@ -207,7 +208,7 @@ void FluidPhase::attach(Workspace& w) {
   if (plan_.free_surface) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
-  if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, mean_, *particles_, layout_.bounds);
+  if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
 }
 
 void FluidPhase::bind_entries() {
@@ -241,7 +242,6 @@ void FluidPhase::bind_entries() {
 void FluidPhase::look_for_voids() {
   parameters_.ends = false;
   parameters_.loose = &loose_;
-  loose_.place.resize(particles_->size());
   for (const auto& e : layout_.entries) {
     if (!e.has(number_) || !e.continues_fluid()) continue;
     const std::size_t other = e.partner(number_);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/errors.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/energy.hpp"
 #include "models/walls/walls.hpp"
@@ -68,7 +69,7 @@ void FluidPhase::hold() {
         drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(particles_->size()));
     accelerate(*particles_, 0, hold_.acceleration[0]);
   } else {
-    hold_bulk_velocity(*particles_, hold_, w_->state.dt, mean_);
+    hold_bulk_velocity(*particles_, hold_, w_->state.dt);
   }
   if (drive_) drive_->remember(w_->state, hold_.acceleration[0]);
 }
@@ -110,10 +111,11 @@ void FluidPhase::rate() {
     if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, keys_.scheme);
     else eddy_rates(*particles_, own, w_->eddies[number_], eddy_neighbours_, q, eddies_);
   };
+  if (q.loose && loose_.place.size() < particles_->size()) loose_.place.resize(particles_->size());
   if (w_->compact[number_]) rates(*w_->compact[number_]);
   else rates(w_->motion[number_]);
   if (q.loose) q.ends = voids_.find(*particles_, seen_, neighbours_.front().radius, plan_.spacing, loose_);
-  if (plan_.enclosed) keep_mean_density(*particles_, mean_);
+  if (plan_.enclosed) keep_mean_density(*particles_);
   forces_.add(*particles_, w_->state.time, false);
   forces_.relax(*particles_, w_->state.time, w_->state.dt);
 }
@@ -152,19 +154,19 @@ void FluidPhase::history(HistoryRow& row) const {
   const double* rho = std::as_const(*particles_).column(Field::density);
   const double* pressure = std::as_const(*particles_).column(Field::pressure);
   double worst = 0.0;
-  const double squares = ordered_sum(n, [&](std::size_t i) {
+  const double squares = reproducible_sum(n, [&](std::size_t i) {
     const double e = std::abs(rho[i] / phase_.density - 1.0);
     worst = std::max(worst, e);
     return e * e;
   });
   row.raise(HistoryRow::largest_density_error, worst);
   row.add(plan_.name + "_mean_pressure [Pa]",
-          n > 0 ? ordered_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
+          n > 0 ? reproducible_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
   row.add(plan_.name + "_density_error_rms", n > 0 ? std::sqrt(squares / count) : 0.0);
   if (keys_.energy) {
     const double* e = std::as_const(*particles_).column(Field::energy);
     row.add(plan_.name + "_internal_energy [J]",
-            particles_->mass() * ordered_sum(n, [&](std::size_t i) { return e[i]; }));
+            particles_->mass() * reproducible_sum(n, [&](std::size_t i) { return e[i]; }));
   }
   if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
   if (drive_)

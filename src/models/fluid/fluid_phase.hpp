@@ -73,7 +73,6 @@ class FluidPhase : public Model {
   LooseParticles loose_;                    // of a fluid that fills its space, consistent scheme
   VoidFinder voids_;
   std::vector<VoidFinder::Seen> seen_;
-  BlockMean mean_;  // of an enclosed fluid's density rates, of a held fluid's velocity
   BulkHold hold_;
   std::optional<Drive> drive_;  // where something drives it along x
   bool keeps_inside_ = false;

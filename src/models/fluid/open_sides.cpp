@@ -73,14 +73,11 @@ void OpenSides::begin(State& state, const std::vector<ParticleBlock>&) {
   state.departed.emplace_back();
   state.departed.back().phase = static_cast<std::int64_t>(fluid_);
   PhaseParticles& p = state.phases[fluid_];
-  p.may_shrink();
+  p.number_may_change();
   start_mass_ = p.mass() * static_cast<double>(p.size());
 }
 
-void OpenSides::attach(Workspace& w) {
-  w_ = &w;
-  order_.resize(w.particles(fluid_).size());
-}
+void OpenSides::attach(Workspace& w) { w_ = &w; }
 
 void OpenSides::schedule(Schedule& s) {
   FieldSet all;
@@ -131,25 +128,18 @@ void OpenSides::leave() {
   PhaseParticles& p = w_->particles(fluid_);
   if (!any_beyond(p)) return;
   Departed& departed = w_->state.departed[place_];
-  std::size_t kept = 0, last = p.size();
+  std::size_t kept = 0;
   for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;
   if (kept == 0) {
     trouble_ = "all particles of \"" + plan_.name + "\" are beyond " + sides_text() +
                ": nothing is left to compute; close a side with a wall, or enlarge domain.size";
     return;
   }
-  kept = 0;
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    if (is_beyond(p, k)) {
-      book(p, k, departed);
-      order_[--last] = static_cast<std::uint32_t>(k);
-    } else {
-      order_[kept++] = static_cast<std::uint32_t>(k);
-    }
-  }
-  p.permute(order_.data());
-  p.resize(kept);
-  w_->must_search = true;
+  p.remove_if([&](std::size_t k) {
+    const bool leaves = is_beyond(p, k);
+    if (leaves) book(p, k, departed);
+    return leaves;
+  });
 }
 
 std::string OpenSides::sides_text() const {

@@ -42,7 +42,6 @@ class OpenSides : public Model {
   std::size_t fluid_, place_ = 0;  // of its row in State::departed
   Vec3 low_, high_;                // m
   double start_mass_ = 0.0;        // kg
-  std::vector<std::uint32_t> order_;
   std::optional<std::string> trouble_;
   Workspace* w_ = nullptr;
 };

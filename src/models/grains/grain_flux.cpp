@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -29,7 +29,7 @@ void GrainFlux::schedule(Schedule& s) {
 double GrainFlux::flux() const {
   const PhaseParticles& p = w_->particles(grains_);
   const double* vx = p.column(Field::velocity, 0);
-  return ordered_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * vx[k]; }) / area_;
+  return reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * vx[k]; }) / area_;
 }
 
 void GrainFlux::sample() {

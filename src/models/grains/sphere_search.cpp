@@ -287,7 +287,9 @@ void SphereSearch::list_sleepers(const SphereSet& s, SphereChunk& chunk, const s
   chunk.border.erase(std::unique(chunk.border.begin(), chunk.border.end()), chunk.border.end());
 }
 
-void SphereSearch::order(const std::array<const double*, 3>& x, std::size_t count, std::vector<std::uint32_t>& order) {
+void SphereSearch::order(const std::array<const double*, 3>& x, const std::vector<std::int64_t>& id,
+                         std::vector<std::uint32_t>& order) {
+  const std::size_t count = id.size();
   // Blocks of about a chunk: 22 x 22 or 8 x 8 x 8 cells of a sphere each.
   const bool flat = bounds_.dimensions == 2;
   const std::size_t side = flat ? 22 : 8;
@@ -322,6 +324,11 @@ void SphereSearch::order(const std::array<const double*, 3>& x, std::size_t coun
   }
   for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
   for (std::size_t k = 0; k < count; ++k) order[begin_[cell_of_[k]]++] = static_cast<std::uint32_t>(k);
+  const auto before = [&id](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; };
+  for (std::size_t c = 0, first = 0; c < cells; first = begin_[c++])
+    if (begin_[c] - first > 1)
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(first),
+                order.begin() + static_cast<std::ptrdiff_t>(begin_[c]), before);
 }
 
 }  // namespace barchan

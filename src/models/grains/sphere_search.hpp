@@ -41,7 +41,8 @@ class SphereSearch {
   std::span<const Side> sides() const { return sides_; }
 
   /// An order of `count` spheres in which neighbours are near, in blocks of cells; x by axis.
-  void order(const std::array<const double*, 3>& x, std::size_t count, std::vector<std::uint32_t>& order);
+  void order(const std::array<const double*, 3>& x, const std::vector<std::int64_t>& id,
+             std::vector<std::uint32_t>& order);
 
  private:
   struct Kept {

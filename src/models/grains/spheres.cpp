@@ -195,7 +195,7 @@ void Spheres::sort() {
       for (std::size_t k = 0; period > 0.0 && k < p.size(); ++k)
         place[k] -= period * std::floor((place[k] - low) / period);
     }
-    search_.order(x, p.size(), order_);
+    search_.order(x, p.id(), order_);
     p.permute(order_.data());
   }
   since_sort_ = 0;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/means.hpp"
+#include "engine/reproducible_sum.hpp"
 #include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
 
@@ -14,7 +14,7 @@ void Spheres::history(HistoryRow& row) const {
     const PhaseParticles& p = w_->particles(part.phase);
     if (!p.has(Field::angular_velocity)) continue;
     const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-    turning += ordered_sum(p.size(), [&](std::size_t k) {
+    turning += reproducible_sum(p.size(), [&](std::size_t k) {
       const double r = radius ? radius[k] : part.mean_radius;
       double w2 = 0.0;
       for (int d = 0; d < p.components(Field::angular_velocity); ++d)

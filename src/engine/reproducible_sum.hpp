@@ -1,0 +1,87 @@
+// Sums whose bits do not depend on the order of the terms: not on the storage, not on the threads, not on the ranks.
+//
+// Every term is cut at two places that the largest term and the number of terms decide: x = high + low + rest, with
+// high and low multiples of powers of two that are so large that their sums are exact. Exact sums have one value in
+// any order. What is left out is below 2^-60 of the largest term for up to 4 million terms. (Demmel & Nguyen 2015,
+// IEEE Trans. Computers 64, 2060, with two bins and a first pass that finds the largest term.)
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace barchan {
+
+/// Where the terms of a sum are cut.
+class SumCuts {
+ public:
+  /// `largest`: of the absolute values of the terms (above 0 and finite), `terms`: how many there are.
+  SumCuts(double largest, std::size_t terms) {
+    int exponent = 0;
+    std::frexp(largest, &exponent);  // largest < 2^exponent
+    int bits = 50;                   // of a cut term; terms * 2^bits stays below 2^53
+    for (std::size_t n = terms; n > 2; n /= 2) --bits;
+    high_ = std::ldexp(1.5, 52 + exponent - bits);
+    low_ = std::ldexp(1.5, 52 + exponent - 2 * bits);
+  }
+  /// Adds the two parts of a term.
+  void add(double x, double& high, double& low) const {
+    const double first = (x + high_) - high_;
+    high += first;
+    low += ((x - first) + low_) - low_;
+  }
+
+ private:
+  double high_, low_;  // 1.5 times 2^52 times the quantum of a part: adding it rounds to the quantum
+};
+
+/// The largest of |values|; infinite or NaN where one of them is.
+inline double largest_of(const double* values, std::size_t n) {
+  double most = 0.0, sum = 0.0;  // the sum of zeros is NaN when a value is not finite, whatever the order
+#pragma omp simd reduction(max : most) reduction(+ : sum)
+  for (std::size_t k = 0; k < n; ++k) {
+    const double size = std::abs(values[k]);
+    most = size > most ? size : most;
+    sum += 0.0 * size;
+  }
+  return sum == 0.0 ? most : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Below this no term counts: its parts could not be told from zero.
+inline constexpr double least_term = 1e-250;
+
+/// Sum of f(k) over k < n, the same for any order of the f(k). f is called twice for each k and must give the same.
+/// NaN when a value is not finite. Allocates nothing.
+template <class F>
+double reproducible_sum(std::size_t n, F&& f) {
+  constexpr std::size_t block = 256;
+  std::array<double, block> values;
+  const auto fill = [&](std::size_t first) {
+    const std::size_t count = std::min(block, n - first);
+    for (std::size_t q = 0; q < count; ++q) values[q] = f(first + q);
+    return count;
+  };
+  double largest = 0.0;
+  for (std::size_t first = 0; first < n; first += block) {
+    const double most = largest_of(values.data(), fill(first));
+    if (!(most <= largest)) largest = most;
+    if (std::isnan(largest)) return largest;
+  }
+  if (largest < least_term) return 0.0;
+  const SumCuts cuts(largest, n);
+  double high = 0.0, low = 0.0;
+  for (std::size_t first = 0; first < n; first += block) {
+    const std::size_t count = fill(first);
+#pragma omp simd reduction(+ : high, low)
+    for (std::size_t q = 0; q < count; ++q) cuts.add(values[q], high, low);
+  }
+  return high + low;
+}
+
+/// Mean of n > 0 values, by all threads; the same for any order of the values and any number of threads.
+double reproducible_mean(const double* values, std::size_t n);
+
+}  // namespace barchan
