@@ -52,14 +52,14 @@ class Ended:
     status: int | None  # exit status; negative: the signal that ended it; None: it took longer than its time-out
     stdout: str
     stderr: str
-    user: float         # user CPU seconds, of this command alone, also when several run at the same time
+    user: float         # user CPU seconds of this command and what it started, not of others that run at the same time
     wall: float         # s
     memory: int         # kB, the largest resident set
     scene: pathlib.Path | None = None
     out: pathlib.Path | None = None
     report: dict | None = None  # run.json, if the run wrote one
 
-    def asserted(self, what):
+    def checked(self, what):
         """Throws Broken unless the status is 0; returns itself."""
         if self.status != 0:
             raise Broken(f"{what} ended with status {self.status}: {self.stderr.strip()[:300]}", self)
@@ -118,7 +118,7 @@ def command(words, *, environment=None, folder=None, timeout=None, check=False, 
             file.seek(0)
             texts.append(file.read().decode(errors="replace"))
     ended = Ended(None if late else process.returncode, *texts, used.ru_utime, wall, used.ru_maxrss)
-    return ended.asserted(" ".join(map(str, words[:3])) + " ...") if check else ended
+    return ended.checked(" ".join(map(str, words[:3])) + " ...") if check else ended
 
 
 def scene_file(scene, folder=None, name="case.toml"):
@@ -154,7 +154,7 @@ def scene(program, scene, out, sets=(), *, threads=1, quiet=True, options=(), be
     ended.scene, ended.out = file, out
     if (out / "run.json").exists():
         ended.report = json.loads((out / "run.json").read_text())
-    return ended.asserted(file.name) if check else ended
+    return ended.checked(file.name) if check else ended
 
 
 def generate(program, scene, file, sets=(), **more):
