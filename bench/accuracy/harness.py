@@ -13,7 +13,7 @@ import tomllib
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import frame, run as runs  # noqa: E402
+from barchan_bench import ROOT, frame, run as runs  # noqa: E402, F401
 from barchan_bench.run import Broken, Seconds  # noqa: E402
 from barchan_bench.table import attempt, report, rows, tell  # noqa: E402, F401  (for the cases)
 
