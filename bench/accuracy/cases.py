@@ -13,15 +13,18 @@ are there already. A new case is one more line in CASES of the file that its top
 """
 
 import argparse
-import json
+import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import cases_grains
 import cases_periodic
 import cases_surface
 import cases_walls
 import cases_wind
-from harness import HEAD, RESULTS, options, rows
+from barchan_bench.page import keep
+from barchan_bench.table import HEAD
+from harness import RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
@@ -56,8 +59,7 @@ def main():
         CASES[name][0]()
         good = good and all(r["good"] for r in rows)
         if options.write:
-            RESULTS.mkdir(exist_ok=True)
-            (RESULTS / f"{name}.json").write_text(json.dumps({"processor": processor(), "rows": rows}, indent=1) + "\n")
+            keep(RESULTS / f"{name}.json", {"processor": processor(), "rows": rows})
     if options.write:
         write_page(CASES)
     return 0 if good else 1

@@ -11,32 +11,19 @@ the upstream value.
 import pathlib
 import sys
 import tomllib
-import xml.etree.ElementTree as ElementTree
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-
-def read(path):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    data = reader.GetOutput()
-    arrays = {name: vtk_to_numpy(data.GetPointData().GetArray(name)) for name in ("phase", "velocity", "density")}
-    names = data.GetFieldData().GetAbstractArray("phase_names")
-    phases = {names.GetValue(k): k for k in range(names.GetNumberOfValues())}
-    return vtk_to_numpy(data.GetPoints().GetData()), arrays, phases
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, frame  # noqa: E402
 
 
 def main():
     series = pathlib.Path(sys.argv[1])
-    root = pathlib.Path(__file__).resolve().parents[2]
-    scene = tomllib.loads((root / "scenes/paper/dune.toml").read_text())
+    scene = tomllib.loads((ROOT / "scenes/paper/dune.toml").read_text())
     dx, length = scene["spacing"], scene["domain"]["size"][0]
     dune = next(f for f in scene["fill"] if f["phase"] == "sand")["shape"]["dune"]
-    entries = [(float(e.get("timestep")), series.parent / e.get("file"))
-               for e in ElementTree.parse(series).getroot().iter("DataSet")]
+    entries = frame.series(series)
     if len(sys.argv) > 2:
         entries = [min(entries, key=lambda e: abs(e[0] - float(sys.argv[2])))]
     else:
@@ -48,8 +35,8 @@ def main():
     means = {name: [] for name in windows}
     error = 0.0
     for _, path in entries:
-        x, a, phases = read(path)
-        air, sand = a["phase"] == phases["air"], a["phase"] == phases["sand"]
+        a = frame.Frame(path)
+        x, (air, sand) = a.x, (a["phase"] == a.names.index(name) for name in ("air", "sand"))
         rest = sand & (numpy.linalg.norm(a["velocity"], axis=1) < slow)
         columns = int(round(length / dx))
         ground = numpy.zeros(columns)

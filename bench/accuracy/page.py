@@ -2,30 +2,20 @@
 
 import json
 import pathlib
-import platform
 
-from harness import HEAD, RESULTS, ROOT, line
+from barchan_bench import ROOT
+from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, fill, processor, pyplot  # noqa: F401
+from barchan_bench.table import HEAD, line
+from harness import RESULTS
 
 PEERS = json.loads((pathlib.Path(__file__).resolve().parent / "peers.json").read_text())
-# Okabe & Ito 2008, colours that the colour-blind can tell apart
-BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION, PURPLE = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7"
 OURS = ((BLUE, "o"), (SKY, "s"), (GREEN, "^"), (VERMILION, "D"), (BLACK, "v"), (PURPLE, "P"))  # a scheme's colour and marker
 THEIRS = {"LAMMPS": (ORANGE, ("X", "*")), "SPHinXsys": (PURPLE, ("<", ">")), "Barchan": (BLACK, ("h",))}
 
 
-def processor():
-    try:
-        return next(l.split(":")[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name"))
-    except (OSError, StopIteration):
-        return platform.machine()
-
-
 def plot(points, measured_on):
     """Error against time: our schemes in full lines with full markers, peers dashed with hollow ones, the legend below the axes."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
-    figure, axes = pyplot.subplots(figsize=(9, 7.6))
+    figure, axes = pyplot().subplots(figsize=(9, 7.6))
     points = [r for r in points if r["what"] == "L1(t=1)"]
     for (colour, marker), scheme in zip(OURS, dict.fromkeys(r["scheme"] for r in points)):
         own = [r for r in points if r["scheme"] == scheme]
@@ -85,9 +75,4 @@ def write_page(cases):
     left = [f"`{name}` ({heading})" for name, (_, heading) in cases.items() if not (RESULTS / f"{name}.json").exists()]
     if left:
         tables.append("\n## Without results here\n\nThe same command runs these cases too: " + "; ".join(left) + ".")
-    page = ROOT / "docs/accuracy.md"
-    before, begin, rest = page.read_text().partition("<!-- figures: begin -->\n")
-    _, end, after = rest.partition("<!-- figures: end -->\n")
-    if not begin or not end:
-        raise RuntimeError(f"{page} has lost its markers <!-- figures: begin --> and <!-- figures: end -->")
-    page.write_text(before + begin + "\n".join(tables) + "\n" + end + after)
+    fill(ROOT / "docs/accuracy.md", "figures", "\n".join(tables))

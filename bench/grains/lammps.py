@@ -17,12 +17,14 @@ import math
 import pathlib
 import re
 import statistics
-import subprocess
+import sys
 import tempfile
 
 import numpy
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import page, run  # noqa: E402
+from barchan_bench.frame import Frame, write_particles  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "docs/performance.md"
@@ -75,45 +77,8 @@ def scene(dim, size, fill, end, every, step=""):
 
 
 def barchan(program, folder, text):
-    (folder / "bed.toml").write_text(text)
-    subprocess.run([program, "run", folder / "bed.toml", "--out", folder / "out", "--threads", "1", "--quiet"], check=True)
-    return json.loads((folder / "out/run.json").read_text())
-
-
-def read(path):
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    data = reader.GetOutput()
-    names = data.GetFieldData().GetAbstractArray("phase_names")
-    sand = [names.GetValue(k) for k in range(names.GetNumberOfValues())].index("sand")
-    mine = vtk_to_numpy(data.GetPointData().GetArray("phase")) == sand
-    return vtk_to_numpy(data.GetPoints().GetData())[mine].astype(float), vtk_to_numpy(data.GetPointData().GetArray("radius"))[mine].astype(float)
-
-
-def write_spheres(path, x, radius):
-    """A frame with one phase, sand, as Barchan reads it."""
-    points, vertices = vtk.vtkPoints(), vtk.vtkCellArray()
-    points.SetData(numpy_to_vtk(x, deep=True))
-    for k in range(len(x)):
-        vertices.InsertNextCell(1, [k])
-    data = vtk.vtkPolyData()
-    data.SetPoints(points)
-    data.SetVerts(vertices)
-    for name, values in (("radius", radius), ("phase", numpy.zeros(len(x), numpy.uint8)), ("id", numpy.arange(len(x), dtype=numpy.int64))):
-        array = numpy_to_vtk(values, deep=True)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    names = vtk.vtkStringArray()
-    names.SetName("phase_names")
-    names.InsertNextValue("sand")
-    data.GetFieldData().AddArray(names)
-    writer = vtk.vtkXMLPolyDataWriter()
-    writer.SetFileName(str(path))
-    writer.SetInputData(data)
-    writer.EncodeAppendedDataOff()
-    writer.SetHeaderTypeToUInt64()
-    writer.Write()
+    """A run of a scene's text."""
+    return run.scene(program, run.scene_file(text, folder, "bed.toml"), folder / "out", shown=True)
 
 
 def waves(x, dim):
@@ -166,9 +131,9 @@ timestep {step}
 thermo {steps}
 run {steps}
 """)
-    said = subprocess.run([program, "-in", folder / "in.bed", "-log", "none"], capture_output=True, text=True, cwd=folder)
+    said = run.command([program, "-in", folder / "in.bed", "-log", "none"], folder=folder)
     text = said.stdout
-    if said.returncode:
+    if said.status:
         raise SystemExit(f"lammps.py: {program} failed\n{text}\n{said.stderr}")
     return float(re.search(r"Loop time of ([\d.e+-]+)", text)[1]), int(re.search(r"Neighbor list builds = (\d+)", text)[1])
 
@@ -179,21 +144,22 @@ def measure(program, lmp, dim, grains, steps, rounds, scratch):
     box = json.dumps({"min": [0] * dim, "max": [side, depth] + [side] * (dim - 2)}).replace(":", " =").replace('"', "")
     folder = scratch / f"settle{dim}"
     folder.mkdir()
-    barchan(program, folder, scene(dim, size, f"shape = {{ box = {box} }}\npacking = \"settled\"", 1e-4, 1e-4))
-    x, radius = read(next(iter(sorted((folder / "out").glob("bed_*.vtp")))))
+    settled = barchan(program, folder, scene(dim, size, f"shape = {{ box = {box} }}\npacking = \"settled\"", 1e-4, 1e-4))
+    bed = Frame(settled.series()[0][1], phase="sand")
+    x, radius = bed.x.astype(float), bed["radius"].astype(float)
     many = max(1, round(grains / len(x)))
     across = round(math.sqrt(many)) if dim == 3 else many
     shifts = [(a * side, 0, b * side) for a in range(across) for b in range(across if dim == 3 else 1)]
     x, radius = numpy.concatenate([x + s for s in shifts]), numpy.tile(radius, len(shifts))
     size = [side * across, 2 * depth] + ([side * across] if dim == 3 else [])
-    write_spheres(scratch / f"bed{dim}.vtp", x, radius)
+    write_particles(scratch / f"bed{dim}.vtp", x, "sand", radius=radius)
     v = waves(x, dim)
     ours, theirs, end = [], {skin: [] for skin in SKINS}, 2e-3
     for turn in range(rounds + 1):  # the first, short, tells the step
         folder = scratch / f"run{dim}_{turn}"
         folder.mkdir()
         fill = f"shape = {{ file = \"{scratch}/bed{dim}.vtp\" }}\nvelocity = {formulas(dim)}"
-        report = barchan(program, folder, scene(dim, size, fill, end, end))
+        report = barchan(program, folder, scene(dim, size, fill, end, end)).report
         contact_steps = report["steps"] * SUBSTEPS
         contact_step = report["simulated_time"] / contact_steps
         if turn == 0:
@@ -242,6 +208,5 @@ if __name__ == "__main__":
             print(f"{dim}D, {r['grains']} grains: Barchan {r['barchan'] / 1e6:.2f}, LAMMPS {r['lammps'] / 1e6:.2f} M grain-steps/s (skin {r['skin']} d), "
                   f"ratio {r['ratio']:.2f} ({min(r['ratios']):.2f} to {max(r['ratios']):.2f})", flush=True)
     if options.write:
-        (HERE / "results").mkdir(exist_ok=True)
-        (HERE / "results/lammps.json").write_text(json.dumps(results, indent=1) + "\n")
+        page.keep(HERE / "results/lammps.json", results)
         write_page(results)

@@ -7,16 +7,18 @@ bench/impacts/cases.py makes docs/impacts.md.
 """
 
 import argparse
-import csv
 import json
 import math
 import pathlib
-import subprocess
+import sys
 import tempfile
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench.frame import Frame, series, table  # noqa: E402
+
 RESULTS = ROOT / "bench/impacts/results/impacts.json"
 INNER, OUTER, BALL, DX = 1e-2, 1.78e-2, 3e-3, 3e-4  # m: the rings' surfaces, radius of the balls, spacing
 DENSITY = {"oil": 900, "inner": 7850, "balls": 1140, "inclusion": 2650}  # kg/m3
@@ -26,22 +28,10 @@ def integral(y, t):
     return np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(t))])
 
 
-def frame_of(path):
-    """Places and phase numbers of the particles of a frame."""
-    import vtk
-    from vtk.util.numpy_support import vtk_to_numpy
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    data = reader.GetOutput()
-    return vtk_to_numpy(data.GetPoints().GetData()), vtk_to_numpy(data.GetPointData().GetArray("phase"))
-
-
 def measure(folder):
-    rows = list(csv.reader(open(folder / "history.csv")))
-    names, values = rows[0], np.array(rows[1:], float)
-    report = json.load(open(folder / "run.json"))
-    column = lambda name: values[:, next(k for k, n in enumerate(names) if n.startswith(name))]
+    names = table(folder / "history.csv")
+    report = json.loads((folder / "run.json").read_text())
+    column = names.__getitem__
     t = column("time")
     counts = report["particles"]
     mass = {name: DENSITY[name] * DX**2 * counts[name] for name in DENSITY}
@@ -75,8 +65,8 @@ def measure(folder):
     left = work - (kinetic - kinetic[0]) - (internal - internal[0]) - (taken - taken[0])
     overlaps = {n.split()[0]: float(column(n).max()) / DX for n in names if "_overlap" in n}
 
-    frames = sorted(folder.glob("bearing_[0-9]*.vtp"))
-    oil = [(lambda x, p: x[p == 0])(*frame_of(f)) for f in (frames[0], frames[-1])]
+    frames = series(folder / "bearing.pvd")
+    oil = [Frame(path, time, "oil").x for time, path in (frames[0], frames[-1])]
     r = np.hypot(oil[1][:, 0], oil[1][:, 1])
     return {"time": float(t[-1]), "steps": report["steps"], "passes": passed, "rounds": float((angle[-1] - angle[0]) / (2 * math.pi)),
             "carried": float((carried[-1] - carried[0]) / (2 * math.pi)), "turns": float(integral(column("inner_angular_velocity"), t)[-1] / (2 * math.pi)),
@@ -115,13 +105,11 @@ def main():
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="barchan_bearing_") as folder:
         if not chosen.of:
-            subprocess.run([chosen.program, "run", str(ROOT / "scenes/bearing.toml"), "--out", folder, "--threads", chosen.threads, "--quiet"], check=True)
+            run.scene(chosen.program, "bearing", folder, threads=chosen.threads, shown=True)
         found = measure(chosen.of or pathlib.Path(folder))
     print("\n".join(page(found)))
     if chosen.write:
-        results = json.load(open(RESULTS))
-        results["bearing"] = found
-        RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+        pages.keep(RESULTS, {**pages.load(RESULTS, {}), "bearing": found})
 
 
 if __name__ == "__main__":

@@ -10,43 +10,37 @@ on a quiet core; csm3 takes most of them.
 """
 
 import argparse
-import csv
-import json
 import math
 import pathlib
-import subprocess
+import sys
 import tempfile
 
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import bearing
 import bounce
 import eq13
 import hertz
 import rigid
+from barchan_bench import ROOT, page as pages, run
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "bench/impacts/results/impacts.json"
 PAGE = ROOT / "docs/impacts.md"
-BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 TIMOSHENKO, THIN = 0.25645, 0.25403  # s, period of the plate
 LENGTH, WAVE, SPEED = 0.040, 5936.0, 10.0  # m, m/s, m/s: the bars
 
 
 class Run:
-    """A run of a scene; columns of its history by the beginning of their names."""
+    """A run of a scene; columns of its history by their names."""
 
     def __init__(self, program, scene, settings=()):
         with tempfile.TemporaryDirectory(prefix="barchan_impacts_") as folder:
-            sets = [x for s in settings for x in ("--set", s)]
-            subprocess.run([program, "run", str(ROOT / "scenes" / (scene + ".toml")), "--out", folder, "--threads", "1", "--quiet", "--set",
-                            "output.every=0", *sets], check=True)
-            rows = list(csv.reader(open(pathlib.Path(folder) / "history.csv")))
-            self.report = json.load(open(pathlib.Path(folder) / "run.json"))
-        self.names, self.values = rows[0], np.array(rows[1:], float)
+            ended = run.scene(program, scene, folder, ["output.every=0", *settings], shown=True)
+            self.history, self.report = ended.history(), ended.report
 
     def __getitem__(self, name):
-        return self.values[:, next(k for k, n in enumerate(self.names) if n.startswith(name))]
+        return self.history[name]
 
     def energy(self, bodies):
         return sum(self[f"{b}_{kind}_energy"] for b in bodies for kind in ("kinetic", "strain", "hourglass"))
@@ -207,9 +201,7 @@ def page(results):
 
 def plots(results):
     """Colours of Okabe & Ito (Color Universal Design, 2008), and a line style for each series."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
+    pyplot = pages.pyplot()
     blue, red = "#0072B2", "#D55E00"
     gallery = ROOT / "docs/gallery"
     if "cantilever" in results:
@@ -247,9 +239,7 @@ def plots(results):
 
 
 def write(results):
-    text = PAGE.read_text()
-    head, rest = text.split(BEGIN, 1)
-    PAGE.write_text(head + BEGIN + "\n\n" + page(results) + "\n" + END + rest.split(END, 1)[1])
+    pages.fill(PAGE, "measured", "\n" + page(results))
     plots(results)
 
 
@@ -259,11 +249,11 @@ def main():
     parser.add_argument("--only", action="append")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    results = pages.load(RESULTS, {})
     for name, case in CASES.items():
         if options.only is None or name in options.only:
             results[name] = case(options.program)
-            RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+            pages.keep(RESULTS, results)
             print(name, "done")
     if options.write:
         write(results)

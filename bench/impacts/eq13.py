@@ -1,11 +1,11 @@
 """Energy of an impact with viscosity (eq. 13 of Halik et al. 2015): a case of bench/impacts/cases.py, its table on docs/impacts.md."""
 
-import csv
 import pathlib
-import subprocess
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from barchan_bench import run
+from barchan_bench.frame import table as columns
+
 UPDATED = [f"{key}" for p in "ab" for key in (f"phases.{p}.formulation=updated-lagrangian", f"phases.{p}.artificial-viscosity=0.2", f"phases.{p}.energy=true")]
 PLAIN = [f"phases.{p}.artificial-viscosity=0" for p in "ab"]
 BARS = UPDATED + ['interactions={ kernel = "cubic-spline", a-a = 2.4, b-b = 2.4, a-b = 1.0 }']
@@ -17,8 +17,8 @@ RUNS = {"cubes, one spacing between them (figure 7b)": ("paper/impact_cubes.toml
 
 
 def measure(path):
-    rows = list(csv.DictReader(path.open()))
-    total = lambda what: [sum(float(row[f"{p}_{what}_energy [J]"]) for p in "ab") for row in rows]
+    rows = columns(path).rows()
+    total = lambda what: [sum(row[f"{p}_{what}_energy"] for p in "ab") for row in rows]
     motion, internal, strain = total("kinetic"), total("internal"), total("strain")
     start = motion[0]
     return {"kept": max(abs(k + e - start) for k, e in zip(motion, internal)) / start, "motion": motion[-1] / start, "strain": max(strain) / start,
@@ -29,8 +29,7 @@ def eq13(program):
     table = {}
     for name, (scene, sets) in RUNS.items():
         with tempfile.TemporaryDirectory(prefix="barchan_eq13_") as folder:
-            subprocess.run([program, "run", str(ROOT / "scenes" / scene), "--out", folder, "--threads", "1", "--quiet", *(x for s in sets for x in ("--set", s))],
-                           check=True)
+            run.scene(program, scene, folder, sets, shown=True)
             table[name] = measure(pathlib.Path(folder) / "history.csv")
     return {"table": table}
 

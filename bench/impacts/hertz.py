@@ -1,34 +1,26 @@
 """Discs and spheres pressed together (scenes/verification/hertz.toml, hertz_spheres.toml) against Hertz: cases of bench/impacts/cases.py, tables and plots on
 docs/impacts.md."""
 
-import pathlib
-import subprocess
 import tempfile
 
 import numpy as np
+from barchan_bench import run
+from barchan_bench.frame import Frame
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 RADIUS, YOUNG, POISSON = 0.02, 1e6, 0.3  # m, Pa, -: hertz.toml
 STEEP = YOUNG / (2 * (1 - POISSON**2))  # Pa, E*
 GENTLE = 0.015  # m/s, half the largest speed of the middles; the scene's 0.04 gives 2.7 times the approach
 FRAMES = 16  # of the end, whose mean is taken: what vibrates is averaged
 
 
-def frame_of(path):
-    """Places and fields of a frame in the order of ids."""
-    import vtk
-    from vtk.util.numpy_support import vtk_to_numpy
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    data = reader.GetOutput()
-    array = lambda name: vtk_to_numpy(data.GetPointData().GetArray(name))
-    order = np.argsort(array("id"))
-    return {"place": vtk_to_numpy(data.GetPoints().GetData())[order], **{n: array(n)[order] for n in ("phase", "contact_force", "principal_stress")}}
+def last_frames(ended):
+    """Places and fields of the last frames of a run, in the order of ids."""
+    frames = [Frame(path, time).by_id() for time, path in ended.series()[-FRAMES:]]
+    return [{"place": f.x, **f.arrays} for f in frames]
 
 
-def measure(folder, spacing):
-    frames = [frame_of(path) for path in sorted(folder.glob("hertz_0*.vtp"))[-FRAMES:]]
+def measure(ended, spacing):
+    frames = last_frames(ended)
     upper = frames[0]["phase"] == 0
     mean = {name: np.mean([f[name][upper] for f in frames], axis=0) for name in ("place", "contact_force", "principal_stress")}
     loads = [float(f["contact_force"][upper, 1].sum()) for f in frames]
@@ -65,18 +57,16 @@ def hertz(program):
             sets = [f"spacing={RADIUS / count!r}"]
             if speed:
                 sets += [f'motion.{k}.velocity=[0, "{sign}(t < 0.02)*{speed}*(1 - cos(2*pi*t/0.02))"]' for k, sign in ((0, "-"), (1, ""))]
-            subprocess.run([program, "run", str(ROOT / "scenes/verification/hertz.toml"), "--out", folder, "--threads", "1", "--quiet",
-                            *(x for s in sets for x in ("--set", s))], check=True)
-            table.append(measure(pathlib.Path(folder), RADIUS / count))
+            table.append(measure(run.scene(program, "verification/hertz", folder, sets, shown=True), RADIUS / count))
     return {"table": table}
 
 
 RINGS, WIDE = 4, 1.25  # rings of equal area, as far as the radius whose square is WIDE a^2
 
 
-def measure_spheres(folder, spacing):
+def measure_spheres(ended, spacing):
     """Surfaces of particles that do not meet place for place: a single particle's force is noise, those of rings and their moments are not."""
-    frames = [frame_of(path) for path in sorted(folder.glob("hertz_spheres_0*.vtp"))[-FRAMES:]]
+    frames = last_frames(ended)
     upper = frames[0]["phase"] == 0
     place, force = (np.mean([f[name][upper] for f in frames], axis=0) for name in ("place", "contact_force"))
     loads = [float(f["contact_force"][upper, 1].sum()) for f in frames]
@@ -101,9 +91,8 @@ def hertz_spheres(program):
     table = []
     for count in (10, 20, 40):
         with tempfile.TemporaryDirectory(prefix="barchan_hertz_") as folder:
-            subprocess.run([program, "run", str(ROOT / "scenes/verification/hertz_spheres.toml"), "--out", folder, "--threads", "1", "--quiet",
-                            "--set", f"spacing={RADIUS / count!r}"], check=True)
-            table.append(measure_spheres(pathlib.Path(folder), RADIUS / count))
+            ended = run.scene(program, "verification/hertz_spheres", folder, [f"spacing={RADIUS / count!r}"], shown=True)
+            table.append(measure_spheres(ended, RADIUS / count))
     return {"table": table}
 
 

@@ -7,25 +7,20 @@ Without --write it prints the numbers. With --runs the runs are kept in a folder
 """
 
 import argparse
-import json
 import pathlib
 import sys
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy  # noqa: E402
+import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "bench/accuracy"))
+sys.path[:0] = [str(HERE.parent), str(HERE.parent / "accuracy")]
 import cases_wind  # noqa: E402
 import harness  # noqa: E402
+from barchan_bench import ROOT, page as pages  # noqa: E402
 
+plt = pages.pyplot()
 GALLERY, PAGE = ROOT / "docs/gallery", ROOT / "docs/paper.md"
-BEGIN, END = "<!-- measured: begin -->\n", "<!-- measured: end -->\n"
 MOVES = .01    # m/s: slower grains count as at rest
 EARLY, LATE = 14e-3, 30e-3  # s, figure 10: the first grains leave; the end of the run
 DUNE_TIMES = (2e-3, 20e-3, 40e-3, 70e-3)  # s, figure 14
@@ -205,10 +200,8 @@ def main():
     result = {"kernels": kernels(), "takeoff": takeoff, "tracks": tracks, "airflow": airflow, "sand": sand}
     print(lines(result))
     if given.write:
-        (HERE / "results/figures.json").write_text(json.dumps(result, indent=1) + "\n")
-        before, begin, rest = PAGE.read_text().partition(BEGIN)
-        _, end, after = rest.partition(END)
-        PAGE.write_text(before + begin + "\n" + lines(result) + "\n" + end + after)
+        pages.keep(HERE / "results/figures.json", result)
+        pages.fill(PAGE, "measured", "\n" + lines(result))
 
 
 if __name__ == "__main__":

@@ -15,34 +15,25 @@ import pathlib
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
 
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkObject
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import frame, run  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENE = SOURCE / "scenes/verification/taylor_green.toml"
-SMALL = ["--set", "time.end=0.02", "--set", "output.every=0.02"]
+SMALL = ["time.end=0.02", "output.every=0.02"]
 LIMIT = 1.0  # s
 
 
 def arrays(file):
     """What VTK reads of a frame, as bytes; None when it reads nothing."""
-    reader = vtkXMLPolyDataReader() if file.suffix == ".vtp" else vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(file))
-    reader.Update()
-    data = reader.GetOutput()
-    if data is None or data.GetPoints() is None:
+    try:
+        read = frame.Frame(file)
+    except frame.Unreadable:
         return None
-    points = data.GetPointData()
-    found = {points.GetArrayName(k): vtk_to_numpy(points.GetArray(k)).tobytes() for k in range(points.GetNumberOfArrays())
-             if points.GetArray(k) is not None}
-    found["points"] = vtk_to_numpy(data.GetPoints().GetData()).tobytes()
-    return found
+    return {name: values.tobytes() for name, values in {**read.arrays, "points": read.x}.items()}
 
 
 def damage(content, kind, chance):
@@ -85,15 +76,9 @@ class Damager:
             print("FAILED:", what, flush=True)
 
     def ask(self, *arguments):
-        begin = time.time()
-        try:
-            done = subprocess.run([self.options.program, *map(str, arguments)], capture_output=True, timeout=20)
-            status = done.returncode
-        except subprocess.TimeoutExpired:
-            status = -99
-        seconds = time.time() - begin
-        self.longest = max(self.longest, seconds)
-        return status, seconds
+        done = run.command([self.options.program, *arguments], timeout=20)
+        self.longest = max(self.longest, done.wall)
+        return -99 if done.status is None else done.status, done.wall
 
     def checkpoint(self, number, whole, chance):
         kind = chance.choice(["truncated", "bit", "bytes", "head"])
@@ -103,7 +88,7 @@ class Damager:
             content = whole[:-1]
         file.write_bytes(content)
         out = self.top / "out"
-        status, seconds = self.ask("run", SCENE, *SMALL, "--set", "time.end=0.03", "--quiet", "--threads", "1", "--out", out, "--restart", file)
+        status, seconds = self.ask("run", SCENE, *run.settings([*SMALL, "time.end=0.03"]), "--quiet", "--threads", "1", "--out", out, "--restart", file)
         self.count[f"checkpoint: status {status}"] += 1
         self.check(status == 2, f"checkpoint {number} ({kind}): status {status}")
         self.check(seconds < LIMIT, f"checkpoint {number} ({kind}): {seconds:.2f} s")
@@ -135,12 +120,12 @@ class Damager:
             self.check(status == 2, f"{what}: status {status}")
 
     def main(self):
-        vtkObject.GlobalWarningDisplayOff()
+        frame.without_warnings()
         out = self.top / "whole"
-        subprocess.run([self.options.program, "run", SCENE, *SMALL, "--quiet", "--threads", "1", "--out", out], check=True)
+        run.scene(self.options.program, SCENE, out, SMALL)
         frames = [out / "taylor_green_000001.vtp", self.top / "frame.vtu", self.top / "impact.vtp"]
-        subprocess.run([self.options.program, "generate", SCENE, "-o", frames[1]], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([self.options.program, "generate", SOURCE / "scenes/paper/impact_single.toml", "-o", frames[2]], check=True, stdout=subprocess.DEVNULL)
+        run.generate(self.options.program, SCENE, frames[1], check=True)
+        run.generate(self.options.program, "paper/impact_single", frames[2], check=True)
         checkpoint = (out / "taylor_green.checkpoint").read_bytes()
         chance = random.Random(self.options.seed)
         self.other(checkpoint)

@@ -12,32 +12,26 @@ import os
 import pathlib
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import frame, run as runs  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENE = SOURCE / "scenes/verification/poiseuille.toml"
-SHORT = ["--set", "time.end=0.03", "--set", "output.every=0.002", "--set", "output.checkpoint-every=0.05"]
-LONG = ["--set", "time.end=5", "--set", "output.every=0.01", "--set", "output.checkpoint-every=0.05"]
+SHORT = ["time.end=0.03", "output.every=0.002", "output.checkpoint-every=0.05"]
+LONG = ["time.end=5", "output.every=0.01", "output.checkpoint-every=0.05"]
 NOBODY = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
 
 
 def series_is_whole(folder):
     pvd = folder / "poiseuille.pvd"
-    if not pvd.exists():
-        return True
-    for line in pvd.read_text().splitlines():
-        if "DataSet" in line:
-            reader = vtkXMLPolyDataReader()
-            reader.SetFileName(str(folder / line.split('file="')[1].split('"')[0]))
-            reader.Update()
-            if reader.GetOutput().GetNumberOfPoints() == 0:
-                return False
-    return True
+    try:
+        return not pvd.exists() or all(len(frame.Frame(file).x) > 0 for _, file in frame.series(pvd))
+    except frame.Unreadable:
+        return False
 
 
 class Faults:
@@ -50,14 +44,14 @@ class Faults:
         self.out = self.top / "out"
 
     def command(self, *options, scene=None, short=True, threads=1):
-        return [str(self.program), "run", str(scene or SCENE), "--out", str(self.out), "--threads", str(threads), *(SHORT if short else LONG), *options]
+        return runs.words(self.program, scene or SCENE, self.out, SHORT if short else LONG, threads=threads, quiet=False, options=options)
 
     def run(self, *options, before=(), **more):
-        return subprocess.run([*before, *self.command("--quiet", *options, **more)], capture_output=True, text=True, timeout=300)
+        return runs.command([*before, *self.command("--quiet", *options, **more)], timeout=300)
 
     def start(self, *options, before=(), **more):
         """A long run that has written its first checkpoint; the shell that it is started by is left out."""
-        run = subprocess.Popen([*before, *self.command("--quiet", *options, short=False, **more)], stderr=subprocess.PIPE, text=True)
+        run = runs.start([*before, *self.command("--quiet", *options, short=False, **more)], stderr=runs.PIPE)
         for _ in range(600):
             if (self.out / "poiseuille.checkpoint.older").exists() or run.poll() is not None:
                 break
@@ -80,7 +74,7 @@ class Faults:
         """Whether the run can be continued, or begun again where nothing was kept."""
         kept = (self.out / "poiseuille.checkpoint").exists() or (self.out / "poiseuille.checkpoint.older").exists()
         done = self.run(*(["--restart", "latest"] if kept else []), "--set", "time.end=0.5")
-        return done.returncode in (0, 2) and ("larger time.end" in done.stderr or done.returncode == 0) and series_is_whole(self.out)
+        return done.status in (0, 2) and ("larger time.end" in done.stderr or done.status == 0) and series_is_whole(self.out)
 
     def fresh(self, owner=0):
         shutil.rmtree(self.out, ignore_errors=True)
@@ -92,25 +86,25 @@ class Faults:
         for number in range(self.sizes):
             kilobytes = 8 + number * 12
             self.out.mkdir(exist_ok=True)
-            subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "barchan", str(self.out)], check=True)
+            runs.command(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "barchan", self.out], check=True)
             try:
                 done = self.run()
-                full += done.returncode == 4
-                good = [(done.returncode in (0, 4), f"status {done.returncode}"),
-                        (done.returncode == 0 or "No space left on device" in done.stderr, "message: " + done.stderr[-300:]),
+                full += done.status == 4
+                good = [(done.status in (0, 4), f"status {done.status}"),
+                        (done.status == 0 or "No space left on device" in done.stderr, "message: " + done.stderr[-300:]),
                         (series_is_whole(self.out), "a listed frame is not whole"),
-                        (done.returncode == 0 or not (self.out / "run.json").exists() or self.says().startswith("output failed"), f"run.json says {self.says()!r}")]
-                subprocess.run(["mount", "-o", "remount,size=20m", str(self.out)], check=True)
+                        (done.status == 0 or not (self.out / "run.json").exists() or self.says().startswith("output failed"), f"run.json says {self.says()!r}")]
+                runs.command(["mount", "-o", "remount,size=20m", self.out], check=True)
                 good.append((self.goes_on(), "does not go on after mending"))
             finally:
-                subprocess.run(["umount", str(self.out)], check=True)
-            self.check(f"disk of {kilobytes} kB: status {done.returncode}", *good)
+                runs.command(["umount", self.out], check=True)
+            self.check(f"disk of {kilobytes} kB: status {done.status}", *good)
         return full
 
     def stopped(self, run, status, message):
         try:
             _, errors = run.communicate(timeout=60)
-        except subprocess.TimeoutExpired:
+        except runs.TimedOut:
             run.kill()
             _, errors = run.communicate()
         return [(run.returncode == status, f"status {run.returncode}; expected {status}"), (message in errors, "message: " + errors[-300:])]
@@ -126,7 +120,7 @@ class Faults:
         self.fresh(65534)
         self.out.chmod(0o000)
         done = self.run(before=NOBODY)
-        self.check("folder unreadable", (done.returncode == 4, f"status {done.returncode}"), ("Permission denied" in done.stderr, done.stderr))
+        self.check("folder unreadable", (done.status == 4, f"status {done.status}"), ("Permission denied" in done.stderr, done.stderr))
         self.out.chmod(0o755)
 
         self.fresh(65534)
@@ -137,16 +131,16 @@ class Faults:
         self.check("folder closed during the run", *conditions, (series_is_whole(self.out), "series"), (self.goes_on(), "does not go on"))
 
         self.fresh()
-        subprocess.run(["mount", "-t", "tmpfs", "barchan", str(self.out)], check=True)
+        runs.command(["mount", "-t", "tmpfs", "barchan", self.out], check=True)
         run = self.start()
         run.send_signal(signal.SIGKILL)
         run.wait()
-        subprocess.run(["mount", "-o", "remount,ro", str(self.out)], check=True)
+        runs.command(["mount", "-o", "remount,ro", self.out], check=True)
         done = self.run("--restart", "latest")
-        subprocess.run(["mount", "-o", "remount,rw", str(self.out)], check=True)
-        self.check("folder read-only", (done.returncode == 4, f"status {done.returncode}"), ("Read-only file system" in done.stderr, done.stderr),
+        runs.command(["mount", "-o", "remount,rw", self.out], check=True)
+        self.check("folder read-only", (done.status == 4, f"status {done.status}"), ("Read-only file system" in done.stderr, done.stderr),
                    (series_is_whole(self.out), "series"), (self.goes_on(), "does not go on"))
-        subprocess.run(["umount", str(self.out)], check=True)
+        runs.command(["umount", self.out], check=True)
 
         self.fresh()
         run = self.start()
@@ -157,41 +151,41 @@ class Faults:
         self.check("clock set back", (self.goes_on(), "does not go on with files of the future"))
 
         self.fresh(65534)
-        done = subprocess.run(["prlimit", "--nproc=1:1", *NOBODY, *self.command("--quiet", threads=8)], capture_output=True, text=True)
-        self.check("no threads", (done.returncode == 4, f"status {done.returncode}"), ("cannot make" in done.stderr, done.stderr))
+        done = runs.command(["prlimit", "--nproc=1:1", *NOBODY, *self.command("--quiet", threads=8)])
+        self.check("no threads", (done.status == 4, f"status {done.status}"), ("cannot make" in done.stderr, done.stderr))
 
         self.fresh()
         done = self.run("--set", "spacing=1e-6", before=["prlimit", "--as=500000000"])
-        self.check("no memory", (done.returncode == 2, f"status {done.returncode}"), ("ulimit -v leaves" in done.stderr, done.stderr[-300:]))
+        self.check("no memory", (done.status == 2, f"status {done.status}"), ("ulimit -v leaves" in done.stderr, done.stderr[-300:]))
 
         done = self.run(before=["prlimit", "--nofile=4:4"])
-        self.check("no file handles", (done.returncode in (2, 4), f"status {done.returncode}"), ("Too many open files" in done.stderr, done.stderr[-300:]),
+        self.check("no file handles", (done.status in (2, 4), f"status {done.status}"), ("Too many open files" in done.stderr, done.stderr[-300:]),
                    (self.goes_on(), "does not go on"))
 
         self.fresh()
         run = self.start()
         second = self.run()
         run.send_signal(signal.SIGHUP)
-        self.check("second run", (second.returncode == 2, f"status {second.returncode}"), (f"process {run.pid} on host" in second.stderr, second.stderr))
+        self.check("second run", (second.status == 2, f"status {second.status}"), (f"process {run.pid} on host" in second.stderr, second.stderr))
         self.check("SIGHUP", *self.stopped(run, 129, "SIGHUP"), (self.says() == "SIGHUP", self.says()), (self.goes_on(), "does not go on"))
 
         self.fresh()
-        pipe = subprocess.run(["bash", "-c", "\"$@\" | head -1; exit ${PIPESTATUS[0]}", "-", *self.command()], capture_output=True, text=True)
-        self.check("closed pipe", (pipe.returncode == 0, f"status {pipe.returncode}"), (self.says() == "end", self.says()))
+        pipe = runs.command(["bash", "-c", "\"$@\" | head -1; exit ${PIPESTATUS[0]}", "-", *self.command()])
+        self.check("closed pipe", (pipe.status == 0, f"status {pipe.status}"), (self.says() == "end", self.says()))
 
         self.fresh()
         done = self.run(before=["prlimit", "--fsize=20000"])
-        self.check("file size limited", (done.returncode == 4, f"status {done.returncode}"), ("File too large" in done.stderr, done.stderr[-300:]),
+        self.check("file size limited", (done.status == 4, f"status {done.status}"), ("File too large" in done.stderr, done.stderr[-300:]),
                    (series_is_whole(self.out), "series"), (self.goes_on(), "does not go on"))
 
         self.fresh()
-        run = subprocess.Popen(["prlimit", "--cpu=1:30", *self.command("--quiet", short=False)], stderr=subprocess.PIPE, text=True)
+        run = runs.start(["prlimit", "--cpu=1:30", *self.command("--quiet", short=False)], stderr=runs.PIPE)
         self.check("processor time limited", *self.stopped(run, 152, "SIGXCPU"), (self.goes_on(), "does not go on"))
 
         self.fresh()
         (self.out / "poiseuille.checkpoint" / "in the way").mkdir(parents=True)
         done = self.run()
-        self.check("no place for the checkpoint", (done.returncode == 4, f"status {done.returncode}"), ("poiseuille.checkpoint" in done.stderr, done.stderr[-300:]),
+        self.check("no place for the checkpoint", (done.status == 4, f"status {done.status}"), ("poiseuille.checkpoint" in done.stderr, done.stderr[-300:]),
                    (series_is_whole(self.out), "series"))
 
     def main(self):

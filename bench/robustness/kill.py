@@ -14,17 +14,16 @@ import pathlib
 import random
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import frame, run as runs  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENE = SOURCE / "scenes/verification/poiseuille.toml"
-SHORT = ["--set", "time.end=0.06", "--set", "output.every=0.004", "--set", "output.history-every=0.002",
-         "--set", "output.checkpoint-every=1e-9"]
+SHORT = ["time.end=0.06", "output.every=0.004", "output.history-every=0.002", "output.checkpoint-every=1e-9"]
 
 
 def files(folder):
@@ -36,16 +35,11 @@ def files(folder):
 def opens(pvd):
     """Times of the frames that the .pvd lists, each read by VTK."""
     times = []
-    for line in pvd.read_text().splitlines():
-        if "DataSet" not in line:
-            continue
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(pvd.parent / line.split('file="')[1].split('"')[0]))
-        reader.Update()
-        data = reader.GetOutput()
-        assert data.GetNumberOfPoints() > 0, "a listed frame is empty"
-        times.append(data.GetFieldData().GetArray("TimeValue").GetValue(0))
-        assert times[-1] == float(line.split('timestep="')[1].split('"')[0]), "a frame has another time than the list"
+    for time_of_list, file in frame.series(pvd):
+        data = frame.Frame(file)
+        assert len(data.x) > 0, "a listed frame is empty"
+        times.append(data.time)
+        assert times[-1] == time_of_list, "a frame has another time than the list"
     return times
 
 
@@ -61,8 +55,7 @@ class Killer:
         self.figures = dict(moments=0, killed=0, before_first_checkpoint=0, continued=0, bitwise_equal=0)
 
     def command(self, out, *more):
-        return [self.options.program, "run", str(SCENE), "--quiet", "--out", str(out), "--threads", str(self.options.threads),
-                *SHORT, *more]
+        return runs.words(self.options.program, SCENE, out, SHORT, threads=self.options.threads, options=more)
 
     def check(self, good, what):
         if not good:
@@ -71,7 +64,7 @@ class Killer:
 
     def one(self, number, seconds, whole):
         out = self.top / f"run{number}"
-        run = subprocess.Popen(self.command(out), stderr=subprocess.DEVNULL)
+        run = runs.start(self.command(out), stderr=runs.DEVNULL)
         time.sleep(seconds)
         run.send_signal(signal.SIGKILL)
         killed = run.wait() == -signal.SIGKILL
@@ -88,18 +81,18 @@ class Killer:
             listed = len(opens(pvd))
             # A frame gets its name before the list names it: one may stand there that the list does not have yet.
             self.check(listed <= frames_on_disk(out) <= listed + 1, f"{number}: {listed} frames listed, {frames_on_disk(out)} on disk")
-        except (AssertionError, AttributeError) as error:
+        except (AssertionError, frame.Unreadable) as error:
             self.check(False, f"{number}: the series does not open: {error}")
         self.check(says == ("running" if killed else "end"), f"{number}: run.json says {says}")
         if not (out / "poiseuille.checkpoint").exists():
             self.figures["before_first_checkpoint"] += 1
             shutil.rmtree(out)
             return
-        again = subprocess.run(self.command(out, "--restart", "latest"), capture_output=True, text=True)
-        ended = again.returncode == 2 and "larger time.end" in again.stderr  # its last checkpoint was that of the end
-        self.check(again.returncode == 0 or ended, f"{number}: restart ended with {again.returncode}: {again.stderr[:300]}")
-        self.figures["continued"] += again.returncode == 0
-        if again.returncode == 0 or not killed:
+        again = runs.command(self.command(out, "--restart", "latest"))
+        ended = again.status == 2 and "larger time.end" in again.stderr  # its last checkpoint was that of the end
+        self.check(again.status == 0 or ended, f"{number}: restart ended with {again.status}: {again.stderr[:300]}")
+        self.figures["continued"] += again.status == 0
+        if again.status == 0 or not killed:
             mine = files(out)
             different = sorted(name for name in set(mine) | set(whole) if mine.get(name) != whole.get(name))
             self.check(not different, f"{number}: other bytes in {different}")
@@ -108,9 +101,7 @@ class Killer:
 
     def main(self):
         reference = self.top / "whole"
-        begin = time.time()
-        subprocess.run(self.command(reference), check=True, stderr=subprocess.DEVNULL)
-        seconds = time.time() - begin
+        seconds = runs.command(self.command(reference), check=True).wall
         whole = files(reference)
         moment = random.Random(self.options.seed)
         for number in range(self.options.moments):

@@ -14,16 +14,16 @@ message. Exits with 1 when a run breaks down without a word, or gains more than 
 
 import argparse
 import concurrent.futures
-import csv
 import itertools
 import json
 import math
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, run  # noqa: E402
+
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 
 
@@ -34,16 +34,10 @@ def go(program, scene, sets, work, text=None):
         if text is not None:
             path = pathlib.Path(folder) / scene
             path.write_text(text)
-        command = [program, "run", str(path), "--threads", "1", "--quiet", "--out", folder + "/out"]
-        done = subprocess.run(command + [x for s in sets for x in ("--set", s)], capture_output=True, text=True, check=False)
-        history = pathlib.Path(folder) / "out/history.csv"
-        rows = []
-        if history.exists():
-            with history.open() as file:
-                rows = [{k.split(" [")[0]: float(v) for k, v in row.items() if v} for row in csv.DictReader(file)]
-        report = pathlib.Path(folder) / "out/run.json"
-        warned = " ".join(w if isinstance(w, str) else json.dumps(w) for w in json.loads(report.read_text()).get("warnings", [])) if report.exists() else ""
-        return done.returncode, done.stderr.strip(), rows, warned
+        done = run.scene(program, path, folder + "/out", sets, check=False)
+        rows = done.history().rows() if (done.out / "history.csv").exists() else []
+        warned = " ".join(w if isinstance(w, str) else json.dumps(w) for w in (done.report or {}).get("warnings", []))
+        return done.status, done.stderr.strip(), rows, warned
 
 
 def cavity(options, work, pool):

@@ -16,13 +16,14 @@ import pathlib
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
 
 import meshio
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import frame, run  # noqa: E402
 
 LIMIT = 2.0  # s
 SCENE = """dimensions = {dimensions}
@@ -160,17 +161,12 @@ class Damager:
         scene, out = self.top / "scene.toml", self.top / "out.vtu"
         scene.write_text(SCENE.format(dimensions=2 if flat else 3, size="2, 2" if flat else "2, 2, 2", file=file))
         out.unlink(missing_ok=True)
-        begin = time.time()
-        try:
-            status = subprocess.run([self.program, "generate", scene, "-o", out], capture_output=True, timeout=30).returncode
-        except subprocess.TimeoutExpired:
-            status = -99
-        self.seconds = time.time() - begin
+        done = run.generate(self.program, scene, out, timeout=30)
+        self.seconds = done.wall
         self.longest = max(self.longest, self.seconds)
-        if status != 0:
-            return status, None
-        mesh = meshio.read(out)
-        return 0, mesh.points.tobytes()
+        if done.status != 0:
+            return -99 if done.status is None else done.status, None
+        return 0, frame.Frame(out).x.tobytes()
 
     def as_read_by_another(self, file):
         """A clean file with what an independent reader finds in the damaged one; None: it refuses."""
@@ -211,8 +207,8 @@ for k in range(d.GetNumberOfCells()):
     assert all(0 <= i < n for i in faces[-1])
 print(json.dumps([[d.GetPoint(i) for i in range(n)], faces]))
 """
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
-        if done.returncode:
+        done = run.command([sys.executable, "-c", code], timeout=60)
+        if done.status != 0:
             raise ValueError
         return json.loads(done.stdout)
 

@@ -9,11 +9,12 @@ A short run writes the frame; a hole of 2^32 + 98760 bytes is put before its arr
 
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import run  # noqa: E402
+
 HOLE = 2**32 + 98760
 
 
@@ -21,8 +22,8 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as scratch:
         top = pathlib.Path(scratch)
-        subprocess.run([program, "run", ROOT / "scenes/verification/still_tank.toml", "--quiet", "--out", top, "--set", "time.end=1e-3"], check=True)
-        frame, sparse = sorted(top.glob("still_tank_0*.vtp"))[-1], top / "sparse.vtp"
+        done = run.scene(program, "verification/still_tank", top, ["time.end=1e-3"], threads=None, shown=True)
+        frame, sparse = done.series()[-1][1], top / "sparse.vtp"
         whole = frame.read_bytes()
         at = whole.index(b"_", whole.index(b"<AppendedData")) + 1
         head = re.sub(rb'offset="(\d+)"', lambda m: b'offset="%d"' % (int(m[1]) + HOLE), whole[:at])
@@ -31,9 +32,9 @@ def main():
             file.seek(len(head) + HOLE)
             file.write(whole[at:])
         status = sparse.stat()
-        done = subprocess.run([program, "compare", frame, sparse], capture_output=True, text=True)
-        print(f"{status.st_size} bytes, {512 * status.st_blocks} on the disk: status {done.returncode}, {(done.stdout + done.stderr).strip().splitlines()[-1]}")
-        return done.returncode
+        done = run.command([program, "compare", frame, sparse])
+        print(f"{status.st_size} bytes, {512 * status.st_blocks} on the disk: status {done.status}, {(done.stdout + done.stderr).strip().splitlines()[-1]}")
+        return done.status
 
 
 if __name__ == "__main__":

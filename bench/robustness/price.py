@@ -11,20 +11,17 @@ largest resident set after a tenth of the steps and at the end). Prints Markdown
 
 import argparse
 import json
-import os
 import pathlib
-import resource
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 
 import numpy
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "bench/accuracy"))
-from harness import table  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, run as runs  # noqa: E402
+from barchan_bench.frame import table  # noqa: E402
+from barchan_bench.table import head  # noqa: E402
 
 SPEED = .7  # m/s, of the order of the mean speed at the start of both
 SPHERES = """dimensions = 2
@@ -53,13 +50,10 @@ rows = []
 
 def run(program, scene, sets, out):
     """Wall and user seconds, and the largest resident set (kB), of one run."""
-    command = [program, "run", str(SOURCE / "scenes" / scene), "--threads", "1", "--quiet", "--out", str(out)]
-    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime, time.monotonic()
-    process = subprocess.Popen(command + [x for s in sets for x in ("--set", s)], stderr=subprocess.PIPE, text=True)
-    _, status, used = os.wait4(process.pid, 0)
-    if status:
-        raise SystemExit(f"{scene}: status {status}: {process.stderr.read()}")
-    return time.monotonic() - begin, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before, used.ru_maxrss
+    done = runs.scene(program, ROOT / "scenes" / scene, out, sets, check=False)
+    if done.status:
+        raise SystemExit(f"{scene}: status {done.status}: {done.stderr}")
+    return done.wall, done.user, done.memory
 
 
 def report(what, bound, value, good):
@@ -122,7 +116,7 @@ def main():
     parser.add_argument("--steps", type=int, default=1_000_000)
     options = parser.parse_args()
     program = str(options.program.resolve())
-    print("| figure | bound | measured |\n| --- | --- | --- |")
+    print(head("figure", "bound", "measured"))
     with tempfile.TemporaryDirectory() as folder:
         scratch = pathlib.Path(folder)
         watch(program, scratch)

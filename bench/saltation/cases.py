@@ -7,14 +7,14 @@
 bench/saltation/page.py makes docs/saltation.md and its plots from results/*.json.
 """
 import argparse
-import csv
 import json
 import math
 import pathlib
-import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, frame, page, run  # noqa: E402
+
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 
 
@@ -24,26 +24,18 @@ class Bench:
 
     def run(self, scene, name, *overrides):
         """Runs a scene of the repository; returns its folder."""
-        folder = self.out / name
-        self.call("run", scene, ["--out", str(folder), "--quiet", "--threads", str(self.threads)], overrides)
-        return folder
+        run.scene(self.program, scene, self.out / name, overrides, threads=self.threads, shown=True)
+        return self.out / name
 
     def generate(self, scene, file, *overrides):
         """Writes the particles with which a scene of the repository begins."""
         self.out.mkdir(parents=True, exist_ok=True)
-        self.call("generate", scene, ["-o", str(file)], overrides)
-
-    def call(self, command, scene, options, overrides):
-        file = scene if isinstance(scene, pathlib.Path) else ROOT / "scenes" / f"{scene}.toml"
-        sets = [word for o in overrides for word in ("--set", o)]
-        subprocess.run([self.program, command, str(file), *options, *sets], check=True)
+        run.generate(self.program, scene, file, overrides, shown=True, check=True)
 
 
 def table(file):
-    """Columns of a csv file by their names without units."""
-    rows = [r for r in csv.reader(line for line in open(file) if not line.startswith("#"))]
-    names = [n.split(" [")[0] for n in rows[0]]
-    return {n: [float(r[k]) for r in rows[1:]] for k, n in enumerate(names)}
+    """Columns of a csv file by their names without units, as lists."""
+    return {name.split(" [")[0]: values.tolist() for name, values in frame.table(file).items()}
 
 
 def at(columns, time, name):
@@ -122,16 +114,10 @@ def hop_of(bench, name, u, v, degrees, duration):
     end = math.floor((duration - 2e-4) / every) * every
     folder = bench.run("verification/hop", name, f"phases.air.log-profile.friction-velocity={u}", f"time.end={end:.4f}",
                        f"fill.0.velocity=[{v * math.cos(a)}, {v * math.sin(a)}]", f"output.every={every}", f"output.history-every={every}")
-    import meshio  # noqa: F401  (only to say early that it is missing)
-    from vtk import vtkXMLPolyDataReader
-    from vtk.util.numpy_support import vtk_to_numpy
     places = []
-    for file in sorted(folder.glob("hop_*.vtp")):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(file))
-        reader.Update()
-        data = reader.GetOutput()
-        places.append((*vtk_to_numpy(data.GetPoints().GetData())[0], *vtk_to_numpy(data.GetPointData().GetArray("velocity"))[0]))
+    for _, file in frame.series(folder / "hop.pvd"):
+        grain = frame.Frame(file)
+        places.append((*grain.x[0], *grain["velocity"][0]))
     start = places[0]
     times = [k * every for k in range(len(places))]
     apex = max(p[1] for p in places) - start[1]
@@ -312,23 +298,8 @@ SPLASHES = ({"scene": "splash", "dimensions": 2, "runs": 20, "strikers": 3, "wid
 
 def frames_of(folder, name, phase):
     """Times, places and velocities of a phase in the order of its ids, frame by frame."""
-    import numpy
-    from vtk import vtkXMLPolyDataReader
-    from vtk.util.numpy_support import vtk_to_numpy
-    found = []
-    for file in sorted(folder.glob(f"{name}_0*.vtp")):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(file))
-        reader.Update()
-        data = reader.GetOutput()
-        names = data.GetFieldData().GetAbstractArray("phase_names")
-        number = [names.GetValue(k) for k in range(names.GetNumberOfValues())].index(phase)
-        mine = vtk_to_numpy(data.GetPointData().GetArray("phase")) == number
-        order = numpy.argsort(vtk_to_numpy(data.GetPointData().GetArray("id"))[mine])
-        time = vtk_to_numpy(data.GetFieldData().GetArray("TimeValue"))[0]
-        found.append((time, vtk_to_numpy(data.GetPoints().GetData())[mine][order].astype(float),
-                      vtk_to_numpy(data.GetPointData().GetArray("velocity"))[mine][order].astype(float)))
-    return found
+    frames = [frame.Frame(file, time, phase).by_id() for time, file in frame.series(folder / f"{name}.pvd")]
+    return [(f.time, f.x.astype(float), f["velocity"].astype(float)) for f in frames]
 
 
 def risers(frames, height, above):
@@ -532,13 +503,12 @@ def main():
     parser.add_argument("--out", default="/tmp/barchan_saltation")
     parser.add_argument("--threads", type=int, default=1)
     options = parser.parse_args()
-    RESULTS.mkdir(exist_ok=True)
     bench = Bench(options.barchan, options.out, options.threads)
     for name in options.cases or CASES:
         if name not in CASES:
             sys.exit(f"no case {name}; expected {', '.join(CASES)}")
         result = CASES[name](bench)
-        (RESULTS / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
+        page.keep(RESULTS / f"{name}.json", result)
         print(json.dumps(result, indent=1))
 
 

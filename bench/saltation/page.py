@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 """Makes docs/saltation.md and docs/figures of it from results/*.json of cases.py."""
-import json
 import math
 import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import barchan_bench.page  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCS = HERE.parents[1] / "docs"
@@ -12,8 +15,7 @@ LIMIT = ("Limit: with u* from 0.24 to 0.67 m/s the flux of a column agrees with 
 
 
 def load(name):
-    file = HERE / "results" / f"{name}.json"
-    return json.loads(file.read_text()) if file.exists() else None
+    return barchan_bench.page.load(HERE / "results" / f"{name}.json")
 
 
 def percent(measured, reference):
@@ -143,10 +145,7 @@ def linear(means):
 
 
 def plot(r):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    figure, axes = plt.subplots(2, 2, figsize=(10, 8))
+    figure, axes = barchan_bench.page.pyplot().subplots(2, 2, figsize=(10, 8))
     colours = ["#0072b2", "#d55e00", "#009e73"]
     for row, colour in zip((row for row in r["runs"] if row["seed"] == 1), colours):
         label = f"u* = {row['u']} m/s"

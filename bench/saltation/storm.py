@@ -10,21 +10,20 @@ the ground) along the ground, 250 frames. The friction of the wind on the ground
 Left out: the momentum that the air of these layers gains (below 0.01 N s), and on slopes the reaction of lift on grains of the bed.
 """
 import argparse
-import csv
 import json
 import math
 import pathlib
-import subprocess
 import sys
 import tomllib
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page, run  # noqa: E402
+from barchan_bench.frame import Frame, series, table  # noqa: E402
+
 RESULT = ROOT / "bench/saltation/results/storm.json"
 SCENE = ROOT / "scenes/dune.toml"
-sys.path.insert(0, str(ROOT / "bench/accuracy"))
-from harness import Frame  # noqa: E402
 
 WATCHED = 'force=[{ name = "core", phase = "core", by = "sand" }, { name = "lid", phase = "lid", by = "sand" }]'
 PLACES = {"windward side, x = 9 to 16 cm": (.09, .16), "crest, 16 to 20 cm": (.16, .20), "slip face, 20 to 24.7 cm": (.20, .247),
@@ -80,12 +79,10 @@ def summed(t, values):
 def measure(folder):
     scene = tomllib.loads(SCENE.read_text())
     ground, spacing = Ground(scene), scene["spacing"]
-    with (folder / "history.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    column = lambda name: np.array([float(row[name]) for row in rows])
+    column = table(folder / "history.csv").__getitem__
     report = json.loads((folder / "run.json").read_text())
     t = column("time [s]")
-    paths = sorted(folder.glob("dune_0*.vtp"))
+    paths = [path for _, path in series(folder / "dune.pvd")]
     times = np.linspace(0, t[-1], len(paths))
     frames = [Frame(path, time) for path, time in zip((paths[0], paths[-1]), (0, t[-1]))]
     airs = []
@@ -125,10 +122,9 @@ def main():
     options = parser.parse_args()
     if options.program != "none":
         sets = [WATCHED, "output.every=2e-3", "output.history-every=1e-4", "output.walls=false"]
-        subprocess.run([options.program, "run", str(SCENE), "--out", str(options.out), "--threads", options.threads, "--quiet",
-                        *(word for s in sets for word in ("--set", s))], check=True)
+        run.scene(options.program, SCENE, options.out, sets, threads=options.threads, shown=True)
     result = measure(options.out)
-    RESULT.write_text(json.dumps(result, indent=1) + "\n")
+    page.keep(RESULT, result)
     print(json.dumps(result, indent=1))
 
 

@@ -28,22 +28,19 @@ import itertools
 import json
 import math
 import pathlib
-import subprocess
 import sys
 import tempfile
 import tomllib
-import xml.etree.ElementTree as ElementTree
 
 import numpy
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench/accuracy"))
-from harness import Frame, table  # noqa: E402
-from page import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION, processor  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench.frame import Frame, series, table  # noqa: E402
+from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION, processor  # noqa: E402
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results" / "atlas.json"
 PAGE, PICTURE, RANGES = ROOT / "docs/stability.md", ROOT / "docs/gallery/atlas.png", ROOT / "src/plan/stable_ranges.inc"
-BEGIN, END = "<!-- atlas: begin -->\n", "<!-- atlas: end -->\n"
 WORDS = {"stable": GREEN, "told": SKY, "refused": BLUE, "stopped": ORANGE, "slow": "#999999", "SILENT": VERMILION}
 MARGIN = 1.5  # asked of a default: the nearest value that is not stable is at least this factor away
 
@@ -234,8 +231,8 @@ def near(x, spacing, size, periodic):
 def trouble(out, name, scene, family):
     """What the checks find in a run that ended with 0; an empty string if nothing."""
     history = table(out / "history.csv")
-    entries = [e.get("file") for e in ElementTree.parse(out / f"{name}.pvd").getroot().iter("DataSet")]
-    first, last = Frame(out / entries[0], 0), Frame(out / entries[-1], 1)
+    entries = series(out / f"{name}.pvd")
+    first, last = Frame(entries[0][1], 0), Frame(entries[-1][1], 1)
     dims, size = scene.get("dimensions", 2), numpy.asarray(scene["domain"]["size"], float)
     origin = numpy.asarray(scene["domain"].get("origin", [0] * dims), float)
     if not all(numpy.isfinite(a).all() for a in (last.x, last["velocity"], *history.values())):
@@ -274,20 +271,18 @@ def carry_out(program, family, overrides, limit):
     path = ROOT / f"scenes/{family.scene}.toml"
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch) / "run"
-        command = [program, "run", str(path), "--threads", "1", "--quiet", "--retreats", "0", "--out", str(out)]
-        command += [x for o in overrides + ["output.compress=false", "output.checkpoint-every=0"] for x in ("--set", o)]
-        try:
-            ended = subprocess.run(command, capture_output=True, text=True, timeout=limit)
-        except subprocess.TimeoutExpired:
+        ended = run.scene(program, path, out, overrides + ["output.compress=false", "output.checkpoint-every=0"], options=["--retreats", "0"],
+                          timeout=limit, check=False)
+        if ended.status is None:
             return "slow", ""
         said = ended.stderr.strip().splitlines()
         said = next((line.partition("barchan: ")[2] or line for line in said if "warning" not in line), "")
-        if ended.returncode == 3:
+        if ended.status == 3:
             return "stopped", said
-        if ended.returncode == 2:
+        if ended.status == 2:
             return "refused", said
-        if ended.returncode != 0:
-            return "SILENT", f"status {ended.returncode}: {said}"
+        if ended.status != 0:
+            return "SILENT", f"status {ended.status}: {said}"
         scene = tomllib.loads(path.read_text())
         for o in overrides:
             if o.startswith("spacing="):
@@ -298,7 +293,7 @@ def carry_out(program, family, overrides, limit):
         found = trouble(out, path.stem, scene, family)
         if not found:
             return "stable", ""
-        warnings = json.loads((out / "run.json").read_text())["warnings"]
+        warnings = ended.report["warnings"]
         return ("told" if warnings else "SILENT"), found
 
 
@@ -356,9 +351,7 @@ def margins(family, direction, points):
 
 
 def draw(results):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
+    pyplot = pages.pyplot()
     from matplotlib.lines import Line2D
     known = {f.name: f for f in families()}
     maps = [(name, pair) for name in results for pair in known[name].maps]
@@ -416,11 +409,7 @@ def write_all():
             "\"Stable\": between the nearest values on both sides of the default at which a run was unstable (a refusal is none). The factor is the distance of the "
             f"nearest of them from the default; {MARGIN} is asked.\n",
             "| family | quantity | default | stable | nearest unstable below | nearest above | factor | | why |\n" + "| --- " * 9 + "|"] + lines
-    before, begin, rest = PAGE.read_text().partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise RuntimeError(f"{PAGE} has lost its markers {BEGIN.strip()} and {END.strip()}")
-    PAGE.write_text(before + begin + "\n" + "\n".join(text) + "\n\n" + end + after)
+    pages.fill(PAGE, "atlas", "\n" + "\n".join(text) + "\n")
     write_ranges(results, known)
     draw(results)
     print(text[0] + f"{missed} of {len(lines)} defaults have a margin below {MARGIN}")
@@ -454,7 +443,7 @@ def main():
     silent = 0
     if options.program != "none":
         program = str(pathlib.Path(options.program).resolve())
-        said = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
+        said = run.version(program)
         kept = json.loads(RESULTS.read_text()) if RESULTS.exists() else {"families": {}}
         kept.update(processor=processor(), instructions=said.partition("instruction set: ")[2].split(" (")[0])
         for family in families():

@@ -21,27 +21,24 @@ import json
 import math
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 import tomllib
-import xml.etree.ElementTree as ElementTree
 
 import numpy
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench/accuracy"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parents[1] / "accuracy")]
 import cases_wind  # noqa: E402
 import ensemble_any as any_scene  # noqa: E402
-from harness import Frame, table  # noqa: E402
-from page import processor  # noqa: E402
+from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench.frame import Frame, series, table  # noqa: E402
+from barchan_bench.table import head  # noqa: E402
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 PAGE = ROOT / "docs/stability.md"
-BEGIN, END = "<!-- measured: begin -->\n", "<!-- measured: end -->\n"
 DENSITY_BOUND = .02
-HEAD = ("| run | seed | u* | precision | instructions | status | ended at, ms | steps | largest density error of the air | fastest grain, m/s | "
-        "bulk speed, second half/start | u 1 mm over the bed upstream, end/start | user CPU s | message |\n" + "| --- " * 14 + "|")
+HEAD = head("run", "seed", "u*", "precision", "instructions", "status", "ended at, ms", "steps", "largest density error of the air", "fastest grain, m/s",
+            "bulk speed, second half/start", "u 1 mm over the bed upstream, end/start", "user CPU s", "message")
 
 
 def label(path):
@@ -51,8 +48,7 @@ def label(path):
 
 def available(program):
     """The instruction sets that the program and this machine have, the widest first."""
-    said = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
-    return re.search(r"instruction set: .*\(of (.*)\)", said)[1].split(", ")[::-1]
+    return re.search(r"instruction set: .*\(of (.*)\)", run.version(program))[1].split(", ")[::-1]
 
 
 def members(scene, sets_of_instructions, options):
@@ -82,8 +78,8 @@ def figures(out, name, scene):
     t, bulk = history["time [s]"], history["air_mean_vx [m/s]"]
     late = bulk[t > .5 * t[-1]]
     finite = lambda x: float(x) if math.isfinite(x) else None
-    entries = [e.get("file") for e in ElementTree.parse(out / f"{name}.pvd").getroot().iter("DataSet")]
-    first, last = (Frame(out / file, 0) for file in (entries[0], entries[-1]))
+    entries = series(out / f"{name}.pvd")
+    first, last = (Frame(file, time) for time, file in (entries[0], entries[-1]))
     sand = last["phase"] == last.names.index("sand")
     origin = numpy.array(scene["domain"].get("origin", [0, 0]))
     low, high = last.x[sand, :2] < origin, last.x[sand, :2] > origin + scene["domain"]["size"]
@@ -109,12 +105,11 @@ def carry_out(member, program, instructions, sets, path, out):
     if done.exists():
         return json.loads(done.read_text())
     out.mkdir(parents=True, exist_ok=True)
-    command = [str(program), "run", str(path), "--threads", "1", "--quiet", "--out", str(out), "--instructions", instructions]
-    ended = subprocess.run(command + [x for s in sets for x in ("--set", s)], capture_output=True, text=True)
-    result = dict(member, status=ended.returncode, message="" if ended.returncode == 0 else ended.stderr.strip().partition("barchan: ")[2][:300])
-    if ended.returncode in (0, 3):
+    ended = run.scene(program, path, out, sets, options=["--instructions", instructions], check=False)
+    result = dict(member, status=ended.status, message="" if ended.status == 0 else ended.stderr.strip().partition("barchan: ")[2][:300])
+    if ended.status in (0, 3):
         result.update(figures(out, path.stem, tomllib.loads(path.read_text())))
-    elif ended.returncode < 0 or ended.returncode in (130, 143):
+    elif ended.status < 0 or ended.status in (130, 143):
         raise SystemExit(f"run {member['run']} was stopped by a signal; start again to go on")
     done.write_text(json.dumps(result))
     return result
@@ -169,11 +164,7 @@ def write_page():
     if rows:
         about = "`ensemble.py build/barchan SCENE --runs N`. The step (time.safety) times 0.98, 1 and 1.02, fluids and elastic bodies disturbed with other seeds, mixed and double precision, all instruction sets."
         parts = ["\n## Bodies, heaps and fluids\n", about + " Least and largest of the runs.\n", any_scene.PAGE_HEAD + "\n" + "\n".join(rows) + "\n"] + parts
-    before, begin, rest = PAGE.read_text().partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise RuntimeError(f"{PAGE} has lost its markers {BEGIN.strip()} and {END.strip()}")
-    PAGE.write_text(before + begin + "\n".join(parts or ["\nNothing was measured.\n"]) + "\n" + end + after)
+    pages.fill(PAGE, "measured", "\n".join(parts or ["\nNothing was measured.\n"]))
 
 
 def ensemble(path, program, options, folder):
@@ -193,12 +184,11 @@ def ensemble(path, program, options, folder):
     command += f" --density-factor {options.density_factor:g}" * (options.density_factor != 1)
     command += "".join(f" --set {s}" for s in options.set)
     result = {"scene": label(path), "ustar_factor": options.ustar_factor, "density_factor": options.density_factor, "command": command,
-              "processor": processor(), "runs": runs}
+              "processor": pages.processor(), "runs": runs}
     lines, good = verdict(result)
     print(f"{title(result)}: " + " ".join(lines), flush=True)
     if options.write:
-        RESULTS.mkdir(exist_ok=True)
-        (RESULTS / f"{label(path)[:-5].replace('/', '-')}{variant}.json").write_text(json.dumps(result, indent=1) + "\n")
+        pages.keep(RESULTS / f"{label(path)[:-5].replace('/', '-')}{variant}.json", result)
     return good
 
 

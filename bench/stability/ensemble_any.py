@@ -5,17 +5,15 @@ disturbed by 0.01 spacings and elastic bodies by 0.001 with another seed in each
 reaches its end, all its numbers are finite, and no particle that moves is more than a spacing outside of the domain.
 """
 
-import csv
 import json
 import math
-import xml.etree.ElementTree as ElementTree
 
 import numpy
-from harness import Frame
+from barchan_bench.frame import Frame, series, table
+from barchan_bench.table import head
 
-HEAD = "| run | seed | step | precision | instructions | status | ended at | steps | largest density error | largest speed, m/s | kinetic energy at the end, J | user CPU s | message |\n" + "| --- " * 13 + "|"
-PAGE_HEAD = ("| scene | runs | reach the end | stopped with a message | steps | largest density error | largest speed, m/s | kinetic energy at the end, J | user CPU s a run |\n"
-             + "| --- " * 9 + "|")
+PAGE_HEAD = head("scene", "runs", "reach the end", "stopped with a message", "steps", "largest density error", "largest speed, m/s",
+                 "kinetic energy at the end, J", "user CPU s a run")
 
 
 def is_wind(scene):
@@ -41,21 +39,18 @@ def members(scene, sets_of_instructions, options):
 def figures(out, name, scene):
     """What a finished run shows."""
     report = json.loads((out / "run.json").read_text())
-    with (out / "history.csv").open() as file:
-        rows = list(csv.reader(file))
-    values = numpy.array([[float(x) for x in row] for row in rows[1:]])
-    column = {title.split(" [")[0]: k for k, title in enumerate(rows[0])}
-    entries = [e.get("file") for e in ElementTree.parse(out / f"{name}.pvd").getroot().iter("DataSet")]
-    last = Frame(out / entries[-1], 0)
+    history = table(out / "history.csv")
+    time, file = series(out / f"{name}.pvd")[-1]
+    last = Frame(file, time)
     size, walls = numpy.array(scene["domain"]["size"]), [k for k, n in enumerate(last.names) if scene["phases"][n]["kind"] == "wall"]
     origin, margin = numpy.array(scene["domain"].get("origin", [0.] * len(size))), scene["spacing"]
     moving = ~numpy.isin(last["phase"], walls)
     place = last.x[moving][:, :len(size)]
     outside = ((place < origin - margin) | (place > origin + size + margin)).any(axis=1)
-    kinetic = sum(values[-1, k] for title, k in column.items() if title.endswith("_kinetic_energy"))
-    finite = bool(numpy.isfinite(values).all() and numpy.isfinite(last.x).all())
-    return {"instructions": report["instruction_set"].split(" (")[0], "ended_at": float(values[-1, 0]), "steps": report["steps"], "finite": finite, "left": int(outside.sum()),
-            "density_error": float(values[:, column["largest_density_error"]].max()), "fastest": float(values[:, column["largest_speed"]].max()), "kinetic": float(kinetic),
+    kinetic = sum(values[-1] for title, values in history.items() if title.split(" [")[0].endswith("_kinetic_energy"))
+    finite = bool(all(numpy.isfinite(values).all() for values in (*history.values(), last.x)))
+    return {"instructions": report["instruction_set"].split(" (")[0], "ended_at": float(history["time"][-1]), "steps": report["steps"], "finite": finite, "left": int(outside.sum()),
+            "density_error": float(history["largest_density_error"].max()), "fastest": float(history["largest_speed"].max()), "kinetic": float(kinetic),
             "cpu_seconds": round(report["cpu_seconds"], 1)}
 
 

@@ -12,19 +12,14 @@ times cannot. `this` is build/barchan. Exit status 1 when a median is above --bo
 
 import argparse
 import math
-import os
 import pathlib
-import re
-import resource
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
-import xml.etree.ElementTree as ElementTree
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench/accuracy"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, run as runs  # noqa: E402
 
 SCENE = """dimensions = {dimensions}
 precision = "{precision}"
@@ -102,33 +97,26 @@ def build(commit, folder):
     """The program of a commit, built under `folder`."""
     tree = folder / "tree"
     if not tree.exists():
-        subprocess.run(["git", "-C", str(ROOT), "worktree", "add", "--detach", str(tree), commit], check=True, capture_output=True)
-    subprocess.run(["cmake", "--preset", "default", "-DBARCHAN_TESTS=OFF"], cwd=tree, check=True, capture_output=True)
-    subprocess.run(["ninja", "-C", "build", "barchan"], cwd=tree, check=True, capture_output=True)
+        runs.command(["git", "-C", ROOT, "worktree", "add", "--detach", tree, commit], check=True)
+    runs.command(["cmake", "--preset", "default", "-DBARCHAN_TESTS=OFF"], folder=tree, check=True)
+    runs.command(["ninja", "-C", "build", "barchan"], folder=tree, check=True)
     return tree / "build/barchan"
 
 
 def run(program, case, options):
     """User CPU seconds, L1 of the velocity against the exact one, steps."""
-    import harness
+    import numpy
+    from barchan_bench.frame import Frame
     text, exact, viscosity = CASES[case]()
     with tempfile.TemporaryDirectory() as scratch:
-        scene = pathlib.Path(scratch) / "case.toml"
-        scene.write_text(text)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run([str(program), "run", str(scene), "--threads", "1", "--quiet", "--out", scratch + "/out", *options],
-                              capture_output=True, text=True, env={**os.environ, "OMP_WAIT_POLICY": "passive"})
-        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        if done.returncode:
-            raise SystemExit(f"against: {program} ended with status {done.returncode} in {case}: {done.stderr.strip()[:300]}")
-        import numpy
-        entries = [(float(e.get("timestep")), e.get("file")) for e in ElementTree.parse(scratch + "/out/case.pvd").getroot().iter("DataSet")]
-        time, file = entries[-1]
-        frame = harness.Frame(pathlib.Path(scratch) / "out" / file, time, "fluid")
+        done = runs.scene(program, text, scratch, options=options, environment={"OMP_WAIT_POLICY": "passive"}, check=False)
+        if done.status:
+            raise SystemExit(f"against: {program} ended with status {done.status} in {case}: {done.stderr.strip()[:300]}")
+        time, file = done.series()[-1]
+        frame = Frame(file, time, "fluid")
         truth = exact(frame.x, time, viscosity)
         error = numpy.linalg.norm(frame["velocity"][:, :2] - truth, axis=1).sum() / numpy.linalg.norm(truth, axis=1).sum()
-        steps = re.search(r'"steps": (\d+)', (pathlib.Path(scratch) / "out/run.json").read_text())
-    return seconds, error, int(steps[1]) if steps else 0
+        return done.user, error, done.report.get("steps", 0)
 
 
 def main():
@@ -168,7 +156,7 @@ def main():
     finally:
         if given.commit:
             if not given.build:
-                subprocess.run(["git", "-C", str(ROOT), "worktree", "remove", "--force", str(folder / "tree")], capture_output=True)
+                runs.command(["git", "-C", ROOT, "worktree", "remove", "--force", folder / "tree"])
                 shutil.rmtree(folder, ignore_errors=True)
     return 1 if given.bound and worst > given.bound else 0
 

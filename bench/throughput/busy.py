@@ -9,19 +9,17 @@ were taken with how many threads. With --write the table goes to docs/performanc
 """
 
 import argparse
-import json
 import math
 import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page, run as runs  # noqa: E402
+
 PAGE = ROOT / "docs/performance.md"
-BEGIN, END = "<!-- busy: begin -->", "<!-- busy: end -->"
 
 SCENE = """dimensions = 2
 spacing = {spacing!r}
@@ -50,13 +48,10 @@ every = {end!r}
 
 def run(program, scene, out, threads):
     """Wall seconds of a run, and its report."""
-    command = [str(program), "run", str(scene), "--quiet", "--out", str(out)] + (["--threads", str(threads)] if threads else [])
-    begin = time.monotonic()
-    done = subprocess.run(command, capture_output=True, text=True)
-    seconds = time.monotonic() - begin
-    if done.returncode:
+    done = runs.scene(program, scene, out, threads=threads, check=False)
+    if done.status:
         sys.exit(f"busy: {done.stderr.strip()[:300]}")
-    return seconds, json.loads((out / "run.json").read_text())
+    return done.wall, done.report
 
 
 def cell(program, particles, load, runs, seconds):
@@ -66,7 +61,7 @@ def cell(program, particles, load, runs, seconds):
     with tempfile.TemporaryDirectory() as scratch:
         scene = pathlib.Path(scratch) / "case.toml"
         scene.write_text(SCENE.format(spacing=1 / side, end=steps * .4 * 1.05 / side / 11))
-        burners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(load)]
+        burners = [runs.start([sys.executable, "-c", "while True: pass"]) for _ in range(load)]
         try:
             one, default, used = [], [], {}
             for _ in range(runs):
@@ -103,11 +98,8 @@ def main():
             lines.append(cell(given.program, particles, load, given.runs, given.seconds))
             print(lines[-1], flush=True)
     if given.write:
-        text = PAGE.read_text()
-        head, rest = text.split(BEGIN)
-        tail = rest.split(END)[1]
         note = f"{given.runs} runs each, {os.cpu_count()} cores; load of the machine in the minute before the end: {os.getloadavg()[0]:.1f}."
-        PAGE.write_text(head + BEGIN + "\n" + "\n".join(lines) + "\n\n" + note + "\n" + END + tail)
+        page.fill(PAGE, "busy", "\n".join(lines) + "\n\n" + note)
     return 0
 
 

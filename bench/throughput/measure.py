@@ -14,12 +14,14 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
+import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page as pages, run  # noqa: E402
+
 RESULTS = ROOT / "bench/throughput/results.json"
 PAGE = ROOT / "docs/performance.md"
-BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+BEGIN, END = pages.marks("measured")
 CASES = {  # name: options of throughput
     "air 2D, plain, 3.0 dx, double": ["--case", "air2d"],
     "air 2D, plain, 3.0 dx, mixed": ["--case", "air2d", "--precision", "mixed"],
@@ -37,15 +39,14 @@ GROWTH = {"2D": ("air2d", [1e4, 1e5, 1e6, 4e6]), "3D": ("air3d", [1e5, 1e6])}
 
 
 def throughput(build, options):
-    out = subprocess.run([build / "bench/throughput", *options, "--json"], capture_output=True, text=True, check=True)
+    out = run.command([build / "bench/throughput", *options, "--json"], check=True)
     result = json.loads(out.stdout)
     result["case"] = pathlib.PurePath(result["case"]).name
     return result
 
 
 def limit(build, dimensions):
-    out = subprocess.run([build / "bench/limit_pairs", "--dim", str(dimensions), "--rebuild", "10" if dimensions == 2 else "5",
-                          "--repeat", "5", "--json"], capture_output=True, text=True, check=True)
+    out = run.command([build / "bench/limit_pairs", "--dim", dimensions, "--rebuild", "10" if dimensions == 2 else "5", "--repeat", "5", "--json"], check=True)
     return json.loads(out.stdout)
 
 
@@ -84,8 +85,8 @@ def measure(build, part, rounds):
         return {"growth": {d: {f"{n:.0e}": median_of([throughput(build, ["--case", case, "--n", str(n), "--steps", "5"])
                                                       for _ in range(rounds)]) for n in sizes}
                            for d, (case, sizes) in GROWTH.items()}}
-    out = [float(subprocess.run([build / "bench/throughput", "--case", "air2d", "--n", "100000", "--steps", "5", "--bare"],
-                                capture_output=True, text=True, check=True).stdout) for _ in range(rounds)]
+    out = [float(run.command([build / "bench/throughput", "--case", "air2d", "--n", "100000", "--steps", "5", "--bare"], check=True).stdout)
+           for _ in range(rounds)]
     return {"bare": statistics.median(out)}
 
 
@@ -132,9 +133,7 @@ def page(results):
 def plot(results):
     """Colours of Okabe & Ito (Color Universal Design, 2008) and a mark for each series, so that nobody needs to see the colours;
     the legend stands above the axes, where it covers nothing."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
+    pyplot = pages.pyplot()
     names = list(results["steps"])[::-1]
     rates = [results["steps"][name] for name in names]
     figure, axes = pyplot.subplots(figsize=(8, 4.8), layout="constrained")
@@ -161,18 +160,16 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    results = pages.load(RESULTS, {})
     for part in options.only or ["steps", "threads", "growth", "bare"]:
         if part == "none":
             continue
         results.update(measure(options.build.resolve(), part, options.rounds))
-        RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+        pages.keep(RESULTS, results)
     text = page(results)
     print(text)
     if options.write:
-        whole = PAGE.read_text()
-        before, after = whole.split(BEGIN)[0], whole.split(END)[1]
-        PAGE.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}")
+        pages.fill(PAGE, "measured", f"\n{text}\n")
         if "steps" in results:
             plot(results)
 

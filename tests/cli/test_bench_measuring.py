@@ -1,27 +1,61 @@
 #!/usr/bin/python3
-"""What bench/accuracy and bench/stability measure, on data whose answer is known.
+"""What bench/accuracy and bench/stability measure, on data whose answer is known; and bench/barchan_bench, which all programs of bench/ share.
 
     /usr/bin/python3 tests/cli/test_bench_measuring.py PROGRAM ROOT"""
 
+import ast
+import contextlib
+import io
 import math
 import pathlib
 import sys
+import tempfile
 import types
 import unittest
 
 import numpy
 
+PROGRAM = sys.argv[1] if len(sys.argv) > 1 else "build/barchan"
 ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parents[2])
-sys.path[:0] = [str(ROOT / "bench/accuracy"), str(ROOT / "bench/stability")]
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench/accuracy"), str(ROOT / "bench/stability")]
 import cases_grains  # noqa: E402
 import cases_surface  # noqa: E402
 import cases_wind  # noqa: E402
 import ensemble  # noqa: E402
 import harness  # noqa: E402
 import square_patch_reference  # noqa: E402
+from barchan_bench import frame as frames, page, run, table  # noqa: E402
+
+# What reads frames, series and tables, and what starts processes: modules, and functions of modules and objects. Each has one file.
+READERS = {"vtk", "vtkmodules", "paraview", "meshio", "xml", "csv", "pandas", "loadtxt", "genfromtxt", "fromfile", "memmap"}
+STARTERS = {"subprocess", "multiprocessing", "pty", "system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "create_subprocess_exec",
+            "create_subprocess_shell", *(f"{verb}{end}" for verb in ("exec", "spawn") for end in ("l", "le", "lp", "lpe", "v", "ve", "vp", "vpe"))}
+HOMES = {"barchan_bench/frame.py": READERS, "barchan_bench/run.py": STARTERS}
+ELSEWHERE = {  # a file, what it may use besides, and why
+    "robustness/meshes.py": ({"meshio", "vtkmodules"}, "writes and reads shapes, by other readers than the program's"),
+    "robustness/mutants.py": ({"subprocess"}, "starts compilers and the programs of the tests"),
+}
 
 
-class Synthetic(harness.Frame):
+def strays(bench):
+    """Places of bench/ that read what a run writes, or start a process, outside of their one file."""
+    found = []
+    for file in sorted(bench.rglob("*.py")):
+        name = str(file.relative_to(bench))
+        allowed = HOMES.get(name, set()) | ELSEWHERE.get(name, (set(),))[0]
+        for node in ast.walk(ast.parse(file.read_text())):
+            used = set()
+            if isinstance(node, ast.Import):
+                used = {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                used = {(node.module or "").split(".")[0], *(alias.name for alias in node.names)}
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                used = {node.func.attr}
+            found += [f"{name}:{node.lineno}: {word}" for word in sorted(used & (READERS | STARTERS) - allowed)]
+    return found
+
+
+class Synthetic(frames.Frame):
     """A frame from arrays."""
 
     def __init__(self, x, time=0., names=("water",), **arrays):
@@ -112,6 +146,115 @@ class Wind(unittest.TestCase):
             fixed = harness.tomllib.loads(harness.toml(cases_wind.held_fixed(harness.document(name))))
             self.assertEqual(fixed["phases"]["sand"]["kind"], "wall")
             self.assertNotIn("sand-sand", fixed["interactions"])
+
+
+class Package(unittest.TestCase):
+    def folder(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        return pathlib.Path(folder.name)
+
+    def test_one_reader_and_one_place_that_starts_processes(self):
+        self.assertEqual(strays(ROOT / "bench"), [])
+
+    def test_a_second_one_is_found(self):
+        for text in ("import subprocess", "from subprocess import run", "import os\nos.execvp('barchan', [])", "import os\nos.system('barchan')",
+                     "from os import popen", "def f():\n  import asyncio\n  asyncio.create_subprocess_exec('barchan')", "import vtk",
+                     "from vtkmodules.vtkIOXML import vtkXMLPolyDataReader", "import meshio", "import xml.etree.ElementTree as tree", "from xml import etree",
+                     "import csv", "import numpy\nnumpy.loadtxt('history.csv')", "from numpy import genfromtxt", "import numpy\nnumpy.fromfile('a.vtp')"):
+            bench = self.folder()
+            (bench / "accuracy").mkdir()
+            (bench / "accuracy/planted.py").write_text(text + "\n")
+            self.assertEqual(len(strays(bench)), 1, text)
+            (bench / "barchan_bench").mkdir()
+            (bench / "accuracy/planted.py").rename(bench / "barchan_bench/page.py")
+            self.assertEqual(len(strays(bench)), 1, text)
+
+    def test_a_run_from_its_scene_to_its_frames(self):
+        out = self.folder()
+        text = (ROOT / "scenes/verification/couette.toml").read_text()
+        ended = run.scene(PROGRAM, text, out, ["time.end=1e-4", "output.every=5e-5"])
+        self.assertEqual((ended.status, ended.name, ended.report["end_reason"]), (0, "case", "end"))
+        self.assertTrue(0 < ended.user and 0 < ended.wall and ended.memory > 1000)
+        self.assertEqual(ended.seconds.work, ended.report["steps"] * sum(ended.report["particles"].values()))
+        times = [time for time, _ in ended.series()]
+        self.assertEqual((times[0], times[-1], len(times)), (0, 1e-4, 3))
+        whole, part = frames.Frame(ended.series()[-1][1]), frames.Frame(ended.series()[-1][1], 7., "water").by_id()
+        self.assertEqual((whole.time, part.time, len(part.x)), (1e-4, 7., ended.report["particles"]["water"]))
+        self.assertTrue((numpy.diff(part["id"]) > 0).all() and (part["phase"] == whole.names.index("water")).all())
+        self.assertEqual(ended.history()["time"][-1], 1e-4)
+        run.generate(PROGRAM, "couette", out / "start.vtu", check=True)
+        start, first = frames.Frame(out / "start.vtu").by_id(), frames.Frame(ended.series()[0][1]).by_id()
+        self.assertEqual(start.names, first.names)
+        self.assertTrue((start.x == first.x).all())
+
+    def test_runs_that_do_not_end_well(self):
+        with self.assertRaisesRegex(run.Broken, "couette.toml ended with status 2: .*spacing"):
+            run.scene(PROGRAM, "verification/couette", self.folder(), ["spacing=-1"])
+        late = run.scene(PROGRAM, "couette", self.folder(), ["time.end=1000"], timeout=.5, check=False)
+        self.assertIsNone(late.status)
+        self.assertLess(late.wall, 30)
+        self.assertEqual(run.command([sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]).status, -9)
+        self.assertEqual(run.command([sys.executable, "-c", "import os; print(os.environ['A'])"], environment={"A": "b"}).stdout, "b\n")
+        with self.assertRaises(FileNotFoundError):
+            run.scene_file("no such scene")
+
+    def test_user_seconds_are_those_of_one_command(self):
+        busy = [sys.executable, "-c", "import os\nwhile os.times().user < .4: sum(range(10000))"]
+        self.assertAlmostEqual(run.command(busy).user, .4, delta=.2)
+        self.assertLess(run.command([sys.executable, "-c", "pass"]).user, .2)
+
+    def test_settings_come_before_what_is_added(self):
+        words = run.words("barchan", "a.toml", "out", ["time.end=1"], threads=None, options=["--set", "time.end=2"])
+        self.assertEqual(words, ["barchan", "run", "a.toml", "--out", "out", "--quiet", "--set", "time.end=1", "--set", "time.end=2"])
+
+    def test_tables(self):
+        file = self.folder() / "history.csv"
+        file.write_text("# a remark\ntime [s],step,u [m/s]\n0,0,1e-3\n.5,1,nan\n")
+        history = frames.table(file)
+        self.assertEqual(list(history), ["time [s]", "step", "u [m/s]"])
+        self.assertEqual((history["time"][1], history["time [s]"][1], history["u"][0]), (.5, .5, 1e-3))
+        self.assertTrue(math.isnan(history["u"][1]) and "u" in history and "v" not in history)
+        self.assertEqual(history.rows()[0], {"time": 0, "step": 0, "u": 1e-3})
+        with self.assertRaisesRegex(KeyError, "0 columns v; columns are time"):
+            history["v"]
+        file.write_text("time [s],step\n")
+        self.assertEqual((len(frames.table(file)["time"]), frames.table(file).rows()), (0, []))
+
+    def test_what_is_no_frame_is_unreadable(self):
+        frames.without_warnings()
+        for name, read in (("a.vtp", frames.Frame), ("a.vtu", frames.Frame), ("a.pvd", frames.series)):
+            file = self.folder() / name
+            file.write_text("<VTKFile")
+            with self.assertRaises(frames.Unreadable):
+                read(file)
+
+    def test_particles_that_are_written_are_read(self):
+        file, x = self.folder() / "bed.vtp", numpy.arange(6.).reshape(2, 3)
+        frames.write_particles(file, x, "sand", radius=numpy.array([1., 2.]))
+        read = frames.Frame(file, phase="sand")
+        self.assertTrue((read.x == x).all() and (read["radius"] == [1, 2]).all() and (read["id"] == [0, 1]).all())
+
+    def test_a_figure_beside_its_bound(self):
+        table.rows.clear()
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            for value, at_least in ((1., False), (3., False), (3., True), (1., True)):
+                table.report("case", "scheme", 2, "error", value, 2., 0., at_least)
+            table.attempt("case", "scheme", 2, lambda: run.command([sys.executable, "-c", "raise SystemExit(3)"], check=True))
+        self.assertEqual([r["good"] for r in table.rows], [True, False, True, False, False])
+        self.assertEqual(["MISSED" in line for line in said.getvalue().splitlines()], [False, True, False, True, True])
+        self.assertEqual(table.head("a", "b"), "| a | b |\n| --- | --- |")
+
+    def test_between_its_marks_a_page_is_filled(self):
+        file = self.folder() / "page.md"
+        file.write_text("a\n<!-- x: begin -->\nold\n<!-- x: end -->\nb\n")
+        page.fill(file, "x", "new\nlines")
+        self.assertEqual(file.read_text(), "a\n<!-- x: begin -->\nnew\nlines\n<!-- x: end -->\nb\n")
+        for lost in ("a\n", "<!-- x: begin -->\n", "<!-- x: end -->\n"):
+            file.write_text(lost)
+            with self.assertRaisesRegex(RuntimeError, "lost its marks"):
+                page.fill(file, "x", "new")
+            self.assertEqual(file.read_text(), lost)
 
 
 class Ensemble(unittest.TestCase):

@@ -34,7 +34,7 @@ class Pages(unittest.TestCase):
             (root / page.relative_to(SOURCE)).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(page, root / page.relative_to(SOURCE))
         shutil.copy(SOURCE / "docs/figures.json", root / "docs/figures.json")
-        for part in ("bench/accuracy/results", "bench/throughput", "tests/instructions"):
+        for part in ("bench/accuracy/results", "bench/throughput", "bench/barchan_bench", "tests/instructions"):
             shutil.copytree(SOURCE / part, root / part)
         return root
 

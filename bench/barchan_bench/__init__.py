@@ -1,0 +1,6 @@
+"""What every program of bench/ shares: run.py starts commands, frame.py reads what a run writes, table.py writes figures beside their bounds, page.py
+keeps results and fills the pages of docs/. CONTRIBUTING.md shows a program that uses all four."""
+
+import pathlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]  # the repository
