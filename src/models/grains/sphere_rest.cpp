@@ -21,9 +21,8 @@ struct Meeting {
   Vec3 normal() const { return -1.0 / std::max(norm(branch), 1e-300) * branch; }  // from b to a
 };
 
-double tangential_stiffness(const SphereContact& law, double overlap, double reduced_radius) {
-  const double k = law.hertz ? law.stiffness * std::sqrt(reduced_radius * std::max(overlap, 0.0)) : law.stiffness;
-  return law.tangential * k;
+double tangential_stiffness(const AnySphereContact& any, double overlap, double reduced_radius) {
+  return std::visit([&](const auto& law) { return law.slip_stiffness(reduced_radius, std::max(overlap, 0.0)); }, any);
 }
 
 Meeting of_pair(const SphereStep& step, const SphereSet& s, std::uint32_t a, std::uint32_t b, std::uint32_t law) {
@@ -70,7 +69,7 @@ void each_meeting(const SphereStep& step, const SphereSet& s, Chunk& chunk, F&& 
     f(of_side(step, s, chunk.sides[k]), chunk.sides[k].memory, std::size_t{1}, k);
 }
 
-/// The slips that carry the force and the torque on a (laws/sphere_contact.hpp).
+/// The slips that carry the force and the torque on a (laws/coulomb_friction.hpp, laws/rolling_resistance.hpp).
 void set_slips(const SphereStep& step, const Meeting& m, Vec3 force, Vec3 torque, double* memory, std::size_t apart) {
   if (!(m.tangential > 0.0)) return;
   const Vec3 n = m.normal();

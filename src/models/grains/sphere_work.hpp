@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/aligned.hpp"
-#include "laws/sphere_contact.hpp"
+#include "laws/sphere_catalogue.hpp"
 
 namespace barchan {
 
@@ -135,7 +135,7 @@ struct SphereStep {
   const double* records = nullptr;
   double* next = nullptr;
   const double* passive = nullptr;
-  const SphereContact* laws = nullptr;
+  const AnySphereContact* laws = nullptr;
   const double* inverse_densities =
       nullptr;                             // by law, of the first and of the second: inverse mass times r^3 (1/kg m3)
   const SphereColumns* columns = nullptr;  // by phase
