@@ -83,7 +83,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
       const V r_a = x_a[R::radius], r_b = x_b[R::radius], reach = r_a + r_b;
       const auto near = r2 < (reach + margin) * (reach + margin);
       if ((to_bits(near) | had) == 0) continue;
-      double* memory = chunk.memory.data() + q * batch * numbers + half;
+      double* memory = chunk.of_pair(q * batch + half, numbers);
       if (to_bits(near) == 0) {
         for (std::size_t k = 0; k < numbers; ++k) {
           const V slip = V::load(memory + k * batch);
@@ -172,7 +172,7 @@ void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereC
     for (std::size_t k = 0; at.touches && k < numbers; ++k)
       chunk.lost += law.left_behind() * at.memory[k] * at.memory[k];
     at.touches = false;
-    std::fill_n(at.memory, 6, 0.0);
+    std::fill_n(at.memory, ContactMemory::most_numbers, 0.0);
     return;
   }
   at.touches = true;

@@ -112,8 +112,7 @@ void Spheres::archive(Archive& a) {
     a.array("groups", chunk.groups);
     a.array("first of pairs", chunk.a);
     a.array("second of pairs", chunk.b);
-    a.array("memory of pairs", chunk.memory);
-    a.array("pairs that touch", chunk.touches);
+    chunk.ContactBatches::archive(a);
   };
   for (SphereChunk& chunk : chunks_) {
     pairs(chunk);
