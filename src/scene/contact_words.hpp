@@ -10,9 +10,14 @@
 #include <string>
 #include <string_view>
 
-#include "scene/scene.hpp"
+#include "scene/words.hpp"
 
 namespace barchan {
+
+enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; laws/sphere_catalogue.hpp
+template <>
+inline constexpr std::array words_of<ContactLaw>{word("kernel", ContactLaw::kernel), word("linear", ContactLaw::linear),
+                                                 word("hertz", ContactLaw::hertz)};
 
 /// A law of spheres and the keys of a phase of grains that only some laws read. `stiffness`: how stiff the contacts
 /// are; largest-overlap is read in its place. Empty: no key.
@@ -33,8 +38,22 @@ constexpr const SphereLawKeys* sphere_keys_of(ContactLaw law) {
       std::find_if(sphere_laws.begin(), sphere_laws.end(), [&](const SphereLawKeys& r) { return r.law == law; });
   return row == sphere_laws.end() ? nullptr : row;
 }
+/// Whether it is a contact of spheres: their radii decide when they touch, and no radius of the entry is read.
+constexpr bool of_spheres(ContactLaw law) { return sphere_keys_of(law) != nullptr; }
+
 /// What a phase of grains says of its contacts: the keys from which laws of spheres take their constants.
-using SphereMaterial = GrainsKeys;
+struct SphereMaterial {
+  double restitution{};             // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
+  double friction{};                // Coulomb's coefficient, of spheres
+  double rolling_friction{};        // largest rolling torque over normal force and reduced radius, of spheres
+  std::optional<double> stiffness;  // N/m, of a linear contact of two grains of the phase
+  double largest_overlap{};         // of the mean diameter, at the largest speed of the scene
+  double young{};                   // Pa, of a Hertzian contact; 0: from largest_overlap
+  double poisson{};
+};
+
+struct Scene;
+struct Phase;
 
 /// Whether the phase has an entry with a law of spheres.
 bool touches_as_spheres(const Scene& scene, const Phase& phase);

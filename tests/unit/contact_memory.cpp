@@ -39,6 +39,7 @@ TEST(ContactBatchesOfAList, KeepPairsApart) {
     for (std::size_t m = 0; m < 3; ++m)
       EXPECT_EQ(list.of_pair(place, 3)[m * ContactBatches::batch],
                 10.0 * static_cast<double>(place) + static_cast<double>(m));
+  EXPECT_EQ(list.of_pair(8, 3) - list.memory.data(), 24) << "eight pairs of three numbers are before it";
   for (std::size_t place = 0; place < 16; ++place)
     EXPECT_EQ(list.touching(place), place == 0 || place == 7 || place == 8 || place == 13) << place;
   list.grow(1, 3);
