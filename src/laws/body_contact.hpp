@@ -4,7 +4,7 @@
 //   normal      F_n = max(phi K delta + 8 K max(delta - 0.35 d, 0) - psi c v.n, 0),  delta = d - |r|, d half the sum of
 //               the two spacings; the second spring keeps a corner, which one particle holds, from passing a wall
 //   tangential  F_t = -min(c_t |v_t|, mu F_n) v_t/|v_t|, v_t = v - (v.n) n: Coulomb, with a creep of mu F_n/c_t
-//   c = 2 zeta sqrt(m* K), c_t = 2 sqrt(m* K); zeta from the restitution, as of spheres (laws/sphere_contact.hpp)
+//   c = 2 zeta sqrt(m* K), c_t = 2 sqrt(m* K); zeta from the restitution, as of spheres (laws/normal_dashpot.hpp)
 //
 // A contact begins and ends within a step. With s = delta/(|v.n| dt) <= 1, the step in which it begins or ends has
 //   phi = (1 + s)/2:  the leapfrog then keeps its own energy, 1/2 m v^2 + 1/2 K delta^2 (1 - (w dt)^2/4), to (w dt)^4
@@ -18,7 +18,7 @@
 #include <array>
 #include <cmath>
 
-#include "laws/sphere_contact.hpp"
+#include "laws/normal_dashpot.hpp"
 #include "simd/vec.hpp"
 
 namespace barchan {
@@ -36,7 +36,7 @@ struct BodyContactLaw {
   static BodyContactLaw of(double distance, double stiffness, double reduced_mass, double restitution,
                            double friction) {
     const double root = std::sqrt(stiffness * reduced_mass);
-    return {distance,   stiffness, reduced_mass, 2.0 * SphereContact::damping_ratio(restitution) * root,
+    return {distance,   stiffness, reduced_mass, 2.0 * NormalDashpot::damping_ratio(restitution) * root,
             2.0 * root, friction};
   }
   /// s, by which 0.1 of it is a step that keeps the restitution.

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "scene/checks.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -67,7 +68,7 @@ std::string what_cannot_be_measured(const Scene& scene, const Phase& wall, const
   const std::string name = "the force of \"" + other.name + "\" ";
   if (other.kind() == PhaseKind::grains) {
     if (!of_spheres(*entry_between(scene, wall, other)))
-      return name + "on a wall is not measured; expected grains with law = \"linear\" or \"hertz\"";
+      return name + "on a wall is not measured; expected grains with " + sphere_laws_that_read("");
     if (other.grains().sleep) return name + "on a wall is not measured where grains sleep; expected sleep = false";
     if (meter.box)
       return name + "on a part of a wall is not measured; expected no box (a part may be a phase of its own)";

@@ -1,8 +1,10 @@
 // Physics that no law can do, and keys that nothing reads where they stand.
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "scene/checks.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -66,35 +68,49 @@ class PhysicsChecker {
                grains.name + "\"");
   }
 
+  /// The keys of grains that only some laws of spheres read, each once.
+  static std::set<std::string> keys_of_some_laws(const Phase& phase) {
+    std::set<std::string> keys;
+    for (const SphereLawKeys& row : sphere_laws)
+      for (const std::string_view key : {row.stiffness, row.others[0], row.others[1]})
+        if (phase.if_grains() && !key.empty()) keys.emplace(key);
+    return keys;
+  }
+
   /// Spheres and what only they have.
   void spheres(const Phase& phase) {
     const std::string dotted = place(phase);
-    const auto without = [&](const char* key, const std::string& needs) {
+    const auto without = [&](const std::string& key, const std::string& needs) {
       if (report_.has(dotted + "." + key)) tell(dotted + "." + key, "nothing reads it; expected " + needs);
     };
     if (!phase.diameter()) {
-      for (const char* key : {"friction", "rolling-friction", "stiffness", "largest-overlap", "sleep"})
+      for (const char* key : {"friction", "rolling-friction", "largest-overlap", "sleep"})
         without(key, "diameter beside it");
-      if (phase.kind() == PhaseKind::grains)
-        for (const char* key : {"young", "poisson"}) without(key, "diameter beside it");
+      for (const std::string& key : keys_of_some_laws(phase)) without(key, "diameter beside it");
       return;
     }
     if (!pairs_known_) return;
-    const bool linear = touches_by(scene_, phase, ContactLaw::linear),
-               hertz = touches_by(scene_, phase, ContactLaw::hertz);
+    const bool touches = touches_as_spheres(scene_, phase);
     if (phase.kind() == PhaseKind::wall) {
-      if (!linear && !hertz) without("diameter", "an entry with grains and law = \"linear\" or \"hertz\"");
+      if (!touches) without("diameter", "an entry with grains and " + sphere_laws_that_read(""));
       return;
     }
-    if (!linear) without("stiffness", "an entry with law = \"linear\"");
-    if (!hertz)
-      for (const char* key : {"young", "poisson"}) without(key, "an entry with law = \"hertz\"");
-    if (!linear && !hertz)
+    bool all_stiff = touches;  // each law of the phase has its key
+    std::vector<const SphereLawKeys*> laws;
+    for (const SphereLawKeys& row : sphere_laws)
+      if (touches_by(scene_, phase, row.law)) {
+        laws.push_back(&row);
+        all_stiff = all_stiff && report_.has(dotted + "." + std::string(row.stiffness));
+      }
+    for (const std::string& key : keys_of_some_laws(phase))
+      if (std::none_of(laws.begin(), laws.end(), [&](const SphereLawKeys* row) { return row->reads(key); }))
+        without(key, "an entry with " + sphere_laws_that_read(key));
+    if (!touches)
       for (const char* key : {"friction", "rolling-friction", "largest-overlap", "restitution"})
-        without(key, "an entry with law = \"linear\" or \"hertz\"");
+        without(key, "an entry with " + sphere_laws_that_read(""));
     const GrainsKeys& own = *phase.if_grains();
-    if ((!linear || own.stiffness) && (!hertz || own.young > 0.0) && (linear || hertz))
-      without("largest-overlap", "no such key: stiffness or young says how stiff contacts are");
+    if (all_stiff)
+      without("largest-overlap", "no such key: " + sphere_stiffness_keys(" or ") + " says how stiff contacts are");
     if (own.sleep && norm(scene_.domain.gravity) == 0.0)
       tell(dotted + ".sleep", "nothing holds grains in place without weight; expected gravity, or no such key");
     without("contact-speed", "stiffness, young or largest-overlap, which spheres have");
@@ -109,9 +125,8 @@ class PhysicsChecker {
     if (!of_spheres(pair)) {
       for (const Phase* p : {&a, &b})
         if (p->if_grains() && p->diameter() && grains_or_wall(a) && grains_or_wall(b))
-          tell(dotted,
-               "\"" + p->name +
-                   "\" has a diameter: its grains are spheres; expected { law = \"linear\" } or { law = \"hertz\" }");
+          tell(dotted, "\"" + p->name + "\" has a diameter: its grains are spheres; expected { " +
+                           sphere_laws_that_read("") + " }");
       return;
     }
     if (!grains_or_wall(a) || !grains_or_wall(b))

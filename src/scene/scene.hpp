@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/vec3.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/words.hpp"
 
 namespace barchan {
@@ -95,21 +96,14 @@ struct RigidKeys {
   double largest_overlap{};         // of the spacing, at the largest speed of the scene: makes the stiffness
 };
 
-struct GrainsKeys {
+struct GrainsKeys : SphereMaterial {
   static constexpr PhaseKind kind = PhaseKind::grains;
   static constexpr const char* word = "grains";
   static constexpr bool has_particles = true;
-  double restitution{};                 // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
   std::optional<double> contact_speed;  // m/s, sqrt(stiffness/density) of a contact; empty: chosen by the plan
   std::optional<double> roughness;      // m, z0 of the logarithmic law; empty: a thirtieth of its spacing
   std::optional<SphereSize> diameter;   // m; empty: particles of one spacing, whose contacts are kernels
-  double friction{};                    // Coulomb's coefficient, of spheres
-  double rolling_friction{};            // largest rolling torque over normal force and reduced radius, of spheres
-  std::optional<double> stiffness;      // N/m, of a linear contact of two grains of the phase
-  double largest_overlap{};             // of the mean diameter, at the largest speed of the scene
-  double young{};                       // Pa, of a Hertzian contact; 0: from largest_overlap
   bool sleep{};                         // spheres that nothing disturbs are left out of the steps
-  double poisson{};
 };
 
 struct WallKeys {

@@ -119,11 +119,17 @@ constexpr Slot at(Otherwise... text) {
   return slot_of<Member, find>(otherwise(text...));
 }
 
+/// The kind of phase whose keys they are.
+template <class Keys>
+inline constexpr PhaseKind kind_of = Keys::kind;
+template <>
+inline constexpr PhaseKind kind_of<SphereMaterial> = PhaseKind::grains;
+
 /// A member of a kind of phase, or of several kinds that have the key in common.
-template <class Member, class Kind>
-Member* member_of(Phase& phase, Member Kind::*member) {
-  Kind* kind = std::get_if<Kind>(&phase.own);
-  return kind ? &(kind->*member) : nullptr;
+template <class Member, class Keys>
+Member* member_of(Phase& phase, Member Keys::*member) {
+  Keys* keys = std::get_if<static_cast<std::size_t>(kind_of<Keys>)>(&phase.own);
+  return keys ? &(keys->*member) : nullptr;
 }
 template <PhaseKind... kind>
 constexpr std::array kinds_with{kind...};
@@ -137,7 +143,7 @@ constexpr Slot of(Otherwise... text) {
     return found;
   };
   Slot slot = slot_of<Member, find>(otherwise(text...));
-  slot.kinds = kinds_with<decltype(owner_of(first))::kind, decltype(owner_of(others))::kind...>;
+  slot.kinds = kinds_with<kind_of<decltype(owner_of(first))>, kind_of<decltype(owner_of(others))>...>;
   return slot;
 }
 

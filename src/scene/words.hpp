@@ -70,13 +70,6 @@ enum class WallLaw { adami, repulsive };  // Adami et al. 2012; Halik et al. 201
 template <>
 inline constexpr std::array words_of<WallLaw>{word("adami", WallLaw::adami), word("repulsive", WallLaw::repulsive)};
 
-enum class ContactLaw { kernel, linear, hertz };  // laws/kernel_contact.hpp; laws/sphere_contact.hpp
-template <>
-inline constexpr std::array words_of<ContactLaw>{word("kernel", ContactLaw::kernel), word("linear", ContactLaw::linear),
-                                                 word("hertz", ContactLaw::hertz)};
-/// Whether it is a contact of spheres: their radii decide when they touch, and no radius of the entry is read.
-constexpr bool of_spheres(ContactLaw law) { return law == ContactLaw::linear || law == ContactLaw::hertz; }
-
 enum class Slip { no_slip, free_slip };
 template <>
 inline constexpr std::array words_of<Slip>{word("no-slip", Slip::no_slip), word("free-slip", Slip::free_slip)};

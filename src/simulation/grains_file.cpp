@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
-#include "laws/sphere_contact.hpp"
+#include "laws/touching_spheres.hpp"
 #include "output/numbers.hpp"
 #include "output/series.hpp"
 #include "scene/couplings.hpp"

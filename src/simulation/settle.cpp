@@ -37,6 +37,8 @@ constexpr double soft_overlap = 0.002;  // diameters: of the lowest grains in th
 constexpr double soft_impact = 0.03;    // diameters: of grains that fall into it
 constexpr double stiffer = 8.0;         // contacts from stage to stage
 const char* const box_name = "settling_box";
+// While contacts are soft, one number says how stiff they are; at last they have the law of the scene.
+constexpr ContactLaw soft_law = ContactLaw::linear;
 
 /// The scene in which the grains settle: they alone, the walls that they feel, and a box.
 Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
@@ -60,7 +62,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
   std::get<GrainsKeys>(s.phases[0].own).sleep = false;
   s.output.fields.clear();
   s.time.fixed_step.reset();
-  ContactLaw law = ContactLaw::linear;
+  ContactLaw law = soft_law;
   for (const Interaction& pair : scene.interactions) {
     if (!of_spheres(pair) || (pair.a != phase.name && pair.b != phase.name)) continue;
     const std::string& other = pair.a == phase.name ? pair.b : pair.a;
@@ -289,12 +291,10 @@ std::vector<double> soft_stages(const Scene& s, double thickness) {
   return stages;
 }
 
-/// The same with linear contacts of a stiffness.
+/// The same with soft contacts of a stiffness.
 Scene softened(Scene s, double stiffness) {
-  for (Interaction& pair : s.interactions) pair.law = ContactLaw::linear;
-  GrainsKeys& keys = std::get<GrainsKeys>(s.phases[0].own);
-  keys.stiffness = stiffness;
-  keys.young = 0.0;
+  for (Interaction& pair : s.interactions) pair.law = soft_law;
+  std::get<GrainsKeys>(s.phases[0].own).stiffness = stiffness;
   s.time.largest_speed = 2.0 * slow_fall * std::sqrt(norm(s.domain.gravity) * s.phases[0].diameter()->mean);
   return s;
 }

@@ -1,6 +1,6 @@
 // One contact of two spheres in steps of a twelfth of its duration, for all phases of the first touch: what the law
 // asks for must come out of the steps.
-#include "laws/sphere_contact.hpp"
+#include "laws/sphere_catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,26 @@ namespace {
 
 constexpr int phases = 8;
 using V = simd::Vec<double, phases>;
-using Constants = sphere_contact::Constants<V>;
+template <std::size_t row>
+using Law = std::variant_alternative_t<row, AnySphereContact>;  // of the catalogue
+using Linear = Law<0>;
+using Hertz = Law<1>;
+
+Linear linear(double e, double friction = 0.0, double rolling = 0.0) {
+  return {{500.0}, NormalDashpot::of_restitution<LinearSpring>(e), {{}, friction}, {rolling}};
+}
+Hertz hertzian(double e, double friction = 0.0, double rolling = 0.0) {
+  return {HertzSpring::of_material(1e8, 0.3),
+          NormalDashpot::of_restitution<HertzSpring>(e),
+          {MindlinSlipStiffness::of_poisson(0.3), friction},
+          {rolling}};
+}
+/// Calls f with both laws, without rolling resistance.
+template <class F>
+void both(double e, double friction, F&& f) {
+  f(linear(e, friction).without_rolling());
+  f(hertzian(e, friction).without_rolling());
+}
 
 /// What the spheres do after the contact, of each phase.
 struct After {
@@ -19,10 +38,11 @@ struct After {
 };
 
 /// Two spheres of the masses (kg) and radii 1 mm meet with `speed` (m/s) along x and slip with `slip` along y.
-template <bool Hertz>
-After meet(const SphereContact& law, double mass_a, double mass_b, double speed, double slip, double dt) {
+template <class L>
+After meet(const L& law, double mass_a, double mass_b, double speed, double slip, double steps) {
   const double radius = 1e-3, reduced = mass_a * mass_b / (mass_a + mass_b);
-  const Constants constants(law, dt);
+  const double dt = law.normal.duration({reduced, 0.5 * radius, speed}) / steps;
+  const typename L::template Constants<V> constants(law, dt);
   V x = V(2.0 * radius + 2.0 * speed * dt) + V(speed * dt / phases) * V::iota(), y(0.0);
   V u(-speed), v(slip), spin_a(0.0), spin_b(0.0), lost(0.0), deepest(0.0);
   std::array<V, 1> memory{V(0.0)};
@@ -38,7 +58,7 @@ After meet(const SphereContact& law, double mass_a, double mass_b, double speed,
     s.inverse_mass = V(1.0 / reduced);
     s.reduced_radius = V(0.5 * radius);
     const auto near = s.overlap > V(-dt) * simd::max(u, -u);
-    auto f = touch<Hertz, true, false>(constants, s, memory);
+    auto f = L::touch(constants, s, memory);
     memory[0] = mask_zero(near, memory[0]);
     u += V(dt / reduced) * mask_zero(near, f.force[0]);
     v += V(dt / reduced) * mask_zero(near, f.force[1]);
@@ -57,69 +77,60 @@ After meet(const SphereContact& law, double mass_a, double mass_b, double speed,
   return after;
 }
 
-After meet(const SphereContact& law, double mass_a, double mass_b, double speed, double slip, double steps) {
-  const double reduced = mass_a * mass_b / (mass_a + mass_b), dt = law.duration(reduced, 5e-4, speed) / steps;
-  return law.hertz ? meet<true>(law, mass_a, mass_b, speed, slip, dt)
-                   : meet<false>(law, mass_a, mass_b, speed, slip, dt);
-}
-
-SphereContact law_of(bool hertz, double e) {
-  return hertz ? SphereContact::hertzian(1e8, 0.3, e) : SphereContact::linear(500.0, e);
-}
+const char* name_of(const LinearSpring&) { return "linear "; }
+const char* name_of(const HertzSpring&) { return "Hertz "; }
 
 TEST(SphereContactSteps, KeepTheWrittenRestitution) {
-  for (const bool hertz : {false, true})
-    for (const double e : {0.3, 0.5, 0.7, 0.9, 1.0})
-      for (const auto& [a, b] : {std::pair{1e-5, 1e-5}, {1e-5, 3e-5}, {1e-5, 1e300}})
-        for (const double speed : {1.0, 0.1}) {
-          SphereContact law = law_of(hertz, e);
+  for (const double e : {0.3, 0.5, 0.7, 0.9, 1.0})
+    for (const auto& [a, b] : {std::pair{1e-5, 1e-5}, {1e-5, 3e-5}, {1e-5, 1e300}})
+      for (const double speed : {1.0, 0.1})
+        both(e, 0.0, [&, m_a = a, m_b = b](const auto& law) {
           // Of Hertz a slow contact lasts longer; of the linear law as long.
-          const After after = meet(law, a, b, speed, 0.0, 12.0);
+          const After after = meet(law, m_a, m_b, speed, 0.0, 12.0);
           const auto [least, most] = std::minmax_element(after.speed, after.speed + phases);
-          EXPECT_NEAR(*least / speed, e, 5e-3 * e) << hertz << ' ' << e << ' ' << b;
-          EXPECT_NEAR(*most / speed, e, 5e-3 * e) << hertz << ' ' << e << ' ' << b;
-          const double reduced = a * b / (a + b), energy = 0.5 * reduced * speed * speed;
-          for (const double lost : after.lost) EXPECT_NEAR(lost / energy, 1.0 - e * e, 1.1e-2) << hertz << " " << e;
-        }
+          EXPECT_NEAR(*least / speed, e, 5e-3 * e) << name_of(law.normal) << e << ' ' << m_b;
+          EXPECT_NEAR(*most / speed, e, 5e-3 * e) << name_of(law.normal) << e << ' ' << m_b;
+          const double reduced = m_a * m_b / (m_a + m_b), energy = 0.5 * reduced * speed * speed;
+          for (const double lost : after.lost)
+            EXPECT_NEAR(lost / energy, 1.0 - e * e, 1.1e-2) << name_of(law.normal) << e;
+        });
 }
 
 TEST(SphereContactSteps, KeepTheEnergyOfElasticSpheres) {
-  for (const bool hertz : {false, true}) {
-    const After after = meet(law_of(hertz, 1.0), 1e-5, 1e-5, 1.0, 0.0, 24.0);
+  both(1.0, 0.0, [](const auto& law) {
+    const After after = meet(law, 1e-5, 1e-5, 1.0, 0.0, 24.0);
     double mean = 0.0;
     for (const double u : after.speed) {
-      EXPECT_NEAR(u * u, 1.0, 1e-3) << hertz;
+      EXPECT_NEAR(u * u, 1.0, 1e-3) << name_of(law.normal);
       mean += (u * u - 1.0) / phases;
     }
-    EXPECT_NEAR(mean, 0.0, 3e-6) << hertz << ": no phase of the touch is likelier: gains and losses cancel";
-  }
+    EXPECT_NEAR(mean, 0.0, 3e-6) << name_of(law.normal)
+                                 << ": no phase of the touch is likelier: gains and losses cancel";
+  });
 }
 
 TEST(SphereContactSteps, ReachTheOverlapOfTheTheory) {
-  for (const bool hertz : {false, true}) {
-    const SphereContact law = law_of(hertz, 1.0);
+  both(1.0, 0.0, [](const auto& law) {
     const After after = meet(law, 1e-5, 1e-5, 1.0, 0.0, 48.0);  // 48: some step is near the turning point
-    EXPECT_NEAR(*std::max_element(after.deepest, after.deepest + phases), law.largest_overlap(5e-6, 5e-4, 1.0),
-                5e-3 * law.largest_overlap(5e-6, 5e-4, 1.0));
-  }
+    const double overlap = law.normal.largest_overlap({5e-6, 5e-4, 1.0});
+    EXPECT_NEAR(*std::max_element(after.deepest, after.deepest + phases), overlap, 5e-3 * overlap);
+  });
 }
 
 // Where a contact slides throughout, Coulomb's law gives dv_t = mu (1 + e) v_n, and a spin of 5/2 that by the radius
 // and by the share of the mass (Walton 1993).
 TEST(SphereContactSteps, SlideAsCoulombsLaw) {
-  for (const bool hertz : {false, true})
-    for (const double e : {0.3, 0.7, 0.9})
-      for (const double speed : {1.0, 0.3}) {
-        SphereContact law = law_of(hertz, e);
-        law.friction = 0.3;
+  for (const double e : {0.3, 0.7, 0.9})
+    for (const double speed : {1.0, 0.3})
+      both(e, 0.3, [&](const auto& law) {
         const After after = meet(law, 1e-5, 1e-5, speed, 5.0 * speed, 12.0);
         const double push = 0.3 * (1.0 + e) * speed;
         for (int k = 0; k < phases; ++k) {
-          EXPECT_NEAR(5.0 * speed - after.across[k], push, 5e-3 * push) << hertz << ' ' << e;
+          EXPECT_NEAR(5.0 * speed - after.across[k], push, 5e-3 * push) << name_of(law.normal) << e;
           EXPECT_NEAR(std::abs(after.spin[k]) * 1e-3, 1.25 * push, 5e-3 * 1.25 * push);
           EXPECT_NEAR(after.speed[k], e * speed, 5e-3 * e * speed);
         }
-      }
+      });
 }
 
 /// Two free spheres of one radius (m) and mass (kg) in `Dim` dimensions, of all phases of the first touch; a moves
@@ -152,8 +163,9 @@ struct Pair {
     return sum;
   }
   /// What the law sees, and the forces of a step.
-  template <bool Rolls, std::size_t N>
-  ContactForces<V, Dim> step(const Constants& c, double dt, std::array<V, N>& memory) {
+  template <class L>
+  ContactForces<V, Dim> step(const typename L::template Constants<V>& c, double dt,
+                             std::array<V, L::template numbers<Dim>>& memory) {
     TouchingSpheres<V, Dim> s;
     V apart2(0.0);
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -173,7 +185,7 @@ struct Pair {
     V fast(0.0);
     for (const V& u : s.velocity) fast += simd::max(u, -u);
     const auto near = s.overlap > V(-dt) * fast;
-    auto f = touch<false, true, Rolls>(c, s, memory);
+    auto f = L::touch(c, s, memory);
     for (V& m : memory) m = mask_zero(near, m);
     for (std::size_t d = 0; d < Dim; ++d) {
       const V push = V(dt / mass) * mask_zero(near, f.force[d]);
@@ -212,20 +224,17 @@ Pair<Dim> slanted(double speed, double slip, double dt) {
   return p;
 }
 
-template <std::size_t Dim, bool Rolls>
-void expect_closed_books(double friction, double rolling) {
-  SphereContact law = SphereContact::linear(500.0, 1.0);
-  law.friction = friction;
-  law.rolling = rolling;
-  const double dt = law.duration(0.5 * Pair<Dim>::mass, 5e-4, 1.0) / 12.0;
-  const Constants constants(law, dt);
+template <std::size_t Dim, class L>
+void expect_closed_books(const L& law) {
+  const double dt = law.normal.duration({0.5 * Pair<Dim>::mass, 5e-4, 1.0}) / 12.0;
+  const typename L::template Constants<V> constants(law, dt);
   Pair<Dim> p = slanted<Dim>(1.0, 0.4, dt);
-  std::array<V, 2 * Pair<Dim>::spins> memory;
+  std::array<V, L::template numbers<Dim>> memory;
   memory.fill(V(0.0));
   const V before = p.energy();
   const auto turning = p.angular_momentum();
   for (int k = 0; k < 200; ++k) {
-    p.template step<Rolls>(constants, dt, memory);
+    p.template step<L>(constants, dt, memory);
     p.drift(dt);
   }
   const V after = p.energy();
@@ -233,7 +242,7 @@ void expect_closed_books(double friction, double rolling) {
   const double scale = Pair<Dim>::mass * 1e-3;
   for (int lane = 0; lane < phases; ++lane) {
     EXPECT_NEAR((before[lane] - after[lane]) / before[lane], p.lost[lane] / before[lane], 1.5e-3)
-        << Dim << "D, friction " << friction << ", rolling " << rolling;
+        << Dim << "D, friction " << law.friction.friction << ", rolling " << L::rolls;
     EXPECT_GE(p.lost[lane], -4e-3 * before[lane]);
     for (std::size_t d = 0; d < Pair<Dim>::spins; ++d)
       EXPECT_NEAR(turned[d][lane] / scale, turning[d][lane] / scale, 1e-9) << "angular momentum, " << Dim << "D";
@@ -244,10 +253,10 @@ void expect_closed_books(double friction, double rolling) {
 // rolling resistance take is what the motion loses: with another mass of the tangential motion than 2/7 the books gape.
 TEST(SphereContactSteps, CloseTheBooksOfFrictionAndRolling) {
   for (const double friction : {0.1, 0.5, 10.0}) {
-    expect_closed_books<2, false>(friction, 0.0);
-    expect_closed_books<3, false>(friction, 0.0);
-    expect_closed_books<2, true>(friction, 0.2);
-    expect_closed_books<3, true>(friction, 0.2);
+    expect_closed_books<2>(linear(1.0, friction).without_rolling());
+    expect_closed_books<3>(linear(1.0, friction).without_rolling());
+    expect_closed_books<2>(linear(1.0, friction, 0.2));
+    expect_closed_books<3>(linear(1.0, friction, 0.2));
   }
 }
 
@@ -255,11 +264,9 @@ TEST(SphereContactSteps, CloseTheBooksOfFrictionAndRolling) {
 // has given way, equal and opposite on the two.
 template <std::size_t Dim>
 void expect_rolling_torque() {
-  SphereContact law = SphereContact::linear(500.0, 1.0);
-  law.friction = 0.5;
-  law.rolling = 0.1;
-  const double dt = law.duration(0.5 * Pair<Dim>::mass, 5e-4, 1.0) / 40.0;
-  const Constants constants(law, dt);
+  const Linear law = linear(1.0, 0.5, 0.1);
+  const double dt = law.normal.duration({0.5 * Pair<Dim>::mass, 5e-4, 1.0}) / 40.0;
+  const Linear::Constants<V> constants(law, dt);
   TouchingSpheres<V, Dim> s;
   for (std::size_t d = 0; d < Dim; ++d) {
     s.normal[d] = V(d == 0 ? 1.0 : 0.0);
@@ -277,7 +284,7 @@ void expect_rolling_torque() {
   std::array<V, 2 * Pair<Dim>::spins> memory;
   memory.fill(V(0.0));
   ContactForces<V, Dim> f;
-  for (int k = 0; k < 50; ++k) f = touch<false, true, true>(constants, s, memory);
+  for (int k = 0; k < 50; ++k) f = Linear::touch(constants, s, memory);
   const double most = 0.1 * f.force[0][0] * 5e-4;
   EXPECT_GT(most, 0.0);
   EXPECT_NEAR(f.torque_a[axis][0], -most, 1e-9 * most) << "against the spin of a";

@@ -7,6 +7,7 @@
 #include "engine/integrate.hpp"
 #include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -46,7 +47,7 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound) {
   r.signal_speed = bound;
   r.stops_at_sides = r.solid = true;
   r.one = "grain";
-  r.stiffness_key = "phases." + p.name + ".stiffness or .young";
+  r.stiffness_key = "phases." + p.name + "." + sphere_stiffness_keys(" or .");
   r.if_not_finite = r.stiffness_key;
   r.if_passed = "raise time.largest-speed, " + r.stiffness_key;
   r.if_fast = [name = p.name](double speed, double most) {
@@ -65,8 +66,8 @@ std::string number_text(double value) {
   return text;
 }
 
-/// Spheres: their fields, the speed of waves through their contacts (d sqrt(K/m), of Hertz at the largest speed), and
-/// the speed at which two of them would overlap by half a diameter.
+/// Spheres: their fields, the speed of waves through their contacts (d sqrt(K/m), at the overlap of the largest speed),
+/// and the speed at which two of them would overlap by half a diameter.
 void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, std::vector<std::string>& warnings) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
@@ -79,21 +80,21 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, st
   const double mass = p.mass * layout.slab;
   double bound = 1e300;
   p.sound_speed = 1.0;
-  for (const bool hertz : {false, true}) {
-    if (!touches_by(scene, phase, hertz ? ContactLaw::hertz : ContactLaw::linear)) continue;
-    SphereContact law;
-    law.hertz = hertz;
-    law.stiffness = sphere_stiffness(scene, layout, number, hertz);
-    const double v = std::max(layout.largest_speed, 1e-3),
-                 overlap = law.largest_overlap(0.5 * mass, 0.25 * p.diameter, v);
+  each_sphere_law([&](auto row) {
+    using Row = decltype(row);
+    using Normal = typename Row::Law::Normal;
+    if (!touches_by(scene, phase, Row::word)) return;
+    const Normal spring = normal_spring<Row>(scene, layout, number);
+    const SphereImpact impact = impact_of(layout, number, std::max(layout.largest_speed, 1e-3));
+    const double overlap = spring.largest_overlap(impact);
     if (overlap > soft * p.diameter)
-      warnings.push_back("phases." + p.name + (hertz ? ".young" : ".stiffness") + ": two grains that meet at " +
-                         number_text(v) + " m/s, the largest speed of the scene, overlap by " +
-                         number_text(overlap / p.diameter) + " diameters and pass through each other: raise it");
-    bound = std::min(bound, v * std::pow(0.5 * p.diameter / overlap, hertz ? 1.25 : 1.0));
-    const double stiffness = hertz ? law.stiffness * std::sqrt(0.25 * p.diameter * overlap) : law.stiffness;
-    p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(stiffness / mass));
-  }
+      warnings.push_back("phases." + p.name + "." + std::string(sphere_keys_of(Row::word)->stiffness) +
+                         ": two grains that meet at " + number_text(impact.speed) +
+                         " m/s, the largest speed of the scene, overlap by " + number_text(overlap / p.diameter) +
+                         " diameters and pass through each other: raise it");
+    bound = std::min(bound, impact.speed * std::pow(0.5 * p.diameter / overlap, Normal::speed_power));
+    p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(spring.stiffness_at(impact.radius, overlap) / mass));
+  });
   p.rules = sphere_rules(p, bound);
 }
 

@@ -40,16 +40,16 @@ struct Tally {
   double contacts = 0.0;
 };
 
-/// The pairs of one law.
-template <int Dim, bool Hertz, bool Rubs, bool Rolls>
-void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Group& group, Sums<Dim>& sums,
-              Tally& tally) {
+/// The pairs of one law, a SphereContact (laws/sphere_contact.hpp).
+template <int Dim, class Law>
+void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const SphereChunk::Group& group,
+              Sums<Dim>& sums, Tally& tally) {
   using R = SphereRecord<Dim>;
-  constexpr std::size_t spins = R::spins, numbers = Rubs ? (Rolls ? 2 * spins : spins) : 0;
-  const SphereContact& law = step.laws[group.law];
-  const sphere_contact::Constants<V> constants(law, step.dt);
+  constexpr bool Rubs = Law::rubs;
+  constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>;
+  const typename Law::template Constants<V> constants(law, step.dt);
   const V of_a(step.inverse_densities[2 * group.law]), of_b(step.inverse_densities[2 * group.law + 1]);
-  const V drop(Hertz || !Rubs ? 0.0 : 0.5 * law.tangential * law.stiffness);
+  const V drop(law.left_behind());
   std::array<V, Dim> period, turns;
   for (std::size_t d = 0; d < Dim; ++d) {
     period[d] = V(step.period[d]);
@@ -83,7 +83,7 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
       const V r_a = x_a[R::radius], r_b = x_b[R::radius], reach = r_a + r_b;
       const auto near = r2 < (reach + margin) * (reach + margin);
       if ((to_bits(near) | had) == 0) continue;
-      double* memory = chunk.memory.data() + q * batch * numbers + half;
+      double* memory = chunk.of_pair(q * batch + half, numbers);
       if (to_bits(near) == 0) {
         for (std::size_t k = 0; k < numbers; ++k) {
           const V slip = V::load(memory + k * batch);
@@ -133,7 +133,7 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
           for (std::size_t k = 0; k < numbers; ++k) tally.lost = fma(gone, slip[k] * slip[k], tally.lost);
         }
       }
-      ContactForces<V, Dim> f = touch<Hertz, Rubs, Rolls>(constants, s, slip);
+      ContactForces<V, Dim> f = Law::touch(constants, s, slip);
       for (std::size_t k = 0; k < numbers; ++k) mask_zero(touching, slip[k]).store(memory + k * batch);
       for (auto& x : f.force) x = mask_zero(touching, x);
       if constexpr (Rubs)
@@ -161,20 +161,18 @@ void group_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Gro
 }
 
 /// The chunk's spheres at the sides of the domain: a side is a sphere without end that does not move.
-template <int Dim, bool Hertz, bool Rubs, bool Rolls>
-void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at, Sums<Dim>& sums) {
+template <int Dim, class Law>
+void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at, Sums<Dim>& sums) {
   using R = SphereRecord<Dim>;
-  constexpr std::size_t spins = R::spins, numbers = Rubs ? (Rolls ? 2 * spins : spins) : 0;
+  constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>;
   const double* r = step.records + at.sphere * R::size;
   const double radius = r[R::radius], distance = at.sign * (r[at.axis] - at.place), overlap = radius - distance;
   const double parts = at.sign * r[R::velocity + at.axis];
-  const SphereContact& law = step.laws[at.law];
   if (!(overlap > -step.dt * std::abs(parts))) {
-    if (at.touches && Rubs && !Hertz)
-      for (std::size_t k = 0; k < numbers; ++k)
-        chunk.lost += 0.5 * law.tangential * law.stiffness * at.memory[k] * at.memory[k];
+    for (std::size_t k = 0; at.touches && k < numbers; ++k)
+      chunk.lost += law.left_behind() * at.memory[k] * at.memory[k];
     at.touches = false;
-    std::fill_n(at.memory, 6, 0.0);
+    std::fill_n(at.memory, ContactMemory::most_numbers, 0.0);
     return;
   }
   at.touches = true;
@@ -195,7 +193,7 @@ void side_of(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at
   s.reduced_mass = One(1.0) / s.inverse_mass;
   std::array<One, numbers> slip;
   for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(at.memory[k]);
-  const auto f = touch<Hertz, Rubs, Rolls>(sphere_contact::Constants<One>(law, step.dt), s, slip);
+  const auto f = Law::touch(typename Law::template Constants<One>(law, step.dt), s, slip);
   for (std::size_t k = 0; k < numbers; ++k) at.memory[k] = slip[k].v;
   // Who sleeps feels no force of a side: it is as constant as those of others that sleep.
   const bool sleeps = step.sleep && step.sleep->asleep[at.sphere];
@@ -293,19 +291,16 @@ void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& c
   }
 }
 
-template <int Dim, bool Hertz>
-void group_by_friction(const SphereStep& step, SphereChunk& chunk, const SphereChunk::Group& g, Sums<Dim>& sums,
-                       Tally& tally) {
-  if (step.rolls) group_of<Dim, Hertz, true, true>(step, chunk, g, sums, tally);
-  else if (step.rubs) group_of<Dim, Hertz, true, false>(step, chunk, g, sums, tally);
-  else group_of<Dim, Hertz, false, false>(step, chunk, g, sums, tally);
-}
-
-template <int Dim, bool Hertz>
-void side_by_friction(const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at, Sums<Dim>& sums) {
-  if (step.rolls) side_of<Dim, Hertz, true, true>(step, chunk, at, sums);
-  else if (step.rubs) side_of<Dim, Hertz, true, false>(step, chunk, at, sums);
-  else side_of<Dim, Hertz, false, false>(step, chunk, at, sums);
+/// Calls f with the law of that number, without the parts that no law of the scene has.
+template <class F>
+void with_law(const SphereStep& step, std::size_t number, F&& f) {
+  std::visit(
+      [&](const auto& law) {
+        if (step.rolls) f(law);
+        else if (step.rubs) f(law.without_rolling());
+        else f(law.smooth());
+      },
+      step.laws[number]);
 }
 
 template <int Dim>
@@ -321,11 +316,9 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
   sums.clear(chunk.end - chunk.begin);
   Tally tally;
   for (const auto& group : chunk.groups)
-    step.laws[group.law].hertz ? group_by_friction<Dim, true>(step, chunk, group, sums, tally)
-                               : group_by_friction<Dim, false>(step, chunk, group, sums, tally);
+    with_law(step, group.law, [&](const auto& law) { group_of<Dim>(law, step, chunk, group, sums, tally); });
   for (auto& at : chunk.sides)
-    step.laws[at.law].hertz ? side_by_friction<Dim, true>(step, chunk, at, sums)
-                            : side_by_friction<Dim, false>(step, chunk, at, sums);
+    with_law(step, at.law, [&](const auto& law) { side_of<Dim>(law, step, chunk, at, sums); });
   chunk.lost += simd::sum(tally.lost);
   chunk.stored += simd::sum(tally.stored);
   for (std::size_t k = 0; k < width; ++k) chunk.deepest = std::max(chunk.deepest, tally.deepest[static_cast<int>(k)]);

@@ -1,44 +1,57 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "base/errors.hpp"
 #include "models/grains/spheres.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
 
 namespace {
 
-/// Steps in a contact (laws/sphere_contact.hpp); most codes take 10 to 50. Without loss: for the energy of a dense gas
-/// within 1e-3 (tests/physics/spheres.cpp).
-double steps_a_contact(double restitution, bool hertz) { return restitution < 1.0 ? 12.0 : hertz ? 24.0 : 48.0; }
+/// Steps in a contact with loss (laws/contact_onset.hpp); most codes take 10 to 50.
+constexpr double steps_with_loss = 12.0;
 
 /// Mass of a sphere of the phase (kg, not by depth): of the mean diameter, times a share of its radius cubed.
 double mass_of(const Layout& layout, std::size_t phase, double share = 1.0) {
   return layout.phases[phase].mass * layout.slab * share * share * share;
 }
 
+/// The phases of an entry that are grains.
+std::vector<std::size_t> grains_of(const Scene& scene, const PlanEntry& e) {
+  std::vector<std::size_t> grains;
+  for (const std::size_t k : {e.a, e.b})
+    if (scene.phases[k].if_grains()) grains.push_back(k);
+  return grains;
+}
+
+/// The constants of an entry's contacts.
+template <class Row>
+typename Row::Law law_of(const Scene& scene, const Layout& layout, const std::vector<std::size_t>& grains) {
+  std::vector<typename Row::Law::Normal> springs;
+  std::vector<const SphereMaterial*> materials;
+  for (const std::size_t k : grains) {
+    springs.push_back(normal_spring<Row>(scene, layout, k));
+    materials.push_back(&scene.phases[k].grains());
+  }
+  return Row::Law::between(springs, materials);
+}
+
 }  // namespace
 
-double sphere_stiffness(const Scene& scene, const Layout& layout, std::size_t phase, bool hertz) {
-  const GrainsKeys& keys = scene.phases[phase].grains();
-  if (!hertz && keys.stiffness) return *keys.stiffness;
-  if (hertz && keys.young > 0.0) return SphereContact::hertzian(keys.young, keys.poisson, 1.0).stiffness;
-  const double v = layout.largest_speed, d = layout.phases[phase].diameter, overlap = keys.largest_overlap * d;
-  if (!(v > 0.0))
-    throw SceneError(
-        scene.file + ": time.largest-speed: missing: nothing in the scene moves or weighs, so that no stiffness of \"" +
-        scene.phases[phase].name + "\" follows; expected it, or " + (hertz ? "young" : "stiffness") + " of the phase");
-  const double reduced_mass = 0.5 * mass_of(layout, phase), reduced_radius = 0.25 * d;
-  return hertz ? 1.25 * reduced_mass * v * v / (std::sqrt(reduced_radius) * std::pow(overlap, 2.5))
-               : reduced_mass * v * v / (overlap * overlap);
+SphereImpact impact_of(const Layout& layout, std::size_t phase, double speed) {
+  return {0.5 * mass_of(layout, phase), 0.25 * layout.phases[phase].diameter, speed};
+}
+
+void refuse_unknown_stiffness(const Scene& scene, std::size_t phase, std::string_view key) {
+  throw SceneError(scene.file +
+                   ": time.largest-speed: missing: nothing in the scene moves or weighs, so that no stiffness of \"" +
+                   scene.phases[phase].name + "\" follows; expected it, or " + std::string(key) + " of the phase");
 }
 
 bool spheres_turn(const Scene& scene, std::size_t phase) {
   const Phase& p = scene.phases[phase];
-  return (p.grains().friction > 0.0 || p.grains().rolling_friction > 0.0) &&
-         (touches_by(scene, p, ContactLaw::linear) || touches_by(scene, p, ContactLaw::hertz));
+  return (p.grains().friction > 0.0 || p.grains().rolling_friction > 0.0) && touches_as_spheres(scene, p);
 }
 
 SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
@@ -46,56 +59,41 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
   table_.assign(n * n, SphereSearch::none);
   for (const auto& e : layout.entries) {
     if (!e.of_spheres()) continue;
-    const bool hertz = e.contact == ContactLaw::hertz;
-    std::vector<std::size_t> grains;
-    for (const std::size_t k : {e.a, e.b})
-      if (scene.phases[k].if_grains()) grains.push_back(k);
-    // A wall is as hard and as rough as what touches it.
-    double softness = 0.0, tangential = 0.0, restitution = 1.0, friction = 1e300, rolling = 1e300;
-    for (const std::size_t k : grains) {
-      const GrainsKeys& keys = scene.phases[k].grains();
-      const auto share = 1.0 / static_cast<double>(grains.size());
-      softness += share / sphere_stiffness(scene, layout, k, hertz);
-      tangential +=
-          share *
-          (hertz ? SphereContact::hertzian(1.0, keys.poisson, 1.0) : SphereContact::linear(1.0, 1.0)).tangential;
-      restitution = std::min(restitution, keys.restitution);
-      friction = std::min(friction, keys.friction);
-      rolling = std::min(rolling, keys.rolling_friction);
-    }
-    SphereContact law =
-        hertz ? SphereContact::hertzian(1.0, 0.0, restitution) : SphereContact::linear(1.0, restitution);
-    law.stiffness = 1.0 / softness;
-    law.tangential = tangential;
-    law.friction = friction;
-    law.rolling = rolling;
+    const std::vector<std::size_t> grains = grains_of(scene, e);
+    double restitution = 1.0;
+    for (const std::size_t k : grains) restitution = std::min(restitution, scene.phases[k].grains().restitution);
     table_[e.a * n + e.b] = table_[e.b * n + e.a] = static_cast<std::uint32_t>(laws_.size());
-    double inverse_mass = 0.0, curvature = 0.0;
-    // Walls are the second of all pairs.
-    const bool turned = !scene.phases[e.a].if_grains();
-    for (const std::size_t k : {turned ? e.b : e.a, turned ? e.a : e.b}) {
-      const PlanPhase& p = layout.phases[k];
-      const bool moves = scene.phases[k].if_grains() != nullptr;
-      inverse_densities_.push_back(moves ? std::pow(0.5 * p.diameter, 3) / mass_of(layout, k) : 0.0);
-      const auto size = scene.phases[k].diameter();
-      const double least = size ? 1.0 - size->spread : 1.0;
-      inverse_mass += moves ? 1.0 / mass_of(layout, k, least) : 0.0;
-      curvature += moves ? 2.0 / (p.diameter * least) : 0.0;
-    }
-    const double speed = std::max(layout.largest_speed, 1e-300);
-    step_ =
-        std::min(step_, law.duration(1.0 / inverse_mass, 1.0 / curvature, speed) / steps_a_contact(restitution, hertz));
+    const SphereImpact hardest = shortest_impact(scene, layout, e);
+    each_sphere_law([&](auto row) {
+      using Row = decltype(row);
+      if (e.contact != Row::word) return;
+      const auto law = law_of<Row>(scene, layout, grains);
+      const double steps = restitution < 1.0 ? steps_with_loss : Row::Law::Normal::steps_without_loss;
+      step_ = std::min(step_, law.normal.duration(hardest) / steps);
+      rolls_ = rolls_ || law.rolling.friction > 0.0;
+      rubs_ = rubs_ || law.friction.friction > 0.0 || rolls_;
+      laws_.emplace_back(law);
+    });
     reach_ = std::max(reach_, e.radius);
-    laws_.push_back(law);
   }
   for (const auto& p : layout.phases) reach_ = std::max(reach_, p.largest_diameter);
 }
 
-bool SphereLaws::rubs() const {
-  return std::any_of(laws_.begin(), laws_.end(), [](const auto& l) { return l.friction > 0.0 || l.rolling > 0.0; });
-}
-bool SphereLaws::rolls() const {
-  return std::any_of(laws_.begin(), laws_.end(), [](const auto& l) { return l.rolling > 0.0; });
+/// Of the smallest spheres of an entry, at the largest speed of the scene. Adds their densities to the table.
+SphereImpact SphereLaws::shortest_impact(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  double inverse_mass = 0.0, curvature = 0.0;
+  // Walls are the second of all pairs.
+  const bool turned = !scene.phases[e.a].if_grains();
+  for (const std::size_t k : {turned ? e.b : e.a, turned ? e.a : e.b}) {
+    const PlanPhase& p = layout.phases[k];
+    const bool moves = scene.phases[k].if_grains() != nullptr;
+    inverse_densities_.push_back(moves ? std::pow(0.5 * p.diameter, 3) / mass_of(layout, k) : 0.0);
+    const auto size = scene.phases[k].diameter();
+    const double least = size ? 1.0 - size->spread : 1.0;
+    inverse_mass += moves ? 1.0 / mass_of(layout, k, least) : 0.0;
+    curvature += moves ? 2.0 / (p.diameter * least) : 0.0;
+  }
+  return {1.0 / inverse_mass, 1.0 / curvature, std::max(layout.largest_speed, 1e-300)};
 }
 
 }  // namespace barchan

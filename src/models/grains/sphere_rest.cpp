@@ -21,9 +21,8 @@ struct Meeting {
   Vec3 normal() const { return -1.0 / std::max(norm(branch), 1e-300) * branch; }  // from b to a
 };
 
-double tangential_stiffness(const SphereContact& law, double overlap, double reduced_radius) {
-  const double k = law.hertz ? law.stiffness * std::sqrt(reduced_radius * std::max(overlap, 0.0)) : law.stiffness;
-  return law.tangential * k;
+double tangential_stiffness(const AnySphereContact& any, double overlap, double reduced_radius) {
+  return std::visit([&](const auto& law) { return law.slip_stiffness(reduced_radius, std::max(overlap, 0.0)); }, any);
 }
 
 Meeting of_pair(const SphereStep& step, const SphereSet& s, std::uint32_t a, std::uint32_t b, std::uint32_t law) {
@@ -64,13 +63,12 @@ void each_meeting(const SphereStep& step, const SphereSet& s, Chunk& chunk, F&& 
   for (const auto& group : chunk.groups)
     for (std::size_t at = group.first * batch; at < group.end * batch; ++at)
       if (chunk.a[at] < s.all)
-        f(of_pair(step, s, chunk.a[at], chunk.b[at], group.law),
-          chunk.memory.data() + at / batch * batch * step.numbers + at % batch, batch, at);
+        f(of_pair(step, s, chunk.a[at], chunk.b[at], group.law), chunk.of_pair(at, step.numbers), batch, at);
   for (std::size_t k = 0; k < chunk.sides.size(); ++k)
     f(of_side(step, s, chunk.sides[k]), chunk.sides[k].memory, std::size_t{1}, k);
 }
 
-/// The slips that carry the force and the torque on a (laws/sphere_contact.hpp).
+/// The slips that carry the force and the torque on a (laws/coulomb_friction.hpp, laws/rolling_resistance.hpp).
 void set_slips(const SphereStep& step, const Meeting& m, Vec3 force, Vec3 torque, double* memory, std::size_t apart) {
   if (!(m.tangential > 0.0)) return;
   const Vec3 n = m.normal();
@@ -133,9 +131,7 @@ void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::vector<
         set_slips(step, m, -1.0 * own->force, -1.0 * own->torque, memory, apart);
       if (!own) return;
       if (m.b == Meeting::side) chunk.sides[at].touches = true;
-      else
-        chunk.touches[at / SphereChunk::batch] =
-            static_cast<std::uint8_t>(chunk.touches[at / SphereChunk::batch] | 1u << at % SphereChunk::batch);
+      else chunk.set_touching(at);
     });
   }
   contacts_.clear();
@@ -148,8 +144,7 @@ std::vector<RestingContact> contacts_at_rest(const SphereStep& step, const Spher
   for (const SphereChunk& chunk : chunks)
     each_meeting(step, s, chunk, [&](const Meeting& m, const double* memory, std::size_t apart, std::size_t at) {
       const bool side = m.b == Meeting::side;
-      const bool touches = side ? chunk.sides[at].touches
-                                : (chunk.touches[at / SphereChunk::batch] >> at % SphereChunk::batch & 1u) != 0;
+      const bool touches = side ? chunk.sides[at].touches : chunk.touching(at);
       // Both chunks of a pair have it: that of the first tells.
       const bool own = side || (chunk.a[at] >= chunk.begin && chunk.a[at] < chunk.end);
       if (!touches || !own || step.numbers == 0 || m.a < first || m.a >= first + count) return;

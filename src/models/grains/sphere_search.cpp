@@ -9,24 +9,12 @@ namespace barchan {
 
 namespace {
 
-/// Room for `size` without allocating at every growth.
-template <class Vector>
-void fit(Vector& vector, std::size_t size) {
-  if (vector.capacity() < size) vector.reserve(size + size / 2 + 64);
-  vector.resize(size);
-}
-
 std::size_t stride_of(const SphereSet& s) { return s.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size; }
 std::size_t radius_of(const SphereSet& s) {
   return s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius;
 }
 
 constexpr std::size_t most_keys = 256;  // four a law
-
-/// A side as the partner of a sphere.
-std::uint32_t side_number(std::uint16_t axis, std::int16_t sign) {
-  return 0xfffffff0u + 2u * axis + (sign > 0 ? 1u : 0u);
-}
 
 }  // namespace
 
@@ -37,7 +25,7 @@ void SphereSearch::prepare(const Bounds& bounds, double reach, std::size_t kinds
   kinds_ = kinds;
   laws_ = std::move(laws);
   sides_ = std::move(sides);
-  numbers_ = numbers_of_a_pair;
+  memory_.prepare(numbers_of_a_pair);
   cells_.low = bounds.low;
   cells_.kinds = kinds;
   cells_.laws = laws_.data();
@@ -58,8 +46,7 @@ void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, Sp
   const auto reserve_pairs = [&](SphereChunk& chunk, std::size_t room) {
     chunk.a.reserve(room);
     chunk.b.reserve(room);
-    chunk.memory.reserve(room * numbers_);
-    chunk.touches.reserve(room / batch);
+    chunk.reserve(room / batch + 1, memory_.numbers());
     chunk.groups.reserve(2 * kinds_ * kinds_ + 2);
   };
   for (SphereChunk& chunk : chunks) {
@@ -77,7 +64,7 @@ void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, Sp
     found_[0].reserve(pairs * all / 2 + 64);
   }
   for (auto& sorted : sorted_) sorted.reserve(all + SphereCells::padding);
-  kept_.reserve(pairs * all / 2 + 64);
+  memory_.reserve(pairs * all / 2 + 64);
   begin_.reserve(8 * all + 65536 + 1);
   cell_of_.reserve(all);
   order_.reserve(all);
@@ -132,49 +119,6 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
   for (std::size_t d = 0; d < 4; ++d) cells_.sorted[d] = sorted_[d].data();
 }
 
-/// The memory of all pairs that touch, by the number of the first.
-void SphereSearch::keep(const SphereSet& s, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
-                        const SphereChunk* sleeping) {
-  fit(kept_begin_, s.all + 1);
-  std::fill(kept_begin_.begin(), kept_begin_.end(), 0u);
-  // Both chunks of a pair have the same bits: that of the first counts, or the only one.
-  const auto pairs_of = [&](const SphereChunk& chunk, bool all, auto&& call) {
-    for (std::size_t q = 0; q < chunk.touches.size(); ++q)
-      for (unsigned bits = chunk.touches[q]; bits != 0; bits &= bits - 1) {
-        const std::size_t lane = static_cast<std::size_t>(__builtin_ctz(bits)), at = q * SphereChunk::batch + lane;
-        const std::uint32_t a = chunk.a[at];
-        if (!all && a < s.moving && (a < chunk.begin || a >= chunk.end)) continue;
-        call(before[a], before[chunk.b[at]], chunk.memory.data() + q * SphereChunk::batch * numbers_ + lane,
-             SphereChunk::batch);
-      }
-  };
-  const auto each = [&](auto&& call) {
-    for (const SphereChunk& chunk : chunks) {
-      pairs_of(chunk, false, call);
-      for (const auto& at : chunk.sides)
-        if (at.touches) call(before[at.sphere], side_number(at.axis, at.sign), at.memory, std::size_t{1});
-    }
-    if (sleeping) pairs_of(*sleeping, true, call);
-  };
-  each([&](std::uint32_t number, std::uint32_t, const double*, std::size_t) { ++kept_begin_[number + 1]; });
-  for (std::size_t k = 0; k < s.all; ++k) kept_begin_[k + 1] += kept_begin_[k];
-  fit(kept_, kept_begin_[s.all]);
-  each([&](std::uint32_t number, std::uint32_t with, const double* memory, std::size_t step) {
-    Kept& k = kept_[kept_begin_[number]++];
-    k.number = number;
-    k.with = with;
-    for (std::size_t m = 0; m < numbers_; ++m) k.memory[m] = memory[m * step];
-  });
-  for (std::size_t k = s.all; k > 0; --k) kept_begin_[k] = kept_begin_[k - 1];
-  kept_begin_[0] = 0;
-}
-
-const double* SphereSearch::memory_of(std::uint32_t number, std::uint32_t with) const {
-  for (std::size_t k = kept_begin_[number]; k < kept_begin_[number + 1]; ++k)
-    if (kept_[k].with == with) return kept_[k].memory;
-  return nullptr;
-}
-
 /// Orders the pairs by law, those of the chunk alone before those of two, those that touch before others, and gives
 /// them their memory.
 void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vector<FoundPair>& found) const {
@@ -198,21 +142,14 @@ void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vect
   const std::uint32_t far = static_cast<std::uint32_t>(s.all);
   fit(chunk.a, at);
   fit(chunk.b, at);
-  fit(chunk.touches, at / batch);
-  fit(chunk.memory, at * numbers_);
   std::fill(chunk.a.begin(), chunk.a.end(), far);
   std::fill(chunk.b.begin(), chunk.b.end(), far + 1);
-  std::fill(chunk.touches.begin(), chunk.touches.end(), std::uint8_t{0});
-  std::fill(chunk.memory.begin(), chunk.memory.end(), 0.0);
+  chunk.clear(at / batch, memory_.numbers());
   for (const FoundPair& f : found) {
     const std::uint32_t to = next[f.key]++;
     chunk.a[to] = f.a;
     chunk.b[to] = f.b;
-    const double* memory = memory_of(s.numbers[f.a], s.numbers[f.b]);
-    if (!memory) continue;
-    const std::size_t q = to / batch, lane = to % batch;
-    chunk.touches[q] = static_cast<std::uint8_t>(chunk.touches[q] | 1u << lane);
-    for (std::size_t m = 0; m < numbers_; ++m) chunk.memory[(q * numbers_ + m) * batch + lane] = memory[m];
+    memory_.recall(chunk, to, s.numbers[f.a], s.numbers[f.b]);
   }
 }
 
@@ -231,8 +168,8 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
       at.axis = side.axis;
       at.sign = side.sign;
       at.place = side.place;
-      if (const double* memory = memory_of(s.numbers[k], side_number(side.axis, side.sign))) {
-        std::copy_n(memory, numbers_, at.memory);
+      if (const double* memory = memory_.find(s.numbers[k], ContactMemory::side(side.axis, side.sign))) {
+        std::copy_n(memory, memory_.numbers(), at.memory);
         at.touches = true;
       }
     }
@@ -240,7 +177,7 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
 
 void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before,
                         SphereChunk* sleeping) {
-  keep(s, chunks, before, sleeping);
+  memory_.keep(s.moving, s.all, chunks, before, sleeping);
   if (sleeping) place_sleeping(s, *sleeping);
   sort(s, slack);
   make_room_for_threads();
@@ -262,7 +199,7 @@ void SphereSearch::place_sleeping(const SphereSet& s, SphereChunk& sleeping) {
   for (std::size_t k = 0; k < s.all; ++k) sphere_of_[s.numbers[k]] = static_cast<std::uint32_t>(k);
   auto& found = found_[0];
   found.clear();
-  for (const Kept& kept : kept_) {
+  for (const auto& kept : memory_.kept()) {
     if (kept.with >= s.all) continue;  // a side
     const std::uint32_t a = sphere_of_[kept.number], b = sphere_of_[kept.with];
     if (s.asleep && s.asleep[a] && s.asleep[b]) found.push_back({a, b, laws_[s.kinds[a] * kinds_ + s.kinds[b]] * 4});

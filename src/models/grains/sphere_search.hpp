@@ -39,28 +39,23 @@ class SphereSearch {
   void sort(const SphereSet& spheres, double slack);
   const SphereCells& cells() const { return cells_; }
   std::span<const Side> sides() const { return sides_; }
+  /// What contacts remember, and its description.
+  const ContactMemory& memory() const { return memory_; }
 
   /// An order of `count` spheres in which neighbours are near, in blocks of cells; x by axis.
   void order(const std::array<const double*, 3>& x, const std::vector<std::int64_t>& id,
              std::vector<std::uint32_t>& order);
 
  private:
-  struct Kept {
-    std::uint32_t number, with;  // of both
-    double memory[6];
-  };
   void make_room_for_threads();
-  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
-            const SphereChunk* sleeping);
   void place_sleeping(const SphereSet& spheres, SphereChunk& sleeping);
   void list_sleepers(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place_sides(const SphereSet& spheres, double slack, SphereChunk& chunk) const;
-  const double* memory_of(std::uint32_t number, std::uint32_t with) const;
 
   Bounds bounds_;
   double reach_ = 0.0;
-  std::size_t kinds_ = 0, numbers_ = 0;
+  std::size_t kinds_ = 0;
   std::vector<std::uint32_t> laws_;
   std::vector<Side> sides_;
 
@@ -69,8 +64,7 @@ class SphereSearch {
   std::vector<std::uint8_t> lively_;      // by cell
   std::vector<std::uint32_t> sphere_of_;  // by number
   AlignedVector<double> sorted_[4];       // x y z r, in the order of cells
-  std::vector<std::uint32_t> kept_begin_;
-  std::vector<Kept> kept_;
+  ContactMemory memory_;
   std::vector<std::vector<FoundPair>> found_;  // by thread
 };
 

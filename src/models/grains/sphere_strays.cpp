@@ -26,10 +26,6 @@ void each_pair_of(const SphereChunk& chunk, std::uint32_t sphere, F&& f) {
   }
 }
 
-bool touches(const SphereChunk& chunk, std::size_t pair) {
-  return (chunk.touches[pair / SphereChunk::batch] >> (pair % SphereChunk::batch) & 1u) != 0;
-}
-
 }  // namespace
 
 void SphereStrays::prepare(const SphereSet& s, double reach, const std::vector<SphereChunk>& chunks,
@@ -197,7 +193,7 @@ void SphereStrays::drop_others(const SphereSet&, std::uint32_t stray, std::vecto
       listed_[static_cast<std::size_t>(at - near_.begin())] = 1;
       return;
     }
-    if (touches(own, pair)) return;
+    if (own.touching(pair)) return;
     drop(own, pair);
     if (j >= moving_ || chunk_[j] == chunk_[stray]) return;
     SphereChunk& other = chunks[chunk_[j]];
@@ -233,8 +229,7 @@ void SphereStrays::add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std
   const std::size_t batches = chunk.touches.size();
   chunk.a.resize((batches + more_batches) * batch, far);
   chunk.b.resize((batches + more_batches) * batch, far + 1);
-  chunk.touches.resize(batches + more_batches, 0);
-  chunk.memory.resize((batches + more_batches) * batch * numbers_, 0.0);
+  chunk.grow(more_batches, numbers_);
   const auto first = static_cast<std::uint32_t>(batches), end = static_cast<std::uint32_t>(batches + more_batches);
   if (!chunk.groups.empty() && chunk.groups.back().law == law && chunk.groups.back().weight == weight)
     chunk.groups.back().end = end;

@@ -17,7 +17,8 @@
 #include <vector>
 
 #include "base/aligned.hpp"
-#include "laws/sphere_contact.hpp"
+#include "laws/sphere_catalogue.hpp"
+#include "models/grains/contact_memory.hpp"
 
 namespace barchan {
 
@@ -56,9 +57,9 @@ inline constexpr std::size_t passive_size = 4, passive_mass = 3;
 
 /// Spheres that move together in one share of a step, and the pairs in which they are. A pair stands in the chunk of
 /// each of its spheres, once; the first of a pair is that with the lower id, so that both chunks compute the same bits.
-struct SphereChunk {
+/// What the pairs remember stands beside them, batch by batch.
+struct SphereChunk : ContactBatches {
   static constexpr std::size_t most = 512;  // spheres
-  static constexpr std::size_t batch = 8;   // pairs
 
   /// Batches of one law; `weight`: of their energies, 1/2 where another chunk has the pair too.
   struct Group {
@@ -71,16 +72,14 @@ struct SphereChunk {
     std::uint16_t axis = 0;
     std::int16_t sign = 1;
     double place = 0.0;
-    double memory[6] = {};
+    double memory[ContactMemory::most_numbers] = {};
     bool touches = false;
   };
 
   std::size_t begin = 0, end = 0;  // spheres
   std::size_t phase = 0;           // of the scene
   std::vector<Group> groups;
-  AlignedVector<std::uint32_t> a, b;    // by pair; what pads them is the two far away
-  AlignedVector<double> memory;         // by batch: of each number of the memory eight, a pair's beside the next one's
-  AlignedVector<std::uint8_t> touches;  // by batch: a bit a pair
+  AlignedVector<std::uint32_t> a, b;  // by pair; what pads them is the two far away
   std::vector<AtSide> sides;
   bool all_awake = true;
   std::vector<std::uint32_t> awake;   // spheres, where some of the chunk sleep
@@ -135,7 +134,7 @@ struct SphereStep {
   const double* records = nullptr;
   double* next = nullptr;
   const double* passive = nullptr;
-  const SphereContact* laws = nullptr;
+  const AnySphereContact* laws = nullptr;
   const double* inverse_densities =
       nullptr;                             // by law, of the first and of the second: inverse mass times r^3 (1/kg m3)
   const SphereColumns* columns = nullptr;  // by phase

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
+#include "base/errors.hpp"
 #include "models/grains/sphere_rest.hpp"
 #include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_sleep.hpp"
@@ -21,27 +23,43 @@ class SphereLaws {
  public:
   SphereLaws(const Scene& scene, const Layout& layout);
 
-  const std::vector<SphereContact>& laws() const { return laws_; }
+  const std::vector<AnySphereContact>& laws() const { return laws_; }
   /// Inverse mass times r^3 of the first and second phase of each law (1/kg m3), 0 of a wall.
   const std::vector<double>& inverse_densities() const { return inverse_densities_; }
   /// By phase and phase; SphereSearch::none where two do not touch.
   const std::vector<std::uint32_t>& table() const { return table_; }
-  bool rubs() const;
-  bool rolls() const;
+  bool rubs() const { return rubs_; }    ///< some law has friction or rolling resistance
+  bool rolls() const { return rolls_; }  ///< some law has rolling resistance
   /// A twelfth (without loss a 24th or 48th) of the shortest contact at the largest speed of the scene (s); infinite
   /// without contacts.
   double step() const { return step_; }
   double reach() const { return reach_; }  ///< m, the largest sum of two radii
 
  private:
-  std::vector<SphereContact> laws_;
+  SphereImpact shortest_impact(const Scene& scene, const Layout& layout, const PlanEntry& entry);
+
+  std::vector<AnySphereContact> laws_;
   std::vector<double> inverse_densities_;
   std::vector<std::uint32_t> table_;
   double step_ = 1e300, reach_ = 0.0;
+  bool rubs_ = false, rolls_ = false;
 };
 
-/// Of a contact of two grains of the phase: N/m, or of Hertz 4/3 E* in Pa.
-double sphere_stiffness(const Scene& scene, const Layout& layout, std::size_t phase, bool hertz);
+/// Two mean spheres of a phase that meet with a speed (m/s).
+SphereImpact impact_of(const Layout& layout, std::size_t phase, double speed);
+/// Throws: neither the key nor a largest speed says how stiff the grains of the phase are.
+[[noreturn]] void refuse_unknown_stiffness(const Scene& scene, std::size_t phase, std::string_view key);
+/// The normal spring of two grains of the phase under a law of the catalogue. Throws SceneError where nothing says how
+/// stiff it is.
+template <class Row>
+typename Row::Law::Normal normal_spring(const Scene& scene, const Layout& layout, std::size_t phase) {
+  using Normal = typename Row::Law::Normal;
+  const SphereMaterial& keys = scene.phases[phase].grains();
+  if (const auto given = Normal::of(keys)) return *given;
+  if (!(layout.largest_speed > 0.0)) refuse_unknown_stiffness(scene, phase, sphere_keys_of(Row::word)->stiffness);
+  return Normal::of_overlap(keys, impact_of(layout, phase, layout.largest_speed),
+                            keys.largest_overlap * layout.phases[phase].diameter);
+}
 /// Whether spheres of the phase turn: some law of theirs rubs.
 bool spheres_turn(const Scene& scene, std::size_t phase);
 

@@ -5,6 +5,7 @@
 #include "engine/reproducible_sum.hpp"
 #include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
+#include "scene/contact_words.hpp"
 
 namespace barchan {
 
@@ -35,9 +36,8 @@ std::optional<std::string> Spheres::trouble() const {
   if (deepest_ <= most_sphere_overlap) return std::nullopt;
   return "two grains overlap by " + brief(100.0 * deepest_) + " % of their mean diameter (the bound is " +
          brief(100.0 * most_sphere_overlap) +
-         " %): contacts are too soft for what presses them, or fills overlap; raise stiffness, young or "
-         "time.largest-speed, or lower "
-         "largest-overlap";
+         " %): contacts are too soft for what presses them, or fills overlap; raise " + sphere_stiffness_keys(", ") +
+         " or time.largest-speed, or lower largest-overlap";
 }
 
 std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
@@ -112,8 +112,7 @@ void Spheres::archive(Archive& a) {
     a.array("groups", chunk.groups);
     a.array("first of pairs", chunk.a);
     a.array("second of pairs", chunk.b);
-    a.array("memory of pairs", chunk.memory);
-    a.array("pairs that touch", chunk.touches);
+    chunk.ContactBatches::archive(a);
   };
   for (SphereChunk& chunk : chunks_) {
     pairs(chunk);

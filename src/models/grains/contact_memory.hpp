@@ -1,0 +1,104 @@
+// What contacts of spheres remember from step to step: the slips of friction and of rolling resistance, and who
+// touches.
+//
+// This is a column by pair of ids, the ids being the lasting numbers of two spheres, or of a sphere and a side of the
+// domain. Its description (PairColumn) says what follows from it. Two places hold its values: between two searches the
+// lists of pairs, batch by batch, where the loops over contacts read and write them (ContactBatches); in a search, when
+// the lists are made anew, a table by pair (ContactMemory), from which the new lists take them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/aligned.hpp"
+#include "state/archive.hpp"
+
+namespace barchan {
+
+struct SphereChunk;
+
+/// Gives a vector a size, with more room than that where it must grow, so that it seldom allocates.
+template <class Vector>
+void fit(Vector& vector, std::size_t size) {
+  if (vector.capacity() < size) vector.reserve(size + size / 2 + 64);
+  vector.resize(size);
+}
+
+/// A column by pair of ids, and what must happen to its values.
+struct PairColumn {
+  std::string_view name, unit;
+  std::size_t numbers = 0;      // of a pair
+  bool state = true;            // a step starts from it: a checkpoint has it
+  bool goes_with_pair = true;   // it stays with its two ids, wherever sorting and searching put them
+  bool ends_with_touch = true;  // a pair that does not touch has none
+};
+
+/// The values of the pairs of a list, eight pairs side by side: of each number eight, a pair's beside the next one's.
+struct ContactBatches {
+  static constexpr std::size_t batch = 8;  // pairs
+
+  AlignedVector<double> memory;         // by batch; m
+  AlignedVector<std::uint8_t> touches;  // by batch: a bit a pair
+
+  /// Becomes so many batches of pairs that do not touch. Allocates only to grow.
+  void clear(std::size_t batches, std::size_t numbers);
+  void reserve(std::size_t batches, std::size_t numbers);
+  /// Adds batches of pairs that do not touch.
+  void grow(std::size_t batches, std::size_t numbers);
+  /// The first number of the pair at that place of the list; the next one is `batch` further.
+  double* of_pair(std::size_t place, std::size_t numbers) {
+    return memory.data() + (place / batch * numbers) * batch + place % batch;
+  }
+  const double* of_pair(std::size_t place, std::size_t numbers) const {
+    return const_cast<ContactBatches*>(this)->of_pair(place, numbers);
+  }
+  bool touching(std::size_t place) const { return (touches[place / batch] >> (place % batch) & 1u) != 0; }
+  void set_touching(std::size_t place) {
+    touches[place / batch] = static_cast<std::uint8_t>(touches[place / batch] | 1u << place % batch);
+  }
+  void archive(Archive& a) {
+    a.array("memory of pairs", memory);
+    a.array("pairs that touch", touches);
+  }
+};
+
+class ContactMemory {
+ public:
+  static constexpr std::size_t most_numbers = 6;  // two slips of three components
+  /// What a pair that touches has.
+  struct Kept {
+    std::uint32_t number, with;  // lasting numbers; with: or a side
+    double values[most_numbers];
+  };
+
+  /// `numbers` of a pair, at most most_numbers.
+  void prepare(std::size_t numbers) { column_.numbers = numbers; }
+  /// Room for so many pairs that touch.
+  void reserve(std::size_t pairs) { kept_.reserve(pairs); }
+  const PairColumn& column() const { return column_; }
+  std::size_t numbers() const { return column_.numbers; }
+
+  /// Takes the values of all pairs that touch out of the lists. `before`: lasting numbers of the `all` spheres, the
+  /// `moving` ones first, by their places when the lists were made; `sleeping`: null, or the list of those that sleep.
+  void keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks, const std::uint32_t* before,
+            const SphereChunk* sleeping);
+  std::span<const Kept> kept() const { return kept_; }
+  /// The values of a pair; null: it did not touch.
+  const double* find(std::uint32_t number, std::uint32_t with) const;
+  /// Puts the values of a pair at its place in a list.
+  void recall(ContactBatches& list, std::size_t place, std::uint32_t number, std::uint32_t with) const;
+
+  /// A side of the domain as the partner of a sphere.
+  static constexpr std::uint32_t side(std::uint16_t axis, std::int16_t sign) {
+    return 0xfffffff0u + 2u * axis + (sign > 0 ? 1u : 0u);
+  }
+
+ private:
+  PairColumn column_{"contact_slip", "m"};
+  std::vector<std::uint32_t> begin_;  // by number: its first place in kept_; one more
+  std::vector<Kept> kept_;
+};
+
+}  // namespace barchan

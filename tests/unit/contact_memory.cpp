@@ -1,0 +1,122 @@
+// What contacts of spheres remember goes with its pair: through new lists, another order of the spheres, and sides.
+#include "models/grains/contact_memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include "models/grains/sphere_work.hpp"
+
+namespace barchan {
+namespace {
+
+/// A list of pairs; who is last of a batch is followed by padding.
+SphereChunk list_of(std::size_t begin, std::size_t end, const std::vector<std::array<std::uint32_t, 2>>& pairs,
+                    std::size_t numbers, std::uint32_t far) {
+  constexpr std::size_t batch = ContactBatches::batch;
+  const std::size_t batches = (pairs.size() + batch - 1) / batch;
+  SphereChunk chunk;
+  chunk.begin = begin;
+  chunk.end = end;
+  chunk.a.assign(batches * batch, far);
+  chunk.b.assign(batches * batch, far + 1);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    chunk.a[k] = pairs[k][0];
+    chunk.b[k] = pairs[k][1];
+  }
+  chunk.clear(batches, numbers);
+  return chunk;
+}
+void remember(ContactBatches& list, std::size_t place, std::size_t numbers, double value) {
+  list.set_touching(place);
+  for (std::size_t m = 0; m < numbers; ++m)
+    list.of_pair(place, numbers)[m * ContactBatches::batch] = value + static_cast<double>(m);
+}
+
+TEST(ContactBatchesOfAList, KeepPairsApart) {
+  ContactBatches list;
+  list.clear(2, 3);
+  for (const std::size_t place : {0u, 7u, 8u, 13u}) remember(list, place, 3, 10.0 * static_cast<double>(place));
+  for (const std::size_t place : {0u, 7u, 8u, 13u})
+    for (std::size_t m = 0; m < 3; ++m)
+      EXPECT_EQ(list.of_pair(place, 3)[m * ContactBatches::batch],
+                10.0 * static_cast<double>(place) + static_cast<double>(m));
+  EXPECT_EQ(list.of_pair(8, 3) - list.memory.data(), 24) << "eight pairs of three numbers are before it";
+  for (std::size_t place = 0; place < 16; ++place)
+    EXPECT_EQ(list.touching(place), place == 0 || place == 7 || place == 8 || place == 13) << place;
+  list.grow(1, 3);
+  EXPECT_TRUE(list.touching(13));
+  EXPECT_FALSE(list.touching(16));
+  EXPECT_EQ(list.of_pair(13, 3)[0], 130.0);
+  EXPECT_EQ(list.of_pair(16, 3)[0], 0.0);
+  list.clear(1, 3);
+  EXPECT_FALSE(list.touching(0));
+  EXPECT_EQ(list.of_pair(0, 3)[0], 0.0);
+}
+
+TEST(ContactMemories, DescribeTheirColumn) {
+  ContactMemory memory;
+  memory.prepare(2);
+  EXPECT_EQ(memory.column().numbers, 2u);
+  EXPECT_EQ(memory.column().unit, "m");
+  EXPECT_TRUE(memory.column().state && memory.column().goes_with_pair && memory.column().ends_with_touch);
+}
+
+// Six spheres in two chunks, a fixed one, and a side. Between the two lists they change places.
+TEST(ContactMemories, GoWithTheirPairs) {
+  constexpr std::size_t numbers = 2, moving = 6, all = 7, far = 7;
+  ContactMemory memory;
+  memory.prepare(numbers);
+  const std::uint32_t before[] = {3, 1, 5, 0, 4, 2, 6};  // lasting numbers by place
+  std::vector<SphereChunk> chunks{list_of(0, 3, {{1, 0}, {1, 5}, {1, 2}, {0, 6}}, numbers, far),
+                                  list_of(3, 6, {{3, 4}, {1, 5}}, numbers, far)};
+  remember(chunks[0], 0, numbers, 100.0);  // numbers 1, 3
+  remember(chunks[0], 1, numbers, 200.0);  // numbers 1, 2: in both chunks
+  remember(chunks[1], 1, numbers, 200.0);
+  remember(chunks[0], 3, numbers, 300.0);  // numbers 3, 6: the fixed one
+  SphereChunk::AtSide side;
+  side.sphere = 5;  // number 2
+  side.axis = 1;
+  side.memory[0] = 7.0;
+  side.memory[1] = 8.0;
+  side.touches = true;
+  chunks[1].sides.push_back(side);
+  memory.keep(moving, all, chunks, before, nullptr);
+  EXPECT_EQ(memory.kept().size(), 4u) << "the pair of two chunks once";
+  const auto first_of = [&](std::uint32_t number, std::uint32_t with) {
+    const double* values = memory.find(number, with);
+    return values ? values[0] : -1.0;
+  };
+  EXPECT_EQ(first_of(1, 3), 100.0);
+  EXPECT_EQ(first_of(1, 2), 200.0);
+  EXPECT_EQ(first_of(3, 6), 300.0);
+  EXPECT_EQ(first_of(2, ContactMemory::side(1, 1)), 7.0);
+  EXPECT_EQ(first_of(2, ContactMemory::side(1, -1)), -1.0) << "the other side";
+  EXPECT_EQ(first_of(1, 5), -1.0) << "listed, but they do not touch";
+  EXPECT_EQ(first_of(0, 4), -1.0) << "listed, but they do not touch";
+
+  ContactBatches list;
+  list.clear(2, numbers);
+  memory.recall(list, 9, 1, 2);
+  memory.recall(list, 10, 1, 5);
+  EXPECT_TRUE(list.touching(9));
+  EXPECT_FALSE(list.touching(10));
+  for (std::size_t m = 0; m < numbers; ++m)
+    EXPECT_EQ(list.of_pair(9, numbers)[m * ContactBatches::batch], 200.0 + static_cast<double>(m));
+}
+
+// Pairs of spheres that sleep stand in a list of their own, with all of their pairs.
+TEST(ContactMemories, KeepThoseOfSleepers) {
+  ContactMemory memory;
+  memory.prepare(1);
+  const std::uint32_t before[] = {0, 1, 2};
+  std::vector<SphereChunk> chunks{list_of(0, 3, {{0, 1}}, 1, 3)};
+  SphereChunk sleeping = list_of(0, 0, {{1, 2}}, 1, 3);
+  remember(chunks[0], 0, 1, 1.0);
+  remember(sleeping, 0, 1, 2.0);
+  memory.keep(3, 3, chunks, before, &sleeping);
+  ASSERT_NE(memory.find(1, 2), nullptr);
+  EXPECT_EQ(memory.find(1, 2)[0], 2.0);
+  EXPECT_EQ(memory.find(0, 1)[0], 1.0);
+}
+
+}  // namespace
+}  // namespace barchan
