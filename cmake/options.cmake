@@ -54,5 +54,7 @@ function(barchan_compile_together target)
     math(EXPR files "${files} + 1")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${name}_${batch}")
   endforeach()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # A local name may be a global one of another file of the batch: the presets that compile each file alone look for shadows.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
+    UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")
 endfunction()

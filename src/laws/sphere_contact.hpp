@@ -21,7 +21,7 @@
 //     with T^2 = k dt^2/m*, D = c/sqrt(m* k): K = k (1 - T^2 (1 + D^2)/12), C = c (1 - T^2 D^2/12), to order T^4.
 //   the dashpot's velocity at t_n: with what the force itself adds, v + F dt/(2 m*), F = (K delta - C v)/(1 + C dt/(2
 //   m*)).
-// Found for 12 steps a contact, all phases of the first touch (tests/unit/sphere_contact.cpp): e = 0.3 within 0.3 %,
+// Found for 12 steps a contact, all phases of the first touch (tests/unit/laws_sphere_contact.cpp): e = 0.3 within 0.3 %,
 // 0.5 to 0.9 within 0.2 %; the plain force missed them by 14 and 2 to 8 %. Spheres without a dashpot take the plain
 // force at x_n, so that the steps stay those of a mechanical system: where many touch at once, a force that knows
 // velocities gains energy (1 % in 10^4 steps of a dense gas).

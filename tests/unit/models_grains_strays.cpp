@@ -14,7 +14,7 @@ namespace {
 using sets::SphereCast;
 using sets::Uniform;
 
-constexpr double slack = 0.2, step = 0.01;  // m, s
+constexpr double stray_slack = 0.2, step = 0.01;  // m, s
 
 template <int Dim>
 struct Strayed {
@@ -30,10 +30,10 @@ struct Strayed {
       : cast(std::move(c)), sides(std::move(s)) {
     search.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
     strays.prepare(cast.set(), cast.reach, cast.chunks, cast.numbers_of_a_pair);
-    strays.begin(cast.set(), slack);
-    search.find(set(), slack, cast.chunks, cast.numbers.data(), nullptr);
+    strays.begin(cast.set(), stray_slack);
+    search.find(set(), stray_slack, cast.chunks, cast.numbers.data(), nullptr);
     strays.take_cells(search.cells());
-    allowance.assign(cast.all, 0.5 * slack);
+    allowance.assign(cast.all, 0.5 * stray_slack);
     renewed.assign(cast.all, false);
   }
   SphereSet set() const {
@@ -48,7 +48,7 @@ struct Strayed {
     strays.renew(set(), static_cast<std::uint32_t>(k), step, sides, cast.chunks);
     renewed[k] = true;
     // Forty steps at its speed, half of the slack at least, the reach at most.
-    allowance[k] = std::clamp(40.0 * step * std::abs(speed), 0.5 * slack, cast.reach);
+    allowance[k] = std::clamp(40.0 * step * std::abs(speed), 0.5 * stray_slack, cast.reach);
   }
   /// Of the places where the last search of each sphere found it.
   bool may_touch(std::size_t i, std::size_t j) const {
@@ -77,7 +77,7 @@ struct Strayed {
 };
 
 template <int Dim>
-void compare_sets(std::array<bool, 3> periodic, double perturb) {
+void compare_strays(std::array<bool, 3> periodic, double perturb) {
   Uniform random(23);
   const Bounds bounds = sets::box(Dim, {9.0, 8.0, Dim == 3 ? 6.0 : 0.0}, periodic, {-2.0, 1.0, 0.5});
   const auto x = sets::lattice(bounds, 1.0, perturb, random);
@@ -100,10 +100,10 @@ void compare_sets(std::array<bool, 3> periodic, double perturb) {
   strayed.compare("gone a short way");
 }
 
-TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInAPlane) { compare_sets<2>({false, false, false}, 0.0); }
-TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInAPeriodicPlane) { compare_sets<2>({true, false, false}, 0.3); }
-TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInSpace) { compare_sets<3>({false, false, false}, 0.3); }
-TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInPeriodicSpace) { compare_sets<3>({true, true, false}, 0.0); }
+TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInAPlane) { compare_strays<2>({false, false, false}, 0.0); }
+TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInAPeriodicPlane) { compare_strays<2>({true, false, false}, 0.3); }
+TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInSpace) { compare_strays<3>({false, false, false}, 0.3); }
+TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInPeriodicSpace) { compare_strays<3>({true, true, false}, 0.0); }
 
 TEST(SphereStrays, FindTheSidesThatTheyMayTouch) {
   Uniform random(29);
