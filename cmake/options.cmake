@@ -32,3 +32,29 @@ if(BARCHAN_SANITIZE)
   # Checks in every operation, all inlined into one loop, take g++ 12 minutes a file (models/fluid/fluid_rates.cpp: 165 s, so 51 s).
   target_compile_definitions(barchan_options INTERFACE BARCHAN_SIMD_INLINE=inline)
 endif()
+
+# Compiles the sources of a target together, at most six files of a folder in one batch; a file that is named by no call stays
+# alone. Names in namespaces without a name must differ within a folder then. Presets dev, clang and tidy compile each
+# file alone: a file includes what it uses.
+function(barchan_compile_together target)
+  if(NOT BARCHAN_TOGETHER)
+    return()
+  endif()
+  set(most 6)
+  set(folder "")
+  foreach(source ${ARGN})
+    get_filename_component(here ${source} DIRECTORY)
+    if(NOT here STREQUAL folder)
+      set(folder ${here})
+      set(files 0)
+      file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${folder})
+      string(REPLACE "/" "_" name "${name}")
+    endif()
+    math(EXPR batch "${files} / ${most}")
+    math(EXPR files "${files} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${name}_${batch}")
+  endforeach()
+  # A local name may be a global one of another file of the batch: the presets that compile each file alone look for shadows.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP
+    UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")
+endfunction()

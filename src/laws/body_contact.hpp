@@ -45,7 +45,7 @@ struct BodyContactLaw {
   template <class V>
   struct Constants {
     V distance, stiffness, deep_distance, second_stiffness, dashpot, rub, friction, dt, slow;
-    Constants(const BodyContactLaw& law, double step)
+    BARCHAN_SIMD_INLINE Constants(const BodyContactLaw& law, double step)
         : distance(law.distance),
           stiffness(law.stiffness),
           deep_distance(deep * law.distance),

@@ -33,16 +33,15 @@ struct KernelContact {
   template <class T>
   struct Constants {
     T stiffness, damping, rest_value, inverse_slope;
-    explicit Constants(const KernelContact& c)
+    BARCHAN_SIMD_INLINE explicit Constants(const KernelContact& c)
         : stiffness(c.stiffness), damping(c.damping), rest_value(c.rest_value), inverse_slope(c.inverse_slope) {}
   };
 
   /// Adds the force [N] on a: r = x_a - x_b, v = v_a - v_b, w and f the kernel and its gradient factor at r. r2 > 0, in
   /// the range of simd::inverse_sqrt.
   template <class T, std::size_t Dim>
-  static void add(const Constants<T>& c, const std::array<T, Dim>& r, T r2, const std::array<T, Dim>& v, T w, T f,
-                  std::array<T, Dim>& force) {
-    using std::max;
+  static BARCHAN_SIMD_INLINE void add(const Constants<T>& c, const std::array<T, Dim>& r, T r2,
+                                      const std::array<T, Dim>& v, T w, T f, std::array<T, Dim>& force) {
     const T overlap = max(w - c.rest_value, T(0.0)) * c.inverse_slope;  // g [m]
     const T slope = f * c.inverse_slope;                                // W'(r)/|W'(d)| / r, negative
     T vr(0.0);
@@ -56,7 +55,7 @@ struct KernelContact {
 
  private:
   template <class T>
-  static T touch(T overlap) {
+  static BARCHAN_SIMD_INLINE T touch(T overlap) {
     return select(overlap > T(0.0), T(1.0), T(0.0));
   }
 };

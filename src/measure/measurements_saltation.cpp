@@ -14,7 +14,7 @@ namespace barchan {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 enum Quantity : std::size_t { concentration, flux, stress, wind, wind_stress };
 
 double speed_at(const AirProfile& air, double y) {
@@ -81,12 +81,12 @@ Table Measurements::layers(std::size_t k) {
     const Average a = average(k, row);
     const bool any = a.count() > 0;
     over.values.push_back(i.rows[row][1] - bed);
-    density.values.push_back(any ? a.mean(concentration) : nan);
-    flow.values.push_back(any ? a.mean(flux) : nan);
-    speed.values.push_back(any && a.mean(concentration) > 0.0 ? a.mean(flux) / a.mean(concentration) : nan);
-    carried.values.push_back(any ? a.mean(stress) : nan);
-    air.values.push_back(any ? a.mean(wind) : nan);
-    shear.values.push_back(any ? a.mean(wind_stress) : nan);
+    density.values.push_back(any ? a.mean(concentration) : absent);
+    flow.values.push_back(any ? a.mean(flux) : absent);
+    speed.values.push_back(any && a.mean(concentration) > 0.0 ? a.mean(flux) / a.mean(concentration) : absent);
+    carried.values.push_back(any ? a.mean(stress) : absent);
+    air.values.push_back(any ? a.mean(wind) : absent);
+    shear.values.push_back(any ? a.mean(wind_stress) : absent);
     samples.values.push_back(static_cast<double>(a.count()));
   }
   Table t;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view magic = "barchan checkpoint 2\n";
 
 /// What stands between the magic words and the items.
-struct Head {
+struct CheckpointHead {
   std::uint64_t size = 0;  // bytes of the items
   std::uint32_t sum = 0;   // their CRC-32
   std::uint32_t unused = 0;
@@ -66,7 +66,7 @@ void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint) 
   Archive archive;
   items(archive, checkpoint);
   const auto& bytes = archive.bytes();
-  const Head head{bytes.size(), checksum(bytes.data(), bytes.size()), 0};
+  const CheckpointHead head{bytes.size(), checksum(bytes.data(), bytes.size()), 0};
   WholeFile out(file);
   out.write(magic);
   out.write({reinterpret_cast<const char*>(&head), sizeof head});
@@ -106,7 +106,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
 }
 
 Checkpoint parse_checkpoint(const std::vector<char>& all) {
-  Head head;
+  CheckpointHead head;
   if (all.size() < magic.size() + sizeof head || std::string_view(all.data(), magic.size()) != magic)
     throw SceneError("is no checkpoint of this version; expected a file that begins with \"barchan checkpoint 2\"");
   std::memcpy(&head, all.data() + magic.size(), sizeof head);

@@ -284,12 +284,6 @@ std::vector<std::string> lines_of(const Array& array, const std::vector<char>& b
   return lines;
 }
 
-std::string unit_of(const std::string& field, const std::vector<std::string>& units) {
-  for (const auto& line : units)
-    if (line.starts_with(field + " ")) return line.substr(field.size() + 1);
-  return "";
-}
-
 class FrameReader {
  public:
   FrameReader(const Head& head, const Appended& data) : head_(head), data_(data) {}
@@ -365,6 +359,12 @@ class FrameReader {
 };
 
 }  // namespace
+
+std::string unit_of(const std::string& field, const std::vector<std::string>& units) {
+  for (const auto& line : units)
+    if (line.starts_with(field + " ")) return line.substr(field.size() + 1);
+  return "";
+}
 
 std::optional<Frame> read_appended(std::string_view text, const std::string& suffix) {
   const std::size_t tag = text.find("<AppendedData");

@@ -16,4 +16,7 @@ inline constexpr std::string_view contact_arrays = "contact_";
 /// the XML itself. Throws OutputError when it is damaged; takes no more memory than the file can be the reason for.
 std::optional<Frame> read_appended(std::string_view text, const std::string& suffix);
 
+/// The unit of a field in the lines `NAME UNIT` of a file's field data; "" without one.
+std::string unit_of(const std::string& field, const std::vector<std::string>& units);
+
 }  // namespace barchan

@@ -255,12 +255,6 @@ Lines lines_of(vtkFieldData* about, const char* name) {
   return lines;
 }
 
-std::string unit_of(const std::string& field, const Lines& units) {
-  for (const auto& line : units)
-    if (line.starts_with(field + " ")) return line.substr(field.size() + 1);
-  return "";
-}
-
 Frame frame_of(vtkPointSet* data) {
   Frame frame;
   vtkFieldData* about = data->GetFieldData();

@@ -79,12 +79,6 @@ std::vector<std::string> phase_names(const Scene& scene) {
 
 }  // namespace
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
 std::string unknown_phase(const std::string& name, const Scene& scene) {
   const std::vector<std::string> names = phase_names(scene);
   return "there is no phase \"" + shortened(name) + "\"; expected " +

@@ -3,6 +3,7 @@
 
 #include "scene/couplings.hpp"
 #include "scene/document.hpp"
+#include "scene/keys.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -27,7 +28,6 @@ class Report {
   Problems& problems_;
 };
 
-std::string number_text(double value);  ///< ten digits at most
 /// "there is no phase ...; expected ...; did you mean ...".
 std::string unknown_phase(const std::string& name, const Scene& scene);
 

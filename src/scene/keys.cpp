@@ -14,12 +14,6 @@ std::string_view kind_word(PhaseKind kind) {
   return find_key("phases", "kind")->slot.words[static_cast<std::size_t>(kind)].word;
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
 std::string bounds_text(const NumberBounds& b) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::string text;
@@ -34,6 +28,12 @@ std::string bounds_text(const NumberBounds& b) {
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
 
 const Key* find_key(std::string_view section, std::string_view name) {
   for (const Key& key : all_keys())

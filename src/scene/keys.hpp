@@ -87,6 +87,7 @@ struct MatrixDefaults {
   std::optional<KernelKind> kernel;
 };
 
+std::string number_text(double value);  ///< ten digits at most
 std::span<const Key> all_keys();
 const Key* find_key(std::string_view section, std::string_view name);  ///< null when there is none
 std::vector<const Key*> keys_of(std::string_view section);             ///< in the order of the table

@@ -17,7 +17,7 @@ constexpr NumberBounds not_negative{.at_least = 0.0};
 // formula and the kind of phase that may leave it out, where they apply. A key of phases is a member of one kind or of
 // several.
 // clang-format off
-constexpr Key table[] = {
+constexpr Key rows_of_keys[] = {
     {"", "title", at<&Scene::title>("the file's name"), "", "What the scene shows, in a few words."},
     {"", "state", at<&Scene::state>("none"), "", "Name of the ParaView state (in pvstate/) that renders this scene."},
     {"", "dimensions", at<&Scene::dimensions>(2), "", "Dimensions of space, 2 or 3; vectors have as many components.", {.at_least = 2, .at_most = 3}},
@@ -343,6 +343,6 @@ constexpr Key table[] = {
 
 }  // namespace
 
-std::span<const Key> all_keys() { return table; }
+std::span<const Key> all_keys() { return rows_of_keys; }
 
 }  // namespace barchan

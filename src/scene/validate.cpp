@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "base/errors.hpp"
 #include "scene/formula.hpp"
@@ -12,12 +11,6 @@
 
 namespace barchan {
 namespace {
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
 
 /// What a person sees in the file, shortened: for "found ...".
 std::string shown(const toml::node& node) {

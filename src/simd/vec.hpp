@@ -10,6 +10,7 @@
 
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -310,7 +311,8 @@ struct Vec {
 // A double in every lane, rounded to the lanes' type.
 template <class V>
 BARCHAN_SIMD_INLINE V broadcast(double x) {
-  return V(static_cast<typename V::value_type>(x));
+  if constexpr (std::is_floating_point_v<V>) return static_cast<V>(x);
+  else return V(static_cast<typename V::value_type>(x));
 }
 
 namespace detail {
@@ -611,6 +613,48 @@ BARCHAN_SIMD_INLINE Vec<T, W> sqrt(Vec<T, W> a) {
   }
 }
 
+// The same of numbers: a law takes T = double as well as a vector.
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T fma(T a, T b, T c) {
+#if defined(__FMA__)
+  return std::fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T fnma(T a, T b, T c) {
+  return fma(-a, b, c);
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T min(T a, T b) {
+  return a < b ? a : b;
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T max(T a, T b) {
+  return a > b ? a : b;
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T sqrt(T a) {
+  return std::sqrt(a);
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T inverse_sqrt(T a) {
+  return T(1) / std::sqrt(a);
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T select(bool condition, T a, T b) {
+  return condition ? a : b;
+}
+template <std::floating_point T>
+BARCHAN_SIMD_INLINE T sum(T a) {
+  return a;
+}
+template <std::same_as<bool> M>  // of no other type: a number is no mask
+BARCHAN_SIMD_INLINE std::uint32_t to_bits(M condition) {
+  return condition ? 1u : 0u;
+}
+
 #undef BARCHAN_SIMD_512
 #undef BARCHAN_SIMD_256
 #undef BARCHAN_SIMD_128
@@ -899,3 +943,15 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
 
 }  // namespace BARCHAN_TARGET
 }  // namespace barchan::simd
+
+// Laws call these without a namespace: of a number nothing else would name it.
+namespace barchan {
+using simd::fma;
+using simd::fnma;
+using simd::inverse_sqrt;
+using simd::max;
+using simd::min;
+using simd::select;
+using simd::sqrt;
+using simd::to_bits;
+}  // namespace barchan

@@ -16,14 +16,14 @@ namespace barchan {
 namespace {
 
 // Places along x, in 3D a tenth of them along z too, at which the heights of beds are asked.
-constexpr int columns = 400;
+constexpr int samples_across = 400;
 
 template <class F>
 void each_column(const Scene& scene, F&& f) {
-  const int across = scene.dimensions == 3 ? columns / 10 : 1;
+  const int across = scene.dimensions == 3 ? samples_across / 10 : 1;
   for (int k = 0; k < across; ++k)
-    for (int i = 0; i <= columns; ++i)
-      f(scene.domain.origin[0] + scene.domain.size[0] * i / columns,
+    for (int i = 0; i <= samples_across; ++i)
+      f(scene.domain.origin[0] + scene.domain.size[0] * i / samples_across,
         scene.domain.origin[2] + scene.domain.size[2] * (k + 0.5) / across);
 }
 

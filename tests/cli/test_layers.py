@@ -61,7 +61,26 @@ def circles(src):
     return found
 
 
+def strangers(tests, src):
+    """Files of tests/unit that no folder of src finds: each is named for it, models_grains_search.cpp."""
+    folders = {str(f.relative_to(src)).replace("/", "_") for f in src.rglob("*") if f.is_dir()}
+    return [f.name for f in sorted(tests.glob("*.cpp"))
+            if not any(f.stem == folder or f.stem.startswith(folder + "_") for folder in folders)]
+
+
 class Layers(unittest.TestCase):
+    def test_a_unit_test_is_named_for_its_folder(self):
+        self.assertEqual(strangers(ROOT / "tests/unit", ROOT / "src"), [])
+
+    def test_a_planted_stranger_is_found(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            for name in ("src/models/grains", "unit"):
+                (pathlib.Path(scratch) / name).mkdir(parents=True)
+            for name in ("models_grains_x", "models", "grains_x", "model_x"):
+                (pathlib.Path(scratch) / "unit" / f"{name}.cpp").write_text("")
+            self.assertEqual(strangers(pathlib.Path(scratch) / "unit", pathlib.Path(scratch) / "src"),
+                             ["grains_x.cpp", "model_x.cpp"])
+
     def test_a_name_of_a_file_stands_once(self):
         self.assertEqual(twins(ROOT / "src"), {})
 

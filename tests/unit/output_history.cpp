@@ -13,7 +13,7 @@ using namespace example;
 
 const std::vector<std::string> columns{"time [s]", "dt [s]", "momentum x [kg m/s]"};
 
-std::string text_of(const std::filesystem::path& file) {
+std::string text_of_file(const std::filesystem::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -31,7 +31,7 @@ TEST(History, HasItsColumnsAndEveryDigit) {
   History history(directory / "history.csv", columns);
   history.row({0.1 + 0.2, 1e-5, -1.0 / 3});
   history.row({1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()});
-  EXPECT_EQ(text_of(directory / "history.csv"),  // while it is still open: rows are flushed
+  EXPECT_EQ(text_of_file(directory / "history.csv"),  // while it is still open: rows are flushed
             "time [s],dt [s],momentum x [kg m/s]\n"
             "0.30000000000000004,1.0000000000000001e-05,-0.33333333333333331\n"
             "1,nan,inf\n");
@@ -41,43 +41,43 @@ TEST(History, BeginsAnewUnlessToldToAppend) {
   const TemporaryDirectory directory;
   const auto file = example_history(directory);
   History history(file, columns);
-  EXPECT_EQ(text_of(file), "time [s],dt [s],momentum x [kg m/s]\n");
+  EXPECT_EQ(text_of_file(file), "time [s],dt [s],momentum x [kg m/s]\n");
 }
 
 // The row at exactly the checkpoint's time stays: the run that goes on does not write it again.
 TEST(History, GoesOnAfterARestart) {
   const TemporaryDirectory directory;
   const auto file = example_history(directory);
-  const std::string whole = text_of(file);
+  const std::string whole = text_of_file(file);
   const std::string up_to_2 = whole.substr(0, whole.find("\n0.3") + 1);
   { History(file, columns, /*append=*/true, /*until=*/0.1 * 2); }
-  EXPECT_EQ(text_of(file), up_to_2);
+  EXPECT_EQ(text_of_file(file), up_to_2);
   History history(file, columns, true, 0.1 * 2);
   for (int k = 3; k < 5; ++k) history.row({0.1 * k, 1e-5, 1.0 / 3});
-  EXPECT_EQ(text_of(file), whole);
+  EXPECT_EQ(text_of_file(file), whole);
 }
 
 TEST(History, DropsARowThatWasCutOff) {
   const TemporaryDirectory directory;
   const auto file = example_history(directory);
-  const std::string whole = text_of(file);
+  const std::string whole = text_of_file(file);
   std::filesystem::resize_file(file, file_size(file) - 3);
   { History(file, columns, true, 1.0); }
-  EXPECT_EQ(text_of(file), whole.substr(0, whole.find("\n0.4") + 1));
+  EXPECT_EQ(text_of_file(file), whole.substr(0, whole.find("\n0.4") + 1));
 }
 
 TEST(History, ThatIsNotThereIsBegun) {
   const TemporaryDirectory directory;
   { History(directory / "history.csv", columns, true, 1.0); }
-  EXPECT_EQ(text_of(directory / "history.csv"), "time [s],dt [s],momentum x [kg m/s]\n");
+  EXPECT_EQ(text_of_file(directory / "history.csv"), "time [s],dt [s],momentum x [kg m/s]\n");
 }
 
 TEST(History, OfOtherColumnsIsNotTouched) {
   const TemporaryDirectory directory;
   const auto file = example_history(directory);
-  const std::string before = text_of(file);
+  const std::string before = text_of_file(file);
   expect_output_error([&] { History(file, {"time [s]", "energy [J]"}, true, 1.0); }, {"history.csv", "energy [J]"});
-  EXPECT_EQ(text_of(file), before);
+  EXPECT_EQ(text_of_file(file), before);
 }
 
 TEST(History, ThatCannotBeWrittenSaysWhy) {

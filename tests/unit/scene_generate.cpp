@@ -42,7 +42,7 @@ double nearest_to(const Vec3& x, const std::vector<Vec3>& places, const Periodic
   return least;
 }
 
-std::string problem_of(const Scene& scene) {
+std::string fault_of(const Scene& scene) {
   try {
     generate(scene);
   } catch (const SceneError& error) { return error.what(); }
@@ -120,7 +120,7 @@ TEST(Generate, ClosePackingInThreeDimensionsTouchesTwelveNeighbours) {
 TEST(Generate, APeriodThatStaggeredRowsDoNotFitIsRefusedWithTheNearestThatDo) {
   const std::string text = with(with(square_text, "kind = \"fluid\"", "kind = \"grains\""), "\"the-rest\"",
                                 "\"the-rest\"\npacking = \"staggered\"");
-  EXPECT_EQ(problem_of([&] {
+  EXPECT_EQ(fault_of([&] {
               Scene scene = parse_scene(text, "s.toml");
               scene.domain.periodic[1] = true;
               return scene;
@@ -129,7 +129,7 @@ TEST(Generate, APeriodThatStaggeredRowsDoNotFitIsRefusedWithTheNearestThatDo) {
             "(0.173205080756888 m); expected "
             "0.866025403784439 or 1.03923048454133 m");
   EXPECT_EQ(
-      problem_of([&] {
+      fault_of([&] {
         Scene scene = parse_scene(square_text, "s.toml");
         scene.domain.size[0] = 1.03;
         scene.domain.periodic[0] = true;
@@ -338,7 +338,7 @@ TEST(Generate, FormulasGiveVelocityAndPressure) {
   }
   EXPECT_TRUE(generate(parse_scene(square_text, "s.toml", {"fill.0.pressure=hydrostatic"}))[0].pressure.empty());
   EXPECT_EQ(
-      problem_of(parse_scene(square_text, "s.toml", {"fill.0.velocity=[\"1/(x-0.05)\", 0]"})),
+      fault_of(parse_scene(square_text, "s.toml", {"fill.0.velocity=[\"1/(x-0.05)\", 0]"})),
       "--set fill.0.velocity=[\"1/(x-0.05)\", 0]: fill.0.velocity: the formula \"1/(x-0.05)\" gives inf at (0.05, "
       "0.05) m; expected a finite number at every particle");
 }
@@ -437,28 +437,28 @@ TEST(Generate, GrainsInFlightStandBetweenParticlesOfCoarserAir) {
     return generate(parse_scene(text, "s.toml"))[1].position.size();  // air, sand
   };
   EXPECT_EQ(count(bed + grain), count(bed) + 1);
-  EXPECT_NE(problem_of(parse_scene(bed + grain + grain, "s.toml")).find("overlaps fill.5 of phase \"sand\""),
+  EXPECT_NE(fault_of(parse_scene(bed + grain + grain, "s.toml")).find("overlaps fill.5 of phase \"sand\""),
             std::string::npos);
 }
 
 TEST(Generate, TellsOfOverlapsEmptyFillsAndParticlesOutside) {
   const std::string second = "[[fill]]\nphase = \"air\"\nshape = { points = [[0.47, 0.45]] }\n";
   EXPECT_EQ(
-      problem_of(parse_scene(square_text + second, "s.toml")),
+      fault_of(parse_scene(square_text + second, "s.toml")),
       "s.toml:15:1: fill.1: a particle of phase \"air\" at (0.47, 0.45) m overlaps fill.0 of phase \"air\"; expected "
       "at least half a spacing "
       "between particles of different fills");
   EXPECT_EQ(
-      problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ formula = \"-1\" }"), "s.toml")),
+      fault_of(parse_scene(with(square_text, "\"the-rest\"", "{ formula = \"-1\" }"), "s.toml")),
       "s.toml:9:1: fill.0: no particle of phase \"air\"; expected a larger shape, a smaller spacing, or an earlier "
       "place in the file");
-  EXPECT_EQ(problem_of(parse_scene(with(square_text, "\"the-rest\"", "{ points = [[0.5, 1.5]] }"), "s.toml")),
+  EXPECT_EQ(fault_of(parse_scene(with(square_text, "\"the-rest\"", "{ points = [[0.5, 1.5]] }"), "s.toml")),
             "s.toml:9:1: fill.0: a particle of phase \"air\" at (0.5, 1.5) m lies outside the domain; expected a shape "
             "inside it");
   const std::string periodic = with(square_text, "size = [1, 1]", "size = [1, 1]\nperiodic = [\"x\"]");
   const std::string across = with(periodic, "\"the-rest\"", "{ points = [[0.01, 0.5]] }") +
                              "[[fill]]\nphase = \"air\"\nshape = { points = [[0.99, 0.5]] }\n";
-  EXPECT_NE(problem_of(parse_scene(across, "s.toml")), "") << "overlap across the period";
+  EXPECT_NE(fault_of(parse_scene(across, "s.toml")), "") << "overlap across the period";
 }
 
 TEST(Generate, IsTheSameEveryTime) {

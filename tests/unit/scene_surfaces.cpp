@@ -56,7 +56,7 @@ Scene with_shape(const std::string& shape, int dimensions = 2) {
       "s.toml");
 }
 
-std::string refusal(const std::string& shape, int dimensions = 2) {
+std::string surface_refusal(const std::string& shape, int dimensions = 2) {
   try {
     with_shape(shape, dimensions);
   } catch (const SceneError& error) { return error.what(); }
@@ -143,23 +143,23 @@ TEST(Surfaces, WhatCannotBeFilledIsRefused) {
   const auto says = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "\"" << text << "\" lacks \"" << part << '"';
   };
-  says(refusal("{ polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }"), "fill.0.shape.polygon: the outline crosses itself");
-  says(refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0.5, 0], [0, 1]] }"), "crosses itself");
-  says(refusal("{ polygon = [[0, 0], [1, 0], [1, 0.04], [0, 0.04]] }"), "expected at least half a spacing");
-  says(refusal("{ polygon = [[0, 0], [0, 0], [0, 0]] }"), "the outline has no side");
-  says(refusal("{ surface = \"none.stl\" }"),
+  says(surface_refusal("{ polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }"), "fill.0.shape.polygon: the outline crosses itself");
+  says(surface_refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0.5, 0], [0, 1]] }"), "crosses itself");
+  says(surface_refusal("{ polygon = [[0, 0], [1, 0], [1, 0.04], [0, 0.04]] }"), "expected at least half a spacing");
+  says(surface_refusal("{ polygon = [[0, 0], [0, 0], [0, 0]] }"), "the outline has no side");
+  says(surface_refusal("{ surface = \"none.stl\" }"),
        "s.toml:11:21: fill.0.shape.surface: \"none.stl\": there is no such file");
-  says(refusal("{ surface = \"" + file_with("a.igs", "x") + "\" }"), "a file of an unknown kind");
-  says(refusal("{ surface = \"" + file_with("bad.vtp", "<VTKFile") + "\" }"), "cannot be read as what its name says");
-  says(refusal("{ surface = \"" + file_with("bad.csv", "0,0\n1,q\n") + "\" }"), "line 2 is not a corner x, y");
-  says(refusal("{ surface = \"" + file_with("empty.stl", "solid a\nendsolid a\n") + "\" }", 3),
+  says(surface_refusal("{ surface = \"" + file_with("a.igs", "x") + "\" }"), "a file of an unknown kind");
+  says(surface_refusal("{ surface = \"" + file_with("bad.vtp", "<VTKFile") + "\" }"), "cannot be read as what its name says");
+  says(surface_refusal("{ surface = \"" + file_with("bad.csv", "0,0\n1,q\n") + "\" }"), "line 2 is not a corner x, y");
+  says(surface_refusal("{ surface = \"" + file_with("empty.stl", "solid a\nendsolid a\n") + "\" }", 3),
        "neither triangles nor lines");
-  says(refusal("{ surface = \"" + file_with("open.obj", ball(8, 3)) + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3),
+  says(surface_refusal("{ surface = \"" + file_with("open.obj", ball(8, 3)) + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3),
        "the surface is open: 1 triangle has the edge");
-  says(refusal("{ surface = \"" + file_with("flat.obj", ball(8)) + "\" }"), "a surface of triangles in two dimensions");
-  says(refusal("{ disc = { centre = [0.5, 0.5], radius = 0.2 }, turn = 3 }"),
+  says(surface_refusal("{ surface = \"" + file_with("flat.obj", ball(8)) + "\" }"), "a surface of triangles in two dimensions");
+  says(surface_refusal("{ disc = { centre = [0.5, 0.5], radius = 0.2 }, turn = 3 }"),
        "fill.0.shape.turn: this shape says itself");
-  EXPECT_EQ(refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0, 1]] }"), "");
+  EXPECT_EQ(surface_refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0, 1]] }"), "");
 }
 
 std::string corpus(const std::string& name) {

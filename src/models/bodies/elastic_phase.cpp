@@ -25,7 +25,7 @@ double compression_speed(const ElasticKeys& p, double density) {
   return std::sqrt((lame + 2 * shear) / density);
 }
 
-PhaseRules rules_of(const PlanPhase& p, double spacing, const std::string& step_key) {
+PhaseRules elastic_rules(const PlanPhase& p, double spacing, const std::string& step_key) {
   const std::string key = "phases." + p.name + ".";
   const double c = p.sound_speed;
   PhaseRules r;
@@ -103,7 +103,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
   if (p.fixed_neighbours && asked(strain)) p.fields.push_back(strain);
   if (asked(contact_force) && touches_as_body(scene, phase)) p.fields.push_back(contact_force);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
-  p.rules = rules_of(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
+  p.rules = elastic_rules(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
 ElasticPhase::ElasticPhase(const Scene& scene, const Layout& layout, std::size_t number)

@@ -23,7 +23,7 @@ double step_of(const RigidBody& body, double spacing) {
   return step;
 }
 
-PhaseRules rules_of(const PlanPhase& p, double largest_speed, const std::string& step_key) {
+PhaseRules rigid_rules(const PlanPhase& p, double largest_speed, const std::string& step_key) {
   const std::string key = "phases." + p.name + ".stiffness";
   PhaseRules r;
   r.way = 0.5 * p.spacing;
@@ -56,7 +56,7 @@ void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks
   // A body that comes with the largest speed v is stopped within the overlap d: K d^2 = M v^2.
   p.contact_stiffness =
       keys.stiffness.value_or(heaviest * std::pow(layout.largest_speed / (keys.largest_overlap * p.spacing), 2));
-  p.rules = rules_of(p, layout.largest_speed, scene.time.fixed_step ? "time.step" : "time.safety");
+  p.rules = rigid_rules(p, layout.largest_speed, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
 RigidHold::RigidHold(const Motion& motion)

@@ -10,7 +10,7 @@
 namespace barchan {
 namespace {
 
-Bounds box() {
+Bounds flat_box() {
   Bounds bounds;
   bounds.dimensions = 2;
   bounds.low = {0.0, 0.0, 0.0};
@@ -20,7 +20,7 @@ Bounds box() {
 }
 
 /// A disturbed square lattice of air whose velocity is (2 + y, 0).
-PhaseParticles air() {
+PhaseParticles air_of() {
   PhaseParticles p("air", 2, 48, 0.7, 0);
   for (const Field f : {Field::position, Field::velocity, Field::drag_acceleration}) p.add(f);
   sets::Uniform random(5);
@@ -36,8 +36,8 @@ PhaseParticles air() {
 }
 
 TEST(AirGrid, GivesTheParticlesWhatItGot) {
-  PhaseParticles p = air();
-  AirGrid grid(box(), 1.0);
+  PhaseParticles p = air_of();
+  AirGrid grid(flat_box(), 1.0);
   grid.gather(p);
   grid.push({7.9, 3.3}, {1.5, -0.25});  // about the periodic side
   grid.push({2.2, 0.1}, {-4.0, 0.5});   // beside a closed one
@@ -56,8 +56,8 @@ TEST(AirGrid, GivesTheParticlesWhatItGot) {
 }
 
 TEST(AirGrid, FindsTheMeanWindAboutAPlace) {
-  PhaseParticles p = air();
-  AirGrid grid(box(), 1.0);
+  PhaseParticles p = air_of();
+  AirGrid grid(flat_box(), 1.0);
   grid.gather(p);
   for (const double y : {1.4, 3.0, 4.7}) EXPECT_NEAR(grid.velocity({3.7, y})[0], 2.0 + y, 0.15) << y;
   EXPECT_NEAR(grid.velocity({7.99, 3.0})[0], grid.velocity({-0.01, 3.0})[0], 1e-12) << "periodic";

@@ -12,7 +12,7 @@
 namespace barchan {
 namespace {
 
-constexpr double rho = 1.2, nu = 1.5e-5;
+constexpr double air_density = 1.2, nu = 1.5e-5;
 
 /// Steps that grow until the air rests.
 void settle(AirColumn& column, AirProfile& p, double stress) {
@@ -23,10 +23,10 @@ void settle(AirColumn& column, AirProfile& p, double stress) {
 
 TEST(AirColumn, LaminarShearIsLinear) {
   AirProfile p = AirColumn::grid(0.5, 0.502, 0.52, 1e-3);
-  AirColumn column({rho, nu, MixingLength::none, Slip::no_slip}, p);
+  AirColumn column({air_density, nu, MixingLength::none, Slip::no_slip}, p);
   settle(column, p, 1e-3);
   for (std::size_t k = 0; k < p.cells(); ++k)
-    EXPECT_NEAR(p.speed[k], 1e-3 / (rho * nu) * (0.5 * (p.face[k] + p.face[k + 1]) - 0.5), 1e-9) << k;
+    EXPECT_NEAR(p.speed[k], 1e-3 / (air_density * nu) * (0.5 * (p.face[k] + p.face[k + 1]) - 0.5), 1e-9) << k;
   for (const double stress : p.stress) EXPECT_NEAR(stress, 1e-3, 1e-12);
 }
 
@@ -52,8 +52,8 @@ struct Reference {
 TEST(AirColumn, TurbulentWindIsThatOfTheEquations) {
   const double u_star = 0.4;
   AirProfile p = AirColumn::grid(0.0, 0.01, 0.1, 6e-5);
-  AirColumn column({rho, nu, MixingLength::duran, Slip::no_slip}, p);
-  settle(column, p, rho * u_star * u_star);
+  AirColumn column({air_density, nu, MixingLength::duran, Slip::no_slip}, p);
+  settle(column, p, air_density * u_star * u_star);
   const Reference exact(u_star, 0.1, 1e-15);
   // 0.21 mm: the middle of the fourth cell, beside the wall the speed of a cell is that of its middle.
   for (const double y : {2.1e-4, 1e-3, 5e-3, 2e-2, 8e-2}) {
@@ -73,7 +73,7 @@ TEST(AirColumn, TurbulentWindIsThatOfTheEquations) {
 /// What goes in through the top and out through bottom and grains is what the air has more.
 TEST(AirColumn, BooksAreClosedForAnyStep) {
   AirProfile p = AirColumn::grid(0.0, 0.01, 0.05, 1e-4);
-  AirColumn column({rho, nu, MixingLength::duran, Slip::no_slip}, p);
+  AirColumn column({air_density, nu, MixingLength::duran, Slip::no_slip}, p);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> one(0.0, 1.0);
   AirColumn::Load load(p.cells());
@@ -95,7 +95,7 @@ TEST(AirColumn, BooksAreClosedForAnyStep) {
 /// A strong drag and a long step: the air comes to rest in the grains and does not swing beyond.
 TEST(AirColumn, StrongDragIsStable) {
   AirProfile p = AirColumn::grid(0.0, 0.01, 0.05, 1e-4);
-  AirColumn column({rho, nu, MixingLength::duran, Slip::no_slip}, p);
+  AirColumn column({air_density, nu, MixingLength::duran, Slip::no_slip}, p);
   std::fill(p.speed.begin(), p.speed.end(), 3.0);
   column.integrate_speed();
   AirColumn::Load load(p.cells());
@@ -114,7 +114,7 @@ TEST(AirColumn, StrongDragIsStable) {
 
 TEST(AirColumn, SpreadsAndAveragesWithTheSameWeights) {
   AirProfile p = AirColumn::grid(0.1, 0.105, 0.2, 3e-4);
-  AirColumn column({rho, nu, MixingLength::none, Slip::no_slip}, p);
+  AirColumn column({air_density, nu, MixingLength::none, Slip::no_slip}, p);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> one(0.0, 1.0);
   for (double& u : p.speed) u = one(random);
@@ -148,7 +148,7 @@ TEST(AirColumn, SpreadsAndAveragesWithTheSameWeights) {
 
 TEST(AirColumn, FindsTheCellOfEveryHeight) {
   AirProfile p = AirColumn::grid(-1.0, -0.9, 1.0, 7e-3);
-  AirColumn column({rho, nu, MixingLength::none, Slip::no_slip}, p);
+  AirColumn column({air_density, nu, MixingLength::none, Slip::no_slip}, p);
   for (std::size_t k = 0; k < p.cells(); ++k)
     for (const double share : {0.001, 0.5, 0.999})
       EXPECT_EQ(column.cell_at(p.face[k] + share * (p.face[k + 1] - p.face[k])), k);

@@ -18,17 +18,17 @@ namespace {
 
 using namespace sets;
 
-const std::vector<Field> rated{Field::velocity,     Field::density,        Field::pressure,  Field::acceleration,
+const std::vector<Field> rated_surface{Field::velocity,     Field::density,        Field::pressure,  Field::acceleration,
                                Field::density_rate, Field::shift_velocity, Field::anisotropy};
 
 std::vector<Field> with_surface() {
-  std::vector<Field> fields = rated;
+  std::vector<Field> fields = rated_surface;
   fields.insert(fields.end(), {Field::wholeness, Field::surface_normal});
   return fields;
 }
 
 /// Density 1, spacing 1, kernel radius 3, nothing but pressure.
-FluidParameters bare() {
+FluidParameters bare_surface() {
   FluidParameters q{};
   q.reference_density = 1.0;
   q.sound_speed = 10.0;
@@ -52,7 +52,7 @@ std::vector<double> copy(const PhaseParticles& p, Field field, int component = 0
   return {values, values + p.size()};
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+bool same_surface_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
@@ -89,7 +89,7 @@ TEST_P(FluidThatEnds, EqualsTheNaiveSums) {
     for (std::size_t k = 0; k < one[0].size(); ++k)
       if (k % 3 != 0) one[0].column(Field::surface_normal, d)[k] = 0.0;
   Cast cast(b, std::move(one), {{0, 0, 3.0}});
-  FluidParameters q = bare();
+  FluidParameters q = bare_surface();
   q.reference_density = 1.15;
   q.diffusivity = 0.8;
   q.source_diffusivity = 0.5;
@@ -136,7 +136,7 @@ Cast filled_box(int dimensions, double perturb, double hole) {
       away += (x[d] - 0.5 * size) * (x[d] - 0.5 * size);
     if (away >= hole * hole) places.push_back(x);
   }
-  std::vector<Field> fields = rated;
+  std::vector<Field> fields = rated_surface;
   fields.push_back(Field::near_void);
   std::vector<PhaseParticles> one;
   one.push_back(phase(dimensions, places, 1.0, fields));
@@ -174,7 +174,7 @@ TEST_P(Voids, DisorderIsNone) {
   LooseParticles loose;
   for (const double perturb : {0.0, 0.2, 0.25}) {
     Cast cast = filled_box(GetParam(), perturb, 0.0);
-    FluidParameters q = bare();
+    FluidParameters q = bare_surface();
     q.ends = false;
     EXPECT_EQ(beside_voids(cast, q, loose), 0u) << perturb;
   }
@@ -185,7 +185,7 @@ TEST_P(Voids, BrokenNeighbourhoodsCount) {
   LooseParticles loose;
   VoidFinder finder;
   Cast cast = filled_box(GetParam(), 0.37, 0.0);
-  FluidParameters q = bare();
+  FluidParameters q = bare_surface();
   q.ends = false;
   const std::size_t all = cast.phases[0].size();
   for (std::int64_t step = 1; step <= VoidFinder::unresolved_steps; ++step) {
@@ -201,7 +201,7 @@ TEST_P(Voids, HoleOfSixSpacingsIsFound) {
   for (const double perturb : {0.0, 0.2})
     for (const bool ends : {false, true}) {
       Cast cast = filled_box(GetParam(), perturb, 3.0);
-      FluidParameters q = bare();
+      FluidParameters q = bare_surface();
       q.ends = ends;
       const std::size_t found = beside_voids(cast, q, loose);
       // A row about the hole at least, pi (4^2 - 3^2) and 4/3 pi (4^3 - 3^3); and half a spacing and the kernel radius
@@ -216,7 +216,7 @@ TEST_P(Voids, HoleOfSixSpacingsIsFound) {
 TEST_P(Voids, TreatmentIsNothingInAWholeFluid) {
   const auto rates = [&](bool ends, double near) {
     Cast cast = filled_box(GetParam(), 0.3, 0.0);
-    FluidParameters q = bare();
+    FluidParameters q = bare_surface();
     q.ends = ends;
     q.smoothing_length = 1.05;
     q.diffusivity = 0.8;
@@ -255,12 +255,12 @@ TEST_P(Voids, ThreadsChangeNothing) {
     omp_set_num_threads(threads);
     LooseParticles loose;
     Cast cast = filled_box(GetParam(), 0.2, 3.0);
-    FluidParameters q = bare();
+    FluidParameters q = bare_surface();
     beside_voids(cast, q, loose);
     omp_set_num_threads(before);
     return copy(cast.phases[0], Field::near_void);
   };
-  EXPECT_TRUE(same_bits(marked(1), marked(3)));
+  EXPECT_TRUE(same_surface_bits(marked(1), marked(3)));
 }
 
 // ---- who stands on the surface
@@ -331,7 +331,7 @@ TEST_P(Finder, EqualsTheSearchThroughAllPairs) {
         for (std::size_t k = 0; k < fluid.size(); ++k)
           EXPECT_EQ(fluid.column(Field::surface_normal, d)[k] == 0.0, expected[c][k] == 0.0) << "far is exactly zero";
         if (first[c].empty()) first[c] = copy(fluid, Field::surface_normal, d);
-        EXPECT_TRUE(same_bits(copy(fluid, Field::surface_normal, d), first[c])) << count << " threads";
+        EXPECT_TRUE(same_surface_bits(copy(fluid, Field::surface_normal, d), first[c])) << count << " threads";
       }
     }
   }
@@ -350,7 +350,7 @@ TEST_P(FluidThatEnds, KnowsItsSurface) {
     one.push_back(phase(dimensions, lattice(b, 1.0, 0.2, random), 1.0, with_surface()));
     std::fill_n(one[0].column(Field::density), one[0].size(), 1.0);
     Cast cast(b, std::move(one), {{0, 0, 3.0}});
-    rate(cast, bare(), scheme);
+    rate(cast, bare_surface(), scheme);
     const PhaseParticles& fluid = cast.phases[0];
     for (std::size_t k = 0; k < fluid.size(); ++k) {
       const double y = position(fluid, k)[1], depth = std::min(y, b.high[1] - y);
@@ -446,7 +446,7 @@ std::vector<double> loosened(const std::vector<Vec3>& places, const Bounds& b, F
       for (std::size_t k = 0; k < places.size(); ++k)
         cast.motion[0][k][static_cast<std::size_t>(2 * b.dimensions + 1)] = 1.0;
     if (scheme == FluidScheme::consistent) cast.motion[0].fill_images(cast.neighbours.grid(0), b.dimensions);
-    FluidParameters q = bare();
+    FluidParameters q = bare_surface();
     q.loosening = loosening;
     with_kernel<double>(KernelKind::wendland_c2, 3.0, b.dimensions, [&](const auto& w) {  // -tr M/Dim of the lattice
       double sum = 0.0;
@@ -491,11 +491,11 @@ TEST(PlainSurfaceScheme, EqualsThePlainSchemeInside) {
       const Bounds b =
           dimensions == 2 ? box(2, {12, 14, 0}, {true, false, false}) : box(3, {7, 11, 7}, {true, false, true});
       std::vector<PhaseParticles> one;
-      one.push_back(phase(dimensions, lattice(b, 1.0, 0.02, random), 1.0, surface ? with_surface() : rated));
+      one.push_back(phase(dimensions, lattice(b, 1.0, 0.02, random), 1.0, surface ? with_surface() : rated_surface));
       for (const Field f : {Field::velocity, Field::pressure}) randomise(one[0], f, -1, 2, random);
       randomise(one[0], Field::density, 0.98, 1.02, random);
       Cast cast(b, std::move(one), {{0, 0, 3.0}});
-      FluidParameters q = bare();
+      FluidParameters q = bare_surface();
       q.diffusivity = 0.8;
       q.shift_speed = 0.9;
       q.shift_limit = 0.25;

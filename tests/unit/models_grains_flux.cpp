@@ -57,7 +57,7 @@ std::unique_ptr<Simulation> run_of(const std::string& text) {
   return std::make_unique<Simulation>(scene, make_plan(scene, generate(scene)), generate(scene));
 }
 
-std::vector<double> columns(const Simulation& run, const std::string& name) {
+std::vector<double> flux_columns(const Simulation& run, const std::string& name) {
   const auto names = run.history_columns();
   const auto row = run.history_row();
   std::vector<double> found;
@@ -74,21 +74,21 @@ bool any_with(const std::vector<std::string>& texts, const std::string& words) {
 TEST(GrainFlux, IsMassTimesSpeedOverTheLength) {
   const auto run = run_of(two_grains);
   const double by_metre = 2650.0 * std::numbers::pi / 6.0 * 2.5e-4 * 2.5e-4;
-  ASSERT_EQ(columns(*run, "sand_flux [kg/m/s]").size(), 1U);
-  EXPECT_NEAR(columns(*run, "sand_flux [kg/m/s]")[0], by_metre * (1.0 + 3.0) / 0.01, 1e-12);
-  EXPECT_NEAR(columns(*run, "air_pull [Pa]").at(0), 1.2 * 0.25, 1e-15);
-  EXPECT_NEAR(columns(*run, "air_equivalent_friction_velocity [m/s]").at(0), 0.5, 1e-15);
+  ASSERT_EQ(flux_columns(*run, "sand_flux [kg/m/s]").size(), 1U);
+  EXPECT_NEAR(flux_columns(*run, "sand_flux [kg/m/s]")[0], by_metre * (1.0 + 3.0) / 0.01, 1e-12);
+  EXPECT_NEAR(flux_columns(*run, "air_pull [Pa]").at(0), 1.2 * 0.25, 1e-15);
+  EXPECT_NEAR(flux_columns(*run, "air_equivalent_friction_velocity [m/s]").at(0), 0.5, 1e-15);
 }
 
 TEST(GrainFlux, StandsOnceBesideASaltationLayerOfItsName) {
   const auto run = run_of(two_grains + "[[saltation]]\nname = \"sand\"\nphase = \"sand\"\n");
-  EXPECT_EQ(columns(*run, "sand_flux [kg/m/s]").size(), 1U);
+  EXPECT_EQ(flux_columns(*run, "sand_flux [kg/m/s]").size(), 1U);
 }
 
 TEST(GrainFlux, IsNotThereWithoutADrive) {
   const auto run = run_of(with(two_grains, "friction-velocity = 0.5", "speed = 5\nheld = true"));
-  EXPECT_TRUE(columns(*run, "sand_flux [kg/m/s]").empty());
-  EXPECT_TRUE(columns(*run, "air_pull [Pa]").empty());
+  EXPECT_TRUE(flux_columns(*run, "sand_flux [kg/m/s]").empty());
+  EXPECT_TRUE(flux_columns(*run, "air_pull [Pa]").empty());
 }
 
 // The line gives 36.9 g/m/s at 0.5 m/s; the two grains carry 34.7 g/m/s, faster ones 217 g/m/s.

@@ -11,7 +11,7 @@ namespace {
 
 using namespace sets;
 
-constexpr double rounding = 1e-12;
+constexpr double wall_rounding = 1e-12;
 
 /// A solid below, a fluid above and a second fluid among it, with random fields. Some of the solid knows its depth.
 Cast solid_under_fluids(int dimensions, Uniform& random) {
@@ -140,7 +140,7 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   std::vector<double> got(wall.size());
   for (std::size_t d = 0; d <= n; ++d) {  // the velocity's components, then the pressure
     for (std::size_t k = 0; k < wall.size(); ++k) got[k] = cast.motion[0][k][n + d];
-    EXPECT_LT(difference(got.data(), d < n ? velocity[d] : pressure), rounding) << (d < n ? "velocity" : "pressure");
+    EXPECT_LT(difference(got.data(), d < n ? velocity[d] : pressure), wall_rounding) << (d < n ? "velocity" : "pressure");
   }
 }
 
@@ -190,7 +190,7 @@ class Flat {
   Cast cast_;
 };
 
-double no_pressure(const Vec3&) { return 0.0; }
+double without_pressure(const Vec3&) { return 0.0; }
 
 TEST(FlatWall, ALinearVelocityContinuesExactly) {
   const Vec3 v_wall{0.7, 0, 0};
@@ -199,7 +199,7 @@ TEST(FlatWall, ALinearVelocityContinuesExactly) {
       [](const Vec3& x) {
         return Vec3{0.7 + 3.0 * x[1], -0.5 * x[1], 0};
       },
-      no_pressure);
+      without_pressure);
   flat.each([](const Vec3& x, const Vec3& v, double) {
     EXPECT_NEAR(v[0], 0.7 + 3.0 * x[1], 1e-12);
     EXPECT_NEAR(v[1], -0.5 * x[1], 1e-12);
@@ -212,7 +212,7 @@ TEST(FlatWall, FreeSlipKeepsTheTangentialAndReflectsTheNormal) {
       [](const Vec3& x) {
         return Vec3{1.5, 2.0 * x[1], 0};
       },
-      no_pressure);
+      without_pressure);
   flat.each([](const Vec3& x, const Vec3& v, double) {
     EXPECT_NEAR(v[0], 1.5, 1e-12) << "whatever the wall does along itself";
     EXPECT_NEAR(v[1], 2.0 * x[1], 1e-12);

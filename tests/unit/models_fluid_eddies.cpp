@@ -64,7 +64,7 @@ TEST(GroundDistance, IsThatOfASearchThroughEverything) {
 }
 
 /// A periodic fluid with random fields and a smooth wall in it.
-sets::Cast fluid_and_wall(int dimensions, bool mixed) {
+sets::Cast eddies_and_wall(int dimensions, bool mixed) {
   sets::Uniform random(31);
   const Bounds b =
       dimensions == 2 ? sets::box(2, {9, 8, 0}, {true, true, false}) : sets::box(3, {6, 5, 7}, {true, true, true});
@@ -91,7 +91,7 @@ sets::Cast fluid_and_wall(int dimensions, bool mixed) {
 /// particle brings its own; otherwise all have the entry's.
 sets::Cast rated(int dimensions, bool mixed, bool turbulent, bool roots) {
   constexpr double mu = 0.7, density = 1.15;
-  sets::Cast cast = fluid_and_wall(dimensions, mixed);
+  sets::Cast cast = eddies_and_wall(dimensions, mixed);
   FluidParameters q{};
   q.reference_density = density;
   q.sound_speed = 12.0;

@@ -66,16 +66,16 @@ void expect_complete(const Cast& cast, std::size_t direction, double radius, dou
   EXPECT_GT(entries, 0u);
 }
 
-struct Case {
+struct SearchCase {
   std::string name;
   int dimensions;
   Vec3 size;
   std::array<bool, 3> periodic;
   Vec3 low{0, 0, 0};
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const SearchCase& c, std::ostream* out) { *out << c.name; }
 
-std::vector<Case> cases() {
+std::vector<SearchCase> cases() {
   return {
       {"Open2D", 2, {14, 9, 0}, {false, false, false}},
       {"PeriodicX", 2, {14, 9, 0}, {true, false, false}, {-3.3, 100.0, 0}},
@@ -92,7 +92,7 @@ std::vector<Case> cases() {
   };
 }
 
-class Search : public testing::TestWithParam<Case> {
+class Search : public testing::TestWithParam<SearchCase> {
  protected:
   Bounds bounds() const { return box(GetParam().dimensions, GetParam().size, GetParam().periodic, GetParam().low); }
   int dimensions() const { return GetParam().dimensions; }

@@ -72,7 +72,7 @@ TEST(RigidTurning, OneTurnAboutAnyAxisLeadsBack) {
 }
 
 /// A mass that comes with speed 1 to a wall at x = 0, by leapfrog as the step has it.
-double restitution(double e, double stiffness, double mass, double step, double start) {
+double wall_restitution(double e, double stiffness, double mass, double step, double start) {
   const SurfaceContactLaw law{stiffness, e, 0.0};
   const double dt = step * std::sqrt(mass / stiffness);
   double v = -1.0, x = start * dt, a = 0.0;
@@ -91,8 +91,8 @@ TEST(SurfaceContact, KeepsTheWrittenShareOfTheSpeed) {
     for (const double stiffness : {1e2, 1e9})
       for (const double step : {0.1, 0.03}) {
         for (const double e : {0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97})
-          worst = std::max(worst, std::abs(restitution(e, stiffness, 3.0, step, start) - e));
-        elastic = std::max(elastic, std::abs(restitution(1.0, stiffness, 3.0, step, start) - 1.0));
+          worst = std::max(worst, std::abs(wall_restitution(e, stiffness, 3.0, step, start) - e));
+        elastic = std::max(elastic, std::abs(wall_restitution(1.0, stiffness, 3.0, step, start) - 1.0));
       }
   EXPECT_LT(worst, 0.0025);
   EXPECT_LT(elastic, 1e-4);
@@ -209,7 +209,7 @@ TEST(RigidStart, MassInertiaAndMotionAreThoseOfTheParticles) {
   EXPECT_NEAR(norm(b.now.place - Vec3{1.5, 1.2, 1.1}), 0.0, 1e-12);
 }
 
-void expect_refused(std::string text, const std::string& from, const std::string& to, const std::string& words) {
+void expect_body_refused(std::string text, const std::string& from, const std::string& to, const std::string& words) {
   const std::size_t at = text.find(from);
   ASSERT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
@@ -222,26 +222,26 @@ void expect_refused(std::string text, const std::string& from, const std::string
 
 TEST(RigidStart, RefusesWhatCannotBe) {
   const std::string first = "shape = { box = { min = [1, 1, 1], max = [2, 1.4, 1.2] } }";
-  expect_refused(scene_text, first, "shape = { points = [[1, 1, 1], [1.1, 1, 1], [1.2, 1, 1]] }", "stand in one line");
-  expect_refused(scene_text, "angular-velocity = [0.5, 0.6, 0.7]", "angular-velocity = 1", "an array of 3 numbers");
-  expect_refused(scene_text, "[interactions]", "[interactions]\na-a = { radius = 2 }", "expected no such key");
-  expect_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\ntorque = [1, 0, 0]\n[time]", "turn freely about");
-  expect_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\nabout = [1, 1, 1]\nvelocity = [1, 0, 0]\n[time]",
+  expect_body_refused(scene_text, first, "shape = { points = [[1, 1, 1], [1.1, 1, 1], [1.2, 1, 1]] }", "stand in one line");
+  expect_body_refused(scene_text, "angular-velocity = [0.5, 0.6, 0.7]", "angular-velocity = 1", "an array of 3 numbers");
+  expect_body_refused(scene_text, "[interactions]", "[interactions]\na-a = { radius = 2 }", "expected no such key");
+  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\ntorque = [1, 0, 0]\n[time]", "turn freely about");
+  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\nabout = [1, 1, 1]\nvelocity = [1, 0, 0]\n[time]",
                  "stays where it is");
-  expect_refused(scene_text, "[time]",
+  expect_body_refused(scene_text, "[time]",
                  "[[motion]]\nphase = \"a\"\nbox = { min = [0, 0, 0], max = [0.1, 0.1, 0.1] }\n[time]",
                  "no rigid body of phase \"a\"");
-  expect_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]", "holds already");
-  expect_refused(scene_text, "[interactions]",
+  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]", "holds already");
+  expect_body_refused(scene_text, "[interactions]",
                  "[phases.b]\nkind = \"fluid\"\ndensity = 1\n[interactions]\nb-b = 2.1\na-b = 2.1",
                  "expected \"plain\", or no entry a-b");
-  expect_refused(scene_text, first, first + "\npressure = 1", "only fluids");
-  expect_refused(scene_text, "density = 1000", "density = 1000\nstiffness = 1e6", "nothing reads it");
+  expect_body_refused(scene_text, first, first + "\npressure = 1", "only fluids");
+  expect_body_refused(scene_text, "density = 1000", "density = 1000\nstiffness = 1e6", "nothing reads it");
   std::string boxes = scene_text;
   const std::string sphere = "shape = { sphere = { centre = [2.5, 2.5, 2.5], radius = 0.3 } }";
   boxes.replace(boxes.find(sphere), sphere.size(), "shape = { cube = { centre = [2.5, 2.5, 2.5], count = 4 } }");
-  expect_refused(boxes, "[interactions]", "[interactions]\na-a = { restitution = 0.5 }", "along their edges");
-  expect_refused(scene_text, "[interactions]\n",
+  expect_body_refused(boxes, "[interactions]", "[interactions]\na-a = { restitution = 0.5 }", "along their edges");
+  expect_body_refused(scene_text, "[interactions]\n",
                  "[interactions]\na-a = { restitution = 0.5 }\n[[fill]]\nphase = \"a\"\n"
                  "shape = { formula = \"0.2 - x\" }\n",
                  "this shape has none");

@@ -12,7 +12,7 @@ namespace {
 
 using namespace sets;
 
-struct Case {
+struct RatesCase {
   int dimensions;
   FluidScheme scheme;
   KernelKind kernel;
@@ -21,9 +21,9 @@ struct Case {
            (kernel == KernelKind::wendland_c2 ? "Wendland" : "Spline");
   }
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name(); }
+void PrintTo(const RatesCase& c, std::ostream* out) { *out << c.name(); }
 
-class FluidPass : public testing::TestWithParam<Case> {};
+class FluidPass : public testing::TestWithParam<RatesCase> {};
 
 /// A perturbed periodic fluid (phase 0) and a wall (phase 1) within reach of some of it, all fields random.
 Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd::width_in_use<double>()) {
@@ -157,11 +157,11 @@ TEST_P(FluidPass, MixedPrecisionEqualsTheNaiveSumsToSinglePrecision) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, FluidPass,
-                         testing::Values(Case{2, FluidScheme::plain, KernelKind::cubic_spline},
-                                         Case{3, FluidScheme::plain, KernelKind::wendland_c2},
-                                         Case{2, FluidScheme::consistent, KernelKind::wendland_c2},
-                                         Case{2, FluidScheme::consistent, KernelKind::cubic_spline},
-                                         Case{3, FluidScheme::consistent, KernelKind::wendland_c2}),
+                         testing::Values(RatesCase{2, FluidScheme::plain, KernelKind::cubic_spline},
+                                         RatesCase{3, FluidScheme::plain, KernelKind::wendland_c2},
+                                         RatesCase{2, FluidScheme::consistent, KernelKind::wendland_c2},
+                                         RatesCase{2, FluidScheme::consistent, KernelKind::cubic_spline},
+                                         RatesCase{3, FluidScheme::consistent, KernelKind::wendland_c2}),
                          [](const auto& c) { return c.param.name(); });
 
 // A few particles in the open, as air among flying grains: the gradient cannot be corrected, and nothing blows up.

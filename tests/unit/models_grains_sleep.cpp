@@ -1,0 +1,192 @@
+// When spheres fall asleep and when they wake, by hand: looks are sqrt(d/g) apart, two calm ones in turn are needed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+
+#include "models/grains/sphere_sleep.hpp"
+#include "plan/plan.hpp"
+#include "scene/reader.hpp"
+#include "unit/particle_sets.hpp"
+
+namespace barchan {
+namespace {
+
+constexpr double diameter = 1e-3, gravity = 9.81, wide = 0.05;  // m, m/s2, m
+const double interval = std::sqrt(diameter / gravity);          // s
+const double bound = std::sqrt(gravity * diameter);             // m/s; slower than a hundredth of it is calm
+
+/// Six grains in a periodic box, whose fields a test sets. Their lasting numbers are 5 4 3 2 1 0.
+class SixGrains {
+ public:
+  explicit SixGrains(const std::function<Vec3(std::size_t)>& place =
+                      [](std::size_t k) {
+                        return Vec3{0.005 + 0.002 * static_cast<double>(k), 0.01, 0.0};
+                      })
+      : scene_(parse_scene(text, "sleep.toml")), blocks_(generate(scene_)), plan_(make_plan(scene_, blocks_)) {
+    const PlanPhase& sand = plan_.phases[0];
+    PhaseParticles p(sand.name, 2, sand.count, sand.mass, 0);
+    for (const Field f : sand.fields) p.add(f);
+    state_.phases.push_back(std::move(p));
+    for (std::size_t k = 0; k < count; ++k) set(Field::position, k, place(k));
+    work_ = std::make_unique<Workspace>(scene_, plan_, state_);
+    sleep.prepare({{0, 0, count, diameter}}, count, count + 2, plan_, gravity);
+  }
+  void set(Field f, std::size_t k, const Vec3& value) {
+    for (int d = 0; d < 2; ++d) sand().column(f, d)[k] = value[static_cast<std::size_t>(d)];
+  }
+  PhaseParticles& sand() { return state_.phases[0]; }
+  /// A look after so many intervals since the last one.
+  bool look(double intervals = 1.001) {
+    state_.time += intervals * interval;
+    return sleep.look(*work_, numbers.data(), lost);
+  }
+  std::vector<bool> asleep() const {
+    std::vector<bool> of;
+    for (std::size_t k = 0; k < count; ++k) of.push_back(sleep.sleeps(numbers[k]));
+    return of;
+  }
+
+  static constexpr std::size_t count = 6;
+  const std::array<std::uint32_t, count + 2> numbers{5, 4, 3, 2, 1, 0, 6, 7};
+  SphereSleep sleep;
+  double lost = 0.0;  // J
+
+ private:
+  inline static const std::string text =
+      "dimensions = 2\nspacing = 1e-3\n[domain]\nsize = [0.05, 0.05]\nperiodic = [\"x\"]\ngravity = [0, -9.81]\n"
+      "[phases.sand]\nkind = \"grains\"\ndensity = 2650\ndiameter = { mean = 1e-3, spread = 0 }\nfriction = 0.5\n"
+      "stiffness = 1000\nsleep = true\n[interactions]\nsand-sand = { law = \"linear\" }\n[[fill]]\nphase = \"sand\"\n"
+      "shape = { points = [[0.01, 0.01], [0.012, 0.01], [0.014, 0.01], [0.016, 0.01], [0.018, 0.01], [0.02, 0.01]] }\n"
+      "[time]\nend = 1\nlargest-speed = 2\n";
+  Scene scene_;
+  std::vector<ParticleBlock> blocks_;
+  Plan plan_;
+  State state_;
+  std::unique_ptr<Workspace> work_;
+};
+
+using Who = std::vector<bool>;
+
+TEST(SphereSleep, TwoCalmLooksAfterTheFirstPutToSleep) {
+  SixGrains grains;
+  EXPECT_FALSE(grains.look()) << "the first look only remembers";
+  EXPECT_FALSE(grains.look());
+  EXPECT_FALSE(grains.look(0.5)) << "too early for a look";
+  EXPECT_EQ(grains.sleep.sleeping(), 0u);
+  EXPECT_EQ(grains.sleep.by_sphere(grains.numbers.data()), nullptr);
+  EXPECT_TRUE(grains.look(0.6));
+  EXPECT_EQ(grains.sleep.sleeping(), 6u);
+  EXPECT_FALSE(grains.look()) << "nobody is left";
+}
+
+/// Each bound from both sides: the way between two looks, the speed, the spin, the change of the acceleration.
+TEST(SphereSleep, WhoMovesTurnsOrIsPulledStaysAwake) {
+  SixGrains grains;
+  grains.set(Field::velocity, 1, {0.0, 1.01e-2 * bound, 0.0});
+  grains.set(Field::velocity, 2, {0.99e-2 * bound, 0.0, 0.0});
+  grains.sand().column(Field::angular_velocity)[3] = 1.01e-2 * bound / (0.5 * diameter);
+  for (int k = 0; k < 3; ++k) {
+    const double way = 1.01e-3 * diameter * k, change = 0.101 * gravity * k;
+    grains.set(Field::position, 0, {0.005, 0.01 + way, 0.0});
+    grains.set(Field::acceleration, 4, {change, -gravity, 0.0});
+    grains.set(Field::position, 5, {0.03 + 0.99e-3 * diameter * k, 0.01, 0.0});
+    grains.set(Field::acceleration, 5, {0.099 * gravity * k, 0.0, 0.0});
+    grains.look();
+  }
+  EXPECT_EQ(grains.asleep(), (Who{false, false, true, false, false, true}));
+}
+
+TEST(SphereSleep, AWayAcrossAPeriodicSideIsShort) {
+  SixGrains grains;
+  for (int k = 0; k < 3; ++k) {
+    grains.set(Field::position, 0, {k % 2 == 0 ? 1e-7 : wide - 1e-7, 0.01, 0.0});
+    grains.look();
+  }
+  EXPECT_EQ(grains.asleep()[0], true);
+}
+
+/// The motion that goes: 1/2 m v^2 and of the spin 1/2 (2/5 m r^2) w^2, m = rho pi/6 d^3. What pulled is balanced by
+/// the contacts from then on.
+TEST(SphereSleep, RestsAndTellsTheEnergyOfItsMotion) {
+  SixGrains grains;
+  const double speed = 0.5e-2 * bound, spin = 0.8e-2 * bound / (0.5 * diameter);
+  for (int k = 0; k < 3; ++k) {
+    grains.set(Field::velocity, 2, {0.0, speed, 0.0});
+    grains.sand().column(Field::angular_velocity)[2] = spin;
+    grains.set(Field::acceleration, 2, {0.3, -gravity, 0.0});
+    grains.look();
+  }
+  const double mass = 2650.0 * std::numbers::pi / 6.0 * std::pow(diameter, 3);
+  const double energy = 0.5 * mass * (speed * speed + 0.4 * std::pow(0.5 * diameter * spin, 2));
+  EXPECT_NEAR(grains.lost / energy, 1.0, 1e-12);
+  EXPECT_EQ(grains.sand().column(Field::velocity, 1)[2], 0.0);
+  EXPECT_EQ(grains.sand().column(Field::angular_velocity)[2], 0.0);
+  EXPECT_EQ(grains.sand().column(Field::contact_acceleration, 0)[2], -0.3);
+  EXPECT_EQ(grains.sand().column(Field::contact_acceleration, 1)[2], gravity);
+}
+
+TEST(SphereSleep, APushOfATenthOfGravityWakesAtOnce) {
+  SixGrains grains;
+  for (int k = 0; k < 3; ++k) grains.look();
+  ASSERT_EQ(grains.sleep.sleeping(), 6u);
+  grains.set(Field::acceleration, 1, {0.099 * gravity, 0.0, 0.0});
+  EXPECT_FALSE(grains.look(0.01));
+  grains.set(Field::acceleration, 1, {0.0, 0.101 * gravity, 0.0});
+  EXPECT_TRUE(grains.look(0.01)) << "not at a look only";
+  EXPECT_EQ(grains.asleep(), (Who{true, false, true, true, true, true}));
+  EXPECT_EQ(grains.sleep.sleeping(), 5u);
+  EXPECT_FALSE(grains.look()) << "its next look finds another acceleration than that before";
+  EXPECT_FALSE(grains.look());
+  EXPECT_TRUE(grains.look()) << "and two calm looks later it sleeps";
+}
+
+/// What a step of the contacts marks is awake after it; numbers are those that last, not places in memory.
+TEST(SphereSleep, WakesWhomTheContactsDisturbed) {
+  SixGrains grains;
+  EXPECT_EQ(grains.sleep.step(grains.numbers.data(), true), nullptr) << "nobody sleeps: a step has nothing to look for";
+  for (int k = 0; k < 3; ++k) grains.look();
+  const std::uint8_t* rest = grains.sleep.by_sphere(grains.numbers.data());
+  ASSERT_NE(rest, nullptr);
+  EXPECT_EQ(std::vector<int>(rest, rest + 8), std::vector<int>(8, 1)) << "fixed ones too";
+  const SleepStep* step = grains.sleep.step(grains.numbers.data(), true);
+  ASSERT_NE(step, nullptr);
+  EXPECT_NEAR(step->tolerance, 0.3 * gravity, 1e-15);
+  step->wakes[grains.numbers[1]] = 1;
+  grains.sleep.wake();
+  EXPECT_EQ(grains.asleep(), (Who{true, false, true, true, true, true}));
+  EXPECT_EQ(grains.sleep.sleeping(), 5u);
+  EXPECT_EQ(grains.sleep.by_sphere(grains.numbers.data())[1], 0);
+  EXPECT_EQ(step->wakes[grains.numbers[1]], 0) << "told once";
+}
+
+/// What is out of balance when others fall asleep or wake is carried on, of those that sleep.
+TEST(SphereSleep, KeepsWhatIsOutOfBalance) {
+  SixGrains grains;
+  for (int k = 0; k < 3; ++k) grains.look();
+  const SleepStep* step = grains.sleep.step(grains.numbers.data(), false);
+  ASSERT_NE(step, nullptr);
+  const std::size_t n = grains.numbers[1];
+  for (std::size_t d = 0; d < 3; ++d) step->unrest[3 * n + d] = 0.1 * static_cast<double>(d + 1);
+  grains.sleep.begin_again();
+  for (std::size_t d = 0; d < 3; ++d) EXPECT_EQ(step->offset[3 * n + d], 0.1 * static_cast<double>(d + 1));
+}
+
+TEST(SphereSleep, GoesOnFromWhatIsSaved) {
+  SixGrains one, other;
+  for (int k = 0; k < 2; ++k) one.look();
+  Archive saved;
+  one.sleep.archive(saved);
+  Archive loaded(saved.bytes());
+  other.sleep.archive(loaded);
+  loaded.finish();
+  one.look();
+  other.look(3.003);
+  EXPECT_EQ(other.asleep(), one.asleep());
+  EXPECT_EQ(one.sleep.sleeping(), 6u);
+}
+
+}  // namespace
+}  // namespace barchan
