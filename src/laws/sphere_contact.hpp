@@ -12,8 +12,8 @@
 //
 // The laws that a scene can choose are the rows of laws/sphere_catalogue.hpp.
 //
-// Found for 12 steps a contact, all phases of the first touch (tests/unit/laws_sphere_contact.cpp): e = 0.3 within 0.3 %,
-// 0.5 to 0.9 within 0.2 %; forces taken at the end of a step missed them by 14 and 2 to 8 %.
+// Found for 12 steps a contact, all phases of the first touch (tests/unit/laws_sphere_contact.cpp): e = 0.3 within 0.3
+// %, 0.5 to 0.9 within 0.2 %; forces taken at the end of a step missed them by 14 and 2 to 8 %.
 #pragma once
 
 #include "laws/coulomb_friction.hpp"

@@ -81,36 +81,41 @@ TEST(SceneColumn, RefusesWhatCannotWork) {
   expect_column_refused(with("periodic = [\"x\"]\n", ""), "phases.air.held", "expected domain.periodic = [\"x\"]");
   expect_column_refused(with("viscosity = 1.5e-5\n", ""), "phases.air.viscosity", "expected a number > 0");
   expect_column_refused(with("air-sand = {}", "air-sand = 2.1"), "interactions.air-sand", "no radius");
-  expect_column_refused(with("air-sand = {}", "air-sand = { radius = 2.1 }"), "interactions.air-sand.radius", "no kernel");
-  expect_column_refused(with("air-sand = {}", "air-sand = { kernel = \"wendland-c2\" }"), "interactions.air-sand.kernel",
-                 "no kernel");
-  expect_column_refused(with("air-sand = {}", "air-sand = { drag = 0.4 }"), "interactions.air-sand.drag", "the name of a law");
-  expect_column_refused(with("air-sand = {}", "air-sand = {}\nair-floor = {}"), "interactions.air-floor", "grains only");
-  expect_column_refused(with("air-sand = {}", "air-sand = {}\nair-water = {}"), "interactions.air-water", "grains only");
+  expect_column_refused(with("air-sand = {}", "air-sand = { radius = 2.1 }"), "interactions.air-sand.radius",
+                        "no kernel");
+  expect_column_refused(with("air-sand = {}", "air-sand = { kernel = \"wendland-c2\" }"),
+                        "interactions.air-sand.kernel", "no kernel");
+  expect_column_refused(with("air-sand = {}", "air-sand = { drag = 0.4 }"), "interactions.air-sand.drag",
+                        "the name of a law");
+  expect_column_refused(with("air-sand = {}", "air-sand = {}\nair-floor = {}"), "interactions.air-floor",
+                        "grains only");
+  expect_column_refused(with("air-sand = {}", "air-sand = {}\nair-water = {}"), "interactions.air-water",
+                        "grains only");
   expect_column_refused(with("air-sand = {}", "air-sand = {}\nair-air = {}"), "interactions.air-air", "grains only");
   expect_column_refused(with("air-sand = {}", "air-sand = {}\nwater-sand = {}"), "interactions.air-sand", "already");
   expect_column_refused(with("air-sand = {}\n", ""), "phases.air", "nothing feels this air");
   expect_column_refused(with("phase = \"water\"", "phase = \"air\"") +
-                     "[[fill]]\nphase = \"water\"\nshape = { points = [[0.05, 0.045]] }\n",
-                 "fill.2.phase", "no particles");
+                            "[[fill]]\nphase = \"water\"\nshape = { points = [[0.05, 0.045]] }\n",
+                        "fill.2.phase", "no particles");
   expect_column_refused(with("sand-floor = 1.1", "sand-floor = { radius = 1.1, drag = \"duran\" }"),
-                 "interactions.sand-floor.drag", "has a drag");
+                        "interactions.sand-floor.drag", "has a drag");
 }
 
 TEST(SceneColumn, RefusesKeysThatNothingReads) {
   const std::string wind = "friction-velocity = 0.4\n";
   expect_column_refused(with(wind, "speed = 1\nlog-profile = { friction-velocity = 1, roughness = 1e-5 }\n"),
-                 "phases.air.log-profile", "a second wind");
+                        "phases.air.log-profile", "a second wind");
   expect_column_refused(with(wind, "held = true\n"), "phases.air.held", "no wind to hold");
   expect_column_refused(with(wind, "held = true\nspeed = 1\nfriction-velocity = 0.4\n"), "phases.air.friction-velocity",
-                 "needs none");
+                        "needs none");
   expect_column_refused(with(wind, "held = true\nspeed = 1\nmixing-length = \"none\"\n"), "phases.air.mixing-length",
-                 "needs none");
+                        "needs none");
   expect_column_refused(with(wind, "held = true\nspeed = 1\nheight = 0.1\n"), "phases.air.height", "needs none");
   expect_column_refused(with(wind, "held = true\nspeed = 1\nresolution = 1e-4\n"), "phases.air.resolution", "no cells");
   expect_column_refused(with(wind, wind + "sound-speed = 10\n"), "phases.air.sound-speed",
-                 "not a key of a phase of kind column");
-  expect_column_refused(with(wind, wind + "spacing = 1e-3\n"), "phases.air.spacing", "not a key of a phase of kind column");
+                        "not a key of a phase of kind column");
+  expect_column_refused(with(wind, wind + "spacing = 1e-3\n"), "phases.air.spacing",
+                        "not a key of a phase of kind column");
 }
 
 TEST(SceneColumn, LawsOfDragByNameNeedIt) {

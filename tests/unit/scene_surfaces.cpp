@@ -143,20 +143,24 @@ TEST(Surfaces, WhatCannotBeFilledIsRefused) {
   const auto says = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "\"" << text << "\" lacks \"" << part << '"';
   };
-  says(surface_refusal("{ polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }"), "fill.0.shape.polygon: the outline crosses itself");
+  says(surface_refusal("{ polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }"),
+       "fill.0.shape.polygon: the outline crosses itself");
   says(surface_refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0.5, 0], [0, 1]] }"), "crosses itself");
   says(surface_refusal("{ polygon = [[0, 0], [1, 0], [1, 0.04], [0, 0.04]] }"), "expected at least half a spacing");
   says(surface_refusal("{ polygon = [[0, 0], [0, 0], [0, 0]] }"), "the outline has no side");
   says(surface_refusal("{ surface = \"none.stl\" }"),
        "s.toml:11:21: fill.0.shape.surface: \"none.stl\": there is no such file");
   says(surface_refusal("{ surface = \"" + file_with("a.igs", "x") + "\" }"), "a file of an unknown kind");
-  says(surface_refusal("{ surface = \"" + file_with("bad.vtp", "<VTKFile") + "\" }"), "cannot be read as what its name says");
+  says(surface_refusal("{ surface = \"" + file_with("bad.vtp", "<VTKFile") + "\" }"),
+       "cannot be read as what its name says");
   says(surface_refusal("{ surface = \"" + file_with("bad.csv", "0,0\n1,q\n") + "\" }"), "line 2 is not a corner x, y");
   says(surface_refusal("{ surface = \"" + file_with("empty.stl", "solid a\nendsolid a\n") + "\" }", 3),
        "neither triangles nor lines");
-  says(surface_refusal("{ surface = \"" + file_with("open.obj", ball(8, 3)) + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3),
+  says(surface_refusal(
+           "{ surface = \"" + file_with("open.obj", ball(8, 3)) + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3),
        "the surface is open: 1 triangle has the edge");
-  says(surface_refusal("{ surface = \"" + file_with("flat.obj", ball(8)) + "\" }"), "a surface of triangles in two dimensions");
+  says(surface_refusal("{ surface = \"" + file_with("flat.obj", ball(8)) + "\" }"),
+       "a surface of triangles in two dimensions");
   says(surface_refusal("{ disc = { centre = [0.5, 0.5], radius = 0.2 }, turn = 3 }"),
        "fill.0.shape.turn: this shape says itself");
   EXPECT_EQ(surface_refusal("{ polygon = [[0, 0], [1, 0], [1, 1], [0, 1]] }"), "");
