@@ -14,7 +14,7 @@
 #include "simulation/simulation.hpp"
 #include "unit/particle_sets.hpp"
 
-namespace barchan {
+namespace barchan::rigid_contact_test {
 namespace {
 
 constexpr double radius = 0.2, restitution_of_discs = 0.6, friction_of_discs = 0.3;  // m
@@ -207,4 +207,4 @@ TEST(RigidContact, RefusesBodiesTooWideForAPeriodicDomain) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::rigid_contact_test

@@ -8,7 +8,7 @@
 
 #include "physics/drive.hpp"
 
-namespace barchan {
+namespace barchan::sand_layer_test {
 namespace {
 
 constexpr double diameter = 2.5e-4, solid = 2650.0, air_mass = 1.225, nu = 1.48e-5, g = 9.81;  // as the scene has them
@@ -107,4 +107,4 @@ TEST(SandLayer, TellsOfTheStressOnTop) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sand_layer_test

@@ -8,7 +8,7 @@
 #include "models/grains/sphere_search.hpp"
 #include "unit/sphere_sets.hpp"
 
-namespace barchan {
+namespace barchan::sphere_rest_test {
 namespace {
 
 using sets::SphereCast;
@@ -195,4 +195,4 @@ TEST(SphereRest, TellsOfTheSpheresOfAPhase) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sphere_rest_test

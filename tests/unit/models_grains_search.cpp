@@ -8,7 +8,7 @@
 #include "models/grains/sphere_search.hpp"
 #include "unit/sphere_sets.hpp"
 
-namespace barchan {
+namespace barchan::sphere_search_test {
 namespace {
 
 using sets::SphereCast;
@@ -183,4 +183,4 @@ TEST(SphereSearch, OrdersSpheresSoThatNeighboursAreNear) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sphere_search_test
