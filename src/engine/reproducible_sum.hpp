@@ -2,8 +2,8 @@
 //
 // Every term is cut at two places that the largest term and the number of terms decide: x = high + low + rest, with
 // high and low multiples of powers of two that are so large that their sums are exact. Exact sums have one value in
-// any order. What is left out is below 2^-60 of the largest term for up to 4 million terms. (Demmel & Nguyen 2015,
-// IEEE Trans. Computers 64, 2060, with two bins and a first pass that finds the largest term.)
+// any order. What is left out of a term is below 2^-58 of the largest one for up to 4 million terms. (Demmel & Nguyen
+// 2015, IEEE Trans. Computers 64, 2060, with two bins and a first pass that finds the largest term.)
 #pragma once
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include "models/grains/sphere_search.hpp"
 #include "unit/sphere_sets.hpp"
 
-namespace barchan {
+namespace barchan::sphere_rest_test {
 namespace {
 
 using sets::SphereCast;
@@ -23,7 +23,8 @@ template <int Dim>
 struct Bed {
   static constexpr std::size_t spins = Dim == 2 ? 1 : 3, numbers = 2 * spins;
   SphereCast<Dim> cast;
-  std::vector<Law> laws{Law::linear(stiffness, 0.7)};
+  std::vector<Law> laws{std::variant_alternative_t<0, Law>{
+      {stiffness}, NormalDashpot::of_restitution<LinearSpring>(0.7), {{}, 0.0}, {0.0}}};
   SphereStep step;
 
   Bed(const Bounds& bounds, const std::vector<Vec3>& x, double radius, std::size_t chunk_size, Uniform&& random)
@@ -195,4 +196,4 @@ TEST(SphereRest, TellsOfTheSpheresOfAPhase) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sphere_rest_test

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "models/grains/sphere_search.hpp"
 #include "unit/sphere_sets.hpp"
 
-namespace barchan {
+namespace barchan::sphere_search_test {
 namespace {
 
 using sets::SphereCast;
@@ -170,7 +171,9 @@ TEST(SphereSearch, OrdersSpheresSoThatNeighboursAreNear) {
   SphereSearch of;
   of.prepare(bounds, 1.0, 1, {0}, {}, 1);
   std::vector<std::uint32_t> order;
-  of.order({columns[0].data(), columns[1].data(), nullptr}, x.size(), order);
+  std::vector<std::int64_t> id(x.size());
+  std::iota(id.rbegin(), id.rend(), 0);
+  of.order({columns[0].data(), columns[1].data(), nullptr}, id, order);
   ASSERT_EQ(order.size(), x.size());
   double apart = 0.0, as_given = 0.0;
   for (std::size_t k = 1; k < x.size(); ++k) {
@@ -183,4 +186,4 @@ TEST(SphereSearch, OrdersSpheresSoThatNeighboursAreNear) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sphere_search_test

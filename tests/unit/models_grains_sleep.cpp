@@ -11,7 +11,7 @@
 #include "scene/reader.hpp"
 #include "unit/particle_sets.hpp"
 
-namespace barchan {
+namespace barchan::sphere_sleep_test {
 namespace {
 
 constexpr double diameter = 1e-3, gravity = 9.81, wide = 0.05;  // m, m/s2, m
@@ -189,4 +189,4 @@ TEST(SphereSleep, GoesOnFromWhatIsSaved) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sphere_sleep_test

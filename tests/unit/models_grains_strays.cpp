@@ -8,7 +8,7 @@
 #include "models/grains/sphere_strays.hpp"
 #include "unit/sphere_sets.hpp"
 
-namespace barchan {
+namespace barchan::sphere_strays_test {
 namespace {
 
 using sets::SphereCast;
@@ -161,4 +161,4 @@ TEST(SphereStrays, SearchesAllAgainWhenManyAreSlow) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::sphere_strays_test
