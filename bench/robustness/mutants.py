@@ -1,0 +1,235 @@
+#!/usr/bin/python3
+"""Runs the tests on wrong programs, one wrong text in each, and notes which test tells it from the right one.
+
+    mutants.py [NAME ...] [--work DIR] [--survivors] [--again] [--quick] [--through COMMAND]
+
+mutants.toml names the wrong texts. All of them are built into one program, in a copy of the sources: where the text T
+stands, the copy has (barchan_mutant == NUMBER ? (WRONG) : (T)), and the environment variable BARCHAN_MUTANT chooses.
+What cannot be written so is built on its own. A mutant is killed by the first test that fails, ends by a signal or
+takes longer than its bound. The right program (BARCHAN_MUTANT is not set) must pass everything first.
+
+NAME: mutants to run (default: those that have no result yet). --survivors: those that survived. --again: also where there
+is a result. --quick: test_unit only, a mutant that passes it gets no result. --through: a command that heavy commands are given to
+("nice -n 19"). Status 1 when one survives.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+TABLE = SOURCE / "bench/robustness/mutants.toml"
+RESULTS = SOURCE / "bench/robustness/results/mutants.json"
+HEADER = """// Which mutant this process is; 0: none.
+#pragma once
+#include <cstdlib>
+inline const int barchan_mutant = [] {
+  const char* text = std::getenv("BARCHAN_MUTANT");
+  return text ? std::atoi(text) : 0;
+}();
+"""
+PROGRAMS = ["test_unit", "test_cli", "test_stress", "test_physics"]
+# What runs in a few seconds of test_physics, as tests/CMakeLists.txt has it.
+SHORT = "Allocations.*:*Steps.*:*Threads.*:Simulations.*:*Invariants.*:Integrator.*:*EveryScene.*:RunJson.*"
+# Tests in Python that run the program; the others read sources and pages.
+SCRIPTS = ["tests/cli/test_restart.py", "tests/cli/test_robust.py", "tests/cli/test_measuring.py"]
+SHARDS = 6  # of the rest of test_physics
+
+
+def mutants():
+    table = tomllib.loads(TABLE.read_text())["mutant"]
+    for number, mutant in enumerate(table, 1):
+        mutant["number"] = number
+        mutant.setdefault("form", "choice")
+    return table
+
+
+def mutated(text, mutant):
+    """The text with the mutant in it; the place must be there once."""
+    find, wrong = mutant["find"], mutant["replace"]
+    if text.count(find) != 1:
+        raise ValueError(f"{mutant['name']}: {mutant['file']} has its text {text.count(find)} times")
+    here = f"barchan_mutant == {mutant['number']}"
+    return text.replace(find, {"choice": f"({here} ? ({wrong}) : ({find}))",
+                               "statement": f"if ({here}) {{ {wrong} }} else {{ {find} }}",
+                               "build": wrong}[mutant["form"]])
+
+
+def write(file, text):
+    if not file.exists() or file.read_text() != text:
+        file.write_text(text)
+
+
+class Copy:
+    """The tree with the mutants, its build, and runs of its tests."""
+
+    def __init__(self, work, through):
+        self.tree, self.build, self.scratch = work / "tree", work / "build", work / "scratch"
+        self.through = shlex.split(through)
+        self.bounds_file = work / "seconds.json"
+        self.bounds = json.loads(self.bounds_file.read_text()) if self.bounds_file.exists() else {}
+
+    def fill(self, table):
+        files = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=SOURCE, capture_output=True, text=True, check=True).stdout.splitlines()
+        texts = {}
+        for mutant in table:
+            if mutant["form"] != "build":
+                file = mutant["file"]
+                texts[file] = mutated(texts.get(file) or (SOURCE / file).read_text(), mutant)
+        for name in files:
+            if not (SOURCE / name).is_file():
+                continue
+            to = self.tree / name
+            to.parent.mkdir(parents=True, exist_ok=True)
+            if name in texts:
+                write(to, texts[name])
+            elif not to.exists() or to.read_bytes() != (SOURCE / name).read_bytes():
+                shutil.copyfile(SOURCE / name, to)
+        for old in self.tree.rglob("*.cpp"):  # a file that is gone from the sources
+            if str(old.relative_to(self.tree)) not in files:
+                old.unlink()
+        write(self.tree / "mutant.hpp", HEADER)
+
+    def make(self):
+        if not (self.build / "build.ninja").exists():
+            subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DBARCHAN_ARCH=native",
+                            "-DBARCHAN_WERROR=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
+                            f"-DCMAKE_CXX_FLAGS=-include {self.tree / 'mutant.hpp'} -w"], check=True, stdout=subprocess.DEVNULL)
+        for target in ["barchan_all", "barchan", *PROGRAMS]:
+            subprocess.run([*self.through, "cmake", "--build", str(self.build), "--target", target], check=True, stdout=subprocess.DEVNULL)
+
+    def stages(self):
+        """(name, command) of what a mutant has to pass, in order."""
+        def gtest(program, only="*"):
+            return [str(self.build / "tests" / program), "--gtest_fail_fast", "--gtest_brief=0", f"--gtest_filter={only}"]
+
+        def python(script):
+            return ["/usr/bin/python3", str(self.tree / script), str(self.build / "barchan"), str(self.tree)]
+        yield "test_unit", gtest("test_unit"), {}
+        yield "test_physics, short", gtest("test_physics", SHORT), {}
+        yield "test_cli", gtest("test_cli"), {}
+        yield "test_golden.py", python("tests/golden/test_golden.py"), {}
+        yield "test_stress", gtest("test_stress"), {}
+        for shard in range(SHARDS):
+            yield (f"test_physics, rest {shard + 1}/{SHARDS}", gtest("test_physics", "-" + SHORT),
+                   {"GTEST_TOTAL_SHARDS": str(SHARDS), "GTEST_SHARD_INDEX": str(shard)})
+        for script in SCRIPTS:
+            yield pathlib.Path(script).name, python(script), {}
+
+    def run(self, name, command, more, number):
+        """How a stage ended: None when it passed."""
+        shutil.rmtree(self.scratch, ignore_errors=True)
+        self.scratch.mkdir()
+        environment = {**os.environ, **more, "OMP_WAIT_POLICY": "passive", "TMPDIR": str(self.scratch), "BARCHAN_MUTANT": str(number)}
+        bound = max(60.0, 6.0 * self.bounds[name]) if name in self.bounds else 3600.0
+        # What the stage is given to may wait before it starts: the clock is that of the stage.
+        clock = self.scratch / "began"
+        shell = f'date +%s.%N > "{clock}"; exec "$@"'
+        with open(self.scratch / "output", "w+") as output:
+            process = subprocess.Popen([*self.through, "bash", "-c", shell, "bash", *command], cwd=self.scratch, env=environment, stdout=output,
+                                       stderr=subprocess.STDOUT, start_new_session=True)
+            late = False
+            while process.poll() is None:
+                time.sleep(0.05)
+                if not late and clock.exists() and clock.stat().st_size and time.time() - float(clock.read_text()) > bound:
+                    late = True
+                    os.killpg(process.pid, signal.SIGKILL)
+            seconds = time.time() - float(clock.read_text())
+            output.seek(0)
+            text = output.read()
+        if process.returncode == 0:
+            return None, seconds
+        failed = re.findall(r"\[  FAILED  \] ([\w/.]+)", text) or re.findall(r"^(?:FAIL|ERROR): (\w+)", text, re.M)
+        running = re.findall(r"\[ RUN      \] ([\w/.]+)", text)
+        how = "time-out" if late else "failed" if failed else "ended by a signal"
+        return {"killed_by": name, "test": (failed or running[-1:] or [""])[0], "how": how, "seconds": round(seconds, 1)}, seconds
+
+    def pass_all(self, names=None):
+        """The right program; its times are bounds."""
+        for name, command, more in self.stages():
+            if name in self.bounds or (names and name not in names):
+                continue
+            end, seconds = self.run(name, command, more, 0)
+            if end:
+                raise SystemExit(f"the program without a mutant fails in {name}: {end['test']}")
+            self.bounds[name] = seconds
+            self.bounds_file.write_text(json.dumps(self.bounds, indent=1))
+            print(f"right program      {name}: {seconds:.1f} s", flush=True)
+
+
+def trial(copy, mutant, quick):
+    if mutant["form"] == "build":
+        file = copy.tree / mutant["file"]
+        right = file.read_text()
+        try:
+            file.write_text(mutated(right, mutant))
+            copy.make()
+            return stages_of(copy, mutant, quick)
+        finally:
+            file.write_text(right)
+    return stages_of(copy, mutant, quick)
+
+
+def stages_of(copy, mutant, quick):
+    for name, command, more in copy.stages():
+        if name not in copy.bounds:
+            copy.pass_all([name])
+        end, _ = copy.run(name, command, more, mutant["number"])
+        if end:
+            return end
+        if quick:
+            return None
+    return {"killed_by": None}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--work", type=pathlib.Path, default=SOURCE / "build-mutants")
+    parser.add_argument("--survivors", action="store_true")
+    parser.add_argument("--again", action="store_true")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--through", default="")
+    options = parser.parse_args()
+    table = mutants()
+    if unknown := set(options.names) - {m["name"] for m in table}:
+        parser.error("no mutant " + ", ".join(sorted(unknown)))
+    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    results = {m["name"]: results[m["name"]] for m in table if m["name"] in results}
+
+    options.work.mkdir(parents=True, exist_ok=True)
+    copy = Copy(options.work.resolve(), options.through)
+    copy.fill(table)
+    copy.make()
+    copy.pass_all(["test_unit"])
+    for mutant in table:
+        name = mutant["name"]
+        had = results.get(name)
+        if options.names and name not in options.names:
+            continue
+        if had and not options.again and not (options.survivors and had["killed_by"] is None):
+            continue
+        end = trial(copy, mutant, options.quick)
+        if end is None:
+            print(f"passes test_unit   {name}: {mutant['wrong']}", flush=True)
+            continue
+        results[name] = end
+        RESULTS.write_text(json.dumps({m["name"]: results[m["name"]] for m in table if m["name"] in results}, indent=1) + "\n")
+        killed = end["killed_by"]
+        print(f"{'killed  ' if killed else 'SURVIVED'}           {name}: " +
+              (f"{killed}, {end['test']} ({end['how']}, {end['seconds']} s)" if killed else mutant["wrong"]), flush=True)
+    survivors = [name for name, end in results.items() if end["killed_by"] is None]
+    print(f"{len(results)} of {len(table)} mutants have a result, {len(results) - len(survivors)} killed; survivors: {', '.join(survivors) or 'none'}")
+    return 1 if survivors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
