@@ -162,6 +162,7 @@ size = [1, 1, 1]
 [phases.top]
 kind = "rigid"
 density = 1000
+[interactions]
 [[fill]]
 phase = "top"
 shape = { box = { min = [0.4, 0.4, 0.4], max = [0.6, 0.52, 0.44] } }
