@@ -6,7 +6,9 @@
 #include <iterator>
 
 #include "measure/decay.hpp"
+#include "measure/measurements.hpp"
 #include "output/series.hpp"
+#include "physics/small_scenes.hpp"
 #include "scene/ground.hpp"
 #include "unit/output_example.hpp"
 
@@ -52,6 +54,70 @@ TEST(ResultsByHand, TheErrorOfADecayIsThatOfALineThroughItsLogarithms) {
   EXPECT_EQ(d.used, 4);
   EXPECT_NEAR(d.height, -1.0 / slope, 1e-12);
   EXPECT_NEAR(d.error, std::sqrt(squares / 2.0 / spread) / (slope * slope), 1e-12);
+}
+
+const std::string layer = R"toml(
+spacing = 2.5e-4
+[domain]
+size = [0.01, 0.02]
+periodic = ["x"]
+gravity = [0, -9.81]
+[phases.air]
+kind = "column"
+density = 1.2
+viscosity = 1.5e-5
+friction-velocity = 0.5
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 2.5e-4, spread = 0 }
+stiffness = 150
+[interactions]
+air-sand = { drag = "duran" }
+sand-sand = { law = "linear" }
+[[fill]]
+phase = "sand"
+shape = { points = [[0.002, 0.005], [0.006, 0.005]] }
+velocity = ["x < 0.004 ? 1 : 3", -0.5]
+[[saltation]]
+name = "sand"
+phase = "sand"
+count = 40
+[time]
+end = 1e-3
+largest-speed = 10
+)toml";
+
+// Of the slices of a layer: the wind of the cell in which the middle of a slice is, and what the grains carry.
+TEST(ResultsByHand, ALayerHasTheWindOfItsHeightAndWhatItsGrainsCarry) {
+  const auto run = small::simulation(layer);
+  State state = run->state();
+  ASSERT_EQ(state.air.size(), 1u);
+  AirProfile& air = state.air[0];
+  for (std::size_t k = 0; k < air.cells(); ++k) air.speed[k] = 1.0 + static_cast<double>(k);
+  Measurements measurements(run->plan().instruments, run->plan().bounds, {1.2, 2650});
+  measurements.sample(state);
+  const Table table = measurements.table(0);
+  const auto column = [&](const std::string& name) {
+    for (const FrameField& field : table.fields)
+      if (field.name == name) return field.values;
+    throw std::runtime_error("no field " + name);
+  };
+  const auto wind = column("air_speed"), flux = column("flux"), stress = column("grain_stress");
+  ASSERT_EQ(table.places.size(), 40u);
+  double carried = 0.0, pressed = 0.0;
+  for (std::size_t row = 0; row < 40; ++row) {
+    const double y = table.places[row][1];
+    double expected = 0.0;
+    for (std::size_t k = 0; k < air.cells(); ++k)
+      if (y >= air.face[k] && y < air.face[k + 1]) expected = air.speed[k];
+    EXPECT_EQ(wind[row], expected) << y;
+    carried += flux[row] * 0.02 / 40;
+    pressed += stress[row] * 0.02 / 40;
+  }
+  const double mass = state.phases[1].mass();  // of one grain, by metre of depth, over 0.01 m of ground
+  EXPECT_NEAR(carried, mass * (1.0 + 3.0) / 0.01, 1e-9 * carried);
+  EXPECT_NEAR(pressed, mass * 0.5 * (1.0 + 3.0) / 0.01, 1e-9 * pressed);
 }
 
 // A dune that is longer than half of a periodic domain: at every place the highest of its images, and nothing jumps.
