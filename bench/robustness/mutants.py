@@ -1,23 +1,23 @@
 #!/usr/bin/python3
 """Runs the tests on wrong programs, one wrong text in each, and notes which test tells it from the right one.
 
-    mutants.py [NAME ...] [--work DIR] [--survivors] [--again] [--quick] [--through COMMAND]
+    mutants.py [NAME ...] [--work DIR] [--survivors] [--again] [--quick] [--seconds N]
 
 mutants.toml names the wrong texts. All of them are built into one program, in a copy of the sources: where the text T
 stands, the copy has (barchan_mutant == NUMBER ? (WRONG) : (T)), and the environment variable BARCHAN_MUTANT chooses.
 What cannot be written so is built on its own. A mutant is killed by the first test that fails, ends by a signal or
-takes longer than its bound. The right program (BARCHAN_MUTANT is not set) must pass everything first.
+takes longer than its bound. The right program (BARCHAN_MUTANT is 0) must pass a stage before mutants go through it.
 
-NAME: mutants to run (default: those that have no result yet). --survivors: those that survived. --again: also where there
-is a result. --quick: test_unit only, a mutant that passes it gets no result. --through: a command that heavy commands are given to
-("nice -n 19"). Status 1 when one survives.
+NAME: mutants to run (default: all). Those that have a result are left out; --survivors: but not those that survived;
+--again: none is. --quick: test_unit only; a mutant that passes it gets no result. --seconds: begins nothing new after so
+many seconds; the next call goes on. Status 0: every mutant asked for has been killed; 1: one survives; 3: not done.
 """
 import argparse
+import hashlib
 import json
 import os
 import pathlib
 import re
-import shlex
 import shutil
 import signal
 import subprocess
@@ -68,14 +68,26 @@ def write(file, text):
         file.write_text(text)
 
 
+class Enough(Exception):
+    """The time is over."""
+
+
 class Copy:
     """The tree with the mutants, its build, and runs of its tests."""
 
-    def __init__(self, work, through):
+    def __init__(self, work, seconds):
         self.tree, self.build, self.scratch = work / "tree", work / "build", work / "scratch"
-        self.through = shlex.split(through)
-        self.bounds_file = work / "seconds.json"
+        self.until = time.monotonic() + seconds
+        self.made = set()
+        self.bounds_file, self.passed_file = work / "seconds.json", work / "passed.json"
         self.bounds = json.loads(self.bounds_file.read_text()) if self.bounds_file.exists() else {}
+        self.passed = json.loads(self.passed_file.read_text()) if self.passed_file.exists() else {}
+
+    def left(self):
+        """Seconds that are left; raises Enough when there are none."""
+        if (left := self.until - time.monotonic()) <= 0.0:
+            raise Enough
+        return left
 
     def fill(self, table):
         files = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=SOURCE, capture_output=True, text=True, check=True).stdout.splitlines()
@@ -97,14 +109,55 @@ class Copy:
             if str(old.relative_to(self.tree)) not in files:
                 old.unlink()
         write(self.tree / "mutant.hpp", HEADER)
+        self.forget(files)
+
+    def forget(self, files):
+        """What earlier calls found holds while neither the sources nor the tests of a stage have changed."""
+        digests = {}
+        for folder in ["src", "tests/unit", "tests/physics", "tests/cli", "tests/stress", "tests/golden"]:
+            digest = hashlib.sha256()
+            for name in sorted(f for f in files if f.startswith(folder + "/") and (SOURCE / f).is_file()):
+                digest.update(name.encode() + (SOURCE / name).read_bytes())
+            digests[folder] = digest.hexdigest()
+        file = self.bounds_file.with_name("digests.json")
+        old = json.loads(file.read_text()) if file.exists() else {}
+        for folder, digest in digests.items():
+            if old.get(folder) == digest:
+                continue
+            for name, _, _ in list(self.stages()):
+                of = {"test_restart.py": "tests/cli", "test_robust.py": "tests/cli", "test_measuring.py": "tests/cli"}.get(
+                    name, "tests/" + re.match(r"test_(\w+)", name)[1])
+                if folder in ("src", of):
+                    self.bounds.pop(name, None)
+                    if of == "tests/unit":
+                        self.bounds.pop("slow unit tests", None)
+                    for passed in self.passed.values():
+                        if name in passed:
+                            passed.remove(name)
+        file.write_text(json.dumps(digests, indent=1))
+        self.passed_file.write_text(json.dumps(self.passed, indent=1))
 
     def make(self):
         if not (self.build / "build.ninja").exists():
             subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DBARCHAN_ARCH=native",
                             "-DBARCHAN_WERROR=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
                             f"-DCMAKE_CXX_FLAGS=-include {self.tree / 'mutant.hpp'} -w"], check=True, stdout=subprocess.DEVNULL)
-        for target in ["barchan_all", "barchan", *PROGRAMS]:
-            subprocess.run([*self.through, "cmake", "--build", str(self.build), "--target", target], check=True, stdout=subprocess.DEVNULL)
+        self.need("barchan_all", "barchan", "test_unit")
+
+    def need(self, *targets):
+        if self.made.issuperset(targets):
+            return
+        build = subprocess.Popen(["cmake", "--build", str(self.build), "--target", *targets], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                 start_new_session=True)
+        try:
+            said, _ = build.communicate(timeout=self.left())
+        except subprocess.TimeoutExpired:
+            os.killpg(build.pid, signal.SIGINT)  # what is built stays
+            build.communicate()
+            raise Enough from None
+        if build.returncode != 0:
+            raise SystemExit(said[-4000:])
+        self.made.update(targets)
 
     def stages(self):
         """(name, command) of what a mutant has to pass, in order."""
@@ -113,7 +166,10 @@ class Copy:
 
         def python(script):
             return ["/usr/bin/python3", str(self.tree / script), str(self.build / "barchan"), str(self.tree)]
-        yield "test_unit", gtest("test_unit"), {}
+        slow = ":".join(self.bounds.get("slow unit tests", []))
+        yield "test_unit", gtest("test_unit", "-" + slow if slow else "*"), {}
+        if slow:
+            yield "test_unit, slow", gtest("test_unit", slow), {}
         yield "test_physics, short", gtest("test_physics", SHORT), {}
         yield "test_cli", gtest("test_cli"), {}
         yield "test_golden.py", python("tests/golden/test_golden.py"), {}
@@ -126,26 +182,28 @@ class Copy:
 
     def run(self, name, command, more, number):
         """How a stage ended: None when it passed."""
+        if name.split(",")[0] in PROGRAMS:
+            self.need(name.split(",")[0])
         shutil.rmtree(self.scratch, ignore_errors=True)
         self.scratch.mkdir()
         environment = {**os.environ, **more, "OMP_WAIT_POLICY": "passive", "TMPDIR": str(self.scratch), "BARCHAN_MUTANT": str(number)}
         bound = max(60.0, 6.0 * self.bounds[name]) if name in self.bounds else 3600.0
-        # What the stage is given to may wait before it starts: the clock is that of the stage.
-        clock = self.scratch / "began"
-        shell = f'date +%s.%N > "{clock}"; exec "$@"'
         with open(self.scratch / "output", "w+") as output:
-            process = subprocess.Popen([*self.through, "bash", "-c", shell, "bash", *command], cwd=self.scratch, env=environment, stdout=output,
-                                       stderr=subprocess.STDOUT, start_new_session=True)
+            start = time.monotonic()
+            process = subprocess.Popen(command, cwd=self.scratch, env=environment, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
             late = False
-            while process.poll() is None:
-                time.sleep(0.05)
-                if not late and clock.exists() and clock.stat().st_size and time.time() - float(clock.read_text()) > bound:
-                    late = True
-                    os.killpg(process.pid, signal.SIGKILL)
-            seconds = time.time() - float(clock.read_text())
+            try:
+                process.wait(timeout=bound)
+            except subprocess.TimeoutExpired:
+                late = True
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+            seconds = time.monotonic() - start
             output.seek(0)
             text = output.read()
         if process.returncode == 0:
+            if name == "test_unit" and name not in self.bounds:  # those that take half a second go second
+                self.bounds["slow unit tests"] = [test for test, ms in re.findall(r"\[       OK \] (\S+) \((\d+) ms\)", text) if int(ms) > 500]
             return None, seconds
         failed = re.findall(r"\[  FAILED  \] ([\w/.]+)", text) or re.findall(r"^(?:FAIL|ERROR): (\w+)", text, re.M)
         running = re.findall(r"\[ RUN      \] ([\w/.]+)", text)
@@ -157,6 +215,7 @@ class Copy:
         for name, command, more in self.stages():
             if name in self.bounds or (names and name not in names):
                 continue
+            self.left()
             end, seconds = self.run(name, command, more, 0)
             if end:
                 raise SystemExit(f"the program without a mutant fails in {name}: {end['test']}")
@@ -166,27 +225,35 @@ class Copy:
 
 
 def trial(copy, mutant, quick):
-    if mutant["form"] == "build":
-        file = copy.tree / mutant["file"]
-        right = file.read_text()
-        try:
-            file.write_text(mutated(right, mutant))
-            copy.make()
-            return stages_of(copy, mutant, quick)
-        finally:
-            file.write_text(right)
-    return stages_of(copy, mutant, quick)
+    if mutant["form"] != "build":
+        return stages_of(copy, mutant, quick)
+    file = copy.tree / mutant["file"]
+    right = file.read_text()
+    copy.made = set()
+    try:
+        file.write_text(mutated(right, mutant))
+        copy.make()
+        return stages_of(copy, mutant, quick)
+    finally:
+        file.write_text(right)
+        copy.made = set()
 
 
 def stages_of(copy, mutant, quick):
+    passed = copy.passed.setdefault(mutant["name"], [])
     for name, command, more in copy.stages():
+        if quick and not name.startswith("test_unit"):
+            return None
+        if name in passed:
+            continue
         if name not in copy.bounds:
             copy.pass_all([name])
+        copy.left()
         end, _ = copy.run(name, command, more, mutant["number"])
         if end:
             return end
-        if quick:
-            return None
+        passed.append(name)
+        copy.passed_file.write_text(json.dumps(copy.passed, indent=1))
     return {"killed_by": None}
 
 
@@ -197,7 +264,7 @@ def main():
     parser.add_argument("--survivors", action="store_true")
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--through", default="")
+    parser.add_argument("--seconds", type=float, default=1e6)
     options = parser.parse_args()
     table = mutants()
     if unknown := set(options.names) - {m["name"] for m in table}:
@@ -206,29 +273,30 @@ def main():
     results = {m["name"]: results[m["name"]] for m in table if m["name"] in results}
 
     options.work.mkdir(parents=True, exist_ok=True)
-    copy = Copy(options.work.resolve(), options.through)
-    copy.fill(table)
-    copy.make()
-    copy.pass_all(["test_unit"])
-    for mutant in table:
-        name = mutant["name"]
-        had = results.get(name)
-        if options.names and name not in options.names:
-            continue
-        if had and not options.again and not (options.survivors and had["killed_by"] is None):
-            continue
-        end = trial(copy, mutant, options.quick)
-        if end is None:
-            print(f"passes test_unit   {name}: {mutant['wrong']}", flush=True)
-            continue
-        results[name] = end
-        RESULTS.write_text(json.dumps({m["name"]: results[m["name"]] for m in table if m["name"] in results}, indent=1) + "\n")
-        killed = end["killed_by"]
-        print(f"{'killed  ' if killed else 'SURVIVED'}           {name}: " +
-              (f"{killed}, {end['test']} ({end['how']}, {end['seconds']} s)" if killed else mutant["wrong"]), flush=True)
+    copy = Copy(options.work.resolve(), options.seconds)
+    wanted = [m for m in table if not options.names or m["name"] in options.names]
+    done = True
+    try:
+        copy.fill(table)
+        copy.make()
+        for mutant in wanted:
+            name, had = mutant["name"], results.get(mutant["name"])
+            if had and not options.again and not (options.survivors and had["killed_by"] is None):
+                continue
+            end = trial(copy, mutant, options.quick)
+            if end is None:
+                print(f"passes test_unit   {name}: {mutant['wrong']}", flush=True)
+                continue
+            results[name] = end
+            RESULTS.write_text(json.dumps({m["name"]: results[m["name"]] for m in table if m["name"] in results}, indent=1) + "\n")
+            killed = end["killed_by"]
+            print(f"{'killed  ' if killed else 'SURVIVED'}           {name}: " +
+                  (f"{killed}, {end['test']} ({end['how']}, {end['seconds']} s)" if killed else mutant["wrong"]), flush=True)
+    except Enough:
+        done = False
     survivors = [name for name, end in results.items() if end["killed_by"] is None]
     print(f"{len(results)} of {len(table)} mutants have a result, {len(results) - len(survivors)} killed; survivors: {', '.join(survivors) or 'none'}")
-    return 1 if survivors else 0
+    return 3 if not done else 1 if survivors else 0
 
 
 if __name__ == "__main__":
