@@ -5,7 +5,8 @@
 
 mutants.toml names the wrong texts. All of them are built into one program, in a copy of the sources: where the text T
 stands, the copy has (barchan_mutant == NUMBER ? (WRONG) : (T)), and the environment variable BARCHAN_MUTANT chooses.
-What cannot be written so is built on its own. A mutant is killed by the first test that fails, ends by a signal or
+What cannot be written so is built on its own. The copy is built as the program is (preset default), so that a compiler
+cache has what no mutant touches; what includes a wrong text is built with -O1. A mutant is killed by the first test that fails, ends by a signal or
 takes longer than its bound. The right program (BARCHAN_MUTANT is 0) must pass a stage before mutants go through it.
 
 NAME: mutants to run (default: all). Those that have a result are left out; --survivors: but not those that survived;
@@ -63,6 +64,16 @@ def mutated(text, mutant):
                                "build": wrong}[mutant["form"]])
 
 
+def touched(files, wrong):
+    """Of .cpp files of src those that include one of the wrong files, or are one."""
+    includes = {f: [g for i in re.findall(r'#include "([^"]+)"', (SOURCE / f).read_text()) if (g := "src/" + i) in files]
+                for f in files if f.startswith("src/") and f.endswith((".cpp", ".hpp"))}
+    reached = set(wrong)
+    while more := {f for f, of in includes.items() if f not in reached and reached.intersection(of)}:
+        reached |= more
+    return sorted(f for f in reached if f.endswith(".cpp") and not f.startswith("src/app/"))
+
+
 def write(file, text):
     if not file.exists() or file.read_text() != text:
         file.write_text(text)
@@ -76,7 +87,7 @@ class Copy:
     """The tree with the mutants, its build, and runs of its tests."""
 
     def __init__(self, work, seconds):
-        self.tree, self.build, self.scratch = work / "tree", work / "build", work / "scratch"
+        self.tree, self.build, self.scratch = work / "tree", work / "tree/build", work / "scratch"
         self.until = time.monotonic() + seconds
         self.made = set()
         self.bounds_file, self.passed_file = work / "seconds.json", work / "passed.json"
@@ -96,6 +107,9 @@ class Copy:
             if mutant["form"] != "build":
                 file = mutant["file"]
                 texts[file] = mutated(texts.get(file) or (SOURCE / file).read_text(), mutant)
+        texts = {name: '#include "mutant.hpp"\n' + text for name, text in texts.items()}
+        sources = " ".join(f[len("src/"):] for f in touched(set(files), {m["file"] for m in table}))
+        texts["src/CMakeLists.txt"] = (SOURCE / "src/CMakeLists.txt").read_text() + f'set_source_files_properties({sources} PROPERTIES COMPILE_OPTIONS "-O1;-w")\n'
         for name in files:
             if not (SOURCE / name).is_file():
                 continue
@@ -105,10 +119,11 @@ class Copy:
                 write(to, texts[name])
             elif not to.exists() or to.read_bytes() != (SOURCE / name).read_bytes():
                 shutil.copyfile(SOURCE / name, to)
-        for old in self.tree.rglob("*.cpp"):  # a file that is gone from the sources
-            if str(old.relative_to(self.tree)) not in files:
-                old.unlink()
-        write(self.tree / "mutant.hpp", HEADER)
+        for folder in ("src", "tests"):
+            for old in (self.tree / folder).rglob("*.cpp"):  # a file that is gone from the sources
+                if str(old.relative_to(self.tree)) not in files:
+                    old.unlink()
+        write(self.tree / "src/mutant.hpp", HEADER)
         self.forget(files)
 
     def forget(self, files):
@@ -139,9 +154,7 @@ class Copy:
 
     def make(self):
         if not (self.build / "build.ninja").exists():
-            subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DBARCHAN_ARCH=native",
-                            "-DBARCHAN_WERROR=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
-                            f"-DCMAKE_CXX_FLAGS=-include {self.tree / 'mutant.hpp'} -w"], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run(["cmake", "--preset", "default"], cwd=self.tree, check=True, stdout=subprocess.DEVNULL)
         self.need("barchan_all", "barchan", "test_unit")
 
     def need(self, *targets):
