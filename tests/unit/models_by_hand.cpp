@@ -1,22 +1,26 @@
 // Parts of models on a few particles, against values by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "kernels/kernel.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/coupling/rigid_in_fluid.hpp"
+#include "models/fluid/energy.hpp"
 #include "models/fluid/turbulence.hpp"
 #include "models/forces.hpp"
 #include "models/row_mean.hpp"
 #include "physics/small_scenes.hpp"
 #include "unit/particle_sets.hpp"
+#include "unit/scene_texts.hpp"
 
 namespace barchan {
 namespace {
 
 using namespace sets;
+using testing::with;
 
 // A body and the fluid about it that turn as one: w x r for every pair. Their friction has no torque on any particle.
 TEST(ModelsByHand, AFluidThatTurnsWithABodyHasNoTorqueOnIt) {
@@ -247,6 +251,138 @@ TEST(ModelsByHand, DragOnAGrainIsThatOfItsCrossSection) {
     });
     EXPECT_NEAR((twice - with) * sand.mass(), 0.5 * 0.5 * 2.0 * section * 9.0 * share, 1e-3 * section) << dimensions;
   }
+}
+
+// The forces are of velocities that are older by `age` than the accelerations: the power changes by f.a times that.
+TEST(ModelsByHand, TheHeatOfAFluidIsOfTheVelocitiesOfNow) {
+  for (const int dimensions : {2, 3}) {
+    const Bounds b = box(dimensions, {6, 6, 6}, {true, true, true});
+    Uniform random(9);
+    std::vector<PhaseParticles> p;
+    p.push_back(phase(dimensions, lattice(b, 1.0, 0.2, random), 1.0,
+                      {Field::velocity, Field::density, Field::pressure, Field::acceleration, Field::energy_rate}));
+    randomise(p[0], Field::velocity, -1.0, 1.0, random);
+    randomise(p[0], Field::density, 0.8, 1.2, random);
+    randomise(p[0], Field::pressure, -1.0, 1.0, random);
+    randomise(p[0], Field::acceleration, -1.0, 1.0, random);
+    Cast cast(b, std::move(p), {{0, 0, 2.2}});
+    PhaseParticles& fluid = cast.phases[0];
+    const FluidNeighbour pair{&cast.list(0), &cast.motion[0], KernelKind::wendland_c2, 2.2, 0.7, false};
+    const double age = 0.3;
+    std::vector<double> expected, rates[2];
+    for (std::size_t k = 0; k < fluid.size(); ++k) {
+      Vec3 force{};  // by volume
+      for_all_pairs(b, fluid, k, fluid, true, 2.2, [&](std::size_t j, const Vec3& r, const std::array<int, 3>&) {
+        const WendlandC2<double> kernel(2.2, dimensions);
+        const double vf = fluid.mass() / fluid.column(Field::density)[j] * kernel.derivative(norm(r)) / norm(r);
+        const Vec3 v = vector(fluid, Field::velocity, k) - vector(fluid, Field::velocity, j);
+        force =
+            force + 2.0 * 0.7 * vf * v - vf * (fluid.column(Field::pressure)[k] + fluid.column(Field::pressure)[j]) * r;
+      });
+      expected.push_back(-age * dot(force, vector(fluid, Field::acceleration, k)) / fluid.column(Field::density)[k]);
+    }
+    for (const bool late : {false, true}) {
+      fluid_energy(fluid, cast.motion[0], std::span(&pair, 1), std::span<const SolidNeighbour>(), late ? age : 0.0);
+      const double* rate = fluid.column(Field::energy_rate);
+      rates[late ? 1 : 0].assign(rate, rate + fluid.size());
+    }
+    for (std::size_t k = 0; k < fluid.size(); ++k) rates[1][k] -= rates[0][k];
+    EXPECT_LT(difference(rates[1].data(), expected), 1e-12) << dimensions;
+  }
+}
+
+double told(const Simulation& run, const std::string& name) {
+  const auto names = run.history_columns();
+  const auto at = std::find(names.begin(), names.end(), name);
+  return at == names.end() ? NAN : run.history_row()[static_cast<std::size_t>(at - names.begin())];
+}
+
+// A ball that bounces off a floor gives it downwards what it gets upwards, and turns it about the place of the meter.
+TEST(ModelsByHand, AFloorGetsWhatABallLoses) {
+  const auto run = small::simulation(R"toml(
+spacing = 1e-3
+[domain]
+size = [0.05, 0.05]
+[phases.ball]
+kind = "grains"
+density = 2650
+diameter = 1e-3
+restitution = 0.5
+[phases.floor]
+kind = "wall"
+[interactions]
+ball-ball = { law = "linear" }
+ball-floor = { law = "linear" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "ball"
+shape = { points = [[0.03, 0.00055]] }
+velocity = [0, -1]
+[[force]]
+name = "floor"
+phase = "floor"
+about = [0.01, 0]
+[time]
+end = 1
+largest-speed = 1
+)toml");
+  while (run->time() < 2e-3) run->step(2e-3 - run->time());
+  const PhaseParticles& ball = run->state().phases[0];
+  const double gain = ball.mass_of(0) * (ball.column(Field::velocity, 1)[0] + 1.0);
+  EXPECT_GT(ball.column(Field::velocity, 1)[0], 0.4);
+  EXPECT_NEAR(told(*run, "floor_impulse_y [N s]"), -gain, 1e-9 * gain);
+  EXPECT_NEAR(told(*run, "floor_torque_z [N m]") * run->time(), -0.02 * gain, 1e-9 * gain) << "a mean of the one row";
+}
+
+const std::string block = R"toml(
+spacing = 0.1
+[domain]
+size = [2, 2]
+[phases.block]
+kind = "elastic"
+density = 1000
+young = 1e6
+[interactions]
+block-block = 1.6
+[[fill]]
+phase = "block"
+shape = { box = { min = [0.5, 0.5], max = [0.9, 1.3] } }
+velocity = ["x + 2*y", "-y"]
+[[forcing]]
+phase = "block"
+acceleration = [3, -2]
+[[force]]
+name = "block"
+phase = "block"
+about = [0.2, 0.1]
+[time]
+end = 1
+)toml";
+
+TEST(ModelsByHand, AMeterTellsForceAndTorqueOfWhatPushes) {
+  const auto run = small::simulation(with(block, "velocity = [\"x + 2*y\", \"-y\"]\n", ""));
+  const double mass = 1000.0 * 0.4 * 0.8;
+  EXPECT_NEAR(told(*run, "block_force_x [N]"), 3.0 * mass, 1e-6 * mass);
+  EXPECT_NEAR(told(*run, "block_force_y [N]"), -2.0 * mass, 1e-6 * mass);
+  EXPECT_NEAR(told(*run, "block_torque_z [N m]"), mass * (0.5 * -2.0 - 0.8 * 3.0), 1e-6 * mass)
+      << "its middle is at (0.7, 0.9)";
+}
+
+// Means over 32 particles, and half of the kernel's radius.
+TEST(ModelsByHand, FramesAndRowsTellTheSmoothingLengthAndTheMeanSpeed) {
+  const auto run = small::simulation(block);
+  EXPECT_NEAR(told(*run, "block_mean_vx [m/s]"), 0.7 + 2.0 * 0.9, 1e-12);
+  EXPECT_NEAR(told(*run, "momentum_y [kg m/s]"), -0.9 * 320.0, 1e-9);
+  const Frame frame = run->frame(0);
+  for (const FrameField& field : frame.fields) {
+    if (field.name != "smoothing_length") continue;
+    ASSERT_EQ(field.values.size(), 32u);
+    EXPECT_NEAR(field.values[7], 0.08, 1e-15);
+    return;
+  }
+  ADD_FAILURE() << "no smoothing length";
 }
 
 }  // namespace
