@@ -17,7 +17,8 @@ seeds of the disorder, without retreats, and gets one word:
 
 The checks read the frames and history.csv and use nothing of the program's watch: numbers that are not finite; more than 5 % of a fluid's
 particles nearer than 0.3 spacings to another; a density error above 0.3; mechanical energy grown by 5 % of the motion's and by a hundredth of the
-weight's, where nothing drives the scene; particles more than a spacing outside the domain. Exits with 1 when a run is SILENT.
+weight's, where nothing drives the scene; the angular momentum of a free body changed by 1 %; particles more than a spacing outside the domain. Exits
+with 1 when a run is SILENT.
 """
 
 import argparse
@@ -66,6 +67,7 @@ class Family:
     maps: list = dataclasses.field(default_factory=list)  # pairs of names
     fluids: tuple = ()
     closed: bool = False  # nothing drives it: mechanical energy may only fall
+    turns: bool = False   # a free body: its angular momentum stays
     seeds: int = 2
     rule: str = ""        # the plan's name of the kind of physics
 
@@ -121,9 +123,39 @@ def dam(scheme):
         fluids=("water",), closed=True, rule=f"{scheme} fluid")
 
 
+def cavity():
+    """Re 1000, 20 particles a side, the default radius. Where the lid meets a wall that rests a particle once was squeezed into the corner."""
+    return Family(
+        "cavity", "verification/cavity", ["spacing=0.05", "phases.fluid.viscosity=1e-3", "interactions.fluid-fluid=2.1", "time.end=10", "output.every=10"],
+        "fill.2.seed={seed}",
+        [safety(),
+         Direction("Reynolds number", (10., 100., 400., 1000., 3200., 1e4, 1e5), lambda v: [f"phases.fluid.viscosity={1 / v:.10g}"], 1000),
+         Direction("sound speed / flow speed", (1.5, 3, 5, 6.6, 10, 15, 30), key("phases.fluid.sound-speed"), 10, "sound"),
+         Direction("radius, spacings", RADII[3:], several("interactions.fluid-fluid"), 2.1, "radius"),
+         Direction("disorder, spacings", DISORDER, key("fill.2.perturb"), .2, "disorder", lower_is_free=True),
+         Direction("spacing, m", (.1, 1 / 15, .05, 1 / 33, .02), key("spacing"), .05)],
+        fluids=("fluid",), rule="consistent fluid")
+
+
+def turning():
+    """A free square that turns once about its middle (0.63 s)."""
+    def spin(w):
+        return [f'fill.0.velocity=["{-w:.10g}*(y - 0.1)", "{w:.10g}*(x - 0.1)"]', f"time.end={2 * math.pi / w:.10g}", f"output.every={2 * math.pi / w:.10g}",
+                f"output.history-every={.2 / w:.10g}", f"time.largest-speed={.1 * w:.10g}"]
+    return Family(
+        "turning square", "verification/spinning_square", spin(10.), "title=seed {seed}",
+        [Direction("time.safety", SAFETY, key("time.safety"), 1, lower_is_free=True),
+         Direction("Young's modulus, Pa", (3e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e10, 1e12), key("phases.square.young"), 1e7),
+         Direction("angular velocity, 1/s", (1e-3, .1, 1., 3., 10., 30., 100., 300., 1000.), spin, 10),
+         Direction("radius within a body, spacings", (1.1, 1.3, 1.6, 2., 2.4, 2.8, 3.2, 4.), key("interactions.square-square"), 1.6),
+         Direction("Poisson's ratio", (-.5, 0., .1, .2, .3, .4, .45, .49), key("phases.square.poisson"), .3),
+         Direction("disorder, spacings", DISORDER, key("fill.0.perturb"), 0, lower_is_free=True)],
+        closed=True, turns=True, seeds=1)
+
+
 def families():
     return [
-        vortices("consistent"), vortices("plain"), dam("consistent"), dam("plain"),
+        vortices("consistent"), vortices("plain"), cavity(), dam("consistent"), dam("plain"),
         Family("two fluids", "verification/two_phase_column", ["spacing=4e-3", "output.every=0.05", "fill.1.perturb=0.05", "fill.2.perturb=0.05"],
                "fill.1.seed={seed}",
                [safety(),
@@ -159,6 +191,7 @@ def families():
                           1.95e-3, "elastic speed", lower_is_free=True),
                 Direction("radius between bodies, spacings", (.8, .9, 1., 1.2, 1.5, 2., 2.4), key("interactions.a-b"), 1.)],
                closed=True, seeds=1, rule="elastic"),
+        turning(),
         Family("grains in air", "verification/pile", ["time.end=0.03", "output.every=0.03", "fill.2.perturb=0.05"], "fill.2.seed={seed}",
                [safety(),
                 Direction("sound speed / flow speed", (3, 5, 10, 20, 26, 40, 60, 100, 200), key("phases.air.sound-speed"), 40),
@@ -251,6 +284,10 @@ def trouble(out, name, scene, family):
         own = last.x[last["phase"] == last.names.index(fluid), :dims] - origin
         if near(own, spacing, size, len(axes) == 0) > .05:
             return "pairs"
+    if family.turns:
+        turning = next(v for k, v in history.items() if k.endswith("_angular_momentum [kg m2/s]"))
+        if (drift := numpy.abs(turning / turning[0] - 1).max()) > .01:
+            return f"angular momentum changed by {drift:.2g}"
     if family.closed:
         kinetic = sum(v for k, v in history.items() if k.endswith("_kinetic_energy [J]"))
         gravity = numpy.asarray(scene["domain"].get("gravity", [0] * dims), float)

@@ -55,7 +55,10 @@ void add_budgets(RunReport& r, const Simulation& simulation) {
   for (std::size_t c = HistoryRow::dt; c < row.names.size(); ++c)
     r.budgets[row.names[c].substr(0, row.names[c].find(" ["))] = row.values[c];
   if (const auto drift = simulation.budget().momentum_drift(simulation.state())) r.budgets["momentum_drift"] = *drift;
-  if (const auto growth = simulation.budget().energy_growth(simulation.state())) r.budgets["energy_growth"] = *growth;
+  if (const auto drift = simulation.budget().turning_drift(simulation.state()))
+    r.budgets["angular_momentum_drift"] = *drift;
+  if (const auto growth = simulation.budget().energy_growth(simulation.state(), simulation.held_energy()))
+    r.budgets["energy_growth"] = *growth;
   r.budgets["neighbour_rebuilds"] = static_cast<double>(simulation.searches());
   r.budgets["bytes_per_particle"] =
       static_cast<double>(simulation.bytes()) / std::max(simulation.plan().particles(), 1.0);

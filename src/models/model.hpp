@@ -89,6 +89,9 @@ class Model {
   virtual long searches() const { return 0; }
   /// The contacts of the spheres of a phase, from which a bed that rests can begin again.
   virtual std::vector<RestingContact> resting_contacts(std::size_t) const { return {}; }
+  /// A term of the budget of energy now (J), beside motion, weight and the compression of fluids: what a body holds
+  /// as strain; less the work that a drive has done since the start.
+  virtual double budget_energy() { return 0.0; }
   /// What a user should know of the run so far before its results are used.
   virtual void report(Warnings&) const {}
   /// Its numbers that a step starts from.

@@ -71,9 +71,10 @@ void warn_of_lattices(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries)
     for (const std::size_t wall : {e.a, e.b})
       if (e.of_bodies && !e.of_surfaces && scene.phases[wall].if_wall() && !has_surfaces(scene, scene.phases[wall]))
-        plan.warnings.push_back("interactions." + e.name + ": the shape of \"" + scene.phases[wall].name +
-                                "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
-                                "shape with one: sides, box, cube, in 2D also disc, ring, polygon, surface");
+        plan.warnings.push_back(
+            "interactions." + e.name + ": the shape of \"" + scene.phases[wall].name +
+            "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
+            "shape with one: sides, box, cube, polygon, surface of lines, in 2D also disc, ring, in 3D sphere");
 }
 
 /// A bar in a box is as thick as its rows of particles, and bends as those do. docs/impacts.md has the cantilever.

@@ -128,7 +128,8 @@ bool touch_by_surfaces(const Phase& a, const Phase& b) {
 
 bool has_surfaces(const Scene& scene, const Phase& wall) {
   return wall.if_wall() && std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
-           return fill.phase != wall.name || has_surface(fill.shape, scene.dimensions);
+           const bool prism = facet_dimensions(fill.shape) == 2;  // in 3D along z, through the whole domain
+           return fill.phase != wall.name || prism || has_surface(fill.shape, scene.dimensions);
          });
 }
 

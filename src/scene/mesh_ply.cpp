@@ -176,6 +176,13 @@ struct PlyValue {
   std::vector<double> corners;
 };
 
+/// A number of the file in a message; it may be beyond every integer.
+std::string written(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.15g", number);
+  return text;
+}
+
 bool names_corners(const PlyProperty& p) { return p.count && (p.name == "vertex_indices" || p.name == "vertex_index"); }
 
 void read_element(PlyValues& values, const PlyElement& element, PlyValue& found) {
@@ -188,8 +195,7 @@ void read_element(PlyValues& values, const PlyElement& element, PlyValue& found)
     }
     const double count = values.value(*property.count);
     if (!(count >= 0.0) || count > static_cast<double>(values.left()))
-      refuse(values.where() + "has a list of " + std::to_string(static_cast<long>(count)) +
-             " values, more than the file holds");
+      refuse(values.where() + "has a list of " + written(count) + " values, more than the file holds");
     for (double k = 0; k < count; ++k) {
       const double value = values.value(property.type);
       if (names_corners(property)) found.corners.push_back(value);
@@ -200,8 +206,7 @@ void read_element(PlyValues& values, const PlyElement& element, PlyValue& found)
 
 std::size_t ply_vertex(double number, std::size_t count, const PlyValues& values) {
   if (!(number >= 0.0 && number < static_cast<double>(count)) || number != std::floor(number))
-    refuse(values.where() + "names vertex " + std::to_string(static_cast<long>(number)) + " of " +
-           std::to_string(count) + ", from 0");
+    refuse(values.where() + "names vertex " + written(number) + " of " + std::to_string(count) + ", from 0");
   return static_cast<std::size_t>(number);
 }
 

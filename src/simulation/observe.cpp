@@ -167,10 +167,16 @@ Frame Simulation::good_frame(int index) {
   return f;
 }
 
+double Simulation::held_energy() const {
+  double held = 0.0;
+  for (const auto& model : models_) held += model->budget_energy();
+  return held;
+}
+
 Warnings Simulation::warnings() const {
   Warnings all;
   watch_->report(all);
-  budget_->report(state_, all);
+  budget_->report(state_, all, held_energy());
   for (const auto& model : models_) model->report(all);
   return all;
 }

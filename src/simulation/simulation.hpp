@@ -81,6 +81,8 @@ class Simulation {
   Frame good_frame(int index);
   /// Momentum and energy, which the run should conserve, against the beginning.
   const Budget& budget() const { return *budget_; }
+  /// The models' terms of the budget of energy, J.
+  double held_energy() const;
   /// The warnings of the run so far.
   Warnings warnings() const;
 

@@ -4,6 +4,8 @@
 
 #include "base/errors.hpp"
 #include "physics/drive.hpp"
+#include "scene/generate.hpp"
+#include "scene/reader.hpp"
 
 namespace barchan {
 namespace {
@@ -103,6 +105,72 @@ TEST(Rows, HaveTheMeanOfAForceThatAlternates) {
   const double error = (turning() - start - impulse) / (1e4 * run.time()) - 1.0;
   report("gain of angular momentum less the torques over the load - 1", error, 1e-9);
   EXPECT_NEAR(error, 0.0, 1e-9);
+}
+
+std::vector<std::string> told(const Simulation& run) { return run.warnings().texts(); }
+
+/// A plate that is clamped and bends is none of the budget's business, and one whose clamp is shaken is not either: the
+/// work of the motion is in the books.
+TEST(BodyBudget, ClosesWithClampsAndDrives) {
+  for (const std::string clamp : {"0", "\"0.05*sin(60*t)\""}) {
+    Drive drive("verification/cantilever", {"motion.0.velocity=[0, " + clamp + "]", "time.end=0.1"});
+    const Simulation& run = drive.simulation();
+    double worst = 0.0;
+    for (int k = 1; k <= 10; ++k) {
+      drive.to(0.01 * k);
+      const auto growth = run.budget().energy_growth(run.state(), run.held_energy());
+      ASSERT_TRUE(growth) << "the books are closed with a clamp";
+      worst = std::max(worst, std::abs(*growth));
+    }
+    report("energy of a plate whose clamp moves with " + clamp + ", over that of its motion", worst, 1e-3);
+    EXPECT_LT(worst, 1e-3) << clamp;
+    EXPECT_TRUE(told(run).empty()) << told(run).front();
+  }
+}
+
+/// Energy from nowhere is told, of a body that moves by a millionth of its wave speed too.
+TEST(BodyBudget, TellsOfEnergyFromNowhere) {
+  for (const std::string speed : {"1e-6", "1"}) {
+    Drive drive("verification/cantilever",
+                {"fill.0.velocity=[0, \"" + speed + "*50*((x - 0.06)/0.2)^2*(x > 0.06)\"]", "time.end=0.02"});
+    drive.to(0.005);
+    EXPECT_TRUE(told(drive.simulation()).empty()) << told(drive.simulation()).front();
+    PhaseParticles& plate = drive.simulation().phases()[0];
+    for (int d = 0; d < 2; ++d)
+      for (std::size_t k = 0; k < plate.size(); ++k) plate.column(Field::velocity, d)[k] *= std::sqrt(1.2);
+    ASSERT_EQ(told(drive.simulation()).size(), 1u) << speed;
+    EXPECT_NE(told(drive.simulation())[0].find("of the strain together grew by"), std::string::npos);
+  }
+}
+
+/// A free square of 10 x 10 particles that turns, begun so slowly that the scene is accepted. The total Lagrangian one
+/// keeps its angular momentum; the updated Lagrangian one springs back after some 13 degrees, and that is told.
+TEST(BodyBudget, TellsOfAngularMomentumThatABodyDoesNotKeep) {
+  for (const std::string formulation : {"total-lagrangian", "updated-lagrangian"}) {
+    const Scene scene =
+        parse_scene("spacing = 0.01\n[domain]\nsize = [0.3, 0.3]\n[phases.body]\nkind = \"elastic\"\nformulation = \"" +
+                        formulation +
+                        "\"\ndensity = 1000\nyoung = 1e7\npoisson = 0.3\n[interactions]\nbody-body = 2.4\n"
+                        "[[fill]]\nphase = \"body\"\nshape = { box = { min = [0.1, 0.1], max = [0.2, 0.2] } }\n"
+                        "velocity = [\"-10*(y - 0.15)\", \"10*(x - 0.15)\"]\n[time]\nend = 0.001\n",
+                    "turning.toml");
+    const auto blocks = generate(scene);
+    Simulation run(scene, make_plan(scene, blocks), blocks);
+    while (run.time() < 0.06) run.step(1.0);
+    const auto drift = run.budget().turning_drift(run.state());
+    ASSERT_TRUE(drift);
+    if (formulation == "total-lagrangian") {
+      report("angular momentum of a square that turned by 0.6 rad, drift", *drift, 1e-3);
+      EXPECT_LT(*drift, 1e-3);
+      // 10/s times sum m r^2 of N x N particles, m N^2 (N^2 - 1) dx^2/6, with N = 10, m = 0.1 kg, dx = 0.01 m.
+      EXPECT_NEAR(sum_of(run, {"body_angular_momentum [kg m2/s]"}), 0.165, 1e-3 * 0.165);
+      EXPECT_TRUE(told(run).empty()) << told(run).front();
+    } else {
+      EXPECT_GT(*drift, 0.5);
+      ASSERT_FALSE(told(run).empty());
+      EXPECT_NE(told(run)[0].find("the angular momentum of the bodies"), std::string::npos) << told(run)[0];
+    }
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "plan/plan.hpp"
+#include "plan/run_cost.hpp"
 #include "scene/reader.hpp"
 #include "unit/scene_texts.hpp"
 
@@ -257,6 +258,67 @@ TEST(PlanWarns, OfABarOfTwoParticlesAcross) {
   EXPECT_NE(bar("0.0832").front().find("phases.bar: 2 particles across along y"), std::string::npos)
       << bar("0.0832").front();
   EXPECT_TRUE(bar("0.0864").empty()) << "four";
+}
+
+/// A block on a floor of this shape, in three dimensions.
+Scene block_on(const std::string& floor, const std::string& contact = "{ restitution = 0.3 }") {
+  return parse_scene(R"(dimensions = 3
+spacing = 0.01
+[domain]
+size = [0.2, 0.2, 0.2]
+[phases.block]
+kind = "elastic"
+density = 1000
+young = 1e6
+poisson = 0.3
+[phases.floor]
+kind = "wall"
+[interactions]
+block-block = 1.6
+block-floor = )" + contact +
+                         "\n[[fill]]\nphase = \"floor\"\nshape = " + floor + R"(
+[[fill]]
+phase = "block"
+shape = { box = { min = [0.05, 0.1, 0.05], max = [0.1, 0.15, 0.1] } }
+velocity = [0, -1, 0]
+[time]
+end = 0.01
+)",
+                     "block.toml");
+}
+
+/// Bodies feel the lattice of a wall that has no outline, and are thrown sideways; a prism has one.
+TEST(PlanWarns, OfWallsWithoutAnOutline) {
+  const auto plan = [](const std::string& floor) {
+    const Scene scene = block_on(floor);
+    return make_plan(scene, generate(scene));
+  };
+  EXPECT_TRUE(warns(plan("{ formula = \"0.05 + 0.1*x - y\" }"), "bodies feel the lattice of its particles"));
+  EXPECT_FALSE(warns(plan("{ polygon = [[0, 0], [0.2, 0], [0.2, 0.07], [0, 0.05]] }"), "feel the lattice"));
+  EXPECT_FALSE(warns(plan("{ box = { min = [0, 0, 0], max = [0.2, 0.05, 0.2] } }"), "feel the lattice"));
+}
+
+/// The written restitution is that of two particles.
+TEST(PlanTells, WhatBodiesOfManyParticlesKeep) {
+  const auto told = [](const std::string& contact) {
+    const Scene scene = block_on("{ sides = [\"bottom\"] }", contact);
+    return to_text(make_plan(scene, generate(scene)), scene);
+  };
+  EXPECT_NE(told("{ restitution = 0.3 }").find("restitution 0.3 is of two particles, bodies of many keep more"),
+            std::string::npos);
+  EXPECT_EQ(told("{ restitution = 1 }").find("bodies of many keep more"), std::string::npos);
+}
+
+TEST(PlanTells, HowLongItTakesToBeginAndToEnd) {
+  Estimate e;
+  e.measured = true;
+  e.steps = 1e6;
+  e.seconds = 3000;
+  e.start_seconds = 22;
+  EXPECT_NE(to_text(e).find("start   22 s to make the particles, beds that settle included"), std::string::npos);
+  EXPECT_EQ(to_text(e).find("warning"), std::string::npos);
+  e.start_seconds = 4200;
+  EXPECT_NE(to_text(e).find("warning: the run takes about 2.0 hours"), std::string::npos) << to_text(e);
 }
 
 }  // namespace

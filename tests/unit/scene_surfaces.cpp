@@ -208,6 +208,8 @@ TEST(Meshes, DamageIsRefusedByName) {
   };
   refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2 4")), "line 19 names vertex 4 of 4, from 0");
   refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2 -1")), "names vertex -1");
+  refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2 1e93")), "names vertex 1e+93 of 4");
+  refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "1e93 0 2 1")), "has a list of 1e+93 values");
   refused(parse_ply(with(corpus("text.ply"), "3 0 2 1", "3 0 2")),
           "line 19 has a list of 3 values, more than the file holds");
   refused(parse_ply(with(corpus("text.ply"), "1 0 0 7", "1 zz 0 7")), "line 16 has \"zz\" where a number");

@@ -225,7 +225,7 @@ std::optional<Gap> ContactSurface::gap(const Vec3& x) const {
       return outer > inner ? Gap{outer, unit(r, {1, 0, 0})} : Gap{inner, unit(-1.0 * r, {1, 0, 0})};
     }
     case Form::box: return gap_of_box(at_, other_, x);
-    case Form::polygon: return outline_.front().gap(x);
+    case Form::polygon: return outline_.front().gap({x[0], x[1], 0.0});  // in 3D a prism along z
   }
   return std::nullopt;
 }
@@ -251,7 +251,7 @@ std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, 
     if (ring->inner > 0.0) return {ContactSurface::ring(ring->centre, ring->inner, ring->outer)};
     return {ContactSurface::round(ring->centre, ring->outer)};
   }
-  if (flat && facet_dimensions(shape) == 2) return {ContactSurface::polygon(PolygonOutline(facets_of(shape)))};
+  if (facet_dimensions(shape) == 2) return {ContactSurface::polygon(PolygonOutline(facets_of(shape)))};
   return {};
 }
 

@@ -87,7 +87,8 @@ class ContactSurface {
 };
 
 /// The parts of a fill's shape, in space at the start; not yet prepared. Shapes that has_surface() says have none have
-/// no parts; sides neither. `spacing` (m): of the particles.
+/// no parts, sides neither; in 3D lines are prisms along z, which are surfaces of walls only, for bodies of particles.
+/// `spacing` (m): of the particles.
 std::vector<ContactSurface> surfaces_of(const Shape& shape, const Scene& scene, double spacing);
 
 }  // namespace barchan

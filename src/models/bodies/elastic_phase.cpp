@@ -8,6 +8,7 @@
 #include "engine/integrate.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
+#include "models/bodies/angular_momentum.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/sets.hpp"
 #include "models/bodies/stress_fields.hpp"
@@ -244,6 +245,7 @@ double ElasticPhase::strain_energy() const {
 
 void ElasticPhase::history(HistoryRow& row) const {
   row.add(plan_.name + "_strain_energy [J]", strain_energy());
+  add_angular_momentum(row, w_->particles(number_), layout_);
   if (!phase_.elastic().energy) return;
   const PhaseParticles& p = w_->particles(number_);
   const double* e = p.column(Field::energy);

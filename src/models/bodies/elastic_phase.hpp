@@ -21,6 +21,7 @@ class ElasticPhase : public Model {
   void schedule(Schedule& s) override;
   void derive() override;
   void history(HistoryRow& row) const override;
+  double budget_energy() override { return strain_energy(); }
   void limits(std::vector<StepLimit>& limits) const override;
   int phase() const override { return static_cast<int>(number_); }
 

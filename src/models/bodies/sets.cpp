@@ -83,10 +83,17 @@ void DrivenSet::schedule(Schedule& s) {
   s.add({stage::motion, name, {}, {velocity, acceleration}, [this] { hold(); }});
 }
 
+Vec3 DrivenSet::velocity_at(double time) const {
+  Vec3 v{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) v[d] = velocity_[d]({0, 0, 0}, time);
+  return v;
+}
+
 void DrivenSet::set_velocity(double time) {
   PhaseParticles& p = set_.particles();
+  const Vec3 velocity = velocity_at(time);
   for (int d = 0; d < layout_.dimensions; ++d) {
-    const double speed = velocity_[static_cast<std::size_t>(d)]({0, 0, 0}, time);
+    const double speed = velocity[static_cast<std::size_t>(d)];
     double *v = p.column(Field::velocity, d), *a = p.column(Field::acceleration, d);
     for (std::size_t q = 0; q < set_.size(); ++q) {
       const std::uint32_t k = set_.place(q);
@@ -108,8 +115,14 @@ void DrivenSet::hold() {
     force[static_cast<std::size_t>(d)] =
         p.mass() * reproducible_sum(set_.size(), [&](std::size_t q) { return a[set_.place(q)]; });
   }
-  if (w_->state.steps == 0) force_.start(force);
-  else force_.add(force, w_->state.dt);
+  const double power = dot(force, velocity_at(w_->state.time));
+  if (w_->state.steps == 0) {
+    force_.start(force);
+  } else {
+    force_.add(force, w_->state.dt);
+    taken_ += 0.5 * w_->state.dt * (power_ + power);
+  }
+  power_ = power;
   set_velocity(w_->state.time);
 }
 
@@ -119,7 +132,18 @@ void DrivenSet::history(HistoryRow& row) const {
     row.add("motion_" + std::to_string(number_) + "_force_" + axes[d] + " [N]", force[static_cast<std::size_t>(d)]);
 }
 
-void DrivenSet::archive(Archive& a) { force_.archive(a, "force on a driven set"); }
+/// The drive gives the set what its motion gains, less what the rest of the body and the weight give it.
+double DrivenSet::budget_energy() {
+  const Vec3 now = velocity_at(w_->state.time), start = velocity_at(0.0);
+  const double mass = set_.particles().mass() * static_cast<double>(set_.size());
+  return taken_ - 0.5 * mass * (dot(now, now) - dot(start, start));
+}
+
+void DrivenSet::archive(Archive& a) {
+  force_.archive(a, "force on a driven set");
+  a.number("power of that force", power_);
+  a.number("work of that force", taken_);
+}
 
 MarkedSet::MarkedSet(const Scene& scene, const Layout& layout, std::size_t number)
     : layout_(layout), marker_(scene.markers[number]), number_(number), set_(layout, scene.markers[number]) {}

@@ -44,19 +44,23 @@ class DrivenSet : public Model {
   void schedule(Schedule& s) override;
   void history(HistoryRow& row) const override;
   void begin_row() override { force_.begin_row(); }
+  double budget_energy() override;
   void archive(Archive& a) override;
 
  private:
   void lead();
   void hold();
   void set_velocity(double time);
+  Vec3 velocity_at(double time) const;
 
   const Scene& scene_;
   const Layout& layout_;
   std::size_t number_;
   SetOfBody set_;
   std::array<Formula, 3> velocity_;
-  RowMean force_;  // N, of the rest of the body on the set
+  RowMean force_;       // N, of the rest of the body on the set
+  double power_ = 0.0;  // W, of that force
+  double taken_ = 0.0;  // J, its work on the set since the start
   Workspace* w_ = nullptr;
 };
 

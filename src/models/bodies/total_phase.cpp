@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/integrate.hpp"
 #include "engine/reproducible_sum.hpp"
+#include "models/bodies/angular_momentum.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/stiffest_vibration.hpp"
 #include "models/bodies/stress_fields.hpp"
@@ -191,6 +192,12 @@ void TotalPhase::load() {
 void TotalPhase::history(HistoryRow& row) const {
   row.add(plan_.name + "_strain_energy [J]", strain_energy_);
   row.add(plan_.name + "_hourglass_energy [J]", hourglass_energy_);
+  add_angular_momentum(row, w_->particles(number_), layout_);
+}
+
+double TotalPhase::budget_energy() {
+  derive();
+  return strain_energy_ + hourglass_energy_;
 }
 
 void TotalPhase::derive() {

@@ -36,6 +36,7 @@ class TotalPhase : public Model {
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
   void derive() override;
+  double budget_energy() override;
   std::uint64_t pairs(const PlanEntry& entry) const override;
   void archive(Archive& a) override;
 
