@@ -1,3 +1,4 @@
+#include <omp.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -22,10 +23,20 @@
 
 namespace {
 
+/// Whether the command has a team of threads: one that computes, with more than one thread.
+bool needs_team(const std::vector<std::string>& words) {
+  if (omp_get_max_threads() == 1 || words.size() < 2) return false;
+  if (words[1] != "run" && words[1] != "plan" && words[1] != "generate") return false;
+  for (std::size_t k = 2; k < words.size(); ++k)
+    if (words[k] == "--threads=1" || (words[k - 1] == "--threads" && words[k] == "1")) return false;
+  return true;
+}
+
 /// Threads that wait for work spin for a moment only, so that a busy machine is not wasted. OpenMP's library reads its
-/// settings before main, so the program starts itself again with them, once, unless the user has set them.
-void wait_politely(char** argv) {
-  if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
+/// settings before main, so the program starts itself again with them, once, unless the user has set them. That costs
+/// 0.04 s of loading (VTK's libraries), as much as a hundred steps of a small scene: not where one thread works alone.
+void wait_politely(int argc, char** argv) {
+  if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY") || !needs_team({argv, argv + argc})) return;
   setenv("GOMP_SPINCOUNT", "20000", 1);
   execv("/proc/self/exe", argv);  // returns only if it failed; then the run goes on as it is
 }
@@ -172,7 +183,7 @@ int dispatch(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   barchan::flush_denormals();
-  wait_politely(argv);
+  wait_politely(argc, argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   return barchan::guarded(std::cerr, [&] { return dispatch(argc, argv); });
 }

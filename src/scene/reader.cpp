@@ -1,6 +1,6 @@
 #include "scene/reader.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -46,9 +46,10 @@ Scene read_scene(const std::string& file, const std::vector<std::string>& overri
     throw SceneError(file + ": is a directory; expected a scene file (.toml)");
   std::ifstream stream(file, std::ios::binary);
   std::string text;
-  if (stream) text.resize(most_of_a_scene + 1);
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  for (std::array<char, 16384> part; stream && text.size() <= most_of_a_scene;) {
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (text.size() > most_of_a_scene)
     throw SceneError(file + ": is larger than " + std::to_string(most_of_a_scene >> 20) +
                      " MB; expected a scene file (.toml)");

@@ -68,6 +68,34 @@ TEST(WholeFluids, HaveNoVoid) {
   }
 }
 
+/// A start that is disturbed by 0.3 spacings has broken neighbourhoods for some steps, but no void.
+TEST(WholeFluids, ADisturbedStartHasNoVoid) {
+  Drive drive("verification/taylor_green", {"spacing=0.04", "fill.0.perturb=0.3"});
+  for (int k = 0; k < 100; ++k) {
+    drive.simulation().step(1e300);
+    const auto& p = drive.phase(0);
+    const double* near = p.column(Field::near_void);
+    ASSERT_TRUE(std::all_of(near, near + p.size(), [](double x) { return x == 0.0; })) << "step " << k;
+  }
+}
+
+/// Gresho's vortex in the plain scheme, whose sums pull where the pressure is below zero: without a constant in them
+/// particles clump, and the error is 0.22; with it 0.08 (a start of another seed).
+TEST(WholeFluids, PlainSumsDoNotClump) {
+  Drive drive("verification/gresho", {"phases.fluid.scheme=plain", "interactions.fluid-fluid=3.0"});
+  drive.to(0.5);
+  const auto& p = drive.phase(0);
+  double difference = 0, sum = 0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double x = p.column(Field::position, 0)[k] - 0.5, y = p.column(Field::position, 1)[k] - 0.5;
+    const double r = std::hypot(x, y), turn = r < 0.2 ? 5.0 : r < 0.4 ? 2.0 / r - 5.0 : 0.0;
+    difference += std::hypot(p.column(Field::velocity, 0)[k] + y * turn, p.column(Field::velocity, 1)[k] - x * turn);
+    sum += r * turn;
+  }
+  report("L1 of the velocity at t = 0.5 s", difference / sum, 0.1);
+  EXPECT_LE(difference / sum, 0.1);
+}
+
 TEST(TaylorGreen, ConsistentScheme) {
   const Errors e = after_a_second({}, 0.004);
   EXPECT_LE(e.velocity, 0.004);

@@ -102,7 +102,8 @@ inline Rates plain_rates(const sets::Cast& cast, std::size_t a, const std::vecto
                    [&](const Entry& e, const PhaseParticles& b, std::size_t j, const Vec3& r, double f) {
                      const double v_j = volume(b, j), p_b = b.column(Field::pressure)[j];
                      const Vec3 grad_w = f * r, v_ab = v_a - sets::vector(b, Field::velocity, j);
-                     dv = dv - v_j * (p_a + p_b) / rho_a * grad_w + 2.0 * e.viscosity * v_j * f / rho_a * v_ab;
+                     dv = dv - v_j * (p_a + p_b - 2.0 * q.void_pressure) / rho_a * grad_w +
+                          2.0 * e.viscosity * v_j * f / rho_a * v_ab;
                      drho += rho_a * v_j * dot(v_ab, grad_w);
                      if (e.diffuse)
                        drho += q.diffusivity / (q.sound_speed * q.sound_speed) * 2.0 * v_j * f *

@@ -28,6 +28,14 @@ BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_
   return joined;
 }
 
+/// The plain sums push with the pressures above that of the void: sum V F (p_a + p_b - 2 p_v) r. Written as a fused
+/// product, so that no compiler chooses the bits.
+template <int Dim, class Sums>
+BARCHAN_SIMD_INLINE void lift(Sums& s, const FluidParameters& q) {
+  for (std::size_t d = 0; d < Dim; ++d)
+    s.pressure[d] = simd::fma(Four(-2.0 * q.void_pressure), s.concentration[d], s.pressure[d]);
+}
+
 template <int Dim, template <int> class Law, class T, Beside beside, bool Joined = false>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
            const FluidParameters& q) {
@@ -74,6 +82,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       if constexpr (L::corrected && beside == Beside::ends)
         if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);  // the fluid's own entry is the first
     }
+    if constexpr (!L::corrected) lift<Dim>(s, q);
     auto anisotropy = columns.anisotropy(at);
     auto place = columns.template place<beside>(at, company);
     const auto r = finish<Dim, beside, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);

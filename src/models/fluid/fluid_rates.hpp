@@ -46,7 +46,7 @@ struct FluidParameters {
   double smoothing_length;    // m, of the phase with itself
   Vec3 gravity;               // m/s2
   Vec3 acceleration;          // m/s2, further uniform body force
-  double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole
+  double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole; plain: everywhere
   double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
   double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
   double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none

@@ -90,7 +90,7 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
     const std::uint32_t noted = loose.place[static_cast<std::size_t>(q)];
     const std::size_t k = noted & ~LooseParticles::broken;
     const bool beside = beside_void<dim>(fluid, seen, radius, spacing, k);
-    if (k == noted && !beside) continue;
+    if ((k == noted || until_ > 0) && !beside) continue;
     if (!beside) ++broken;
     any = 1;
     const auto mark = [&](std::size_t b) { std::atomic_ref<double>(left[b]).store(memory, std::memory_order_relaxed); };
@@ -113,6 +113,7 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
 
 bool VoidFinder::find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
                       LooseParticles& loose) {
+  if (until_ > 0) --until_;
   if (near_ == 0 && loose.count.load(std::memory_order_relaxed) == 0) {
     unresolved_ = std::max<std::int64_t>(unresolved_ - 1, 0);
     return false;
