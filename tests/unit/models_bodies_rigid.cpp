@@ -222,19 +222,24 @@ void expect_body_refused(std::string text, const std::string& from, const std::s
 
 TEST(RigidStart, RefusesWhatCannotBe) {
   const std::string first = "shape = { box = { min = [1, 1, 1], max = [2, 1.4, 1.2] } }";
-  expect_body_refused(scene_text, first, "shape = { points = [[1, 1, 1], [1.1, 1, 1], [1.2, 1, 1]] }", "stand in one line");
-  expect_body_refused(scene_text, "angular-velocity = [0.5, 0.6, 0.7]", "angular-velocity = 1", "an array of 3 numbers");
+  expect_body_refused(scene_text, first, "shape = { points = [[1, 1, 1], [1.1, 1, 1], [1.2, 1, 1]] }",
+                      "stand in one line");
+  expect_body_refused(scene_text, "angular-velocity = [0.5, 0.6, 0.7]", "angular-velocity = 1",
+                      "an array of 3 numbers");
   expect_body_refused(scene_text, "[interactions]", "[interactions]\na-a = { radius = 2 }", "expected no such key");
-  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\ntorque = [1, 0, 0]\n[time]", "turn freely about");
-  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\nabout = [1, 1, 1]\nvelocity = [1, 0, 0]\n[time]",
-                 "stays where it is");
+  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\ntorque = [1, 0, 0]\n[time]",
+                      "turn freely about");
   expect_body_refused(scene_text, "[time]",
-                 "[[motion]]\nphase = \"a\"\nbox = { min = [0, 0, 0], max = [0.1, 0.1, 0.1] }\n[time]",
-                 "no rigid body of phase \"a\"");
-  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]", "holds already");
+                      "[[motion]]\nphase = \"a\"\nabout = [1, 1, 1]\nvelocity = [1, 0, 0]\n[time]",
+                      "stays where it is");
+  expect_body_refused(scene_text, "[time]",
+                      "[[motion]]\nphase = \"a\"\nbox = { min = [0, 0, 0], max = [0.1, 0.1, 0.1] }\n[time]",
+                      "no rigid body of phase \"a\"");
+  expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]",
+                      "holds already");
   expect_body_refused(scene_text, "[interactions]",
-                 "[phases.b]\nkind = \"fluid\"\ndensity = 1\n[interactions]\nb-b = 2.1\na-b = 2.1",
-                 "expected \"plain\", or no entry a-b");
+                      "[phases.b]\nkind = \"fluid\"\ndensity = 1\n[interactions]\nb-b = 2.1\na-b = 2.1",
+                      "expected \"plain\", or no entry a-b");
   expect_body_refused(scene_text, first, first + "\npressure = 1", "only fluids");
   expect_body_refused(scene_text, "density = 1000", "density = 1000\nstiffness = 1e6", "nothing reads it");
   std::string boxes = scene_text;
@@ -242,9 +247,9 @@ TEST(RigidStart, RefusesWhatCannotBe) {
   boxes.replace(boxes.find(sphere), sphere.size(), "shape = { cube = { centre = [2.5, 2.5, 2.5], count = 4 } }");
   expect_body_refused(boxes, "[interactions]", "[interactions]\na-a = { restitution = 0.5 }", "along their edges");
   expect_body_refused(scene_text, "[interactions]\n",
-                 "[interactions]\na-a = { restitution = 0.5 }\n[[fill]]\nphase = \"a\"\n"
-                 "shape = { formula = \"0.2 - x\" }\n",
-                 "this shape has none");
+                      "[interactions]\na-a = { restitution = 0.5 }\n[[fill]]\nphase = \"a\"\n"
+                      "shape = { formula = \"0.2 - x\" }\n",
+                      "this shape has none");
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ namespace {
 
 using namespace sets;
 
-const std::vector<Field> rated_surface{Field::velocity,     Field::density,        Field::pressure,  Field::acceleration,
-                               Field::density_rate, Field::shift_velocity, Field::anisotropy};
+const std::vector<Field> rated_surface{Field::velocity,     Field::density,      Field::pressure,
+                                       Field::acceleration, Field::density_rate, Field::shift_velocity,
+                                       Field::anisotropy};
 
 std::vector<Field> with_surface() {
   std::vector<Field> fields = rated_surface;

@@ -69,7 +69,7 @@ TEST(SphereSearch, FindsTheSidesThatASphereMayTouch) {
   std::size_t found = 0;
   for (std::size_t k = 0; k < cast.all; ++k) {
     const double x = cast.records[k * 8], y = cast.records[k * 8 + 1];
-    const bool bottom = y < cast.radius(k) + slack;                             // each kind touches kind 0
+    const bool bottom = y < cast.radius(k) + slack;                              // each kind touches kind 0
     const bool right = cast.kinds[k] == 0 && 24.0 - x < cast.radius(k) + slack;  // kind 1 does not touch kind 1
     const auto& sides = cast.chunks[cast.chunk_of(k)].sides;
     const auto has = [&](std::uint16_t axis) {

@@ -22,9 +22,9 @@ const double bound = std::sqrt(gravity * diameter);             // m/s; slower t
 class SixGrains {
  public:
   explicit SixGrains(const std::function<Vec3(std::size_t)>& place =
-                      [](std::size_t k) {
-                        return Vec3{0.005 + 0.002 * static_cast<double>(k), 0.01, 0.0};
-                      })
+                         [](std::size_t k) {
+                           return Vec3{0.005 + 0.002 * static_cast<double>(k), 0.01, 0.0};
+                         })
       : scene_(parse_scene(text, "sleep.toml")), blocks_(generate(scene_)), plan_(make_plan(scene_, blocks_)) {
     const PlanPhase& sand = plan_.phases[0];
     PhaseParticles p(sand.name, 2, sand.count, sand.mass, 0);

@@ -140,7 +140,8 @@ TEST_P(Extension, EqualsTheNaiveSums) {
   std::vector<double> got(wall.size());
   for (std::size_t d = 0; d <= n; ++d) {  // the velocity's components, then the pressure
     for (std::size_t k = 0; k < wall.size(); ++k) got[k] = cast.motion[0][k][n + d];
-    EXPECT_LT(difference(got.data(), d < n ? velocity[d] : pressure), wall_rounding) << (d < n ? "velocity" : "pressure");
+    EXPECT_LT(difference(got.data(), d < n ? velocity[d] : pressure), wall_rounding)
+        << (d < n ? "velocity" : "pressure");
   }
 }
 
