@@ -116,11 +116,15 @@ TEST(BodyBudget, ClosesWithClampsAndDrives) {
     Drive drive("verification/cantilever", {"motion.0.velocity=[0, " + clamp + "]", "time.end=0.1"});
     const Simulation& run = drive.simulation();
     double worst = 0.0;
+    const double start = energy_of(run, "plate");
     for (int k = 1; k <= 10; ++k) {
       drive.to(0.01 * k);
       const auto growth = run.budget().energy_growth(run.state(), run.held_energy());
       ASSERT_TRUE(growth) << "the books are closed with a clamp";
       worst = std::max(worst, std::abs(*growth));
+    }
+    if (clamp != "0") {  // the drive gives, and takes back, far more than the bound
+      EXPECT_GT(std::abs(energy_of(run, "plate") / start - 1.0), 0.05);
     }
     report("energy of a plate whose clamp moves with " + clamp + ", over that of its motion", worst, 1e-3);
     EXPECT_LT(worst, 1e-3) << clamp;
@@ -130,7 +134,7 @@ TEST(BodyBudget, ClosesWithClampsAndDrives) {
 
 /// Energy from nowhere is told, of a body that moves by a millionth of its wave speed too.
 TEST(BodyBudget, TellsOfEnergyFromNowhere) {
-  for (const std::string speed : {"1e-6", "1"}) {
+  for (const std::string speed : {"1e-6", "1e-2"}) {
     Drive drive("verification/cantilever",
                 {"fill.0.velocity=[0, \"" + speed + "*50*((x - 0.06)/0.2)^2*(x > 0.06)\"]", "time.end=0.02"});
     drive.to(0.005);
