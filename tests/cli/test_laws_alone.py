@@ -110,18 +110,20 @@ template void kept<2>(); template void kept<3>();""",
     "kernel_contact": PAIRS + "PAIRS(KernelContacts)",
     "plain_energy": PAIRS + "PAIRS(PlainEnergy) PAIRS(SolidEnergy)",
     "plain_fluid": FLUID + "FLUID(PlainFluid) FLUID(PlainSurface)",
-    "sphere_contact": """
-template <bool Hertz, bool Rubs, bool Rolls, std::size_t Dim> void touching() {
-  const barchan::sphere_contact::Constants<double> c({}, 1.0);
+    "sphere_catalogue": """
+#include <variant>
+template <class Law, std::size_t Dim> void touching() {
+  const typename Law::template Constants<double> c(Law{}, 1.0);
   const barchan::TouchingSpheres<double, Dim> s{};
-  std::array<double, 6> memory{};
-  barchan::touch<Hertz, Rubs, Rolls, double, Dim>(c, s, memory);
+  std::array<double, Law::template numbers<Dim>> memory{};
+  Law::touch(c, s, memory);
 }
-template <std::size_t Dim> void all() {
-  touching<false, false, false, Dim>(); touching<false, true, false, Dim>(); touching<false, true, true, Dim>();
-  touching<true, false, false, Dim>(); touching<true, true, false, Dim>(); touching<true, true, true, Dim>();
+template <class Law> void parts() {
+  touching<Law, 2>(); touching<Law, 3>();
+  touching<typename Law::WithoutRolling, 2>(); touching<typename Law::WithoutRolling, 3>();
+  touching<typename Law::Smooth, 2>(); touching<typename Law::Smooth, 3>();
 }
-template void all<2>(); template void all<3>();""",
+void all() { barchan::each_sphere_law([](auto row) { parts<typename decltype(row)::Law>(); }); }""",
     "surface_contact": """
 double pushed() { const barchan::SurfaceContactLaw law{1, 1, 1}; return law.push(1, 1, 1, 1) + law.grip(1, 1, 1, 1); }""",
     "turning_friction": PAIRS + "PAIRS(TurningFriction)",

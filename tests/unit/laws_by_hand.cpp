@@ -8,7 +8,7 @@
 #include "laws/body_contact.hpp"
 #include "laws/extension.hpp"
 #include "laws/kept_drag.hpp"
-#include "laws/sphere_contact.hpp"
+#include "laws/sphere_catalogue.hpp"
 #include "laws/surface_contact.hpp"
 #include "laws/turning_friction.hpp"
 
@@ -16,6 +16,20 @@ namespace barchan {
 namespace {
 
 using V = simd::Vec<double, 4>;
+using Linear = std::variant_alternative_t<0, AnySphereContact>;  // of the catalogue
+using Hertz = std::variant_alternative_t<1, AnySphereContact>;
+
+/// 500 N/m with a restitution.
+Linear linear(double e, double friction = 0.0, double rolling = 0.0) {
+  return {{500.0}, NormalDashpot::of_restitution<LinearSpring>(e), {{}, friction}, {rolling}};
+}
+/// Of equal spheres without losses, E = 1e8 Pa, nu = 0.3.
+Hertz hertzian() {
+  return {HertzSpring::of_material(1e8, 0.3),
+          NormalDashpot::of_restitution<HertzSpring>(1.0),
+          {MindlinSlipStiffness::of_poisson(0.3), 0.0},
+          {0.0}};
+}
 
 constexpr double mass = 1e-5, radius = 1e-3;  // kg, m, of each of two spheres
 
@@ -37,27 +51,26 @@ TouchingSpheres<V, Dim> spheres(double overlap) {
 }
 
 /// N and J: the force along the normal and what is stored, of spheres without losses.
-template <bool Hertz>
-std::array<double, 2> push_and_store(double overlap) {
-  const SphereContact law = Hertz ? SphereContact::hertzian(1e8, 0.3, 1.0) : SphereContact::linear(500.0, 1.0);
-  std::array<V, 1> memory{V(0.0)};
-  const auto f = touch<Hertz, false, false>(sphere_contact::Constants<V>(law, 1e-9), spheres<2>(overlap), memory);
+template <class Law>
+std::array<double, 2> push_and_store(const Law& law, double overlap) {
+  std::array<V, 0> memory;
+  const auto f = Law::touch(typename Law::template Constants<V>(law, 1e-9), spheres<2>(overlap), memory);
   return {f.force[0][0], f.stored[0]};
 }
 
-template <bool Hertz>
-void expect_force_is_slope_of_store() {
+template <class Law>
+void expect_force_is_slope_of_store(const Law& law) {
   for (const double overlap : {1e-5, 4e-5}) {
     const double step = 1e-4 * overlap;
     const double slope =
-        (push_and_store<Hertz>(overlap + step)[1] - push_and_store<Hertz>(overlap - step)[1]) / (2.0 * step);
-    EXPECT_NEAR(push_and_store<Hertz>(overlap)[0], slope, 1e-6 * slope) << (Hertz ? "Hertz" : "linear");
+        (push_and_store(law, overlap + step)[1] - push_and_store(law, overlap - step)[1]) / (2.0 * step);
+    EXPECT_NEAR(push_and_store(law, overlap)[0], slope, 1e-6 * slope);
   }
 }
 
 TEST(LawsByHand, SpheresStoreTheWorkOfTheirForce) {
-  expect_force_is_slope_of_store<false>();
-  expect_force_is_slope_of_store<true>();
+  expect_force_is_slope_of_store(linear(1.0).smooth());
+  expect_force_is_slope_of_store(hertzian().smooth());
 }
 
 // Mindlin 1949: k_t = 8 G* a of k_n = 2 E* a, a the radius of the contact, G* = G/(2 (2 - nu)) and
@@ -66,21 +79,20 @@ TEST(LawsByHand, TangentialStiffnessOfHertzIsMindlins) {
   for (const double nu : {0.0, 0.2, 0.45}) {
     const double young = 1e9, shear = young / (2.0 * (1.0 + nu));
     const double g = shear / (2.0 * (2.0 - nu)), e = young / (2.0 * (1.0 - nu * nu));
-    EXPECT_NEAR(SphereContact::hertzian(young, nu, 0.5).tangential, 8.0 * g / (2.0 / 3.0 * 2.0 * e), 1e-12) << nu;
+    EXPECT_NEAR(MindlinSlipStiffness::of_poisson(nu).ratio, 8.0 * g / (2.0 / 3.0 * 2.0 * e), 1e-12) << nu;
   }
 }
 
 // A step so short that the slip is nothing: what is left of the tangential force is the dashpot, half of that along the
 // normal, zeta sqrt(m* k) v.
 TEST(LawsByHand, TangentialDashpotIsHalfOfTheNormalOne) {
-  SphereContact law = SphereContact::linear(500.0, 0.5);
-  law.friction = 1e6;
+  const auto law = linear(0.5, 1e6).without_rolling();
   const double overlap = 1e-5, speed = 0.1, dt = 1e-9;
   auto s = spheres<2>(overlap);
   s.velocity[1] = V(speed);
   std::array<V, 1> memory{V(0.0)};
-  const auto f = touch<false, true, false>(sphere_contact::Constants<V>(law, dt), s, memory);
-  const double expected = -SphereContact::damping_ratio(0.5) * std::sqrt(0.5 * mass * 500.0) * speed;
+  const auto f = law.touch(decltype(linear(0.5).without_rolling())::Constants<V>(law, dt), s, memory);
+  const double expected = -NormalDashpot::damping_ratio(0.5) * std::sqrt(0.5 * mass * 500.0) * speed;
   EXPECT_NEAR(f.force[1][0], expected, 1e-3 * std::abs(expected));
 }
 
@@ -89,8 +101,7 @@ TEST(LawsByHand, TangentialDashpotIsHalfOfTheNormalOne) {
 // the lever R* = R/2, R*^2 (1/I + 1/I) = 5/8 1/m*.
 template <bool Rolls>
 void expect_force_knows_its_own_work() {
-  SphereContact law = SphereContact::linear(500.0, 0.3);
-  law.friction = law.rolling = 1e6;
+  const Linear law = linear(0.3, 1e6, 1e6);
   const double overlap = 1e-5, dt = 4e-5, inertia = 0.4 * mass * radius * radius;
   auto s = spheres<2>(overlap);
   s.lever_a = s.lever_b = V(radius);
@@ -102,11 +113,11 @@ void expect_force_knows_its_own_work() {
   }
   const double speed = Rolls ? 0.5 * radius * 200.0 : 0.1;
   std::array<V, 2> memory{V(0.0), V(0.0)};
-  const auto f = touch<false, true, true>(sphere_contact::Constants<V>(law, dt), s, memory);
+  const auto f = Linear::touch(Linear::Constants<V>(law, dt), s, memory);
   const double force = Rolls ? f.torque_a[0][0] / (0.5 * radius) : f.force[1][0];
   const double gain = Rolls ? 0.25 * radius * radius * 2.0 / inertia : 2.0 / mass + radius * radius * 2.0 / inertia;
   // The dashpot as the exact step has it (head of laws/sphere_contact.hpp).
-  const double turn2 = 500.0 * dt * dt * 2.0 / mass, d = 2.0 * SphereContact::damping_ratio(0.3);
+  const double turn2 = 500.0 * dt * dt * 2.0 / mass, d = 2.0 * NormalDashpot::damping_ratio(0.3);
   const double dashpot = 0.5 * d * std::sqrt(0.5 * mass * 500.0) * (1.0 - turn2 * d * d / 12.0);
   const double slip = speed * dt, stiffness = 2.0 / 7.0 * 500.0;
   EXPECT_NEAR(force, -stiffness * slip - dashpot * (speed + 0.5 * dt * gain * force), 1e-9 * std::abs(force));
