@@ -88,8 +88,8 @@ class Renewal : public Model {
 };
 
 /// A run with its renewal.
-struct Run {
-  Run() {
+struct RenewedRun {
+  RenewedRun() {
     const Scene scene = parse_scene(vortices, "test.toml");
     const auto blocks = make_particles(scene);
     Models more;
@@ -106,7 +106,7 @@ struct Run {
   std::unique_ptr<Simulation> simulation;
 };
 
-void expect_same(const Run& a, const Run& b) {
+void expect_same(const RenewedRun& a, const RenewedRun& b) {
   const PhaseParticles &p = a.fluid(), &q = b.fluid();
   ASSERT_EQ(p.id(), q.id());
   for (const auto& about : field_table)
@@ -118,13 +118,13 @@ void expect_same(const Run& a, const Run& b) {
 TEST(Makers, HaveTheSameBitsOnTwoThreadsAndFromACheckpoint) {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  Run one;
+  RenewedRun one;
   one.step(7);  // eight particles wait now or did a step ago
   Archive saved;
   one.simulation->archive(saved);
   one.step(8);
   omp_set_num_threads(2);
-  Run two, other;
+  RenewedRun two, other;
   two.step(15);
   expect_same(one, two);
   other.step(2);  // another number of particles than the checkpoint
@@ -137,7 +137,7 @@ TEST(Makers, HaveTheSameBitsOnTwoThreadsAndFromACheckpoint) {
 }
 
 TEST(Makers, GiveNoIdTwiceKeepTheMassAndGrowNoMemory) {
-  Run run;
+  RenewedRun run;
   std::set<std::int64_t> ids(run.fluid().id().begin(), run.fluid().id().end());
   std::size_t seen = ids.size();
   std::int64_t made = run.renewal->made();
@@ -164,7 +164,7 @@ TEST(Makers, FramesHoldTheParticlesThatAreThere) {
   const std::filesystem::path folder = mkdtemp(name);
   std::vector<std::size_t> counts;
   {
-    Run run;
+    RenewedRun run;
     SeriesWriter writer(folder, "run", FrameFormat::vtp, true);
     for (int k = 0; k < 4; ++k) {
       run.step(1);
