@@ -18,10 +18,8 @@ import json
 import math
 import os
 import pathlib
-import resource
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 import tomllib
@@ -31,7 +29,7 @@ import cases_surface
 import cases_walls
 import harness
 import numpy
-from harness import options, rows
+from harness import options, rows, runs
 from page import processor
 
 ENCLOSED = ("backward_step", "cavity", "logarithmic_layer", "low_hill", "rushil", "still_column", "vortex_box")  # of the scenes of 142972c, and one new
@@ -207,15 +205,10 @@ class Turns:
         out.mkdir(parents=True)
         file = out / ("case.toml" if "\n" in scene else pathlib.Path(scene).name + ".toml")
         file.write_text(explicit(scene, side == "other"))
-        command = [str(self.programs[side]), "run", str(file), "--threads", "1", "--quiet", "--out", str(out)]
-        for o in overrides:
-            command += ["--set", o]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run(command, capture_output=True, text=True)
-        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        if done.returncode:
-            (out / "failed").write_text(f"{file.name} ended with status {done.returncode}: {done.stderr.strip()[:300]}")
-        return file.stem, seconds
+        done = runs.scene(self.programs[side], file, out, overrides, check=False)
+        if done.status != 0:
+            (out / "failed").write_text(f"{file.name} ended with status {done.status}: {done.stderr.strip()[:300]}")
+        return file.stem, done.user
 
     def make(self, scene, overrides):
         key = json.dumps([scene, overrides])

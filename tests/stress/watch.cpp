@@ -161,15 +161,18 @@ TEST(Warnings, TellOfTheLargestDensityError) {
   EXPECT_TRUE(quiet->warnings().texts().empty());
 
   const auto off = simulation(vortices, {"interactions.fluid-fluid=1.5", "phases.fluid.enclosed=false"});
-  ASSERT_EQ(message_of(*off, 300), "");
+  const auto& p = off->phases()[0];
+  double largest = 0.0;
+  for (int k = 0; k < 300; ++k) {
+    ASSERT_EQ(message_of(*off, 1), "");
+    const double* rho = p.column(Field::density);
+    for (std::size_t i = 0; i < p.size(); ++i) largest = std::max(largest, std::abs(rho[i] - 1.0));
+  }
   const auto warnings = off->warnings().texts();
   ASSERT_EQ(warnings.size(), 1u);
-  const auto& p = off->phases()[0];
-  const double* rho = p.column(Field::density);
-  const double now = *std::max_element(rho, rho + p.size()) - 1.0;  // it grows all the time
-  ASSERT_GT(now, 0.05);
+  ASSERT_GT(largest, 0.05);
   EXPECT_NE(warnings[0].find("the density of \"fluid\" was off by "), std::string::npos) << warnings[0];
-  EXPECT_NEAR(std::stod(warnings[0].substr(warnings[0].find("off by ") + 7)), 100 * now, 2.0) << warnings[0];
+  EXPECT_NEAR(std::stod(warnings[0].substr(warnings[0].find("off by ") + 7)), 100 * largest, 2.0) << warnings[0];
   for (const char* part : {"particle ", " m, t = ", "step ", "raise phases.fluid.sound-speed"})
     EXPECT_NE(warnings[0].find(part), std::string::npos) << part << " in: " << warnings[0];
 }
