@@ -149,8 +149,8 @@ void Budget::report(const State& state, Warnings& warnings, double held) const {
                                brief(100.0 * energy_bound) + " %: " +
                                (of_bodies_ || start_.kinetic > energy_at(slow * sound_speed_, start_.mass)
                                     ? "a smaller time.safety may help"
-                                    : "the motion is slow, and its weight gains as much as it has where the centre of "
-                                      "mass rises a little: a smaller spacing helps"));
+                                    : "the fluid spread a little and its centre of mass rose; of so slow a motion the "
+                                      "weight then gains as much as the motion has; a smaller spacing makes it less"));
 }
 
 void Budget::archive(Archive& a) { a.number("budget at the start", start_); }
