@@ -181,6 +181,7 @@ spacing = 0.01
 precision = "double"
 [domain]
 size = {size}
+periodic = {periodic}
 gravity = {gravity}
 [phases.block]
 kind = "{kind}"
@@ -212,7 +213,8 @@ history-every = 0.01
 
 
 def slide(options, work, pool):
-    """A block of 100 x 50 mm (3D: 100 x 50 x 80 mm) begins with 1 m/s along the floor; on the slope weight is across it. Spacing 10 mm."""
+    """A block of 100 x 50 mm (3D: 100 x 50 x 80 mm) begins with 1 m/s along the floor; on the slope weight is across it, and in 3D
+    slope and block are prisms that go through both sides of a periodic z. Spacing 10 mm."""
     cases = [{"dimensions": d, "kind": kind, "floor": floor, "place": place}
              for d in (2, 3) for kind in ("elastic", "rigid") for floor in ("box", "sides", "slope") for place in (.05, .0527, .0559, .0583)]
 
@@ -227,7 +229,7 @@ def slide(options, work, pool):
             block = "{ box = { min = %s, max = %s } }" % (vector_of(three, *low, .08), vector_of(three, low[0] + .1, low[1] + .05, .16))
             packing = "rows"
         text = SLIDE.format(
-            dimensions=c["dimensions"], size=vector_of(three, .9, .6, .24), gravity=vector_of(three, -9.81 * across[0], -9.81 * across[1], 0), kind=c["kind"],
+            dimensions=c["dimensions"], periodic='["z"]' if three and c["floor"] == "slope" else "[]", size=vector_of(three, .9, .6, .24), gravity=vector_of(three, -9.81 * across[0], -9.81 * across[1], 0), kind=c["kind"],
             elastic="young = 1e6\npoisson = 0.3" if c["kind"] == "elastic" else "", own="block-block = 1.6" if c["kind"] == "elastic" else "",
             floor=floor, block=block, packing=packing, velocity=vector_of(three, *along, 0))
         status, words, rows, warned = go(options.program, "slide.toml", [], work, text)

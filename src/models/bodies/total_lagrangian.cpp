@@ -157,6 +157,63 @@ double write_in_order(const double* x, const double* start, std::size_t begin, s
   return largest;
 }
 
+/// Sorting puts particles back into a periodic domain: displacements go on from where they were.
+template <class T>
+void unwrap(const PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
+            const TotalParameters& q) {
+  const auto n = static_cast<std::int64_t>(reference.size);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(reference.dimensions); ++d) {
+    if (!(q.period[d] > 0.0)) continue;
+    const double* x = body.column(Field::position, static_cast<int>(d));
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double u = x[work.at[k]] - reference.place[d][k];
+      work.displaced[d][k] = u + q.period[d] * std::nearbyint((work.displaced[d][k] - u) / q.period[d]);
+    }
+  }
+}
+
+/// Displacements (and velocities) of a piece that has turned: R^T (x - x_a) - (X - X_a) and R^T (v - v_a), a its
+/// anchor. Returns the largest component, m.
+template <int Dim, class T>
+double write_turned(const PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
+                    const TotalParameters& q, std::size_t piece) {
+  using Place = typename TotalWork<T>::Place;
+  const auto& [begin, end, anchor] = reference.pieces[piece];
+  const PartTurns::Rotation& rotation = work.turns.rotation(piece);
+  const double inverse = 1.0 / work.unit;
+  const std::uint32_t* at = work.at;
+  std::array<const double*, Dim> x{}, v{};
+  for (std::size_t d = 0; d < Dim; ++d) {
+    x[d] = body.column(Field::position, static_cast<int>(d));
+    v[d] = body.column(Field::velocity, static_cast<int>(d));
+  }
+  const auto displacement = [&](std::size_t d, std::size_t k) {
+    return q.period[d] > 0.0 ? work.displaced[d][k] : x[d][at[k]] - reference.place[d][k];
+  };
+  double most = 0.0;
+  for (std::size_t k = begin; k < end; ++k) {
+    Vec3 apart{}, first{}, speed{};
+    for (std::size_t d = 0; d < Dim; ++d) {
+      first[d] = reference.place[d][k] - reference.place[d][anchor];
+      apart[d] = first[d] + (displacement(d, k) - displacement(d, anchor));
+      speed[d] = v[d][at[k]] - v[d][at[anchor]];
+    }
+    const Vec3 u = turn_back(rotation, apart) - first;
+    const Vec3 w = turn_back(rotation, speed);
+    for (std::size_t d = 0; d < Dim; ++d) {
+      most = std::max(most, std::abs(u[d]));
+      Place* to = work.displacement[d].data() + margin<T>;
+      if constexpr (std::is_integral_v<Place>)
+        to[k] = static_cast<Place>(std::clamp(u[d] * inverse + std::copysign(0.5, u[d]), -most_units, most_units));
+      else to[k] = u[d];
+      if (!work.velocity[d].empty()) work.velocity[d][margin<T> + k] = static_cast<T>(w[d]);
+    }
+  }
+  return most;
+}
+
 template <int Dim, class T>
 double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, TotalWork<T>& work,
             const TotalParameters& q) {  // returns the largest component, m
@@ -168,29 +225,26 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
     v[static_cast<std::size_t>(d)] = body.column(Field::velocity, d);
   }
   const std::uint32_t* at = work.at;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    if (!(q.period[d] > 0.0)) continue;
-    // Sorting puts particles back into a periodic domain: displacements go on from where they were.
-    const auto n = static_cast<std::int64_t>(reference.size);
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double u = x[d][at[k]] - reference.place[d][k];
-      work.displaced[d][k] = u + q.period[d] * std::nearbyint((work.displaced[d][k] - u) / q.period[d]);
-    }
-  }
   const double inverse = 1.0 / work.unit;
   double most = 0.0;
   const auto pieces = static_cast<std::int64_t>(reference.pieces.size());
+  work.largest.resize(reference.pieces.size());
 #pragma omp parallel for schedule(static) reduction(max : most)
-  for (std::int64_t piece = 0; piece < pieces; ++piece) {
-    const auto& [begin, end, anchor] = reference.pieces[static_cast<std::size_t>(piece)];
+  for (std::int64_t number = 0; number < pieces; ++number) {
+    const auto piece = static_cast<std::size_t>(number);
+    double& largest = work.largest[piece] = 0.0;
+    if (work.turns.turned(piece)) {
+      largest = write_turned<Dim>(body, reference, work, q, piece);
+      most = std::max(most, largest);
+      continue;
+    }
+    const auto& [begin, end, anchor] = reference.pieces[piece];
     for (std::size_t d = 0; d < Dim; ++d) {
       Place* to = work.displacement[d].data() + margin<T>;
       const double* start = reference.place[d].data();
       const auto write = [&](std::size_t k, double u) __attribute__((always_inline)) {
         const double size = std::abs(u);
-        most = size > most ? size : most;
+        largest = size > largest ? size : largest;
         if constexpr (whole)
           to[k] = static_cast<Place>(std::clamp(u * inverse + std::copysign(0.5, u), -most_units, most_units));
         else to[k] = u;
@@ -200,7 +254,7 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
         for (std::size_t k = begin; k < end; ++k) write(k, work.displaced[d][k] - mean);
       } else if (work.in_order) {
         const double mean = x[d][anchor] - start[anchor];
-        most = std::max(most, write_in_order<T>(x[d], start, begin, end, mean, inverse, to));
+        largest = std::max(largest, write_in_order<T>(x[d], start, begin, end, mean, inverse, to));
       } else {
         const double mean = x[d][at[anchor]] - start[anchor];
         for (std::size_t k = begin; k < end; ++k) write(k, x[d][at[k]] - start[k] - mean);
@@ -209,6 +263,7 @@ double pack(const PhaseParticles& body, const ReferenceBody<T>& reference, Total
       T* speed = work.velocity[d].data() + margin<T>;
       for (std::size_t k = begin; k < end; ++k) speed[k] = static_cast<T>(v[d][at[k]] - v[d][at[anchor]]);
     }
+    most = std::max(most, largest);
   }
   return most;
 }
@@ -297,6 +352,41 @@ void forces_of(PhaseParticles& body, const ReferenceBody<T>& reference, const To
   }
 }
 
+/// Accelerations of pieces that have turned, from the axes of the piece to those of space.
+template <int Dim, class T>
+void turn_forces(PhaseParticles& body, const ReferenceBody<T>& reference, const TotalWork<T>& work,
+                 const TotalParameters& q) {
+  std::array<double*, Dim> a{};
+  for (std::size_t d = 0; d < Dim; ++d) a[d] = body.column(Field::acceleration, static_cast<int>(d));
+  const auto pieces = static_cast<std::int64_t>(reference.pieces.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t number = 0; number < pieces; ++number) {
+    const auto piece = static_cast<std::size_t>(number);
+    if (!work.turns.turned(piece)) continue;
+    for (std::size_t k = reference.pieces[piece].begin; k < reference.pieces[piece].end; ++k) {
+      Vec3 own{};
+      for (std::size_t d = 0; d < Dim; ++d) own[d] = a[d][work.at[k]] - q.gravity[d];
+      const Vec3 turned = turn(work.turns.rotation(piece), own);
+      for (std::size_t d = 0; d < Dim; ++d) a[d][work.at[k]] = turned[d] + q.gravity[d];
+    }
+  }
+}
+
+/// H = R (I + H') - I of pieces that have turned.
+template <int Dim, class T>
+void turn_gradients(const ReferenceBody<T>& reference, const TotalWork<T>& work, TotalDetail& detail) {
+  for (std::size_t piece = 0; piece < reference.pieces.size(); ++piece) {
+    if (!work.turns.turned(piece)) continue;
+    for (std::size_t k = reference.pieces[piece].begin; k < reference.pieces[piece].end; ++k)
+      for (std::size_t e = 0; e < Dim; ++e) {
+        Vec3 column{};
+        for (std::size_t d = 0; d < Dim; ++d) column[d] = detail.gradient[d * Dim + e][k] + (d == e ? 1.0 : 0.0);
+        const Vec3 turned = turn(work.turns.rotation(piece), column);
+        for (std::size_t d = 0; d < Dim; ++d) detail.gradient[d * Dim + e][k] = turned[d] - (d == e ? 1.0 : 0.0);
+      }
+  }
+}
+
 template <int Dim, class T>
 void detail_of(const ReferenceBody<T>& reference, const TotalWork<T>& work, const TotalParameters& q,
                TotalDetail& detail) {
@@ -351,7 +441,15 @@ void pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& 
   const auto pack_all = [&] {
     return body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
   };
-  const double largest = pack_all(), units = largest / work.unit;
+  unwrap(body, reference, work, q);
+  const PartTurns::Places places{body, work.at, reference, work.displaced};
+  work.turns.follow(places);
+  double largest = pack_all();
+  if (work.turns.choose(places, work.largest)) {
+    largest = pack_all();
+    if (work.turns.keep(reference, work.largest)) largest = pack_all();
+  }
+  const double units = largest / work.unit;
   if (!(largest > 0.0) || !std::isfinite(largest) || (units >= few_units && units <= most_units)) return;
   const double unit = unit_of(largest, reference.diameter);
   if (unit == work.unit) return;
@@ -360,6 +458,7 @@ void pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& 
 }
 void pack_displacements(const PhaseParticles& body, const ReferenceBody<double>& reference, TotalWork<double>& work,
                         const TotalParameters& q) {
+  unwrap(body, reference, work, q);
   body.dimensions() == 2 ? pack<2>(body, reference, work, q) : pack<3>(body, reference, work, q);
 }
 
@@ -375,6 +474,8 @@ void total_stress(PhaseParticles& body, const ReferenceBody<double>& reference, 
 void total_forces(PhaseParticles& body, const ReferenceBody<float>& reference, const TotalWork<float>& work,
                   const TotalParameters& q) {
   body.dimensions() == 2 ? forces_of<2>(body, reference, work, q) : forces_of<3>(body, reference, work, q);
+  if (!work.turns.any()) return;
+  body.dimensions() == 2 ? turn_forces<2>(body, reference, work, q) : turn_forces<3>(body, reference, work, q);
 }
 void total_forces(PhaseParticles& body, const ReferenceBody<double>& reference, const TotalWork<double>& work,
                   const TotalParameters& q) {
@@ -384,6 +485,8 @@ void total_forces(PhaseParticles& body, const ReferenceBody<double>& reference, 
 void total_detail(const ReferenceBody<float>& reference, const TotalWork<float>& work, const TotalParameters& q,
                   TotalDetail& detail) {
   reference.dimensions == 2 ? detail_of<2>(reference, work, q, detail) : detail_of<3>(reference, work, q, detail);
+  if (!work.turns.any()) return;
+  reference.dimensions == 2 ? turn_gradients<2>(reference, work, detail) : turn_gradients<3>(reference, work, detail);
 }
 void total_detail(const ReferenceBody<double>& reference, const TotalWork<double>& work, const TotalParameters& q,
                   TotalDetail& detail) {

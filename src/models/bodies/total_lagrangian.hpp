@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "laws/hyperelastic.hpp"
+#include "models/bodies/part_turns.hpp"
 #include "models/bodies/reference_body.hpp"
 #include "scene/scene.hpp"
 #include "state/particles.hpp"
@@ -21,6 +22,8 @@ struct TotalWork {
   std::array<AlignedVector<Place>, 3> displacement;  // less that of the piece's anchor
   std::array<AlignedVector<T>, 3> velocity;          // of damped bodies, less that of the anchor
   std::array<AlignedVector<T>, 9> reach;             // Q = kappa H - P M^-1, Pa
+  PartTurns turns;                                   // in mixed precision only
+  std::vector<double> largest;                       // m, of each piece: the largest component of its displacements
   double unit = 1.0;                                 // m, a power of two that follows the largest displacement
   std::array<std::vector<double>, 3> displaced;      // m, the whole displacement, of periodic domains: unwrapped
   double stiffening = 1.0;                           // of the stiffest particle, over the modulus at rest
@@ -47,7 +50,8 @@ struct TotalDetail {
 };
 
 /// Displacements (and velocities) of the particles' places. In mixed precision it chooses `unit` anew where the largest
-/// displacement is no longer 2^26 to 2^30 of it: a body that hardly moves keeps the digits of its small strains.
+/// displacement is no longer 2^26 to 2^30 of it: a body that hardly moves keeps the digits of its small strains. Turns
+/// of parts are taken out (PartTurns).
 BARCHAN_PER_INSTRUCTION_SET(pack_displacements,
                             void pack_displacements(const PhaseParticles& body, const ReferenceBody<float>& reference,
                                                     TotalWork<float>& work, const TotalParameters& parameters);

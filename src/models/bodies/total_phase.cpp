@@ -59,7 +59,10 @@ class BodyOf : public TotalBody {
   double least_volume() const override { return work_.least_volume; }
   std::int64_t flat() const override { return reference_.flat; }
   void archive(Archive& a) override {
-    if (std::is_same_v<T, float>) a.number("unit of displacements", work_.unit);
+    if (std::is_same_v<T, float>) {
+      a.number("unit of displacements", work_.unit);
+      work_.turns.archive(a);
+    }
     for (std::size_t d = 0; d < 3; ++d)
       if (!work_.displaced[d].empty()) a.values("displacement", work_.displaced[d].data(), work_.displaced[d].size());
   }
