@@ -55,6 +55,30 @@ TEST(TotalLagrangianBodies, AStiffPlateInMixedPrecisionKeepsTheEnergyOfASlowMoti
   EXPECT_LT(worst, 1e-3);
 }
 
+/// A free square turns once in mixed precision, in the open and through the seam of a periodic domain. Before turns
+/// were taken out of the displacements it lost 7e-4 of its angular momentum and 1.4e-3 of its energy.
+TEST(TotalLagrangianBodies, ASquareThatTurnsKeepsItsAngularMomentumAndEnergy) {
+  double turning = 0.0, energy = 0.0;
+  for (const bool periodic : {false, true}) {
+    std::vector<std::string> set{"precision=\"mixed\""};
+    if (periodic)
+      set.insert(set.end(), {"domain.periodic=[\"x\"]", "fill.0.velocity=[\"1-10*(y-0.1)\", \"10*(x-0.1)\"]"});
+    Drive drive("verification/spinning_square", set);
+    // A periodic domain has no centre of mass, and no column of the angular momentum.
+    const auto momentum = [&] {
+      return periodic ? 1.0 : sum_of(drive.simulation(), {"square_angular_momentum [kg m2/s]"});
+    };
+    const double l = momentum(), e = energy_of(drive.simulation(), "square");
+    drive.to(0.62831853);
+    turning = std::max(turning, std::abs(momentum() / l - 1.0));
+    energy = std::max(energy, std::abs(energy_of(drive.simulation(), "square") / e - 1.0));
+  }
+  report("angular momentum of a square after a turn", turning, 1e-5);
+  report("its energy", energy, 1e-5);
+  EXPECT_LT(turning, 1e-5);
+  EXPECT_LT(energy, 1e-5);
+}
+
 /// Soft blocks that are pressed together by a third when they bounce. With a step that does not follow the stretch the
 /// they end with 4.0 and 2.1 times their energy.
 TEST(TotalLagrangianBodies, ASoftBlockThatBouncesKeepsItsEnergy) {

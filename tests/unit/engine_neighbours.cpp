@@ -277,6 +277,16 @@ TEST(Skin, RebuildsExactlyWhenAPairMayHaveComeWithinReach) {
   EXPECT_TRUE(cast.neighbours.update(cast.phases, true)) << "forced";
 }
 
+/// The way is that along a straight line, not the larger of its components.
+TEST(Skin, AWayAcrossTheAxesCountsAsAWhole) {
+  Cast cast = two_hundred(0.1);
+  auto& p = cast.phases[0];
+  for (const int d : {0, 1}) p.column(Field::position, d)[17] += 0.12;
+  EXPECT_FALSE(cast.neighbours.update(cast.phases, false)) << "0.170, less than nine tenths of the skin of 0.2";
+  for (const int d : {0, 1}) p.column(Field::position, d)[17] += 0.02;
+  EXPECT_TRUE(cast.neighbours.update(cast.phases, false)) << "0.198";
+}
+
 // In a long channel whose ends move against each other, neighbours hardly do.
 TEST(Skin, OnlyMotionBetweenNeighboursCounts) {
   Uniform random(8);

@@ -55,6 +55,20 @@ TEST(AirGrid, GivesTheParticlesWhatItGot) {
   EXPECT_EQ(p.column(Field::drag_acceleration, 0)[5], 0.0) << "forces are those since the last gathering";
 }
 
+/// Half of the nodes about the place have no air: those that have it take all of the force.
+TEST(AirGrid, SharesAForceOutAsAWholeBesideNodesWithoutAir) {
+  PhaseParticles p("air", 2, 1, 0.7, 0);
+  for (const Field f : {Field::position, Field::velocity, Field::drag_acceleration}) p.add(f);
+  p.column(Field::position, 0)[0] = 3.2;
+  p.column(Field::position, 1)[0] = 3.3;
+  AirGrid grid(flat_box(), 1.0);
+  grid.gather(p);
+  grid.push({4.6, 3.5}, {1.5, -0.25});
+  grid.give(p);
+  EXPECT_NEAR(0.7 * p.column(Field::drag_acceleration, 0)[0], 1.5, 1e-13);
+  EXPECT_NEAR(0.7 * p.column(Field::drag_acceleration, 1)[0], -0.25, 1e-13);
+}
+
 TEST(AirGrid, FindsTheMeanWindAboutAPlace) {
   PhaseParticles p = air_of();
   AirGrid grid(flat_box(), 1.0);
