@@ -12,6 +12,9 @@ constexpr double large = 0.02;
 /// Where R does not halve the displacements, it is tried again when they have grown by this factor.
 constexpr double grown = 1.25;
 
+/// Particles of a piece that R is fitted to, or up to twice as many: any R about the mean turn will do.
+constexpr std::size_t samples = 64;
+
 constexpr PartTurns::Rotation identity{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
 /// Sums of r = x - x_a, s = X - X_a and r (x) s.
@@ -37,7 +40,8 @@ Moments moments_of(const PartTurns::Places& places, const ReferenceBody<float>::
   };
   Moments m;
   Eigen::Vector3d r = Eigen::Vector3d::Zero(), s = Eigen::Vector3d::Zero();
-  for (std::size_t k = piece.begin; k < piece.end; ++k) {
+  const std::size_t stride = std::max<std::size_t>(1, (piece.end - piece.begin) / samples);
+  for (std::size_t k = piece.begin; k < piece.end; k += stride) {
     for (std::size_t d = 0; d < dim; ++d) {
       const auto row = static_cast<Eigen::Index>(d);
       s[row] = places.reference.place[d][k] - places.reference.place[d][piece.anchor];
@@ -46,8 +50,8 @@ Moments moments_of(const PartTurns::Places& places, const ReferenceBody<float>::
     m.product += r * s.transpose();
     m.r += r;
     m.s += s;
+    m.count += 1.0;
   }
-  m.count = static_cast<double>(piece.end - piece.begin);
   return m;
 }
 

@@ -13,9 +13,9 @@ namespace barchan {
 
 /// A part that has turned by R has the displacements u' = R^T (x - x_a) - (X - X_a), a its anchor, and F = R (I + H').
 /// Without it the strain of a body that turns is the small difference of the large numbers of H, and single precision
-/// rounds it by 6e-8 |H|. R is the rotation that fits best (Kabsch 1976), of every step. A part counts as turned, from
-/// then on, when R halves a displacement of more than 0.02 diameters: a body that bends or is pressed keeps R = I, and
-/// its results are those without turns, to the bit.
+/// rounds it by 6e-8 |H|. R is the rotation that fits some particles of the part best (Kabsch 1976), of every step. A
+/// part counts as turned, from then on, when R halves a displacement of more than 0.02 diameters: a body that bends or
+/// is pressed keeps R = I, and its results are those without turns, to the bit.
 class PartTurns {
  public:
   using Rotation = std::array<Vec3, 3>;  // rows
