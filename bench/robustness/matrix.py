@@ -41,7 +41,7 @@ def go(program, scene, sets, work, text=None):
         done = run.scene(program, path, folder + "/out", sets, check=False)
         rows = done.history().rows() if (done.out / "history.csv").exists() else []
         warned = " ".join(w if isinstance(w, str) else json.dumps(w) for w in (done.report or {}).get("warnings", []))
-        return done.status, done.stderr.strip(), rows, warned
+        return done.status, done.stderr.strip().replace(folder + "/", ""), rows, warned
 
 
 def cavity(options, work, pool):
