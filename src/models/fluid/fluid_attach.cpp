@@ -162,10 +162,10 @@ double lattice_moment(const Layout& layout, std::size_t fluid) {
 /// The plain sums push with p_a + p_b: where that is below zero they pull, and particles that no friction holds clump
 /// (Swegle, Hicks & Attaway 1995). Where every side is periodic the pressure has a constant that means nothing; adding
 /// one in the sums stops the clumping and costs accuracy by disorder. Clumps grow at the rate U/h, friction takes
-/// nu/h^2 of them: so none up to U h/nu = 10, and 0.3 rho0 U^2 without friction. Measured: docs/method.md, plain
+/// nu/h^2 of them: so none up to U h/nu = 10, and 0.45 rho0 U^2 without friction. Measured: docs/method.md, plain
 /// scheme.
 double pressure_lift(double density, double speed, double smoothing_length, double viscosity) {
-  return 0.3 * density * speed * speed * std::max(0.0, 1.0 - 10.0 * viscosity / (speed * smoothing_length));
+  return 0.45 * density * speed * speed * std::max(0.0, 1.0 - 10.0 * viscosity / (speed * smoothing_length));
 }
 
 /// Whether every side is periodic and so many particles fill all between them.
