@@ -65,8 +65,9 @@ struct Motion {
 Vec3 across(const Vec3& x) { return {-x[1], x[0], 0.0}; }  // z x r
 double moment(const Vec3& arm, const Vec3& force) { return arm[0] * force[1] - arm[1] * force[0]; }
 
-/// The naive twin. `deepest` (m): the deepest overlap.
-std::vector<Load> naive(const ContactRun& run, double period, double& deepest) {
+/// The naive twin. `deepest` (m): the deepest overlap; `beyond`: counts the contacts of bodies that stand farther from
+/// each other than half a period.
+std::vector<Load> naive(const ContactRun& run, double period, double& deepest, std::size_t& beyond) {
   const auto& bodies = run.simulation->state().bodies;
   const double dt = run.simulation->state().dt;
   const SurfaceContactLaw law{run.simulation->plan().phases[0].contact_stiffness, restitution_of_discs,
@@ -82,6 +83,7 @@ std::vector<Load> naive(const ContactRun& run, double period, double& deepest) {
         const double overlap = 2.0 * radius - norm(r);
         if (overlap <= 0.0) continue;
         deepest = std::max(deepest, overlap);
+        beyond += image != 0;
         const Vec3 n = 1.0 / norm(r) * r, arm_a = -(radius - 0.5 * overlap) * n, arm_b = r + arm_a;
         const Motion of_a(a, dt), of_b(b, dt);
         const Vec3 v = of_a.velocity + of_a.rate * across(arm_a) - of_b.velocity - of_b.rate * across(arm_b);
@@ -106,21 +108,23 @@ std::vector<Load> naive(const ContactRun& run, double period, double& deepest) {
 void compare_discs(bool periodic, double perturb, Vec3 drift) {
   sets::Uniform random(41);
   std::string fills;
+  const double first = periodic ? 0.25 : 0.3, apart = periodic ? 0.5 : 0.45;  // m; across the side as far as elsewhere
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 3; ++j) {
-      const double x = 0.3 + 0.45 * i + perturb * random(-1, 1), y = 0.4 + 0.45 * j + perturb * random(-1, 1);
+      const double x = first + apart * i + perturb * random(-1, 1), y = 0.4 + 0.45 * j + perturb * random(-1, 1);
+      const double outwards = !periodic ? 0.0 : i == 0 ? -3.0 : i == 3 ? 3.0 : 0.0;  // m/s: towards the side
       fills += "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [" + text_of_number(x) + ", " + text_of_number(y) +
-               "], radius = 0.2 } }\nvelocity = [" + text_of_number(random(-1, 1) + drift[0]) + ", " +
+               "], radius = 0.2 } }\nvelocity = [" + text_of_number(random(-1, 1) + drift[0] + outwards) + ", " +
                text_of_number(random(-1, 1) + drift[1]) + "]\nangular-velocity = " + text_of_number(random(-3, 3)) +
                "\n";
     }
   ContactRun run(
       bodies_in_a_box(periodic ? "periodic = [\"x\"]\n" : "", "a-a = { restitution = 0.6, friction = 0.3 }\n", fills));
-  std::size_t touching = 0, turned = 0;
-  for (int step = 0; step < 400; ++step) {
+  std::size_t touching = 0, turned = 0, beyond = 0;
+  for (int step = 0; step < (periodic ? 1200 : 400); ++step) {
     run.simulation->step(1.0);
     double deepest = 0.0;
-    const auto loads = naive(run, periodic ? 2.0 : 0.0, deepest);
+    const auto loads = naive(run, periodic ? 2.0 : 0.0, deepest, beyond);
     const auto& bodies = run.simulation->state().bodies;
     double scale = 1e-300;
     for (const Load& load : loads) scale = std::max(scale, norm(load.force));
@@ -134,6 +138,7 @@ void compare_discs(bool periodic, double perturb, Vec3 drift) {
   }
   EXPECT_GT(touching, 200u);
   EXPECT_GT(turned, 100u) << "friction turns them";
+  if (periodic) { EXPECT_GT(beyond, 50u) << "contacts across the side"; }
 }
 
 TEST(RigidContact, DiscsPushAsTheNaiveTwinSays) { compare_discs(false, 0.0, {0.0, 0.0, 0.0}); }

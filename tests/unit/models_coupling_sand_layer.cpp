@@ -17,11 +17,12 @@ constexpr double layer = 0.01;  // m, forty diameters: twelve layers along 0.12 
 /// scenes/wind_over_sand.toml with one grain at (x, y) m and air of 3 m/s everywhere, at its start.
 struct OneGrain {
   testing::Drive drive;
-  OneGrain(double x, double y)
-      : drive("wind_over_sand", {"fill.3={ phase = \"sand\", shape = { points = [[" + std::to_string(x) + ", " +
-                                     std::to_string(y) + "]] } }",
-                                 "phases.sand.diameter={ mean = 2.5e-4, spread = 0 }",
-                                 "interactions.air-sand.drag=stokes", "fill.4.velocity=[3, 0]", "time.end=1e-4"}) {}
+  OneGrain(double x, double y, const std::string& wind = "3")
+      : drive("wind_over_sand",
+              {"fill.3={ phase = \"sand\", shape = { points = [[" + std::to_string(x) + ", " + std::to_string(y) +
+                   "]] } }",
+               "phases.sand.diameter={ mean = 2.5e-4, spread = 0 }", "interactions.air-sand.drag=stokes",
+               "fill.4.velocity=[\"" + wind + "\", 0]", "time.end=1e-4"}) {}
   const PhaseParticles& sand() { return drive.phase(1); }
   double drag(int d) { return sand().column(Field::drag_acceleration, d)[0]; }
   const State& state() { return drive.simulation().state(); }
@@ -83,6 +84,25 @@ TEST(SandLayer, AGrainInTheLayersTakesFromTheTwoAboutIt) {
     EXPECT_NEAR(sum / (grain.sand().mass_of(0) * grain.drag(0) * grain.held()), 1.0, 1e-9) << "grain at " << c.x;
     EXPECT_NEAR(given[c.right] / sum, c.share, 0.02) << "grain at " << c.x;
   }
+}
+
+/// In a wind that changes along the ground a grain between two layers feels the mean of their winds.
+TEST(SandLayer, AGrainBetweenTwoLayersFeelsTheWindOfBoth) {
+  const std::string wind = "3*(1 + 0.8*cos(2*pi*x/0.12))";
+  OneGrain left(0.025, 0.0035, wind), between(0.03, 0.0035, wind), right(0.035, 0.0035, wind);
+  ASSERT_GT(left.drag(0), 1.5 * right.drag(0));
+  EXPECT_NEAR(between.drag(0) / (0.5 * (left.drag(0) + right.drag(0))), 1.0, 0.05);
+}
+
+/// The wind on top of a layer is that over its middle: with a wind that is the same at x and at 0.12 m - x, layers that
+/// mirror each other have the same.
+TEST(SandLayer, LayersThatMirrorEachOtherHaveTheSameWindOnTop) {
+  OneGrain grain(0.06, 0.0035, "3*(1 + 0.8*cos(2*pi*x/0.12))");
+  const auto& air = grain.state().air;
+  ASSERT_EQ(air.size(), 12u);
+  EXPECT_GT(air[0].speed.back(), 2.0 * air[5].speed.back());
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_NEAR(air[k].speed.back() / air[11 - k].speed.back(), 1.0, 0.03) << "layer " << k;
 }
 
 /// Deeper than six diameters no wind comes; just above that a little of it does.
