@@ -207,7 +207,7 @@ void warn_of_late_instruments(const Scene& scene, Plan& plan) {
 void warn_of_weight(const Scene& scene, Plan& plan) {
   const auto up = static_cast<std::size_t>(1);
   if (scene.domain.gravity[up] > 0.0)
-    plan.warnings.push_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
+    plan.warnings.emplace_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
 }
 
 /// A radius below one spacing meets no neighbour: it may have been meant in metres.

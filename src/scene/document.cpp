@@ -214,7 +214,7 @@ std::string bare_word(std::string_view text, unsigned line) {
   while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '-')) ++end;
   const std::string_view rest = text.substr(end);
   const std::size_t next = rest.find_first_not_of(" \t\r");
-  const std::string word(text.substr(begin, end - begin));
+  std::string word(text.substr(begin, end - begin));
   if ((next != std::string_view::npos && rest[next] != '#') || word == "true" || word == "false") return "";
   return word;
 }

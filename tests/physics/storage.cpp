@@ -3,7 +3,8 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 
@@ -32,6 +33,8 @@ std::vector<std::uint32_t> by_id(const PhaseParticles& p) {
   return order;
 }
 
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+
 /// Where two runs differ first, with the fields that only outputs read: a field of a phase and an id, or a column of
 /// history.csv; "" if nowhere.
 std::string first_difference(const Simulation& a, const Simulation& b) {
@@ -44,14 +47,14 @@ std::string first_difference(const Simulation& a, const Simulation& b) {
       for (int c = 0; p.has(about.id) && c < p.components(about.id); ++c) {
         const double *x = p.column(about.id, c), *y = q.column(about.id, c);
         for (std::size_t n = 0; n < i.size(); ++n)
-          if (p.id()[i[n]] != q.id()[j[n]] || std::memcmp(x + i[n], y + j[n], sizeof(double)) != 0)
+          if (p.id()[i[n]] != q.id()[j[n]] || bits(x[i[n]]) != bits(y[j[n]]))
             return p.name() + "." + std::string(about.name) + " of particle " + std::to_string(p.id()[i[n]]);
       }
   }
   const auto names = a.history_columns();
   const auto r = a.history_row(), s = b.history_row();
   for (std::size_t c = 0; c < r.size(); ++c)
-    if (std::memcmp(&r[c], &s[c], sizeof(double)) != 0) return "history.csv: " + names[c];
+    if (bits(r[c]) != bits(s[c])) return "history.csv: " + names[c];
   return "";
 }
 

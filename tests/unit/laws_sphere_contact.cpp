@@ -210,7 +210,7 @@ Pair<Dim> slanted(double speed, double slip, double dt) {
   Pair<Dim> p;
   const V gap = V(2.0 * speed * dt) + V(speed * dt / phases) * V::iota();
   const std::array<double, 3> along = Dim == 2 ? std::array{0.6, 0.8, 0.0} : std::array{0.48, 0.64, 0.6};
-  const std::array<double, 3> across = Dim == 2 ? std::array{-0.8, 0.6, 0.0} : std::array{-0.8, 0.6, 0.0};
+  const std::array<double, 3> across{-0.8, 0.6, 0.0};
   for (std::size_t d = 0; d < Dim; ++d) {
     p.place[1][d] = V(3e-3);
     p.place[0][d] = p.place[1][d] + V(along[d]) * (V(2e-3) + gap);
