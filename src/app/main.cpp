@@ -17,6 +17,7 @@
 #include "app/guard.hpp"
 #include "base/denormals.hpp"
 #include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "base/version.hpp"
 #include "output/numbers.hpp"
 #include "scene/nearest.hpp"
@@ -184,6 +185,7 @@ int dispatch(int argc, char** argv) {
 int main(int argc, char** argv) {
   barchan::flush_denormals();
   wait_politely(argc, argv);
+  barchan::return_freed_arrays();
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
   return barchan::guarded(std::cerr, [&] { return dispatch(argc, argv); });
 }

@@ -20,23 +20,25 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   const Scene scene = read_scene(file, overrides);
   if (threads > 0) use_threads(threads, 0);
   const auto start = std::chrono::steady_clock::now();
-  const auto blocks = make_particles(scene, json ? nullptr : &std::cout);
+  auto blocks = make_particles(scene, json ? nullptr : &std::cout);
   const std::chrono::duration<double> making = std::chrono::steady_clock::now() - start;
   Plan plan = make_plan(scene, blocks);
   use_threads(threads, plan.particles());
-  const MemoryNeed memory = memory_need(scene, plan, !scene.time.fixed_step);
-  if (!json) std::cout << to_text(plan, scene) << to_text(memory) << std::flush;  // before anything is allocated
+  const bool retreats = !scene.time.fixed_step;
+  const MemoryNeed memory = memory_need(scene, plan, retreats);
+  if (!json) std::cout << to_text(plan, scene) << std::flush;  // before anything is allocated
   Estimate estimate;
   try {
     check_memory(scene, memory);
-    estimate = measure(scene, plan, blocks);
+    estimate = measure(scene, plan, std::move(blocks), retreats);
     estimate.start_seconds = making.count();
   } catch (const SceneError& error) {
     if (json) throw;
-    std::cout << "not measured\n";
+    std::cout << to_text(memory) << "not measured\n";
     throw;
   }
-  std::cout << (json ? to_json(plan, scene, memory, estimate) : to_text(estimate));
+  if (estimate.memory.parts.empty()) estimate.memory = memory;
+  std::cout << (json ? to_json(plan, scene, estimate) : to_text(estimate));
   if (!estimate.failure.empty()) throw BreakdownError("the run breaks down in its first steps: " + estimate.failure);
   return 0;
 }

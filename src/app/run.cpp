@@ -26,9 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What --restart asks for; nothing: a start at the beginning. "latest" is the checkpoint of this folder, or the
-/// beginning where no run was; frames without a checkpoint are refused, because a new run would remove them.
-std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
+/// The state that --restart asks for; nothing: a start at the beginning. "latest" is the checkpoint of this folder, or
+/// the beginning where no run was; frames without a checkpoint are refused, because a new run would remove them.
+std::optional<Archive> find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
   if (restart.empty()) return std::nullopt;
   const fs::path latest = checkpoint_file(directory, scene), series = directory / (scene.name + ".pvd");
   if (restart == "latest" && !fs::exists(latest) && !fs::exists(older_checkpoint(latest))) {
@@ -54,7 +54,7 @@ std::optional<Checkpoint> find_checkpoint(const std::string& restart, const fs::
   if (const std::string now = name_of(instructions()); c.instructions != now)
     std::cerr << "barchan: the checkpoint was made with " << c.instructions << "; with " << now
               << " the run goes on with other bits (see --instructions)\n";
-  return c;
+  return Archive(std::move(c.state));
 }
 
 /// Removes what an earlier run left and this one will not replace.
@@ -115,17 +115,18 @@ void begin_again(std::optional<Run>& run, Course& course) {
   run->open();
 }
 
-int run_to_the_end(Course& course, const std::optional<Checkpoint>& from, int retreats) {
+int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
   Simulation& simulation = course.simulation;
   Retreater retreater(course, retreats);
   std::optional<Run> run(std::in_place, course, from.has_value());
   if (from) {
-    Archive archive(from->state);
-    course.beds.archive(archive, course.scene);
-    simulation.archive(archive);
-    if (run->measurements()) run->measurements()->archive(archive);
-    archive.finish();
+    from->load_again();
+    course.beds.archive(*from, course.scene);
+    simulation.archive(*from);
+    if (run->measurements()) run->measurements()->archive(*from);
+    from->finish();
     simulation.check();
+    from.reset();  // its memory is needed from now on
     std::cerr << "barchan: going on at t = " << brief(simulation.time()) << " s after " << simulation.steps()
               << " steps\n";
   }
@@ -159,18 +160,17 @@ int run(const RunOptions& options) {
   std::optional<FolderLock> lock;
   std::error_code unseen;
   if (fs::is_directory(directory, unseen)) lock.emplace(directory);
-  const std::optional<Checkpoint> from = find_checkpoint(options.restart, directory, scene);
+  std::optional<Archive> from = find_checkpoint(options.restart, directory, scene);
+  const bool continued = from.has_value();
   SettledBeds beds;
-  if (from) {
-    Archive archive(from->state);
-    beds.archive(archive, scene);
-  }
-  const auto blocks = make_particles(scene, options.quiet ? nullptr : &std::cout, &beds);
+  if (from) beds.archive(*from, scene);
+  auto blocks = make_particles(scene, options.quiet ? nullptr : &std::cout, &beds);
   const Plan plan = make_plan(scene, blocks);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
   use_threads(options.threads, plan.particles());
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
   Simulation simulation(scene, plan, blocks);
+  blocks.clear();  // their memory is needed from now on
   simulation.check_start();
   listen_to_signals();
   if (!lock) {
@@ -179,11 +179,11 @@ int run(const RunOptions& options) {
   }
   if (!lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
-  clear(directory, scene, plan, from.has_value());
+  clear(directory, scene, plan, continued);
   Course course{scene,     simulation,
                 directory, Progress(scene.time.end, plan.particles(), options.quiet),
                 beds,      Team(omp_get_max_threads(), options.threads == 0)};
-  return run_to_the_end(course, from, options.retreats);
+  return run_to_the_end(course, std::move(from), options.retreats);
 }
 
 }  // namespace barchan

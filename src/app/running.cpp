@@ -57,9 +57,10 @@ fs::path bad_file(const fs::path& directory, const Scene& scene) {
 
 void Past::keep(Simulation& simulation, Measurements* measurements) {
   State& state = states_[states_[0].step <= states_[1].step ? 0 : 1];
-  state.archive.save_again();
-  simulation.archive(state.archive);
-  if (measurements) measurements->archive(state.archive);
+  state.archive.save([&](Archive& a) {
+    simulation.archive(a);
+    if (measurements) measurements->archive(a);
+  });
   state.step = simulation.steps();
   if (trusted_ < 0) trusted_ = state.step;
 }
@@ -180,13 +181,18 @@ bool Run::checkpoint_due() const {
 void Run::write_checkpoint() {
   simulation_.check();
   series_->finish();
-  Archive archive;
-  course_.beds.archive(archive, scene_);
-  simulation_.archive(archive);
-  if (measurements_) measurements_->archive(archive);
   barchan::write_checkpoint(checkpoint_file(directory_, scene_),
-                            {version() + " (" + commit() + ")", name_of(instructions()), scene_.identity,
-                             simulation_.time(), simulation_.steps(), archive.bytes()});
+                            {version() + " (" + commit() + ")",
+                             name_of(instructions()),
+                             scene_.identity,
+                             simulation_.time(),
+                             simulation_.steps(),
+                             {}},
+                            [&](Archive& a) {
+                              course_.beds.archive(a, scene_);
+                              simulation_.archive(a);
+                              if (measurements_) measurements_->archive(a);
+                            });
   course_.last_checkpoint = course_.progress.seconds();
   course_.checkpoint_step = simulation_.steps();
   course_.checkpoint_frames = clock().frames;
@@ -207,6 +213,7 @@ void Run::checkpoint_of_retreat() {
 std::string Run::break_down(const std::string& what) {
   const long good = simulation_.good_step();
   if (good > clock().last_frame_step) {
+    series_->finish();
     series_->write(simulation_.good_frame(static_cast<int>(clock().frames++)));
     if (measurements_) measurements_->write(directory_, simulation_.good_time());
     clock().last_frame_step = good;
@@ -225,6 +232,7 @@ std::string Run::break_down(const std::string& what) {
 }
 
 void Run::write_frame() {
+  series_->finish();  // one frame at a time is in memory
   series_->write(simulation_.frame(static_cast<int>(clock().frames++)));
   if (measurements_) measurements_->write(directory_, simulation_.time());
   clock().last_frame_step = simulation_.steps();

@@ -13,6 +13,7 @@
 #include "output/history.hpp"
 #include "output/run_report.hpp"
 #include "output/series.hpp"
+#include "plan/memory_need.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
@@ -38,7 +39,7 @@ std::filesystem::path bad_file(const std::filesystem::path& directory, const Sce
 /// States of the past that a run can go back to, in memory: two, so that one is old enough.
 class Past {
  public:
-  static constexpr long every = 256;  // steps
+  static constexpr long every = steps_between_states;
   /// A particle that is wrong is found within 20 steps of it; states that are not this much older are not trusted.
   static constexpr long distance = 64;  // steps
 
@@ -53,7 +54,7 @@ class Past {
     Archive archive;
   };
   const State& newest() const { return states_[0].step >= states_[1].step ? states_[0] : states_[1]; }
-  std::array<State, 2> states_;
+  std::array<State, most_states> states_;
   long trusted_ = -1;  // step of the first that was kept, or that the run went back to: it was looked at closely
 };
 

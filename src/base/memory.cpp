@@ -1,5 +1,6 @@
 #include "base/memory.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -49,17 +50,27 @@ void ask_control_group(AvailableMemory& least) {
   }
 }
 
-/// RLIMIT_AS counts addresses, RLIMIT_DATA private memory; /proc/self/statm tells both, in pages.
-void ask_limits(AvailableMemory& least) {
+/// What /proc/self/statm tells, bytes.
+struct Pages {
+  double size = 0, resident = -1, data = 0;  // addresses; in memory; private
+};
+
+Pages pages() {
   double size = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
   std::ifstream stream("/proc/self/statm");
-  stream >> size >> resident >> shared >> text >> library >> data;
+  if (!(stream >> size >> resident >> shared >> text >> library >> data)) return {};
   const auto page = static_cast<double>(sysconf(_SC_PAGESIZE));
+  return {size * page, resident * page, data * page};
+}
+
+/// RLIMIT_AS counts addresses, RLIMIT_DATA private memory.
+void ask_limits(AvailableMemory& least) {
+  const Pages now = pages();
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    lower(least, static_cast<double>(limit.rlim_cur) - size * page, "ulimit -v");
+    lower(least, static_cast<double>(limit.rlim_cur) - now.size, "ulimit -v");
   if (getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    lower(least, static_cast<double>(limit.rlim_cur) - data * page, "ulimit -d");
+    lower(least, static_cast<double>(limit.rlim_cur) - now.data, "ulimit -d");
 }
 
 }  // namespace
@@ -70,6 +81,32 @@ AvailableMemory available_memory() {
   ask_control_group(least);
   ask_limits(least);
   return least;
+}
+
+double allocated_memory() {
+#ifdef __GLIBC__
+  const auto heap = mallinfo2();
+  const auto bytes = static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
+  return bytes > 0.0 ? bytes : -1.0;  // a sanitizer's allocator tells nothing
+#else
+  return -1.0;
+#endif
+}
+
+double resident_memory() { return pages().resident; }
+
+double most_resident_memory() {
+  std::ifstream stream("/proc/self/status");
+  for (std::string line; std::getline(stream, line);)
+    if (double kilobytes = 0; std::sscanf(line.c_str(), "VmHWM: %lf", &kilobytes) == 1) return 1024.0 * kilobytes;
+  return -1.0;
+}
+
+void return_freed_arrays() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 17);
+  mallopt(M_ARENA_MAX, 1);  // steps allocate nothing, so that threads need no memory of their own
+#endif
 }
 
 std::string memory_text(double bytes) {

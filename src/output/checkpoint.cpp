@@ -25,17 +25,18 @@ struct CheckpointHead {
   std::uint32_t unused = 0;
 };
 
-std::uint32_t checksum(const char* data, std::size_t size) {
-  return static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), reinterpret_cast<const Bytef*>(data), size));
+/// `before`: that of what stands before.
+std::uint32_t checksum(const void* data, std::size_t size, std::uint32_t before = 0) {
+  return static_cast<std::uint32_t>(crc32_z(before, static_cast<const Bytef*>(data), size));
 }
 
-void items(Archive& a, Checkpoint& c) {
+/// All items but the state, which comes last.
+void items_before_state(Archive& a, Checkpoint& c) {
   a.text("version", c.version);
   a.text("instructions", c.instructions);
   a.text("scene", c.scene);
   a.number("time", c.time);
   a.number("step", c.step);
-  a.array("state", c.state);
 }
 
 std::vector<char> bytes_of(const std::filesystem::path& file) {
@@ -62,15 +63,32 @@ void keep_as_older(const std::filesystem::path& file) {
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint) {
-  Archive archive;
-  items(archive, checkpoint);
-  const auto& bytes = archive.bytes();
-  const CheckpointHead head{bytes.size(), checksum(bytes.data(), bytes.size()), 0};
+void write_checkpoint(const std::filesystem::path& file, Checkpoint about, const std::function<void(Archive&)>& state) {
+  const auto all = [&](Archive& a) {
+    items_before_state(a, about);
+    a.nested("state", state);
+  };
+  CheckpointHead head;
+  Archive sums([&](const void* data, std::size_t size) {
+    head.size += size;
+    head.sum = checksum(data, size, head.sum);
+  });
+  all(sums);
   WholeFile out(file);
   out.write(magic);
   out.write({reinterpret_cast<const char*>(&head), sizeof head});
-  out.write({bytes.data(), bytes.size()});
+  std::string small;  // pieces that wait for each other
+  Archive bytes([&](const void* data, std::size_t size) {
+    const std::string_view piece(static_cast<const char*>(data), size);
+    if (small.size() + size > 1 << 16) {
+      out.write(small);
+      small.clear();
+    }
+    if (size > 1 << 16) out.write(piece);
+    else small += piece;
+  });
+  all(bytes);
+  out.write(small);
   keep_as_older(file);
   out.publish();
 }
@@ -117,7 +135,8 @@ Checkpoint parse_checkpoint(const std::vector<char>& all) {
   if (head.unused != 0 || checksum(begin, size) != head.sum) throw SceneError("is damaged: its checksum is wrong");
   Archive archive(std::vector<char>(begin, begin + size));
   Checkpoint checkpoint;
-  items(archive, checkpoint);
+  items_before_state(archive, checkpoint);
+  archive.array("state", checkpoint.state);
   archive.finish();
   return checkpoint;
 }

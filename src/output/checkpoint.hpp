@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "state/archive.hpp"
 
 namespace barchan {
 
@@ -14,12 +17,15 @@ struct Checkpoint {
   std::string scene;         // Scene::identity
   double time = 0.0;         // s
   long step = 0;
-  std::vector<char> state;  // Archive::bytes()
+  std::vector<char> state;  // Archive::bytes(); of one that is read
 };
 
+/// `state` names what a state holds. It is called several times, for sizes, the checksum and the file: the bytes are
+/// never in memory as a whole.
+///
 /// Replaces the file by rename when all of it is on the disk; the one before stays as older_checkpoint(). Throws
 /// OutputError.
-void write_checkpoint(const std::filesystem::path& file, Checkpoint checkpoint);
+void write_checkpoint(const std::filesystem::path& file, Checkpoint about, const std::function<void(Archive&)>& state);
 
 /// Throws SceneError when there is no such file, or it is no checkpoint, of another format, cut off or damaged (the
 /// CRC-32 of zlib over all that follows the head).

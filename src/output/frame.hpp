@@ -29,6 +29,14 @@ struct Frame {
   std::vector<FrameField>
       contacts;  // of a settled bed, by contact: contact_particle (an id), contact_branch, _force, _torque
   std::size_t size() const { return id.size(); }
+  /// Memory of the arrays.
+  std::size_t bytes() const {
+    std::size_t all =
+        points.capacity() * sizeof(double) + id.capacity() * sizeof id[0] + phase.capacity() * sizeof phase[0];
+    for (const auto* group : {&fields, &contacts})
+      for (const FrameField& f : *group) all += f.values.capacity() * sizeof(double);
+    return all;
+  }
 };
 
 }  // namespace barchan

@@ -112,17 +112,16 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     const double search = all * dimensions * narrow * 1.125 + (all - n) * sizeof(Image);
     grids += cells(plan, k) * 4.0 * index + search + 2.0 * n * index;
     past += own + cells(plan, k) * 2.0 * index + search;
-    frames += 3.0 * n * (written * wide + id + index);  // one that is copied, two that wait
+    frames += n * (written * wide + id + 3.0 * index);
     start += n * 2.0 * sizeof(Vec3);
     if (scene.phases[k].diameter()) contacts += n * contacts_of_a_sphere(plan.dimensions);
     if (p.moves) kept += n * ((2.0 * dimensions + 2.0) * wide + id);
   }
   MemoryNeed need;
-  need.parts = {{"fields", fields},           {"records", records},      {"cells", grids}, {"pair lists", lists(plan)},
-                {"frames that wait", frames}, {"last good state", kept}, {"start", start}, {"program", 6e7}};
+  need.parts = {{"fields", fields},  {"records", records},      {"cells", grids}, {"pair lists", lists(plan)},
+                {"a frame", frames}, {"last good state", kept}, {"start", start}, {"program", 4e7}};
   need.parts.emplace_back("contacts of spheres", contacts);
-  need.parts.emplace_back("checkpoint", 3.0 * past);  // the state, in its envelope, and as the bytes of a file
-  if (retreats) need.parts.emplace_back("states to go back to", 2.0 * past);
+  if (retreats) need.parts.emplace_back("states to go back to", static_cast<double>(most_states) * past);
   return need;
 }
 
@@ -139,7 +138,7 @@ std::string to_text(const MemoryNeed& need) {
   std::string text;
   for (const auto& [name, bytes] : need.parts)
     if (bytes >= 1e6) text += (text.empty() ? "" : ", ") + name + " " + memory_text(bytes);
-  return "memory  about " + memory_text(need.bytes()) + " (" + text + ")\n";
+  return "memory  " + std::string(need.measured ? "" : "at most ") + memory_text(need.bytes()) + " (" + text + ")\n";
 }
 
 }  // namespace barchan

@@ -91,7 +91,7 @@ std::string to_text(const Estimate& e) {
   std::string t = e.failure.empty() ? "pairs  " : "measured as far as it goes: " + e.failure + "\npairs  ";
   for (const auto& [name, count] : e.pairs)
     t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
-  t += line("\narrays  %.1f MB of the memory, measured\n", e.bytes * 1e-6);
+  t += "\n" + to_text(e.memory);
   t +=
       line("run     about %.0f steps, %.3g s of processor time at %.2f M particle-steps/s (medians of the first steps)",
            e.steps, e.processor_seconds, e.particle_steps_per_second * 1e-6);
@@ -103,7 +103,7 @@ std::string to_text(const Estimate& e) {
   return t;
 }
 
-std::string to_json(const Plan& plan, const Scene& scene, const MemoryNeed& memory, const Estimate& estimate) {
+std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estimate) {
   nlohmann::ordered_json j;
   j["title"] = scene.title;
   j["dimensions"] = plan.dimensions;
@@ -154,8 +154,9 @@ std::string to_json(const Plan& plan, const Scene& scene, const MemoryNeed& memo
   j["warnings"] = plan.warnings;
   j["step"] = plan.step();
   for (const auto& l : plan.limits) j["limits"][l.name] = {{"value", l.value}, {"reason", l.reason}};
-  j["memory"]["bytes"] = memory.bytes();
-  for (const auto& [name, bytes] : memory.parts) j["memory"]["parts"][name] = bytes;
+  j["memory"]["bytes"] = estimate.memory.bytes();
+  j["memory"]["measured"] = estimate.memory.measured;
+  for (const auto& [name, bytes] : estimate.memory.parts) j["memory"]["parts"][name] = bytes;
   if (!estimate.failure.empty()) j["failure"] = estimate.failure;
   j["estimate"] = {{"steps", estimate.steps},
                    {"threads", estimate.threads},

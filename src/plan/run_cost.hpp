@@ -14,11 +14,12 @@ struct Estimate {
   double seconds = 0;  // s if the threads share it evenly and nothing else runs on the machine
   double particle_steps_per_second = 0;
   double bytes = 0;                                          // memory of particles, records and lists
+  MemoryNeed memory;                                         // of a run, measured; no parts: it was not
   double start_seconds = 0;                                  // s before the first step: particles are made, beds settle
   std::vector<std::pair<std::string, std::uint64_t>> pairs;  // directed pairs by entry
 };
 
 std::string to_text(const Estimate& estimate);
-std::string to_json(const Plan& plan, const Scene& scene, const MemoryNeed& memory, const Estimate& estimate);
+std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estimate);
 
 }  // namespace barchan

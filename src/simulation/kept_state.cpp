@@ -5,11 +5,12 @@
 namespace barchan {
 
 KeptState::KeptState(const std::vector<PhaseParticles>& particles, std::vector<Field> fields)
-    : fields_(std::move(fields)), ids_(particles.size()) {
+    : fields_(std::move(fields)), ids_(particles.size()), kept_(particles.size()) {
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const PhaseParticles& p = particles[k];
     if (!p.has(Field::acceleration)) continue;  // walls stay where they are
     ids_[k] = p.id();
+    kept_[k] = true;
     for (const Field field : fields_)
       for (int c = 0; p.has(field) && c < p.components(field); ++c)
         columns_.push_back({k, field, c, AlignedVector<double>(p.size())});
@@ -26,7 +27,7 @@ void KeptState::keep(const std::vector<PhaseParticles>& particles, double time, 
     for (std::int64_t i = 0; i < n; ++i) to[i] = from[i];
   }
   for (std::size_t k = 0; k < ids_.size(); ++k)
-    if (!ids_[k].empty()) ids_[k].assign(particles[k].id().begin(), particles[k].id().end());
+    if (kept_[k]) ids_[k].assign(particles[k].id().begin(), particles[k].id().end());
   time_ = time;
   step_ = step;
 }
@@ -35,7 +36,7 @@ void KeptState::exchange(std::vector<PhaseParticles>& particles) {
   std::vector<std::size_t> now(particles.size()), kept(particles.size());
   for (std::size_t k = 0; k < particles.size(); ++k) {
     now[k] = particles[k].size();
-    kept[k] = ids_[k].empty() ? now[k] : ids_[k].size();
+    kept[k] = kept_[k] ? ids_[k].size() : now[k];
     particles[k].resize(std::max(now[k], kept[k]));  // some may have been made or removed since
   }
   for (auto& column : columns_) {
@@ -45,7 +46,7 @@ void KeptState::exchange(std::vector<PhaseParticles>& particles) {
     column.values.resize(now[column.phase]);
   }
   for (std::size_t k = 0; k < ids_.size(); ++k) {
-    if (ids_[k].empty()) continue;
+    if (!kept_[k]) continue;
     particles[k].resize(now[k]);  // the ids of the present state go into ids_[k]
     particles[k].set_ids(ids_[k]);
   }

@@ -31,6 +31,7 @@ class KeptState {
   std::vector<Field> fields_;
   std::vector<Column> columns_;
   std::vector<std::vector<std::int64_t>> ids_;  // by phase
+  std::vector<bool> kept_;                      // whether the phase is one that moves
   double time_ = 0.0;
   long step_ = -1;
 };

@@ -3,9 +3,11 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 
 #include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -19,14 +21,45 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// What a run holds at the most, from what this process holds now that has made the same steps: besides, a run writes
+/// frames, one at a time, and keeps `states` to go back to. `before`: allocated_memory() without the simulation.
+MemoryNeed memory_of_a_run(Simulation& simulation, double before, double states) {
+  constexpr double writer = 3.2e6;   // VTK's writer and its buffers, the threads: code and data, measured
+  constexpr double disorder = 0.03;  // of the arrays: by what lists grow in a long run, measured
+  constexpr double of_a_vertex = 2 * sizeof(std::int32_t);  // of a frame, made when it is written
+  const double now = resident_memory(), allocated = allocated_memory();
+  MemoryNeed need;
+  need.measured = true;
+  if (now < 0.0 || allocated < 0.0) return need;
+  const double arrays = allocated - before;
+  const double state = static_cast<double>(size_of([&](Archive& a) { simulation.archive(a); }));
+  const Frame frame = simulation.frame(0);
+  need.parts = {{"program", now - arrays + writer},
+                {"arrays", (1.0 + disorder) * arrays},
+                {"a frame", static_cast<double>(frame.bytes()) + of_a_vertex * static_cast<double>(frame.size())}};
+  if (states > 0.0) need.parts.emplace_back("states to go back to", states * state);
+  if (const double more = most_resident_memory() - need.bytes(); more > 0.0)
+    need.parts.emplace_back("more at the start", more);
+  return need;
+}
+
+double states_kept(double steps) {
+  return std::min(static_cast<double>(most_states),
+                  1.0 + std::floor(steps / static_cast<double>(steps_between_states)));
+}
+
 }  // namespace
 
-Estimate measure(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks) {
+Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks, bool retreats) {
   Estimate e;
   e.threads = omp_get_max_threads();
   // One thread does the work: several that wait for each other on a busy machine would count their waiting.
   omp_set_num_threads(1);
+  double before = allocated_memory();
   Simulation simulation(scene, plan, blocks);
+  const double with_blocks = allocated_memory();
+  blocks.clear();
+  before -= with_blocks - allocated_memory();
   simulation.check_start();
   constexpr int batch = 10;
   constexpr long most_steps = 300;
@@ -40,23 +73,24 @@ Estimate measure(const Scene& scene, const Plan& plan, const std::vector<Particl
   std::vector<double> seconds, lengths;  // of each batch: of processor time a step, and of simulated time a step
   const double start = processor();
   while (simulation.steps() < most_steps && processor() - start < most_seconds && goes_on()) {
-    const double before = processor(), time = simulation.time();
+    const double begin = processor(), time = simulation.time();
     int steps = 0;
     try {
       for (; steps < batch && processor() - start < most_seconds && goes_on(); ++steps)
         simulation.step(scene.time.end - simulation.time());
     } catch (const BreakdownError& error) { e.failure = error.what(); }
     if (!e.failure.empty() && steps == 0) break;
-    seconds.push_back((processor() - before) / steps);
+    seconds.push_back((processor() - begin) / steps);
     lengths.push_back((simulation.time() - time) / steps);
     if (!e.failure.empty()) break;
   }
   omp_set_num_threads(e.threads);
   e.bytes = static_cast<double>(simulation.bytes());
   for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
+  if (!lengths.empty()) e.steps = scene.time.end / median(lengths);
+  e.memory = memory_of_a_run(simulation, before, retreats ? states_kept(e.steps) : 0.0);
   if (lengths.empty()) return e;
   e.measured = true;
-  e.steps = scene.time.end / median(lengths);
   e.processor_seconds = e.steps * median(seconds);
   e.seconds = e.processor_seconds / e.threads;
   e.particle_steps_per_second = plan.particles() / median(seconds);

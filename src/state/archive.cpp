@@ -5,6 +5,8 @@
 namespace barchan {
 
 void Archive::put(const void* data, std::size_t size) {
+  if (size == 0) return;  // the data of an empty vector may be null
+  if (sink_) return sink_(data, size);
   const char* from = static_cast<const char*>(data);
   bytes_.insert(bytes_.end(), from, from + size);
 }
@@ -31,7 +33,6 @@ std::uint64_t Archive::open(std::string_view name, std::size_t width) {
 }
 
 void Archive::item(std::string_view name, void* data, std::size_t width, std::uint64_t count) {
-  const std::uint64_t wide = width;
   if (loads_) {
     const std::uint64_t found = open(name, width);
     if (found != count)
@@ -40,12 +41,17 @@ void Archive::item(std::string_view name, void* data, std::size_t width, std::ui
     get(data, width * count);
     return;
   }
+  head(name, width, count);
+  put(data, width * count);
+}
+
+void Archive::head(std::string_view name, std::size_t width, std::uint64_t count) {
+  const std::uint64_t wide = width;
   const auto length = static_cast<std::uint32_t>(name.size());
   put(&length, sizeof length);
   put(name.data(), name.size());
   put(&wide, sizeof wide);
   put(&count, sizeof count);
-  put(data, width * count);
 }
 
 std::uint64_t Archive::next_count(std::string_view name, std::size_t width) {

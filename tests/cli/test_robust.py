@@ -226,7 +226,7 @@ class Robust(unittest.TestCase):
         scene = self.top / "spheres.toml"
         scene.write_text(SPHERES)
         plan = subprocess.run([PROGRAM, "plan", str(scene)], capture_output=True, text=True, check=True).stdout
-        planned = float(re.search(r"memory  about ([0-9.]+) MB", plan)[1]) * 1e3
+        planned = float(re.search(r"memory  ([0-9.]+) MB", plan)[1]) * 1e3
         run = subprocess.Popen(self.command("--quiet", scene=scene), stderr=subprocess.DEVNULL)
         _, status, usage = os.wait4(run.pid, 0)
         run.returncode = status

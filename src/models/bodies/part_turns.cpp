@@ -153,6 +153,7 @@ bool PartTurns::keep(const ReferenceBody<float>& reference, const std::vector<do
 void PartTurns::archive(Archive& a) {
   a.array("parts that have turned", turned_);
   a.array("displacements beyond which parts may have turned", bound_);
+  if (!a.loads()) return;
   const bool some = std::any_of(turned_.begin(), turned_.end(), [](unsigned char t) { return t != 0; });
   rotation_.assign(some ? turned_.size() : 0, identity);
 }

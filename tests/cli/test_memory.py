@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""The memory that `plan` states is what the run takes: not less, and at most 5 % more."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SCENES = sys.argv[1], pathlib.Path(sys.argv[2]) / "scenes"
+
+# scene, overrides: of each kind of physics, a second of work or two
+CASES = {
+    "fluid, mixed": ("verification/taylor_green", "spacing=0.004", "time.end=0.02"),
+    "fluid, plain, double": ("verification/taylor_green", "spacing=0.004", "time.end=0.01", 'phases.fluid.scheme="plain"', "interactions.fluid-fluid=2.6",
+                              'precision="double"'),
+    "free surface": ("verification/dam_break", "spacing=5e-4", "time.end=0.008"),
+    "free surface, 3D": ("verification/dam_break_3d", "spacing=2e-3", "time.end=0.01"),
+    "cavity": ("verification/cavity", "spacing=0.005", "time.end=0.02"),
+    "total Lagrangian": ("rings", "spacing=2.5e-4", "time.end=1e-4"),
+    "updated Lagrangian": ("verification/rings_updated", "spacing=2.5e-4", "time.end=1e-4"),
+    "turbulent, walls": ("verification/logarithmic_layer", "spacing=1e-3", "time.end=0.01"),
+    "spheres in 2D": ("column_collapse", "time.end=0.02"),
+    "spheres in 3D": ("splash_3d", "time.end=0.002"),
+    "wind and grains": ("dune", "time.end=0.002"),
+    "column of air": ("saltation", "time.end=0.01"),
+}
+
+
+@unittest.skipIf(os.environ.get("BARCHAN_SANITIZE"), "a sanitizer takes memory of its own")
+class Memory(unittest.TestCase):
+    def planned(self, command):
+        done = subprocess.run([PROGRAM, "plan", *command, "--json"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        memory = json.loads(done.stdout)["memory"]
+        self.assertTrue(memory["measured"])
+        return memory
+
+    def taken(self, command, folder):
+        """Bytes of the largest resident set."""
+        run = subprocess.Popen([PROGRAM, "run", *command, "--out", folder, "--quiet"], stderr=subprocess.DEVNULL)
+        _, status, usage = os.wait4(run.pid, 0)
+        run.returncode = status
+        self.assertEqual(status, 0)
+        return usage.ru_maxrss * 1024
+
+    def test_plan_states_what_a_run_takes(self):
+        for name, (scene, *overrides) in CASES.items():
+            with self.subTest(name), tempfile.TemporaryDirectory() as top:
+                command = [str(SCENES / f"{scene}.toml")]
+                for text in overrides:
+                    command += ["--set", text]
+                memory, taken = self.planned(command), self.taken(command, f"{top}/out")
+                ratio = memory["bytes"] / taken
+                parts = ", ".join(f"{part} {size * 1e-6:.1f}" for part, size in memory["parts"].items())
+                print(f"{name}: planned/taken {ratio:.3f}, {taken * 1e-6:.1f} MB taken; planned {parts}", flush=True)
+                self.assertLess(1.0, ratio, parts)
+                self.assertLess(ratio, 1.05, parts)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
