@@ -38,6 +38,7 @@ double add_passes(RunReport& r, const Simulation& simulation) {
     r.passes.push_back(name);
     r.seconds.emplace_back(name, seconds);
   }
+  r.repeats = simulation.schedule().repeats();
   return stepping;
 }
 

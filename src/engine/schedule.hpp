@@ -1,8 +1,10 @@
-// The schedule of a step: tasks in order, each with the fields that it may touch. The plan makes it and prints it, the
-// step executes it, timers and run.json are filled by the execution.
+// The schedule of a step: tasks in order, each with the fields of each phase that it may touch. The plan makes it and
+// prints it, the step executes it, timers and run.json are filled by the execution. A task may be a repeat: a model's
+// own steps, of which a step of the scene holds several, or what comes only every so often.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,12 +13,29 @@
 
 namespace barchan {
 
+/// Why a step does not call a task once.
+struct Repeat {
+  std::string name;             // what it is, in the plural: "steps of contacts"
+  double interval = 0;          // s, from one call to the next, as the plan knows it
+  std::function<long()> times;  // calls in the present step, 0 too; asked right before them
+};
+
 /// One call of a step.
 struct Task {
-  std::size_t stage = 0;  // place in the step, a number of the schedule's stages
-  std::string owner;      // whose work it is: a phase or an entry of the matrix
-  FieldSet reads, writes;
+  std::size_t stage = 0;       // place in the step, a number of the schedule's stages
+  std::string owner;           // whose work it is: a phase or an entry of the matrix
+  Touches touches;             // one for each phase; of a phase that is not named it may touch nothing
   std::function<void()> call;  // allocates nothing
+  std::optional<Repeat> repeat{};
+};
+
+/// What a repeat has done so far.
+struct RepeatCount {
+  std::string name, owner;
+  std::size_t stage = 0;
+  double interval = 0;  // s
+  long calls = 0;
+  double seconds = 0;  // s of wall time
 };
 
 class Schedule {
@@ -38,9 +57,15 @@ class Schedule {
   const std::vector<long>& executed() const { return executed_; }
   const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
   const std::vector<double>& processor_seconds() const { return processor_seconds_; }
+  /// The repeats in the order in which they were added.
+  const std::vector<RepeatCount>& repeats() const { return repeats_; }
 
  private:
+  void repeat(const Task& task, RepeatCount& count);
+
   std::vector<std::vector<Task>> tasks_;
+  std::vector<std::vector<std::size_t>> repeat_of_;  // by stage and task: number of its repeat, `once`
+  std::vector<RepeatCount> repeats_;
   std::vector<long> executed_;
   std::vector<std::pair<std::string, double>> seconds_;
   std::vector<double> processor_seconds_;

@@ -21,6 +21,9 @@ namespace barchan {
 template <class Stiffness>
 struct CoulombFriction {
   static constexpr bool rubs = true;
+  /// The slip (m).
+  template <std::size_t Dim>
+  static constexpr std::size_t remembers = TouchingSpheres<double, Dim>::spin;
   Stiffness stiffness;
   double friction = 0.0;  // mu
 

@@ -15,6 +15,9 @@ namespace barchan {
 
 struct RollingResistance {
   static constexpr bool rolls = true;
+  /// The rolling slip (m).
+  template <std::size_t Dim>
+  static constexpr std::size_t remembers = TouchingSpheres<double, Dim>::spin;
   double friction = 0.0;  // mu_r
 
   static RollingResistance between(std::span<const SphereMaterial* const> grains) {

@@ -6,6 +6,7 @@
 // (models/grains/sphere_laws.cpp), the checks of a scene and the plan follow from the rows.
 #pragma once
 
+#include <algorithm>
 #include <tuple>
 #include <variant>
 
@@ -50,8 +51,30 @@ constexpr void each_row(F&& f, const std::tuple<Rows...>*) {
 }
 }  // namespace detail
 
+namespace detail {
+template <class... Rows>
+constexpr std::size_t most_numbers_of(const std::tuple<Rows...>*) {
+  return std::max({Rows::Law::template numbers<2>..., Rows::Law::template numbers<3>...});
+}
+}  // namespace detail
+
+/// The most numbers that a contact remembers under any law.
+inline constexpr std::size_t most_remembered = detail::most_numbers_of(static_cast<const SphereCatalogue*>(nullptr));
+
 /// A law of the catalogue with its constants.
 using AnySphereContact = decltype(detail::any_of_rows(static_cast<const SphereCatalogue*>(nullptr)));
+
+/// Calls f with the law, without the parts that no law of a scene has: rolling resistance, and friction too.
+template <class F>
+void with_parts(const AnySphereContact& law, bool rubs, bool rolls, F&& f) {
+  std::visit(
+      [&](const auto& whole) {
+        if (rolls) f(whole);
+        else if (rubs) f(whole.without_rolling());
+        else f(whole.smooth());
+      },
+      law);
+}
 
 /// Calls f(row) for each row of the catalogue, in their order.
 template <class F>

@@ -10,6 +10,9 @@
 //   friction   laws/coulomb_friction.hpp with laws/slip_stiffness.hpp, or NoFriction
 //   rolling    laws/rolling_resistance.hpp, or NoRolling
 //
+// A part that remembers something of a contact says how many numbers (`remembers<Dim>`) and gets them, zero where a
+// touch begins, to read and to write. A normal spring gets them behind its other arguments.
+//
 // The laws that a scene can choose are the rows of laws/sphere_catalogue.hpp.
 //
 // Found for 12 steps a contact, all phases of the first touch (tests/unit/laws_sphere_contact.cpp): e = 0.3 within 0.3
@@ -23,6 +26,13 @@
 
 namespace barchan {
 
+/// How many numbers a part remembers of a contact.
+template <class Part, std::size_t Dim>
+constexpr std::size_t remembered_by() {
+  if constexpr (requires { Part::template remembers<Dim>; }) return Part::template remembers<Dim>;
+  else return 0;
+}
+
 template <class NormalPart, class DampingPart, class FrictionPart = NoFriction, class RollingPart = NoRolling>
 struct SphereContact {
   using Normal = NormalPart;
@@ -34,9 +44,12 @@ struct SphereContact {
   using Smooth = SphereContact<Normal, Damping>;
   static constexpr bool rubs = Friction::rubs, rolls = Rolling::rolls;
   static_assert(rubs || !rolls, "the springs of the rolling resistance are as stiff as those of the friction");
-  /// Numbers that a contact remembers: the slip (m) and the rolling slip (m), each 1 in 2D and 3 in 3D.
+  /// Of the numbers that a contact remembers the first are lengths of springs across the normal (m), which hold
+  /// left_behind() when it ends.
   template <std::size_t Dim>
-  static constexpr std::size_t numbers = (rubs + rolls) * TouchingSpheres<double, Dim>::spin;
+  static constexpr std::size_t springs = remembered_by<Friction, Dim>() + remembered_by<Rolling, Dim>();
+  template <std::size_t Dim>
+  static constexpr std::size_t numbers = springs<Dim> + remembered_by<Normal, Dim>();
 
   Normal normal;
   Damping damping;
@@ -79,7 +92,10 @@ struct SphereContact {
     V v_n(0.0);
     for (std::size_t d = 0; d < Dim; ++d) v_n = simd::fma(s.velocity[d], s.normal[d], v_n);
     const NormalMotion<V> motion{s.overlap, -v_n, s.reduced_mass, s.inverse_mass, s.reduced_radius};
-    const NormalForce<V> normal = Normal::force(c.normal, c.damping, motion, c.dt);
+    NormalForce<V> normal;
+    if constexpr (remembered_by<Normal, Dim>() > 0)
+      normal = Normal::force(c.normal, c.damping, motion, c.dt, memory.data() + springs<Dim>);
+    else normal = Normal::force(c.normal, c.damping, motion, c.dt);
     out.lost = (normal.elastic - normal.force) * simd::fma(normal.force * s.inverse_mass, c.dt.half, v_n) * c.dt.whole;
     out.stored = normal.stored;
     for (std::size_t d = 0; d < Dim; ++d) out.force[d] = normal.force * s.normal[d];
@@ -87,7 +103,8 @@ struct SphereContact {
     if constexpr (rubs) {
       const SlipStiffness<V> k = Friction::stiffness_of(c.friction, normal, v_n, c.dt);
       Friction::add(c.friction, s, normal, k, v_n, c.dt, memory.data(), out);
-      if constexpr (rolls) Rolling::add(c.rolling, s, normal, k, c.dt, memory.data() + spin, out);
+      if constexpr (rolls)
+        Rolling::add(c.rolling, s, normal, k, c.dt, memory.data() + remembered_by<Friction, Dim>(), out);
     }
     return out;
   }

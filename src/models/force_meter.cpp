@@ -61,8 +61,12 @@ void ForceOn::schedule(Schedule& s) {
   using enum Field;
   const FieldSet reads = FieldSet{position, velocity, acceleration};
   const FieldSet writes = wall_ ? FieldSet{acceleration} : FieldSet{};
-  s.add({wall_ ? stage::reaction : stage::motion, layout_.phases[phase_].name + ", force", reads, writes,
-         [this] { measure(); }});
+  const std::string& name = layout_.phases[phase_].name;
+  Touches touches{{name, reads, writes}};
+  for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
+    if (e.kind == EntryKind::boundary && e.other == phase_)
+      touches.push_back({layout_.phases[e.fluid].name, reads, {}});
+  s.add({wall_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 
 void ForceOn::measure() {

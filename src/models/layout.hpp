@@ -12,6 +12,7 @@
 #include "base/fields.hpp"
 #include "engine/neighbours.hpp"
 #include "scene/scene.hpp"
+#include "state/access.hpp"
 #include "state/rigid_body.hpp"
 
 namespace barchan {
@@ -138,6 +139,9 @@ struct PlanPhase {
   double contact_stiffness = 0;         // N/m, of a rigid body with another (2D: N/m a metre)
   std::vector<Field> fields;
   PhaseRules rules;
+
+  /// For a task that touches all of them.
+  Touch all_fields() const { return {name, FieldSet(fields), FieldSet(fields)}; }
 };
 
 struct Layout {
@@ -154,6 +158,12 @@ struct Layout {
     return std::any_of(o.begin(), o.end(), [](const auto& ends) { return ends[0] || ends[1]; });
   }
   double particles() const;
+  /// For a task that touches these of all phases.
+  Touches of_all(const FieldSet& reads, const FieldSet& writes) const {
+    Touches all;
+    for (const auto& p : phases) all.push_back({p.name, reads, writes});
+    return all;
+  }
 };
 
 }  // namespace barchan

@@ -43,7 +43,9 @@ class ForceEntry : public Model {
  private:
   void act_on(std::size_t phase, Schedule& s) {
     if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves) return;
-    s.add({stage_, entry_.name, reads_, {Field::acceleration}, [this, phase] { push(phase); }});
+    s.add({stage_, entry_.name, {{layout_.phases[phase].name, reads_, {Field::acceleration}}}, [this, phase] {
+             push(phase);
+           }});
   }
   /// The particles of one phase feel those of the other.
   void push(std::size_t phase) {

@@ -200,14 +200,15 @@ void CommonWork::attach(Workspace& w) {
 
 void CommonWork::schedule(Schedule& s) {
   using enum Field;
-  FieldSet all;
-  for (const auto& p : layout_.phases)
-    for (const Field f : p.fields) all = all | FieldSet{f};
-  s.add({stage::neighbours, "all", all, all, [this] { find_neighbours(); }});
-  s.add({stage::pack, "all", {position, velocity, density, pressure, stress}, {}, [this] { pack(); }});
-  if (std::any_of(layout_.phases.begin(), layout_.phases.end(), moves_by_itself))
-    s.add({stage::energy, "all", {position, velocity, acceleration}, {}, [this] { carry(); }});
-  s.add({stage::kick, "all", {acceleration}, {velocity}, [this] { kick(); }});
+  Touches sorted, carried;
+  for (const auto& p : layout_.phases) {
+    sorted.push_back(p.all_fields());
+    if (moves_by_itself(p)) carried.push_back({p.name, {position, velocity, acceleration}, {}});
+  }
+  s.add({stage::neighbours, "all", sorted, [this] { find_neighbours(); }});
+  s.add({stage::pack, "all", layout_.of_all({position, velocity, density, pressure, stress}, {}), [this] { pack(); }});
+  if (!carried.empty()) s.add({stage::energy, "all", carried, [this] { carry(); }});
+  s.add({stage::kick, "all", layout_.of_all({acceleration}, {velocity}), [this] { kick(); }});
 }
 
 void CommonWork::find_neighbours() {

@@ -46,6 +46,12 @@ std::string to_json(const RunReport& r) {
       {"time_step_limits", Json(r.time_step_limits)},
       {"budgets", Json(r.budgets)},
   };
+  for (const auto& repeat : r.repeats)
+    json["repeats"].push_back({{"name", repeat.name},
+                               {"of", repeat.owner},
+                               {"interval", repeat.interval},
+                               {"calls", repeat.calls},
+                               {"seconds", repeat.seconds}});
   for (const auto& use : r.thread_uses)
     json["threads_used"].push_back({{"threads", use.threads}, {"steps", use.steps}, {"seconds", use.seconds}});
   json["thread_switches"] = r.thread_switches;

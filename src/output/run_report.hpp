@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/thread_chooser.hpp"
+#include "engine/schedule.hpp"
 
 namespace barchan {
 
@@ -31,6 +32,7 @@ struct RunReport {
   long steps = 0;
   double simulated_time = 0;                            // s
   std::vector<std::pair<std::string, double>> seconds;  // s of wall time by pass, in the order of the step
+  std::vector<RepeatCount> repeats;                     // tasks that steps do not call once
   double wall_seconds = 0, cpu_seconds = 0;             // s, in all
   double particle_steps_per_second = 0;
   double pair_interactions_per_second = 0;       // directed pairs

@@ -147,6 +147,7 @@ void add_passes(Plan& plan, const Models& models) {
   const Schedule schedule = make_schedule(models);
   for (std::size_t k = 0; k < schedule.stages(); ++k)
     (schedule.has(k) || k == stage::watch ? plan.passes : plan.skipped).push_back(schedule.name(k));
+  plan.repeats = schedule.repeats();
 }
 
 /// Where a step is below the rounding of the time, the time does not grow: the end is never reached.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/schedule.hpp"
 #include "measure/instrument.hpp"
 #include "models/layout.hpp"
 #include "models/step_limits.hpp"
@@ -16,6 +17,7 @@ namespace barchan {
 struct Plan : Layout {
   std::vector<StepLimit> limits;
   std::vector<std::string> passes, skipped;  // stages of the schedule with and without tasks
+  std::vector<RepeatCount> repeats;          // tasks that a step does not call once; nothing is counted yet
   std::vector<Instrument> instruments;       // what is measured
   double step() const;                       ///< the smallest limit, s (or the fixed step)
   double fixed_step = 0;                     // s, 0: none

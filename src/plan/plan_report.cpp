@@ -1,4 +1,5 @@
 // The plan as a person reads it, and as JSON.
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,14 @@ std::string meaning(const PlanEntry& e) {
   return "off by more than 3 %, and nothing corrects it";
 }
 
+/// In steps of the planned length (s).
+std::string calls_of(const RepeatCount& r, double step) {
+  const double each = step / r.interval;
+  if (each > 1.0 + 1e-9) return line("%.0f in a step", std::ceil(each * (1.0 - 1e-9)));
+  const double steps = std::ceil(1.0 / each * (1.0 - 1e-9));
+  return steps > 1.0 ? line("one in %.0f steps", steps) : "one in a step";
+}
+
 }  // namespace
 
 std::string to_text(const Plan& plan, const Scene& scene) {
@@ -75,6 +84,9 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   for (const auto& p : plan.phases)
     if (p.flows) t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
   t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
+  for (const auto& r : plan.repeats)
+    t += line("repeats %s of %s: one in %.4g s, %s\n", r.name.c_str(), r.owner.c_str(), r.interval,
+              calls_of(r, plan.step()).c_str());
   for (const auto& i : plan.instruments)
     t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
   t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
@@ -141,6 +153,9 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   for (const auto& [name, count] : estimate.pairs) j["interactions"][name]["pairs"] = count;
   j["passes"] = plan.passes;
   j["skipped"] = plan.skipped;
+  j["repeats"] = nlohmann::ordered_json::array();
+  for (const auto& r : plan.repeats)
+    j["repeats"].push_back({{"name", r.name}, {"of", r.owner}, {"interval", r.interval}});
   j["measured"] = nlohmann::ordered_json::array();
   for (const auto& i : plan.instruments)
     j["measured"].push_back({{"kind", kind_name(i.kind)},

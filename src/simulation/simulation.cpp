@@ -43,10 +43,9 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   watch_ = std::make_unique<Watch>(
       Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, work_->motion, work_->stress});
   budget_.emplace(scene_, plan_, state_);
-  FieldSet all;
-  for (const auto& p : plan_.phases)
-    for (const Field f : p.fields) all = all | FieldSet{f};
-  schedule_.add({stage::watch, "all", all, {}, [this] { watch_->look(moment()); }});
+  Touches seen;
+  for (const auto& p : plan_.phases) seen.push_back({p.name, FieldSet(p.fields), {}});
+  schedule_.add({stage::watch, "all", seen, [this] { watch_->look(moment()); }});
   schedule_.run(stage::kick,
                 stage::kick);  // moves nothing; finds the largest acceleration, which limits the first step
 }

@@ -108,9 +108,9 @@ class PhaseParticles {
   void archive(Archive& a);
 
  private:
-  static void check([[maybe_unused]] Field field) {
+  void check([[maybe_unused]] Field field) const {
 #ifndef NDEBUG
-    AccessGuard::check(field);
+    AccessGuard::check(name_, field);
 #endif
   }
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }

@@ -49,7 +49,7 @@ class Renewal : public Model {
   void schedule(Schedule& s) override {
     FieldSet all;
     for (const auto& about : field_table) all = all | FieldSet{about.id};
-    s.add({stage::walls, "renewal", all, all, [this] { renew(); }});
+    s.add({stage::walls, "renewal", {{"fluid", all, all}}, [this] { renew(); }});
   }
   void archive(Archive& a) override { a.array("particles that wait", stock_); }
   std::size_t waiting() const { return w_ ? stock_.size() / values_a_particle() : 0; }

@@ -17,14 +17,34 @@ constexpr std::array<const char*, 3> stages{"first", "second", "third"};
 TEST(Schedule, RunsTasksByStageThenInTheOrderOfAdding) {
   Schedule s(stages);
   std::string done;
-  s.add({2, "b", {}, {}, [&] { done += "c"; }});
-  s.add({0, "a", {}, {}, [&] { done += "a"; }});
-  s.add({0, "b", {}, {}, [&] { done += "b"; }});
+  s.add({2, "b", {}, [&] { done += "c"; }});
+  s.add({0, "a", {}, [&] { done += "a"; }});
+  s.add({0, "b", {}, [&] { done += "b"; }});
   s.run(0, 2);
   EXPECT_EQ(done, "abc");
   s.run(0, 0);
   EXPECT_EQ(done, "abcab");
   EXPECT_EQ(s.executed(), (std::vector<long>{2, 0, 1})) << "a stage without tasks is never executed";
+}
+
+TEST(Schedule, CallsARepeatAsOftenAsItSaysAndCountsIt) {
+  Schedule s(stages);
+  std::string done;
+  long times = 3;
+  s.add({0, "sand", {}, [&] { done += "a"; }});
+  s.add({0, "sand", {}, [&] { done += "b"; }, Repeat{"steps of contacts", 1e-6, [&] { return times; }}});
+  s.add({0, "sand", {}, [&] { done += "c"; }});
+  s.run(0, 0);
+  times = 0;
+  s.run(0, 0);
+  EXPECT_EQ(done, "abbbcac");
+  ASSERT_EQ(s.repeats().size(), 1u);
+  const RepeatCount& r = s.repeats()[0];
+  EXPECT_EQ(r.calls, 3);
+  EXPECT_EQ(r.name, "steps of contacts");
+  EXPECT_EQ(r.owner, "sand");
+  EXPECT_EQ(r.interval, 1e-6);
+  EXPECT_GE(r.seconds, 0.0);
 }
 
 TEST(Schedule, FindsATaskThatTouchesWhatItDidNotDeclare) {
@@ -35,8 +55,10 @@ TEST(Schedule, FindsATaskThatTouchesWhatItDidNotDeclare) {
   p.add(Field::position);
   p.add(Field::velocity);
   Schedule s(stages);
-  s.add({0, "air", {Field::position}, {}, [&] { (void)p.column(Field::position); }});
-  s.add({1, "air", {Field::position}, {}, [&] { (void)p.column(Field::velocity); }});
+  s.add({0, "air", {{"air", {Field::position}, {}}}, [&] { (void)p.column(Field::position); }});
+  s.add({1, "air", {{"air", {Field::position}, {}}, {"sand", {Field::velocity}, {}}}, [&] {
+           (void)p.column(Field::velocity);
+         }});
   EXPECT_NO_THROW(s.run(0, 0));
   EXPECT_THROW(s.run(1, 1), std::logic_error);
   EXPECT_NO_THROW((void)p.column(Field::velocity)) << "outside of tasks all is free";

@@ -415,6 +415,56 @@ TEST(ComposedContacts, DoNotKnowWhoIsTheFirst) {
   });
 }
 
+/// A spring that remembers the largest overlap of a contact and is half as stiff below it.
+struct WornSpring : LinearSpring {
+  template <std::size_t>
+  static constexpr std::size_t remembers = 1;
+  using LinearSpring::Constants;
+  template <class V, class Dashpot>
+  static NormalForce<V> force(const Constants<V>& c, const Dashpot& d, const NormalMotion<V>& m,
+                              const ContactStep<V>& dt, V* memory) {
+    NormalForce<V> n = LinearSpring::force(c, d, m, dt);
+    n.force = select(m.overlap < memory[0], V(0.5) * n.force, n.force);
+    memory[0] = simd::max(memory[0], m.overlap);
+    return n;
+  }
+};
+
+template <std::size_t Dim>
+void expect_worn() {
+  using Law = SphereContact<WornSpring, NormalDashpot, CoulombFriction<ConstantSlipStiffness>, RollingResistance>;
+  using Known = SphereContact<LinearSpring, NormalDashpot, CoulombFriction<ConstantSlipStiffness>, RollingResistance>;
+  constexpr std::size_t last = Law::template springs<Dim>;
+  static_assert(Law::template numbers<Dim> == Known::template numbers<Dim> + 1);
+  static_assert(last == Known::template numbers<Dim>, "the springs are the first numbers");
+  Known known;
+  known.normal.stiffness = 500.0;
+  known.friction.friction = 0.5;
+  known.rolling.friction = 0.1;
+  Law worn{{known.normal}, known.damping, known.friction, known.rolling};
+  const typename Known::template Constants<One> c(known, 1e-6);
+  const typename Law::template Constants<One> w(worn, 1e-6);
+  std::array<One, Known::template numbers<Dim>> memory;
+  std::array<One, Law::template numbers<Dim>> more;
+  memory.fill(One(0.0));
+  more.fill(One(0.0));
+  TouchingSpheres<One, Dim> s = slanted<Dim>();
+  for (std::size_t d = 0; d < Dim; ++d) s.velocity[d] = One(0.05);
+  for (const double share : {1.0, 1.5, 1.2}) {
+    s.overlap = One(share * 1e-6);
+    const auto f = Known::touch(c, s, memory), g = Law::touch(w, s, more);
+    if (share > 1.3 || share == 1.0) EXPECT_EQ(g.force[0].v, f.force[0].v);
+    else EXPECT_LT(std::abs(g.force[0].v), std::abs(f.force[0].v));
+  }
+  EXPECT_DOUBLE_EQ(more[last].v, 1.5e-6) << "the largest overlap";
+}
+
+// A part remembers what it says, behind the slips, and no other file knows of it.
+TEST(ComposedContacts, GiveASpringTheNumbersThatItRemembers) {
+  expect_worn<2>();
+  expect_worn<3>();
+}
+
 // Springs in series, the smaller friction and restitution; a wall takes those of what touches it.
 TEST(ComposedContacts, TakeTheirConstantsFromBothPhases) {
   const SphereMaterial hard = material(0.9, 0.6, 0.3, 3000.0, 3e8, 0.2),

@@ -56,7 +56,6 @@ TEST(ContactMemories, DescribeTheirColumn) {
   ContactMemory memory;
   memory.prepare(2);
   EXPECT_EQ(memory.column().numbers, 2u);
-  EXPECT_EQ(memory.column().unit, "m");
   EXPECT_TRUE(memory.column().state && memory.column().goes_with_pair && memory.column().ends_with_touch);
 }
 
@@ -101,6 +100,36 @@ TEST(ContactMemories, GoWithTheirPairs) {
   EXPECT_FALSE(list.touching(10));
   for (std::size_t m = 0; m < numbers; ++m)
     EXPECT_EQ(list.of_pair(9, numbers)[m * ContactBatches::batch], 200.0 + static_cast<double>(m));
+}
+
+// Spheres are taken away and others come: those that stay have other numbers, in the same order.
+TEST(ContactMemories, FollowTheirPairsToOtherNumbers) {
+  constexpr std::size_t numbers = 1, moving = 5, all = 6, far = 6;
+  ContactMemory memory;
+  memory.prepare(numbers);
+  const std::uint32_t before[] = {0, 1, 2, 3, 4, 5};
+  std::vector<SphereChunk> chunks{list_of(0, 5, {{0, 1}, {1, 2}, {2, 4}, {3, 5}, {1, 5}}, numbers, far)};
+  for (std::size_t at = 0; at < 5; ++at) remember(chunks[0], at, numbers, static_cast<double>(10 * at + 1));
+  SphereChunk::AtSide side;
+  side.sphere = 4;
+  side.memory[0] = 7.0;
+  side.touches = true;
+  chunks[0].sides.push_back(side);
+  memory.keep(moving, all, chunks, before, nullptr);
+  // 1 goes, three come behind 4; the fixed one is the last as before.
+  constexpr std::uint32_t gone = ContactMemory::gone;
+  std::vector<std::uint32_t> left_alone;
+  memory.renumber({0, gone, 1, 2, 3, 7}, 8, left_alone);
+  std::sort(left_alone.begin(), left_alone.end());
+  EXPECT_EQ(left_alone, (std::vector<std::uint32_t>{0, 1, 7}));
+  EXPECT_EQ(memory.kept().size(), 3u);
+  ASSERT_NE(memory.find(1, 3), nullptr);
+  EXPECT_EQ(memory.find(1, 3)[0], 21.0);
+  ASSERT_NE(memory.find(2, 7), nullptr);
+  EXPECT_EQ(memory.find(2, 7)[0], 31.0);
+  ASSERT_NE(memory.find(3, ContactMemory::side(0, 1)), nullptr);
+  EXPECT_EQ(memory.find(3, ContactMemory::side(0, 1))[0], 7.0);
+  for (std::uint32_t n = 0; n < 8; ++n) EXPECT_EQ(memory.find(0, n), nullptr) << "its partner has gone";
 }
 
 // Pairs of spheres that sleep stand in a list of their own, with all of their pairs.

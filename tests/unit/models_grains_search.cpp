@@ -18,10 +18,11 @@ using sets::Uniform;
 constexpr double slack = 0.13;  // m; the spheres have diameters of about 1 m
 
 template <int Dim>
-void search(SphereCast<Dim>& cast, std::vector<SphereSearch::Side> sides = {}) {
+void search(SphereCast<Dim>& cast, const std::vector<SphereSearch::Side>& sides = {}) {
   SphereSearch of;
-  of.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, std::move(sides), cast.numbers_of_a_pair);
-  of.find(cast.set(), slack, cast.chunks, cast.numbers.data(), nullptr);
+  of.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
+  of.keep(cast.set(), cast.chunks, cast.numbers.data(), nullptr);
+  of.find(cast.set(), slack, cast.chunks, nullptr);
 }
 
 /// Compares the lists of all chunks with the naive ones and returns the number of pairs.
@@ -95,7 +96,8 @@ TEST(SphereSearch, LeavesOutPairsOfTwoThatSleep) {
   SphereSet set = cast.set();
   set.asleep = asleep.data();
   SphereChunk sleeping;
-  of.find(set, slack, cast.chunks, cast.numbers.data(), &sleeping);
+  of.keep(set, cast.chunks, cast.numbers.data(), &sleeping);
+  of.find(set, slack, cast.chunks, &sleeping);
   for (std::size_t c = 0; c < cast.chunks.size(); ++c) {
     const SphereChunk& chunk = cast.chunks[c];
     const auto naive = cast.expected(c, [&](std::size_t i, std::size_t j) {
@@ -121,7 +123,8 @@ TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
   SphereCast<3> cast(bounds, sets::lattice(bounds, 1.0, 0.2, random), 10, 0.45, 0.55, 1, 32, random);
   SphereSearch of;
   of.prepare(bounds, cast.reach, 1, cast.laws, {}, 3);
-  of.find(cast.set(), slack, cast.chunks, cast.numbers.data(), nullptr);
+  of.keep(cast.set(), cast.chunks, cast.numbers.data(), nullptr);
+  of.find(cast.set(), slack, cast.chunks, nullptr);
   constexpr std::size_t batch = SphereChunk::batch;
   // Numbers of a pair that say who the two are; pairs with an odd sum of numbers touch.
   const auto each_pair = [&](auto&& call) {
@@ -146,7 +149,8 @@ TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
     std::swap_ranges(&cast.records[(k - 1) * 12], &cast.records[k * 12], &cast.records[other * 12]);
   }
   cast.take_places();
-  of.find(cast.set(), slack, cast.chunks, before.data(), nullptr);
+  of.keep(cast.set(), cast.chunks, before.data(), nullptr);
+  of.find(cast.set(), slack, cast.chunks, nullptr);
   std::size_t touching = 0, parted = 0;
   each_pair([&](SphereChunk& chunk, std::size_t at, std::uint32_t a, std::uint32_t b, double tag) {
     const bool touches = (chunk.touches[at / batch] >> at % batch & 1u) != 0;

@@ -32,7 +32,8 @@ class SixGrains {
     state_.phases.push_back(std::move(p));
     for (std::size_t k = 0; k < count; ++k) set(Field::position, k, place(k));
     work_ = std::make_unique<Workspace>(scene_, plan_, state_);
-    sleep.prepare({{0, 0, count, diameter}}, count, count + 2, plan_, gravity);
+    sleep.prepare({{0, 0, count, diameter}}, count + 2, plan_, gravity);
+    sleep.make_room({{0, 0, count, diameter}}, count, count + 2);
   }
   void set(Field f, std::size_t k, const Vec3& value) {
     for (int d = 0; d < 2; ++d) sand().column(f, d)[k] = value[static_cast<std::size_t>(d)];

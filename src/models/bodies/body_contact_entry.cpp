@@ -74,25 +74,23 @@ void BodyContact::archive(Archive& a) {
 
 void BodyContact::schedule(Schedule& s) {
   using enum Field;
+  const auto touched = [this](std::size_t phase) -> Touches {
+    return {{layout_.phases[phase].name, {position, velocity}, {acceleration, contact_force}}};
+  };
   if (itself()) {
-    s.add(
-        {stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this] { push_itself(); }});
+    s.add({stage::contacts, entry_.name, touched(entry_.a), [this] { push_itself(); }});
     return;
   }
   for (const std::size_t phase : {entry_.a, entry_.b}) {
     if (!layout_.phases[phase].moves) continue;
     if (!sides_.empty())
-      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
-               push_from_sides(phase);
-             }});
+      s.add({stage::contacts, entry_.name, touched(phase), [this, phase] { push_from_sides(phase); }});
     if (surfaces_ && !surfaces_->empty())
-      s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
+      s.add({stage::contacts, entry_.name, touched(phase), [this, phase] {
                surfaces_->push(w_->particles(phase), layout_.phases[phase].spacing, law_, w_->state.dt);
              }});
     if (entry_.direction(phase) < 0) continue;
-    s.add({stage::contacts, entry_.name, {position, velocity}, {acceleration, contact_force}, [this, phase] {
-             push(phase);
-           }});
+    s.add({stage::contacts, entry_.name, touched(phase), [this, phase] { push(phase); }});
   }
 }
 

@@ -153,17 +153,18 @@ void ElasticPhase::schedule(Schedule& s) {
   const bool heats = phase_.elastic().energy;
   FieldSet moved{position, velocity}, loaded{acceleration, contact_force};
   if (heats) moved = moved | FieldSet{energy}, loaded = loaded | FieldSet{energy_rate};
-  s.add({stage::kick_and_drift, plan_.name, {acceleration, energy_rate}, moved, [this] { kick_and_drift(); }});
-  s.add({stage::strain_records, plan_.name, {position, velocity, density, pressure, Field::stress}, {}, [this] {
-           pack_middle();
-         }});
-  s.add({stage::strain, plan_.name, all, all, [this] { this->strain(); }});
-  s.add({stage::elastic, plan_.name, all, loaded, [this] { load(); }});
+  const auto own = [this](const FieldSet& reads, const FieldSet& writes) -> Touches {
+    return {{plan_.name, reads, writes}};
+  };
+  s.add({stage::kick_and_drift, plan_.name, own({acceleration, energy_rate}, moved), [this] { kick_and_drift(); }});
+  s.add({stage::strain_records, plan_.name, own({position, velocity, density, pressure, Field::stress}, {}),
+         [this] { pack_middle(); }});
+  s.add({stage::strain, plan_.name, own(all, all), [this] { this->strain(); }});
+  s.add({stage::elastic, plan_.name, own(all, loaded), [this] { load(); }});
   if (!heats) return;
-  s.add({stage::energy, plan_.name, {acceleration}, {energy_rate}, [this] { take_power(); }});
-  s.add({stage::kick, plan_.name, {energy_rate}, {energy}, [this] {
-           advance_energy(w_->particles(number_), w_->kick_time);
-         }});
+  s.add({stage::energy, plan_.name, own({acceleration}, {energy_rate}), [this] { take_power(); }});
+  s.add({stage::kick, plan_.name, own({energy_rate}, {energy}),
+         [this] { advance_energy(w_->particles(number_), w_->kick_time); }});
 }
 
 void ElasticPhase::limits(std::vector<StepLimit>& limits) const {

@@ -52,9 +52,9 @@ RigidContact::RigidContact(const Scene& scene, const Layout& layout, const PlanE
 }
 
 void RigidContact::schedule(Schedule& s) {
-  s.add({stage::kick_and_drift, entry_.name, {}, {}, [this] { taken_ += 0.5 * w_->state.dt * power_; }});
-  s.add({stage::contacts, entry_.name, {}, {}, [this] { touch(); }});
-  s.add({stage::kick, entry_.name, {}, {}, [this] {
+  s.add({stage::kick_and_drift, entry_.name, {}, [this] { taken_ += 0.5 * w_->state.dt * power_; }});
+  s.add({stage::contacts, entry_.name, {}, [this] { touch(); }});
+  s.add({stage::kick, entry_.name, {}, [this] {
            power_ = power();
            taken_ += w_->kick_time * power_;
          }});

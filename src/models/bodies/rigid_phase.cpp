@@ -106,10 +106,12 @@ void RigidPhase::attach(Workspace& w) {
 
 void RigidPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::kick_and_drift, plan_.name, {position}, {position, velocity}, [this] { kick_and_drift(); }});
-  s.add({stage::rigid_loads, plan_.name, {position}, {acceleration}, [this] { clear_loads(); }});
-  s.add({stage::rigid, plan_.name, {position, acceleration}, {acceleration}, [this] { sum_loads(); }});
-  s.add({stage::kick, plan_.name, {}, {velocity}, [this] { finish_kick(); }});
+  s.add({stage::kick_and_drift, plan_.name, {{plan_.name, {position}, {position, velocity}}}, [this] {
+           kick_and_drift();
+         }});
+  s.add({stage::rigid_loads, plan_.name, {{plan_.name, {position}, {acceleration}}}, [this] { clear_loads(); }});
+  s.add({stage::rigid, plan_.name, {{plan_.name, {position, acceleration}, {acceleration}}}, [this] { sum_loads(); }});
+  s.add({stage::kick, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { finish_kick(); }});
 }
 
 void RigidPhase::limits(std::vector<StepLimit>& limits) const {

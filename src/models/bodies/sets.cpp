@@ -79,8 +79,8 @@ void DrivenSet::attach(Workspace& w) {
 void DrivenSet::schedule(Schedule& s) {
   using enum Field;
   const std::string& name = layout_.phases[set_.phase()].name;
-  s.add({stage::kick_and_drift, name + ", motion", {}, {velocity, acceleration}, [this] { lead(); }});
-  s.add({stage::motion, name, {}, {velocity, acceleration}, [this] { hold(); }});
+  s.add({stage::kick_and_drift, name + ", motion", {{name, {}, {velocity, acceleration}}}, [this] { lead(); }});
+  s.add({stage::motion, name, {{name, {}, {velocity, acceleration}}}, [this] { hold(); }});
 }
 
 Vec3 DrivenSet::velocity_at(double time) const {

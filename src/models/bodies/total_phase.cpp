@@ -146,8 +146,13 @@ void TotalPhase::attach(Workspace& w) {
 
 void TotalPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
-  s.add({stage::elastic, plan_.name, {position, velocity}, {density, acceleration, contact_force}, [this] { load(); }});
+  s.add({stage::kick_and_drift, plan_.name, {{plan_.name, {acceleration}, {position, velocity}}}, [this] {
+           kick_and_drift();
+         }});
+  s.add({stage::elastic,
+         plan_.name,
+         {{plan_.name, {position, velocity}, {density, acceleration, contact_force}}},
+         [this] { load(); }});
 }
 
 /// The stiffest vibration bounds the step; so does what damps it.

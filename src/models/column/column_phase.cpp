@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "laws/kept_drag.hpp"
+#include "models/coupling/wind_exchange.hpp"
 #include "models/drive.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -146,15 +147,19 @@ void ColumnPhase::find_steady_wind() {
 
 void ColumnPhase::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::drag,
-         scene_.phases[number_].name,
-         {position, velocity, radius, drag_acceleration},
-         {acceleration, drag_acceleration},
-         [this] { act(); }});
+  const std::string& name = scene_.phases[number_].name;
+  Touches exchanged, pushed;
+  for (const Feeling& grains : feeling_) {
+    exchanged.push_back({layout_.phases[grains.phase].name, {position, velocity, radius}, {drag_acceleration}});
+    pushed.push_back({layout_.phases[grains.phase].name, {drag_acceleration}, {acceleration}});
+  }
+  s.add({stage::drag, name, exchanged, [this] { exchange(); },
+         Repeat{wind_exchanges, interval_, [this] { return exchange_is_due() ? 1L : 0L; }}});
+  s.add({stage::drag, name, pushed, [this] { act(); }});
 }
 
-/// What a step has of the air: an exchange when its time has come, and the drag of the last one.
-void ColumnPhase::act() {
+/// Lets the clock of the exchanges go on.
+bool ColumnPhase::exchange_is_due() {
   AirProfile& p = profile();
   const State& state = w_->state;
   const bool first = p.step < 0;
@@ -166,26 +171,19 @@ void ColumnPhase::act() {
     p.last = state.dt;
   }
   p.step = state.steps;
-  if (first || p.elapsed >= interval_ * (1.0 - 1e-9)) {
-    hold_ = state.dt * std::max(1.0, std::ceil(interval_ / state.dt * (1.0 - 1e-9)));
-    exchange();
-  }
-  for (const Feeling& grains : feeling_) {
-    PhaseParticles& q = w_->particles(grains.phase);
-    const auto n = static_cast<std::int64_t>(q.size());
-    for (int d = 0; d < layout_.dimensions; ++d) {
-      double* a = q.column(Field::acceleration, d);
-      const double* drag = q.column(Field::drag_acceleration, d);
-#pragma omp parallel for simd schedule(static)
-      for (std::int64_t k = 0; k < n; ++k) a[k] += drag[k];
-    }
-  }
+  return first || barchan::exchange_is_due(p.elapsed, interval_);
+}
+
+/// The drag of the last exchange.
+void ColumnPhase::act() {
+  for (const Feeling& grains : feeling_) add_kept_drag(w_->particles(grains.phase));
 }
 
 /// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
 /// drag in that.
 void ColumnPhase::exchange() {
   AirProfile& p = profile();
+  hold_ = time_to_next_exchange(interval_, w_->state.dt);
   if (!keys_.held) {
     spread_drag(true, load_->owed);
     for (std::size_t c = 0; c < p.cells(); ++c) load_->owed[c] -= p.given[c];
@@ -273,6 +271,7 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
   const double weight = weight_share(scene_, scene_.phases[grains.phase]);
   const double time = hold_, ahead = time_ahead(grains);
   const auto n = static_cast<std::int64_t>(p.size());
+  for (auto* values : {&grains.rate, &grains.wind}) values->resize(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -41,8 +41,9 @@ class ColumnPhase : public Model {
   AirProfile& profile() const { return w_->state.air[place_]; }
   void make_profile();
   void find_steady_wind();
-  void act();
+  bool exchange_is_due();
   void exchange();
+  void act();
   void feel();
   template <int Dim, class DragOf>
   void feel(Feeling& grains, const DragOf& excess);

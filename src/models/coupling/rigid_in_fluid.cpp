@@ -108,10 +108,9 @@ void RigidInFluid::schedule(Schedule& s) {
   const std::string name = layout_.phases[solid_].name;
   s.add({stage::extend_solids,
          name + ", surface",
-         {acceleration},
-         {wall_normal, surface_velocity, surface_acceleration},
+         {{name, {acceleration}, {wall_normal, surface_velocity, surface_acceleration}}},
          [this] { move_surface(); }});
-  s.add({stage::reaction, name + ", torque", {position, velocity}, {}, [this] { turn(); }});
+  s.add({stage::reaction, name + ", torque", {{name, {position, velocity}, {}}}, [this] { turn(); }});
 }
 
 /// Normals and velocities of the nearest places of the surface, and the accelerations that the pressure follows.

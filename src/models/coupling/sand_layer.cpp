@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "laws/drag_coefficients.hpp"
 #include "laws/kept_drag.hpp"
+#include "models/coupling/wind_exchange.hpp"
 
 namespace barchan {
 
@@ -85,17 +86,25 @@ SandLayer::Between SandLayer::between(double x) const {
 
 void SandLayer::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::eddies, name_, {position}, {}, [this] { give_stress(); }});
-  s.add(
-      {stage::drag, name_, {position, velocity, radius, drag_acceleration}, {acceleration, drag_acceleration}, [this] {
-         act();
-       }});
+  const std::string &fluid = layout_.phases[fluid_].name, &grains = layout_.phases[grains_].name;
+  s.add({stage::eddies, name_, {{fluid, {position}, {}}}, [this] { give_stress(); }});
+  s.add({stage::drag,
+         name_,
+         {{fluid, {position, velocity}, {drag_acceleration}},
+          {grains, {position, velocity, radius}, {drag_acceleration}}},
+         [this] { exchange(); },
+         Repeat{wind_exchanges, interval_, [this] { return exchange_is_due() ? 1L : 0L; }}});
+  s.add({stage::drag,
+         name_,
+         {{fluid, {drag_acceleration}, {acceleration}}, {grains, {drag_acceleration}, {acceleration}}},
+         [this] { act(); }});
 }
 
 /// The stress on the top of the layers, for each particle of the air that may rub on the ground.
 void SandLayer::give_stress() {
   auto& stress = w_->ground_stress[fluid_];
   const PhaseParticles& air = w_->particles(fluid_);
+  stress.resize(air.size());
   const double* x = air.column(Field::position, 0);
   const auto n = static_cast<std::int64_t>(air.size());
 #pragma omp parallel for schedule(static)
@@ -107,30 +116,31 @@ void SandLayer::give_stress() {
   }
 }
 
-void SandLayer::act() {
+/// Lets the clock of the exchanges go on.
+bool SandLayer::exchange_is_due() {
   AirProfile& clock = profile(0);
   const State& state = w_->state;
   const bool first = clock.step < 0;
   if (!first && clock.step != state.steps) clock.elapsed += state.dt;
   clock.step = state.steps;
-  if (first || clock.elapsed >= interval_ * (1.0 - 1e-9)) {
-    hold_ = state.dt > 0.0 ? state.dt * std::max(1.0, std::ceil(interval_ / state.dt * (1.0 - 1e-9))) : interval_;
-    grid_.gather(w_->particles(fluid_));
-    if (first) find_steady_wind();
-    exchange(clock.elapsed, clock.last);
-    clock.elapsed = 0.0;
-    clock.last = hold_;
-  }
-  for (const std::size_t phase : {fluid_, grains_}) {
-    PhaseParticles& p = w_->particles(phase);
-    const auto n = static_cast<std::int64_t>(p.size());
-    for (int d = 0; d < 2; ++d) {
-      double* a = p.column(Field::acceleration, d);
-      const double* drag = p.column(Field::drag_acceleration, d);
-#pragma omp parallel for simd schedule(static)
-      for (std::int64_t k = 0; k < n; ++k) a[k] += drag[k];
-    }
-  }
+  finds_steady_wind_ = first;
+  return first || barchan::exchange_is_due(clock.elapsed, interval_);
+}
+
+void SandLayer::exchange() {
+  AirProfile& clock = profile(0);
+  const double dt = w_->state.dt;
+  hold_ = dt > 0.0 ? time_to_next_exchange(interval_, dt) : interval_;
+  grid_.gather(w_->particles(fluid_));
+  if (finds_steady_wind_) find_steady_wind();
+  exchange(clock.elapsed, clock.last);
+  clock.elapsed = 0.0;
+  clock.last = hold_;
+}
+
+/// The drag of the last exchange.
+void SandLayer::act() {
+  for (const std::size_t phase : {fluid_, grains_}) add_kept_drag(w_->particles(phase));
 }
 
 /// The speed of the air's particles along the ground, where the layer ends: by the weights by which places feel it.
@@ -227,6 +237,7 @@ void SandLayer::find_near() {
   const double half = 0.5 * hold_;
   near_.clear();
   flying_.clear();
+  rate_.resize(p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
     const Ground g = ground(x[k]);
     const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);

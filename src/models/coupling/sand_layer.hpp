@@ -71,8 +71,10 @@ class SandLayer : public Model {
   Between between(double x) const;
   double wind_about(const Between& b, double low, double high) const;
 
-  void act();
+  bool exchange_is_due();
+  void exchange();
   void exchange(double kept, double meant);
+  void act();
   void find_steady_wind();
   void find_near();
   void feel();
@@ -91,7 +93,8 @@ class SandLayer : public Model {
   std::string name_;
   double density_, viscosity_, diameter_, top_, width_ = 0.0;  // kg/m3, m2/s, m, m, m
   double lift_;
-  double interval_, hold_ = 0.0;  // s
+  double interval_, hold_ = 0.0;    // s
+  bool finds_steady_wind_ = false;  // the exchange that comes is the first one
   Workspace* w_ = nullptr;
   AirGrid grid_;
   std::optional<Gusts> gusts_;  // where the entry has some

@@ -24,8 +24,8 @@ void SolidInFluid::schedule(Schedule& s) {
   FieldSet reads{position, velocity, acceleration};
   if (!layout_.phases[solid_].rigid_bodies.empty())
     reads = reads | FieldSet{wall_depth, wall_normal, surface_velocity, surface_acceleration};
-  s.add({stage::extend_solids, name, reads, {}, [this] { extend(); }});
-  s.add({stage::reaction, name, {position, velocity, density}, {acceleration}, [this] { react(); }});
+  s.add({stage::extend_solids, name, {{name, reads, {}}}, [this] { extend(); }});
+  s.add({stage::reaction, name, {{name, {position, velocity, density}, {acceleration}}}, [this] { react(); }});
 }
 
 void SolidInFluid::extend() {

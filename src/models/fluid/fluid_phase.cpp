@@ -32,13 +32,20 @@ FluidPhase::FluidPhase(const Scene& scene, const Layout& layout, std::size_t num
 void FluidPhase::schedule(Schedule& s) {
   using enum Field;
   const bool corrected = keys_.scheme == FluidScheme::consistent;
-  FieldSet own;
-  for (const Field f : plan_.fields) own = own | FieldSet{f};
-  s.add({stage::kick_and_drift, plan_.name, own, own, [this] { kick_and_drift(); }});
+  const auto own = [this](const FieldSet& reads, const FieldSet& writes) -> Touches {
+    return {{plan_.name, reads, writes}};
+  };
+  // With what goes on where the fluid ends: walls that move, places of solids and other fluids about a void.
+  const auto beside = [this](Touches touches, const FieldSet& read_there) {
+    for (const auto& e : layout_.entries)
+      if (e.has(number_) && e.partner(number_) != number_)
+        touches.push_back({layout_.phases[e.partner(number_)].name, read_there, {}});
+    return touches;
+  };
+  s.add({stage::kick_and_drift, plan_.name, {plan_.all_fields()}, [this] { kick_and_drift(); }});
   if (plan_.eddies)
-    s.add({stage::eddies, plan_.name, {position, velocity, eddy_viscosity}, {ground_distance}, [this] {
-             find_eddies();
-           }});
+    s.add({stage::eddies, plan_.name, beside(own({position, velocity, eddy_viscosity}, {ground_distance}), {velocity}),
+           [this] { find_eddies(); }});
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
   if (corrected) writes = writes | FieldSet{anisotropy};
   if (plan_.eddies) {
@@ -48,18 +55,16 @@ void FluidPhase::schedule(Schedule& s) {
   if (plan_.free_surface) writes = writes | FieldSet{wholeness, surface_normal};
   if (std::find(plan_.fields.begin(), plan_.fields.end(), near_void) != plan_.fields.end())
     writes = writes | FieldSet{near_void};
-  s.add({stage::fluid, plan_.name, reads, writes, [this] { rate(); }});
+  s.add({stage::fluid, plan_.name, beside(own(reads, writes), {position}), [this] { rate(); }});
   if (plan_.free_surface)
-    s.add({stage::surface, plan_.name, {position, wholeness}, {surface_normal}, [this] { find_surface(); }});
+    s.add({stage::surface, plan_.name, own({position, wholeness}, {surface_normal}), [this] { find_surface(); }});
   if (keys_.energy) {
-    s.add({stage::energy, plan_.name, {position, velocity, density, pressure, acceleration}, {energy_rate}, [this] {
-             fluid_energy(*particles_, w_->motion[number_], fluids_, solids_, w_->kick_time);
-           }});
-    s.add({stage::kick, plan_.name, {energy_rate}, {Field::energy}, [this] {
-             advance_energy(*particles_, w_->kick_time);
-           }});
+    s.add({stage::energy, plan_.name, own({position, velocity, density, pressure, acceleration}, {energy_rate}),
+           [this] { fluid_energy(*particles_, w_->motion[number_], fluids_, solids_, w_->kick_time); }});
+    s.add({stage::kick, plan_.name, own({energy_rate}, {Field::energy}),
+           [this] { advance_energy(*particles_, w_->kick_time); }});
   }
-  if (plan_.held) s.add({stage::hold, plan_.name, {velocity}, {acceleration}, [this] { hold(); }});
+  if (plan_.held) s.add({stage::hold, plan_.name, own({velocity}, {acceleration}), [this] { hold(); }});
 }
 
 /// After all other forces: what keeps the mean velocity, or what is missing of the force on the ground.

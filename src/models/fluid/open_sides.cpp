@@ -80,9 +80,7 @@ void OpenSides::begin(State& state, const std::vector<ParticleBlock>&) {
 void OpenSides::attach(Workspace& w) { w_ = &w; }
 
 void OpenSides::schedule(Schedule& s) {
-  FieldSet all;
-  for (const Field f : plan_.fields) all = all | FieldSet{f};
-  s.add({stage::walls, plan_.name + ", open sides", all, all, [this] { leave(); }});
+  s.add({stage::walls, plan_.name + ", open sides", {plan_.all_fields()}, [this] { leave(); }});
 }
 
 bool OpenSides::is_beyond(const PhaseParticles& p, std::size_t k) const {

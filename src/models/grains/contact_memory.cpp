@@ -60,6 +60,25 @@ void ContactMemory::keep(std::size_t moving, std::size_t all, std::span<const Sp
   begin_[0] = 0;
 }
 
+void ContactMemory::renumber(const std::vector<std::uint32_t>& to, std::size_t all,
+                             std::vector<std::uint32_t>& left_alone) {
+  std::size_t stay = 0;
+  for (const Kept& k : kept_) {
+    const std::uint32_t number = to[k.number], with = k.with >= first_side ? k.with : to[k.with];
+    if (number == gone && with < first_side) left_alone.push_back(with);
+    if (with == gone && number != gone) left_alone.push_back(number);
+    if (number == gone || with == gone) continue;
+    kept_[stay] = k;
+    kept_[stay].number = number;
+    kept_[stay++].with = with;
+  }
+  kept_.resize(stay);
+  fit(begin_, all + 1);
+  std::fill(begin_.begin(), begin_.end(), 0u);
+  for (const Kept& k : kept_) ++begin_[k.number + 1];
+  for (std::size_t k = 0; k < all; ++k) begin_[k + 1] += begin_[k];
+}
+
 const double* ContactMemory::find(std::uint32_t number, std::uint32_t with) const {
   for (std::size_t k = begin_[number]; k < begin_[number + 1]; ++k)
     if (kept_[k].with == with) return kept_[k].values;

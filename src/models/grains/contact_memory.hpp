@@ -1,5 +1,5 @@
-// What contacts of spheres remember from step to step: the slips of friction and of rolling resistance, and who
-// touches.
+// What contacts of spheres remember from step to step: the numbers of the parts of their laws
+// (laws/sphere_contact.hpp), and who touches.
 //
 // This is a column by pair of ids, the ids being the lasting numbers of two spheres, or of a sphere and a side of the
 // domain. Its description (PairColumn) says what follows from it. Two places hold its values: between two searches the
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/aligned.hpp"
+#include "laws/sphere_catalogue.hpp"
 #include "state/archive.hpp"
 
 namespace barchan {
@@ -28,7 +29,7 @@ void fit(Vector& vector, std::size_t size) {
 
 /// A column by pair of ids, and what must happen to its values.
 struct PairColumn {
-  std::string_view name, unit;
+  std::string_view name;
   std::size_t numbers = 0;      // of a pair
   bool state = true;            // a step starts from it: a checkpoint has it
   bool goes_with_pair = true;   // it stays with its two ids, wherever sorting and searching put them
@@ -39,7 +40,7 @@ struct PairColumn {
 struct ContactBatches {
   static constexpr std::size_t batch = 8;  // pairs
 
-  AlignedVector<double> memory;         // by batch; m
+  AlignedVector<double> memory;         // by batch
   AlignedVector<std::uint8_t> touches;  // by batch: a bit a pair
 
   /// Becomes so many batches of pairs that do not touch. Allocates only to grow.
@@ -66,7 +67,7 @@ struct ContactBatches {
 
 class ContactMemory {
  public:
-  static constexpr std::size_t most_numbers = 6;  // two slips of three components
+  static constexpr std::size_t most_numbers = most_remembered;
   /// What a pair that touches has.
   struct Kept {
     std::uint32_t number, with;  // lasting numbers; with: or a side
@@ -84,19 +85,25 @@ class ContactMemory {
   /// `moving` ones first, by their places when the lists were made; `sleeping`: null, or the list of those that sleep.
   void keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks, const std::uint32_t* before,
             const SphereChunk* sleeping);
+  /// Gives the spheres of what is kept other numbers: `to` by the number before, `gone` of those that are no longer
+  /// there; of two that stay the order is the same. `all`: how many there are now. Adds those whose partner has gone to
+  /// `left_alone`, by their new numbers.
+  void renumber(const std::vector<std::uint32_t>& to, std::size_t all, std::vector<std::uint32_t>& left_alone);
+  static constexpr std::uint32_t gone = 0xffffffffu;
   std::span<const Kept> kept() const { return kept_; }
   /// The values of a pair; null: it did not touch.
   const double* find(std::uint32_t number, std::uint32_t with) const;
   /// Puts the values of a pair at its place in a list.
   void recall(ContactBatches& list, std::size_t place, std::uint32_t number, std::uint32_t with) const;
 
+  static constexpr std::uint32_t first_side = 0xfffffff0u;
   /// A side of the domain as the partner of a sphere.
   static constexpr std::uint32_t side(std::uint16_t axis, std::int16_t sign) {
-    return 0xfffffff0u + 2u * axis + (sign > 0 ? 1u : 0u);
+    return first_side + 2u * axis + (sign > 0 ? 1u : 0u);
   }
 
  private:
-  PairColumn column_{"contact_slip", "m"};
+  PairColumn column_{"contact_memory"};
   std::vector<std::uint32_t> begin_;  // by number: its first place in kept_; one more
   std::vector<Kept> kept_;
 };

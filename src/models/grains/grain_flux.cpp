@@ -23,7 +23,10 @@ GrainFlux::GrainFlux(const Scene& scene, const Layout& layout, std::size_t wind,
 
 void GrainFlux::schedule(Schedule& s) {
   if (measured_)
-    s.add({stage::hold, scene_.phases[grains_].name, {Field::velocity, Field::radius}, {}, [this] { sample(); }});
+    s.add({stage::hold,
+           scene_.phases[grains_].name,
+           {{scene_.phases[grains_].name, {Field::velocity, Field::radius}, {}}},
+           [this] { sample(); }});
 }
 
 double GrainFlux::flux() const {

@@ -126,8 +126,10 @@ GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t num
 void GrainPhase::schedule(Schedule& s) {
   using enum Field;
   if (plan_.diameter == 0)  // else models/grains/spheres.hpp
-    s.add({stage::kick_and_drift, plan_.name, {acceleration}, {position, velocity}, [this] { kick_and_drift(); }});
-  s.add({stage::weight, plan_.name, {position}, {acceleration}, [this] { weigh(); }});
+    s.add({stage::kick_and_drift, plan_.name, {{plan_.name, {acceleration}, {position, velocity}}}, [this] {
+             kick_and_drift();
+           }});
+  s.add({stage::weight, plan_.name, {{plan_.name, {position}, {acceleration}}}, [this] { weigh(); }});
 }
 
 void GrainPhase::limits(std::vector<StepLimit>& limits) const {

@@ -46,7 +46,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
               Sums<Dim>& sums, Tally& tally) {
   using R = SphereRecord<Dim>;
   constexpr bool Rubs = Law::rubs;
-  constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>;
+  constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>, springs = Law::template springs<Dim>;
   const typename Law::template Constants<V> constants(law, step.dt);
   const V of_a(step.inverse_densities[2 * group.law]), of_b(step.inverse_densities[2 * group.law + 1]);
   const V drop(law.left_behind());
@@ -83,13 +83,13 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
       const V r_a = x_a[R::radius], r_b = x_b[R::radius], reach = r_a + r_b;
       const auto near = r2 < (reach + margin) * (reach + margin);
       if ((to_bits(near) | had) == 0) continue;
-      double* memory = chunk.of_pair(q * batch + half, numbers);
+      double* memory = chunk.of_pair(q * batch + half, step.numbers);
       if (to_bits(near) == 0) {
-        for (std::size_t k = 0; k < numbers; ++k) {
+        for (std::size_t k = 0; k < springs; ++k) {
           const V slip = V::load(memory + k * batch);
           tally.lost = fma(drop * V(group.weight), slip * slip, tally.lost);
-          V(0.0).store(memory + k * batch);
         }
+        for (std::size_t k = 0; k < numbers; ++k) V(0.0).store(memory + k * batch);
         chunk.touches[q] = static_cast<std::uint8_t>(chunk.touches[q] & ~(((1u << width) - 1u) << half));
         continue;
       }
@@ -125,12 +125,12 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
       s.reduced_radius = share_a * r_b;
       s.reduced_mass = both * both * of_masses;
       s.inverse_mass = mass * mass * of_masses;
-      std::array<V, numbers> slip;
+      std::array<V, numbers> slip;  // and what else it remembers
       for (std::size_t k = 0; k < numbers; ++k) slip[k] = V::load(memory + k * batch);
       if constexpr (Rubs) {
         if (had & ~has) {
           const V gone = select(touching, V(0.0), drop * V(group.weight));
-          for (std::size_t k = 0; k < numbers; ++k) tally.lost = fma(gone, slip[k] * slip[k], tally.lost);
+          for (std::size_t k = 0; k < springs; ++k) tally.lost = fma(gone, slip[k] * slip[k], tally.lost);
         }
       }
       ContactForces<V, Dim> f = Law::touch(constants, s, slip);
@@ -169,7 +169,7 @@ void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereC
   const double radius = r[R::radius], distance = at.sign * (r[at.axis] - at.place), overlap = radius - distance;
   const double parts = at.sign * r[R::velocity + at.axis];
   if (!(overlap > -step.dt * std::abs(parts))) {
-    for (std::size_t k = 0; at.touches && k < numbers; ++k)
+    for (std::size_t k = 0; at.touches && k < Law::template springs<Dim>; ++k)
       chunk.lost += law.left_behind() * at.memory[k] * at.memory[k];
     at.touches = false;
     std::fill_n(at.memory, ContactMemory::most_numbers, 0.0);
@@ -291,16 +291,9 @@ void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& c
   }
 }
 
-/// Calls f with the law of that number, without the parts that no law of the scene has.
 template <class F>
 void with_law(const SphereStep& step, std::size_t number, F&& f) {
-  std::visit(
-      [&](const auto& law) {
-        if (step.rolls) f(law);
-        else if (step.rubs) f(law.without_rolling());
-        else f(law.smooth());
-      },
-      step.laws[number]);
+  with_parts(step.laws[number], step.rubs, step.rolls, f);
 }
 
 template <int Dim>

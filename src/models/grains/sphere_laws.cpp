@@ -79,6 +79,16 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
   for (const auto& p : layout.phases) reach_ = std::max(reach_, p.largest_diameter);
 }
 
+std::size_t SphereLaws::numbers(int dimensions) const {
+  std::size_t most = 0;
+  for (const AnySphereContact& any : laws_)
+    with_parts(any, rubs_, rolls_, [&](const auto& law) {
+      using Law = std::decay_t<decltype(law)>;
+      most = std::max(most, dimensions == 2 ? Law::template numbers<2> : Law::template numbers<3>);
+    });
+  return most;
+}
+
 /// Of the smallest spheres of an entry, at the largest speed of the scene. Adds their densities to the table.
 SphereImpact SphereLaws::shortest_impact(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   double inverse_mass = 0.0, curvature = 0.0;

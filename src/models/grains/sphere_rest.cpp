@@ -110,6 +110,11 @@ void SphereRest::add(std::size_t first, const std::vector<RestingContact>& conta
   }
 }
 
+void SphereRest::renumber(const std::vector<std::uint32_t>& to) {
+  for (RestingContact& c : contacts_) c.sphere = to[c.sphere];
+  std::erase_if(contacts_, [](const RestingContact& c) { return c.sphere == ContactMemory::gone; });
+}
+
 void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::vector<SphereChunk>& chunks) {
   if (contacts_.empty()) return;
   std::stable_sort(contacts_.begin(), contacts_.end(),
@@ -124,7 +129,7 @@ void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::vector<
   };
   for (SphereChunk& chunk : chunks) {
     each_meeting(step, s, chunk, [&](const Meeting& m, double* memory, std::size_t apart, std::size_t at) {
-      if (step.numbers == 0) return;
+      if (!step.rubs) return;
       const RestingContact* own = find(m.a, m.branch, m.reach);
       if (own) set_slips(step, m, own->force, own->torque, memory, apart);
       else if (m.b != Meeting::side && (own = find(m.b, -1.0 * m.branch, m.reach)))
@@ -147,7 +152,7 @@ std::vector<RestingContact> contacts_at_rest(const SphereStep& step, const Spher
       const bool touches = side ? chunk.sides[at].touches : chunk.touching(at);
       // Both chunks of a pair have it: that of the first tells.
       const bool own = side || (chunk.a[at] >= chunk.begin && chunk.a[at] < chunk.end);
-      if (!touches || !own || step.numbers == 0 || m.a < first || m.a >= first + count) return;
+      if (!touches || !own || !step.rubs || m.a < first || m.a >= first + count) return;
       contacts.push_back(contact_of(step, m, m.a - first, memory, apart));
     });
   return contacts;

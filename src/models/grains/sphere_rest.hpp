@@ -20,6 +20,8 @@ class SphereRest {
   /// Gives the pairs that were listed for the first time their slips, and forgets the contacts. A contact whose other
   /// sphere or side is no longer there is left out.
   void recall(const SphereStep& step, const SphereSet& spheres, std::vector<SphereChunk>& chunks);
+  /// As ContactMemory::renumber().
+  void renumber(const std::vector<std::uint32_t>& to);
   void archive(Archive& a) { a.array("contacts at the begin", contacts_); }
 
  private:

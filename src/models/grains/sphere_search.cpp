@@ -175,9 +175,7 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
     }
 }
 
-void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before,
-                        SphereChunk* sleeping) {
-  memory_.keep(s.moving, s.all, chunks, before, sleeping);
+void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks, SphereChunk* sleeping) {
   if (sleeping) place_sleeping(s, *sleeping);
   sort(s, slack);
   make_room_for_threads();

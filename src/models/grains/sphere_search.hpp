@@ -28,12 +28,20 @@ class SphereSearch {
   /// `sleeping`: the pairs of those that sleep; null where nobody may.
   void reserve(std::size_t all, std::vector<SphereChunk>& chunks, SphereChunk* sleeping);
 
-  /// Fills the chunks with the pairs nearer than `slack` (m), with the memory that they had. `before`: numbers of the
-  /// spheres when the chunks were filled last. Allocates only to grow.
+  /// Before find(): takes the memory out of the pairs. `before`: numbers of the spheres when the chunks were filled
+  /// last. `sleeping`: as in find().
+  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
+            const SphereChunk* sleeping) {
+    memory_.keep(spheres.moving, spheres.all, chunks, before, sleeping);
+  }
+  /// Between the two: spheres have other numbers, or are gone (ContactMemory::renumber).
+  void renumber(const std::vector<std::uint32_t>& to, std::size_t all, std::vector<std::uint32_t>& left_alone) {
+    memory_.renumber(to, all, left_alone);
+  }
+  /// Fills the chunks with the pairs nearer than `slack` (m), with the memory that was kept. Allocates only to grow.
   /// `sleeping`: all pairs of spheres that touch and sleep, which no chunk has; null: they are as they were, and so are
   /// the spheres' places in memory.
-  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks, const std::uint32_t* before,
-            SphereChunk* sleeping);
+  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks, SphereChunk* sleeping);
 
   /// Sorts all spheres by their places into cells as wide as a search with `slack` (m): find() does, and loading must.
   void sort(const SphereSet& spheres, double slack);

@@ -5,12 +5,16 @@
 
 namespace barchan {
 
-void SphereSleep::prepare(std::vector<Part> parts, std::size_t moving, std::size_t all, const Layout& layout,
-                          double gravity) {
+namespace {
+
+constexpr double nowhere = 1e300;  // m: of a sphere that nobody has looked at; it goes far until the next look
+
+}  // namespace
+
+void SphereSleep::prepare(std::vector<Part> parts, std::size_t all, const Layout& layout, double gravity) {
   parts_ = std::move(parts);
   if (parts_.empty()) return;
   layout_ = &layout;
-  moving_ = moving;
   gravity_ = gravity;
   dimensions_ = static_cast<std::size_t>(layout.dimensions);
   numbers_ = dimensions_ == 2 ? 3 : 6;
@@ -19,10 +23,41 @@ void SphereSleep::prepare(std::vector<Part> parts, std::size_t moving, std::size
   interval_ = std::sqrt(least / gravity);
   for (std::size_t d = 0; d < 3; ++d)
     period_[d] = layout.bounds.periodic[d] ? layout.bounds.high[d] - layout.bounds.low[d] : 0.0;
-  for (auto* bytes : {&asleep_, &calm_, &wakes_}) bytes->assign(moving, 0);
-  for (auto* vectors : {&place_, &pull_}) vectors->assign(moving * dimensions_, 0.0);
-  for (auto* forces : {&offset_, &unrest_}) forces->assign(moving * numbers_, 0.0);
   at_.assign(all, 1);
+}
+
+void SphereSleep::make_room(std::vector<Part> parts, std::size_t moving, std::size_t all) {
+  if (!on()) return;
+  parts_ = std::move(parts);
+  moving_ = moving;
+  for (auto* bytes : {&asleep_, &calm_, &wakes_}) bytes->resize(moving, 0);
+  for (auto* vectors : {&place_, &pull_}) vectors->resize(moving * dimensions_, nowhere);
+  for (auto* forces : {&offset_, &unrest_}) forces->resize(moving * numbers_, 0.0);
+  at_.assign(all, 1);
+}
+
+void SphereSleep::renumber(const std::vector<std::uint32_t>& to, std::size_t moving) {
+  if (!on()) return;
+  const auto move = [&](auto& values, std::size_t each, auto of_new) {
+    auto before = std::move(values);
+    values.assign(moving * each, of_new);
+    for (std::size_t n = 0; n < moving_; ++n)
+      for (std::size_t q = 0; to[n] != ContactMemory::gone && q < each; ++q)
+        values[to[n] * each + q] = before[n * each + q];
+  };
+  for (auto* bytes : {&asleep_, &calm_, &wakes_}) move(*bytes, 1, std::uint8_t{0});
+  for (auto* vectors : {&place_, &pull_}) move(*vectors, dimensions_, nowhere);
+  for (auto* forces : {&offset_, &unrest_}) move(*forces, numbers_, 0.0);
+  moving_ = moving;
+  sleeping_ = static_cast<std::size_t>(std::count(asleep_.begin(), asleep_.end(), std::uint8_t{1}));
+}
+
+void SphereSleep::wake(const std::vector<std::uint32_t>& numbers) {
+  for (const std::uint32_t n : numbers) {
+    if (!on() || n >= moving_) continue;
+    sleeping_ -= asleep_[n];
+    asleep_[n] = calm_[n] = 0;
+  }
 }
 
 /// Wakes those whose acceleration by all but contacts is another than when they fell asleep.

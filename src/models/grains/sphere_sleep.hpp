@@ -25,8 +25,14 @@ class SphereSleep {
     double diameter = 0.0;  // m, the mean one
   };
 
-  /// `moving`: spheres of all phases, before `all - moving` fixed ones.
-  void prepare(std::vector<Part> parts, std::size_t moving, std::size_t all, const Layout& layout, double gravity);
+  /// `all`: spheres of all phases and fixed ones.
+  void prepare(std::vector<Part> parts, std::size_t all, const Layout& layout, double gravity);
+  /// Gives what is kept by number its size; new ones are awake. `moving`: spheres of all phases.
+  void make_room(std::vector<Part> parts, std::size_t moving, std::size_t all);
+  /// Spheres have other numbers, `to` by the one before, or are gone (ContactMemory::gone).
+  void renumber(const std::vector<std::uint32_t>& to, std::size_t moving);
+  /// Wakes those; numbers may be there twice, and of fixed ones.
+  void wake(const std::vector<std::uint32_t>& numbers);
   bool on() const { return !parts_.empty(); }
   std::size_t sleeping() const { return sleeping_; }
 

@@ -44,50 +44,26 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 
 void Spheres::attach(Workspace& w) {
   w_ = &w;
-  const std::size_t n = layout_.phases.size(), all = moving_ + fixed_kind_.size();
+  const std::size_t n = layout_.phases.size();
   // Particles of a fluid that have new places in memory say nothing of these.
   w.when_sorted.emplace_back([this] {
     for (const Part& part : parts_) must_search_ = must_search_ || w_->neighbours.has_grid(part.phase);
   });
   columns_.resize(n);
-  numbers_.resize(all);
-  kinds_.resize(all);
-  passive_.assign((all + 2) * passive_size, 0.0);
-  for (const Part& part : parts_) {
-    std::fill_n(kinds_.begin() + static_cast<std::ptrdiff_t>(part.first), part.count,
-                static_cast<std::uint8_t>(part.phase));
-    for (std::size_t from = 0; from < part.count; from += SphereChunk::most) {
-      SphereChunk& chunk = chunks_.emplace_back();
-      chunk.begin = part.first + from;
-      chunk.end = part.first + std::min(from + SphereChunk::most, part.count);
-      chunk.phase = part.phase;
-    }
-  }
-  for (std::size_t k = moving_; k < all; ++k) {
-    kinds_[k] = fixed_kind_[k - moving_];
-    numbers_[k] = static_cast<std::uint32_t>(k);
-  }
-  listed_numbers_ = numbers_;
-  layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
-
   step_.dimensions = layout_.dimensions;
   step_.rubs = laws_.rubs();
   step_.rolls = laws_.rolls();
-  step_.numbers = (step_.rolls ? 2u : step_.rubs ? 1u : 0u) * (layout_.dimensions == 2 ? 1u : 3u);
+  step_.numbers = laws_.numbers(layout_.dimensions);
   step_.laws = laws_.laws().data();
   step_.inverse_densities = laws_.inverse_densities().data();
   step_.columns = columns_.data();
-  std::vector<SphereSleep::Part> sleepy;
-  for (const Part& part : parts_)
-    if (scene_.phases[part.phase].grains().sleep)
-      sleepy.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
-  sleep_.prepare(std::move(sleepy), moving_, all, layout_, norm(scene_.domain.gravity));
   search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), sides_with_spheres(), step_.numbers);
-  search_.reserve(all, chunks_, sleep_.on() ? &sleeping_ : nullptr);
-  strays_.prepare(set(), laws_.reach(), chunks_, step_.numbers);
-  step_.tightness = strays_.tightness();
-  gone_.reserve(moving_);
   watch_walls();
+  ids_ = present_ids();
+  sleep_.prepare(parts_that_may_sleep(), all(), layout_, norm(scene_.domain.gravity));
+  make_room();
+  number();
+  listed_numbers_ = numbers_;
   for (std::size_t d = 0; d < 3; ++d)
     step_.period[d] = layout_.bounds.periodic[d] ? layout_.bounds.high[d] - layout_.bounds.low[d] : 0.0;
 }
@@ -111,36 +87,20 @@ std::vector<SphereSearch::Side> Spheres::sides_with_spheres() const {
   return sides;
 }
 
-/// Both sets of records, with what never changes in them.
-template <int Dim>
-void Spheres::make_records() {
-  using R = SphereRecord<Dim>;
-  const std::size_t all = moving_ + fixed_kind_.size();
-  for (auto& records : records_) {
-    records.assign((all + 2) * R::size, 0.0);
-    for (std::size_t k = moving_; k < all; ++k) {
-      double* r = records.data() + k * R::size;
-      for (std::size_t d = 0; d < Dim; ++d) r[d] = fixed_[4 * (k - moving_) + d];
-      r[R::radius] = fixed_[4 * (k - moving_) + 3];
-    }
-    // What pads the lists: two points that are apart by half of every period.
-    for (std::size_t d = 0; d < Dim; ++d)
-      records[(all + 1) * R::size + d] = 0.5 * (layout_.bounds.high[d] - layout_.bounds.low[d]);
-  }
-}
-
 void Spheres::schedule(Schedule& s) {
   using enum Field;
   std::string owners;
-  FieldSet fields{position, velocity,         acceleration,        contact_acceleration,
-                  radius,   angular_velocity, angular_acceleration};
-  FieldSet all = fields;
+  const FieldSet moved{position, velocity, contact_acceleration, angular_velocity, angular_acceleration};
+  Touches sorted, stepped;
   for (const auto& p : layout_.phases)
     if (p.diameter > 0.0) {
       owners += (owners.empty() ? "" : ", ") + p.name;
-      for (const Field f : p.fields) all = all | FieldSet{f};  // sorting moves them all
+      sorted.push_back(p.all_fields());
+      stepped.push_back({p.name, {acceleration, radius}, moved});
     }
-  s.add({stage::grain_contacts, owners, fields, all, [this] { advance(); }});
+  s.add({stage::grain_contacts, owners, sorted, [this] { begin_steps(); }});
+  s.add({stage::grain_contacts, owners, stepped, [this] { go(); },
+         Repeat{"steps of contacts", std::min(longest_step(), scene_.time.end), [this] { return left_; }}});
 }
 
 void Spheres::limits(std::vector<StepLimit>& limits) const {
@@ -167,18 +127,23 @@ void Spheres::point_at_columns() {
   }
 }
 
-/// A step of the scene.
-void Spheres::advance() {
-  const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : scene_.time.safety * laws_.step();
-  const auto steps = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
+/// s; where the scene fixes its step, contacts have the same.
+double Spheres::longest_step() const {
+  return scene_.time.fixed_step ? *scene_.time.fixed_step : scene_.time.safety * laws_.step();
+}
+
+/// A step of the scene begins: as many steps of the contacts as it needs.
+void Spheres::begin_steps() {
+  const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : longest_step();
+  left_ = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
+  if (others_are_there()) renumber();
   if (must_search_ || since_sort_ >= searches_a_sort) sort();
   point_at_columns();
   if (sleep_.on() && sleep_.look(*w_, numbers_.data(), lost_)) others_sleep_ = true;
-  const double each = dt / static_cast<double>(steps);
+  each_ = dt / static_cast<double>(left_);
   for (auto& push : w_->sphere_pushes) push.impulse = push.turn = {};
-  sum_pushes(0.5 * each);
-  layout_.dimensions == 2 ? pack<2>(each) : pack<3>(each);
-  for (long k = 0; k < steps; ++k) go(k + 1 == steps, each);
+  sum_pushes(0.5 * each_);
+  layout_.dimensions == 2 ? pack<2>(each_) : pack<3>(each_);
 }
 
 /// Puts neighbours near in memory, and particles into the periodic domain, where nobody else does.
@@ -200,16 +165,6 @@ void Spheres::sort() {
   }
   since_sort_ = 0;
   number();
-}
-
-/// Lasting numbers of the spheres, by their present places.
-void Spheres::number() {
-  for (const Part& part : parts_) {
-    const auto& id = w_->particles(part.phase).id();
-    const std::int64_t lowest = w_->particles(part.phase).first_id();
-    for (std::size_t k = 0; k < part.count; ++k)
-      numbers_[part.first + k] = static_cast<std::uint32_t>(part.first + static_cast<std::size_t>(id[k] - lowest));
-  }
 }
 
 /// The state into the records; half a kick and the first drift.
@@ -276,7 +231,7 @@ SphereSet Spheres::set() {
   return {layout_.dimensions,
           records_[now_].data(),
           moving_,
-          moving_ + fixed_kind_.size(),
+          all(),
           numbers_.data(),
           kinds_.data(),
           sleep_.by_sphere(numbers_.data()),
@@ -295,7 +250,10 @@ void Spheres::search() {
   if (others_sleep_) sleep_.begin_again();
   fresh_ = others_sleep_;
   strays_.begin(set(), slack());
-  search_.find(set(), slack(), chunks_, listed_numbers_.data(), others_sleep_ || must_search_ ? &sleeping_ : nullptr);
+  if (!kept_memory_)
+    search_.keep(set(), chunks_, listed_numbers_.data(), others_sleep_ || must_search_ ? &sleeping_ : nullptr);
+  kept_memory_ = false;
+  search_.find(set(), slack(), chunks_, others_sleep_ || must_search_ ? &sleeping_ : nullptr);
   rest_.recall(step_, set(), chunks_);
   strays_.take_cells(search_.cells());
   cells_loaded_ = others_sleep_ = false;
@@ -343,7 +301,9 @@ void Spheres::search_strays(double dt) {
 }
 
 /// One step of the contacts; then searches if it must.
-void Spheres::go(bool last, double dt) {
+void Spheres::go() {
+  const bool last = --left_ == 0;
+  const double dt = each_;
   step_.records = records_[now_].data();
   step_.next = records_[1 - now_].data();
   step_.passive = passive_.data();

@@ -30,6 +30,8 @@ class SphereLaws {
   const std::vector<std::uint32_t>& table() const { return table_; }
   bool rubs() const { return rubs_; }    ///< some law has friction or rolling resistance
   bool rolls() const { return rolls_; }  ///< some law has rolling resistance
+  /// The most that a contact remembers under one of the laws, without the parts that none of them has.
+  std::size_t numbers(int dimensions) const;
   /// A twelfth (without loss a 24th or 48th) of the shortest contact at the largest speed of the scene (s); infinite
   /// without contacts.
   double step() const { return step_; }
@@ -83,10 +85,19 @@ class Spheres : public Model {
   struct Part {
     std::size_t phase = 0, first = 0, count = 0;
     double mean_radius = 0.0;  // m
+    long changes = 0;          // of the particles (PhaseParticles::changes) that are taken over
   };
 
+  std::size_t all() const { return moving_ + fixed_kind_.size(); }
+  std::vector<std::int64_t> present_ids();
+  std::vector<SphereSleep::Part> parts_that_may_sleep() const;
+  bool others_are_there() const;
+  void renumber();
+  void make_room();
+
   std::vector<SphereSearch::Side> sides_with_spheres() const;
-  void advance();
+  void begin_steps();
+  double longest_step() const;
   void sort();
   void number();
   template <int Dim>
@@ -95,7 +106,7 @@ class Spheres : public Model {
   void search_strays(double dt);
   template <int Dim>
   void list_strays(double dt);
-  void go(bool last, double dt);
+  void go();
   void point_at_columns();
   template <int Dim>
   void make_records();
@@ -114,6 +125,7 @@ class Spheres : public Model {
   std::vector<double> fixed_;  // x y z r of the walls' spheres
   std::vector<std::uint8_t> fixed_kind_;
   std::size_t moving_ = 0;
+  std::vector<std::int64_t> ids_;  // of the spheres that move, by lasting number
 
   AlignedVector<double> records_[2], passive_;
   std::size_t now_ = 0;  // which set of records
@@ -129,10 +141,13 @@ class Spheres : public Model {
   SphereSleep sleep_;
   SphereChunk sleeping_;  // pairs of spheres that sleep; no sphere of its own
   bool must_search_ = true;
+  bool kept_memory_ = false;                   // of contacts: the search has it, the lists are of other spheres
   bool loaded_ = false;                        // records of those that sleep are to be made again
   bool cells_loaded_ = false;                  // the cells of the search are to be made again
   bool others_sleep_ = false, fresh_ = false;  // than when the pairs were listed; and no step was made since
   double slack_ = 0.1;                         // of the reach
+  long left_ = 0;                              // steps of the contacts in the present step of the scene
+  double each_ = 0.0;                          // s, of one of them
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;
   double contacts_ = 0.0;

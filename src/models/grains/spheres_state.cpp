@@ -43,7 +43,7 @@ std::optional<std::string> Spheres::trouble() const {
 std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
   if (!entry.of_spheres()) return 0;
   const std::uint32_t law = laws_.table()[entry.a * layout_.phases.size() + entry.b];
-  const auto far = static_cast<std::uint32_t>(moving_ + fixed_kind_.size());
+  const auto far = static_cast<std::uint32_t>(all());
   std::uint64_t n = 0;
   for (const SphereChunk& chunk : chunks_) {
     for (const auto& group : chunk.groups)
@@ -59,7 +59,7 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
 std::vector<RestingContact> Spheres::resting_contacts(std::size_t phase) const {
   for (const Part& part : parts_)
     if (part.phase == phase) {
-      const SphereSet s{layout_.dimensions,     records_[now_].data(), moving_, moving_ + fixed_kind_.size(),
+      const SphereSet s{layout_.dimensions,     records_[now_].data(), moving_, all(),
                         listed_numbers_.data(), kinds_.data(),         nullptr, nullptr};
       return contacts_at_rest(step_, s, chunks_, part.first, part.count);
     }
@@ -71,7 +71,6 @@ void Spheres::watch_walls() {
   for (const auto& push : w_->sphere_pushes)
     watched_.push_back({laws_.table()[push.wall * layout_.phases.size() + push.grains], push.about});
   pushing_.assign(watched_.size(), {});
-  for (SphereChunk& chunk : chunks_) chunk.pushed.assign(watched_.size(), {});
   step_.watched = watched_;
 }
 
@@ -84,7 +83,25 @@ void Spheres::sum_pushes(double time) {
     }
 }
 
+/// Particles may have been made or removed since the last step of contacts: the lists are of those before.
 void Spheres::archive(Archive& a) {
+  for (Part& part : parts_) {
+    const long changes = w_->particles(part.phase).changes();
+    long late = changes - part.changes;
+    a.number("spheres of a phase", part.count);
+    a.number("changes to take over", late);
+    part.changes = changes - late;
+  }
+  a.array("ids of spheres", ids_);
+  if (a.loads()) {
+    std::size_t first = 0;
+    for (Part& part : parts_) {
+      part.first = first;
+      first += part.count;
+    }
+    moving_ = first;
+    make_room();
+  }
   a.number("must search", must_search_);
   a.number("slack", slack_);
   a.number("steps of the pairs", kept_);

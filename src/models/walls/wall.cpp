@@ -98,9 +98,11 @@ void Wall::attach(Workspace& w) {
 
 void Wall::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::walls, plan_.name, {}, {velocity}, [this] { slide(); }});
+  s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
   if (extended_)
-    s.add({stage::extend_walls, plan_.name, {position, velocity, wall_depth, wall_normal}, {}, [this] { extend(); }});
+    s.add({stage::extend_walls, plan_.name, {{plan_.name, {position, velocity, wall_depth, wall_normal}, {}}}, [this] {
+             extend();
+           }});
 }
 
 void Wall::slide() {

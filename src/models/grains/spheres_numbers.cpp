@@ -1,0 +1,136 @@
+// Who the spheres are: their lasting numbers, and what has a place for each of them. Spheres are made and removed
+// between two steps by whoever does (PhaseParticles::create, remove_if); what was remembered of those that stay goes
+// with them.
+#include <algorithm>
+
+#include "models/grains/spheres.hpp"
+
+namespace barchan {
+
+/// Ids of the particles that are there, phase after phase, in their order; the parts become as large.
+std::vector<std::int64_t> Spheres::present_ids() {
+  std::vector<std::int64_t> ids;
+  for (Part& part : parts_) {
+    const PhaseParticles& p = w_->particles(part.phase);
+    part.first = ids.size();
+    part.count = p.size();
+    part.changes = p.changes();
+    ids.insert(ids.end(), p.id().begin(), p.id().end());
+    std::sort(ids.begin() + static_cast<std::ptrdiff_t>(part.first), ids.end());
+  }
+  moving_ = ids.size();
+  return ids;
+}
+
+/// Whether particles were made or removed since the last step of contacts.
+bool Spheres::others_are_there() const {
+  return std::any_of(parts_.begin(), parts_.end(),
+                     [&](const Part& part) { return w_->particles(part.phase).changes() != part.changes; });
+}
+
+/// Lasting numbers of the spheres, by their present places: phase after phase in the order of ids.
+void Spheres::number() {
+  for (const Part& part : parts_) {
+    if (part.count == 0) continue;
+    const auto& id = w_->particles(part.phase).id();
+    const auto begin = ids_.begin() + static_cast<std::ptrdiff_t>(part.first),
+               end = begin + static_cast<std::ptrdiff_t>(part.count);
+    const bool gaps = *(end - 1) - *begin + 1 != static_cast<std::int64_t>(part.count);
+    for (std::size_t k = 0; k < part.count; ++k) {
+      const auto n = gaps ? std::lower_bound(begin, end, id[k]) - begin : id[k] - *begin;
+      numbers_[part.first + k] = static_cast<std::uint32_t>(part.first + static_cast<std::size_t>(n));
+    }
+  }
+}
+
+/// Takes over the particles that are there now.
+void Spheres::renumber() {
+  search_.keep(set(), chunks_, listed_numbers_.data(), sleep_.on() ? &sleeping_ : nullptr);
+  const std::vector<Part> before = parts_;
+  const std::size_t moved = moving_, fixed = fixed_kind_.size();
+  const std::vector<std::int64_t> old = std::move(ids_);
+  ids_ = present_ids();
+  std::vector<std::uint32_t> to(moved + fixed, ContactMemory::gone);
+  for (std::size_t q = 0; q < parts_.size(); ++q) {
+    std::size_t now = parts_[q].first;
+    const std::size_t end = now + parts_[q].count;
+    for (std::size_t n = before[q].first; n < before[q].first + before[q].count; ++n) {
+      while (now < end && ids_[now] < old[n]) ++now;
+      if (now < end && ids_[now] == old[n]) to[n] = static_cast<std::uint32_t>(now);
+    }
+  }
+  for (std::size_t k = 0; k < fixed; ++k) to[moved + k] = static_cast<std::uint32_t>(moving_ + k);
+  std::vector<std::uint32_t> left_alone;
+  search_.renumber(to, all(), left_alone);
+  rest_.renumber(to);
+  const std::size_t slept = sleep_.sleeping();
+  sleep_.renumber(to, moving_);
+  sleep_.wake(left_alone);
+  others_sleep_ = others_sleep_ || sleep_.sleeping() != slept;
+  make_room();
+  must_search_ = kept_memory_ = true;
+}
+
+std::vector<SphereSleep::Part> Spheres::parts_that_may_sleep() const {
+  std::vector<SphereSleep::Part> parts;
+  for (const Part& part : parts_)
+    if (scene_.phases[part.phase].grains().sleep)
+      parts.push_back({part.phase, part.first, part.count, 2.0 * part.mean_radius});
+  return parts;
+}
+
+/// Gives everything by sphere the sizes of the parts; the fixed spheres stand behind them.
+void Spheres::make_room() {
+  fit(numbers_, all());
+  fit(kinds_, all());
+  fit(passive_, (all() + 2) * passive_size);
+  std::fill(passive_.begin(), passive_.end(), 0.0);
+  std::size_t chunk = 0;
+  for (const Part& part : parts_) {
+    std::fill_n(kinds_.begin() + static_cast<std::ptrdiff_t>(part.first), part.count,
+                static_cast<std::uint8_t>(part.phase));
+    for (std::size_t from = 0; from < part.count; from += SphereChunk::most, ++chunk) {
+      if (chunk == chunks_.size()) chunks_.emplace_back();
+      SphereChunk& c = chunks_[chunk];
+      c.begin = part.first + from;
+      c.end = part.first + std::min(from + SphereChunk::most, part.count);
+      c.phase = part.phase;
+      c.pushed.assign(watched_.size(), {});
+    }
+  }
+  chunks_.resize(chunk);
+  for (std::size_t k = moving_; k < all(); ++k) {
+    kinds_[k] = fixed_kind_[k - moving_];
+    numbers_[k] = static_cast<std::uint32_t>(k);
+  }
+  layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
+  sleep_.make_room(parts_that_may_sleep(), moving_, all());
+  search_.reserve(all(), chunks_, sleep_.on() ? &sleeping_ : nullptr);
+  SphereSet sizes;
+  sizes.dimensions = layout_.dimensions;
+  sizes.moving = moving_;
+  sizes.all = all();
+  strays_.prepare(sizes, laws_.reach(), chunks_, step_.numbers);
+  step_.tightness = strays_.tightness();
+  gone_.reserve(moving_);
+}
+
+/// Both sets of records, with what never changes in them.
+template <int Dim>
+void Spheres::make_records() {
+  using R = SphereRecord<Dim>;
+  for (auto& records : records_) {
+    fit(records, (all() + 2) * R::size);
+    std::fill(records.begin(), records.end(), 0.0);
+    for (std::size_t k = moving_; k < all(); ++k) {
+      double* r = records.data() + k * R::size;
+      for (std::size_t d = 0; d < Dim; ++d) r[d] = fixed_[4 * (k - moving_) + d];
+      r[R::radius] = fixed_[4 * (k - moving_) + 3];
+    }
+    // What pads the lists: two points that are apart by half of every period.
+    for (std::size_t d = 0; d < Dim; ++d)
+      records[(all() + 1) * R::size + d] = 0.5 * (layout_.bounds.high[d] - layout_.bounds.low[d]);
+  }
+}
+
+}  // namespace barchan
