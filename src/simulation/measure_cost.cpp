@@ -24,8 +24,8 @@ double median(std::vector<double> values) {
 /// What a run holds at the most, from what this process holds now that has made the same steps: besides, a run writes
 /// frames, one at a time, and keeps `states` to go back to. `before`: allocated_memory() without the simulation.
 MemoryNeed memory_of_a_run(Simulation& simulation, double before, double states) {
-  constexpr double writer = 3.2e6;   // VTK's writer and its buffers, the threads: code and data, measured
-  constexpr double disorder = 0.03;  // of the arrays: by what lists grow in a long run, measured
+  constexpr double writer = 3.4e6;   // VTK's writer and its buffers, the threads: code and data, measured
+  constexpr double disorder = 0.05;  // of the arrays: by what lists grow in a long run, measured
   constexpr double of_a_vertex = 2 * sizeof(std::int32_t);  // of a frame, made when it is written
   const double now = resident_memory(), allocated = allocated_memory();
   MemoryNeed need;
