@@ -61,9 +61,10 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
   // Pairs that may touch within a step.
   const V margin(step.dt * (chunk.fastest + (group.weight < 1.0 ? step.fastest : chunk.fastest)));
   const double* records = step.records;
-  const std::size_t stride = R::size;
+  const std::size_t stride = R::size, of_a_batch = step.numbers * batch;
+  double* of_batch = chunk.of_pair(group.first * batch, step.numbers);
   constexpr double magic = 6755399441055744.0;  // 1.5 2^52: added and taken off it rounds to the nearest whole number
-  for (std::size_t q = group.first; q < group.end; ++q)
+  for (std::size_t q = group.first; q < group.end; ++q, of_batch += of_a_batch)
     for (std::size_t half = 0; half < batch; half += width) {
       const std::uint32_t *a = chunk.a.data() + q * batch + half, *b = chunk.b.data() + q * batch + half;
       const std::uint32_t had = chunk.touches[q] >> half & ((1u << width) - 1u);
@@ -83,7 +84,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
       const V r_a = x_a[R::radius], r_b = x_b[R::radius], reach = r_a + r_b;
       const auto near = r2 < (reach + margin) * (reach + margin);
       if ((to_bits(near) | had) == 0) continue;
-      double* memory = chunk.of_pair(q * batch + half, step.numbers);
+      double* memory = of_batch + half;
       if (to_bits(near) == 0) {
         for (std::size_t k = 0; k < springs; ++k) {
           const V slip = V::load(memory + k * batch);
