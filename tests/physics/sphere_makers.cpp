@@ -85,9 +85,9 @@ class Flyers : public Model {
     const std::size_t first = p.create(count, w_->state.ids);
     for (std::size_t q = 0; q < count; ++q) {
       const std::size_t k = first + q;
-      const std::int64_t place = p.id()[k] % 600;  // nobody is there any more
+      const std::int64_t place = p.id()[k] % 600, row = place / 40;  // nobody is there any more
       p.column(Field::position, 0)[k] = 0.002 * static_cast<double>(place % 40);
-      p.column(Field::position, 1)[k] = 0.052 + 0.0016 * static_cast<double>(place / 40);
+      p.column(Field::position, 1)[k] = 0.052 + 0.0016 * static_cast<double>(row);
       p.column(Field::velocity, 0)[k] = 0.1;
       p.column(Field::velocity, 1)[k] = 0.2;
       p.column(Field::radius)[k] = 4e-4 + 1e-5 * static_cast<double>(q);
