@@ -105,7 +105,8 @@ RunReport make_report(const Simulation& simulation, const SeriesWriter& series, 
   for (const auto& [limit, count] : simulation.limit_counts())
     if (count > 0) r.time_step_limits[limit] = count;
   add_budgets(r, simulation);
-  r.warnings = simulation.warnings().texts();
+  r.warnings = simulation.plan().warnings;
+  for (const std::string& warning : simulation.warnings().texts()) r.warnings.push_back(warning);
   return r;
 }
 

@@ -136,6 +136,8 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
       std::string why;
       try {
         return run->go(retreater.past());
+      } catch (const LastingBreakdown& e) {
+        throw BreakdownError(run->break_down(e.what()));
       } catch (const BreakdownError& e) { why = e.what(); }
       if (!retreater.go_back(*run, why)) throw BreakdownError(run->break_down(why));
       begin_again(run, course);
@@ -169,6 +171,8 @@ int run(const RunOptions& options) {
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
   use_threads(options.threads, plan.particles());
   if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
+  else
+    for (const std::string& warning : plan.warnings) std::cerr << "barchan: warning: " << warning << "\n";
   Simulation simulation(scene, plan, blocks);
   blocks.clear();  // their memory is needed from now on
   simulation.check_start();

@@ -259,7 +259,8 @@ RunReport Run::report(const std::string& reason) const {
 void Run::finish(const std::string& reason) {
   series_->finish();
   const RunReport r = report(reason);
-  for (const auto& w : r.warnings) std::cerr << "barchan: warning: " << w << '\n';
+  for (std::size_t k = simulation_.plan().warnings.size(); k < r.warnings.size(); ++k)  // those were told at the start
+    std::cerr << "barchan: warning: " << r.warnings[k] << '\n';
   write_run_report(directory_ / "run.json", r);
   course_.progress.end(reason);
 }

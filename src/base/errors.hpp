@@ -16,6 +16,11 @@ struct BreakdownError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A breakdown that smaller steps cannot help: a formula of the scene has no number, for one.
+struct LastingBreakdown : BreakdownError {
+  using BreakdownError::BreakdownError;
+};
+
 /// Input or output failed (exit status 4): disk full, no permission.
 struct OutputError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -95,6 +95,8 @@ double allocated_memory() {
 
 double resident_memory() { return pages().resident; }
 
+double mapped_memory() { return pages().size; }
+
 double most_resident_memory() {
   std::ifstream stream("/proc/self/status");
   for (std::string line; std::getline(stream, line);)

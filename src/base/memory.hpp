@@ -21,6 +21,9 @@ double allocated_memory();
 double resident_memory();
 double most_resident_memory();
 
+/// Bytes of addresses that this process has in use, which RLIMIT_AS counts; 0 where nothing tells.
+double mapped_memory();
+
 /// From now on large arrays that are freed go back to the machine at once, so that what a process holds is what it has
 /// allocated. Does nothing where the C library has no such switch.
 void return_freed_arrays();

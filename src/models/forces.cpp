@@ -63,7 +63,7 @@ namespace {
 
 /// Rate of a zone at a place (1/s); what is not finite goes on to the watch.
 double rate_of(const Formula& rate, const Vec3& x, double time, double dt) {
-  return std::clamp(rate(x, time), 0.0, dt > 0.0 ? 0.5 / dt : 0.0);
+  return std::clamp(rate.not_negative(x, time), 0.0, dt > 0.0 ? 0.5 / dt : 0.0);
 }
 
 }  // namespace

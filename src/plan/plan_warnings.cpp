@@ -5,6 +5,7 @@
 
 #include "models/drive.hpp"
 #include "plan/plan.hpp"
+#include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -197,11 +198,14 @@ void warn_of_output(const Scene& scene, Plan& plan) {
                             text(scene.time.end / scene.output.every) + " frames");
 }
 
-/// What begins after the end measures nothing.
+/// What begins after the end measures nothing, and what samples less often than that measures the start alone.
 void warn_of_late_instruments(const Scene& scene, Plan& plan) {
   for (const Instrument& i : plan.instruments)
     if (i.start > scene.time.end)
       plan.warnings.push_back(kind_name(i.kind) + " \"" + i.name + "\" starts after time.end and measures nothing");
+    else if (i.every > scene.time.end)
+      plan.warnings.push_back(kind_name(i.kind) + " \"" + i.name + "\" has every = " + brief(i.every) +
+                              " s beyond time.end and measures once at most");
 }
 
 void warn_of_weight(const Scene& scene, Plan& plan) {
@@ -210,14 +214,14 @@ void warn_of_weight(const Scene& scene, Plan& plan) {
     plan.warnings.emplace_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
 }
 
-/// A radius below one spacing meets no neighbour: it may have been meant in metres.
+/// A radius below one spacing meets no neighbour: it may have been meant in the other unit.
 void warn_of_small_radius(const Scene& scene, Plan& plan) {
-  for (const Interaction& pair : scene.interactions)
-    if (!of_spheres(pair) && !pair.radius_in_metres && pair.radius > 0.0 && pair.radius < 1.0)
-      plan.warnings.push_back(
-          "interactions." + pair.a + "-" + pair.b +
-          ": a radius below one spacing meets no neighbour of a lattice; radius-in-metres says one in "
-          "metres");
+  for (const Interaction& pair : scene.interactions) {
+    if (of_spheres(pair) || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
+    plan.warnings.push_back(
+        "interactions." + pair.a + "-" + pair.b + ": a radius below one spacing meets no neighbour of a lattice; " +
+        (pair.radius_in_metres ? "radius says one in spacings" : "radius-in-metres says one in metres"));
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <muParser.h>
 
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "base/errors.hpp"
@@ -43,6 +44,28 @@ bool assigns(const std::string& formula) {
 
 }  // namespace
 
+namespace {
+
+std::mutex fault_mutex;
+std::optional<FormulaFault> first_fault;
+
+void note_fault(FormulaFault fault) {
+  const std::lock_guard lock(fault_mutex);
+  if (!first_fault) first_fault = std::move(fault);
+}
+
+}  // namespace
+
+std::optional<FormulaFault> formula_fault() {
+  const std::lock_guard lock(fault_mutex);
+  return first_fault;
+}
+
+void forget_formula_fault() {
+  const std::lock_guard lock(fault_mutex);
+  first_fault.reset();
+}
+
 struct Formula::Parser {
   mu::Parser parser;
   double x = 0.0, y = 0.0, z = 0.0, t = 0.0;
@@ -75,7 +98,15 @@ double Formula::operator()(const Vec3& x, double t) const {
   parser_->y = x[1];
   parser_->z = x[2];
   parser_->t = t;
-  return parser_->parser.Eval();
+  const double value = parser_->parser.Eval();
+  if (!std::isfinite(value)) note_fault({parser_->parser.GetExpr(), value, "a finite number", x, t});
+  return value;
+}
+
+double Formula::not_negative(const Vec3& x, double t) const {
+  const double value = (*this)(x, t);
+  if (value < 0.0 && parser_) note_fault({parser_->parser.GetExpr(), value, "0 or more", x, t});
+  return value;
 }
 
 bool Formula::is_constant() const { return parser_ == nullptr; }

@@ -43,7 +43,7 @@ PlyType ply_type(std::string_view word, std::size_t line) {
       {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
       {"float64", PlyType::float64}};
   const auto found = types.find(word);
-  if (found == types.end()) refuse_line(line, "has the unknown type " + quoted(word));
+  if (found == types.end()) refuse_line(line, "has the unknown type " + in_quotes(word));
   return found->second;
 }
 
@@ -56,7 +56,7 @@ class PlyValues {
   /// Every element of a text has a line of its own.
   void begin(const std::string& element) {
     if (!text_) return;
-    if (!lines_.next_with_words()) refuse("the file ends before its last element " + quoted(element));
+    if (!lines_.next_with_words()) refuse("the file ends before its last element " + in_quotes(element));
     words_ = split_words(lines_.line());
     word_ = 0;
   }
@@ -90,7 +90,7 @@ class PlyValues {
     const auto number = coordinate_of(word);
     const bool whole = type < PlyType::float32;
     if (!number || (whole && *number != std::floor(*number)))
-      refuse_line(line(), "has " + quoted(word) + " where a " + (whole ? "whole " : "") + "number is expected");
+      refuse_line(line(), "has " + in_quotes(word) + " where a " + (whole ? "whole " : "") + "number is expected");
     return *number;
   }
 
@@ -144,13 +144,13 @@ PlyHead ply_head(std::string_view bytes) {
     if (words[0] == "format" && words.size() == 3 && head.format.empty() && words[2] == "1.0") {
       head.format = words[1];
       if (head.format != "ascii" && head.format != "binary_little_endian" && head.format != "binary_big_endian")
-        refuse_line(number, "has the unknown format " + quoted(head.format));
+        refuse_line(number, "has the unknown format " + in_quotes(head.format));
     } else if (words[0] == "element" && words.size() == 3) {
       const auto count = number_of<std::size_t>(words[2]);
       if (!count || *count > bytes.size())
-        refuse_line(number, "has " + quoted(words[2]) + " where a number of elements is expected");
+        refuse_line(number, "has " + in_quotes(words[2]) + " where a number of elements is expected");
       for (const PlyElement& element : head.elements)
-        if (element.name == words[1]) refuse_line(number, "names the element " + quoted(words[1]) + " again");
+        if (element.name == words[1]) refuse_line(number, "names the element " + in_quotes(words[1]) + " again");
       head.elements.push_back({std::string(words[1]), *count, {}});
     } else if (words[0] == "property" && !head.elements.empty() &&
                (words.size() == 3 || (words.size() == 5 && words[1] == "list"))) {
@@ -159,12 +159,12 @@ PlyHead ply_head(std::string_view bytes) {
       property.type = ply_type(words[words.size() - 2], number);
       if (words.size() == 5) property.count = ply_type(words[2], number);
       if (property.count && *property.count >= PlyType::float32)
-        refuse_line(number, "counts a list with " + quoted(words[2]));
+        refuse_line(number, "counts a list with " + in_quotes(words[2]));
       if (head.elements.back().property(property.name))
-        refuse_line(number, "names the property " + quoted(property.name) + " again");
+        refuse_line(number, "names the property " + in_quotes(property.name) + " again");
       head.elements.back().properties.push_back(property);
     } else {
-      refuse_line(number, "of the head is not understood: " + quoted(lines.line()));
+      refuse_line(number, "of the head is not understood: " + in_quotes(lines.line()));
     }
   }
   refuse("the head has no \"end_header\"");
@@ -230,7 +230,7 @@ void add_corners(Mesh& mesh, const std::vector<Vec3>& points, const PlyValue& fo
 void need(const PlyElement& element, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names)
     if (const PlyProperty* p = element.property(name); !p || p->count)
-      refuse("the element " + quoted(element.name) + " has no number " + quoted(name));
+      refuse("the element " + in_quotes(element.name) + " has no number " + in_quotes(name));
 }
 
 void ply(std::string_view bytes, Mesh& mesh) {
@@ -244,9 +244,9 @@ void ply(std::string_view bytes, Mesh& mesh) {
     if (vertices) need(element, {"x", "y", "z"});
     if (edges) need(element, {"vertex1", "vertex2"});
     if (faces && std::count_if(element.properties.begin(), element.properties.end(), names_corners) != 1)
-      refuse("the element " + quoted(element.name) + " has no list \"vertex_indices\"");
+      refuse("the element " + in_quotes(element.name) + " has no list \"vertex_indices\"");
     if (element.properties.empty() && element.count > 0)
-      refuse("the element " + quoted(element.name) + " has no property");
+      refuse("the element " + in_quotes(element.name) + " has no property");
     for (std::size_t k = 0; k < element.count; ++k) {
       read_element(values, element, found);
       if (vertices) points.push_back({found.numbers["x"], found.numbers["y"], found.numbers["z"]});

@@ -77,7 +77,7 @@ std::size_t obj_vertex(std::string_view word, const std::array<std::size_t, 3>& 
     const std::string_view text = left.substr(0, slash);
     if (!text.empty() || part == 0 || slash == std::string_view::npos) {
       const auto number = number_of<long>(text);
-      if (part > 2 || !number) refuse_line(line, "has " + quoted(word) + " where a vertex is expected");
+      if (part > 2 || !number) refuse_line(line, "has " + in_quotes(word) + " where a vertex is expected");
       const auto count = static_cast<long>(counts[part]);
       if (*number == 0 || *number > count || *number < -count)
         refuse_line(line, "names " +
@@ -94,9 +94,9 @@ std::size_t obj_vertex(std::string_view word, const std::array<std::size_t, 3>& 
 
 void obj_numbers(const std::vector<std::string_view>& words, std::size_t least, std::size_t most, std::size_t line) {
   if (words.size() < least + 1 || words.size() > most + 1)
-    refuse_line(line, "has " + std::to_string(words.size() - 1) + " numbers behind " + quoted(words[0]));
+    refuse_line(line, "has " + std::to_string(words.size() - 1) + " numbers behind " + in_quotes(words[0]));
   for (std::size_t k = 1; k < words.size(); ++k)
-    if (!coordinate_of(words[k])) refuse_line(line, "has " + quoted(words[k]) + " where a number is expected");
+    if (!coordinate_of(words[k])) refuse_line(line, "has " + in_quotes(words[k]) + " where a number is expected");
 }
 
 void obj(std::string_view text, Mesh& mesh) {
@@ -144,35 +144,63 @@ void obj(std::string_view text, Mesh& mesh) {
       for (std::size_t k = 0; k + 1 < line_of.size(); ++k)
         add_segment(mesh, points[line_of[k]], points[line_of[k + 1]]);
     } else if (std::find(std::begin(passed), std::end(passed), words[0]) == std::end(passed)) {
-      refuse_line(number, "begins with " + quoted(words[0]) + ", which is not read");
+      refuse_line(number, "begins with " + in_quotes(words[0]) + ", which is not read");
     }
   }
 }
 
 // --- .csv ------------------------------------------------------------------------------------------------------------
 
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
+}
+
+/// The fields of a line: between commas or semicolons, where nothing is a field too; else between blanks.
+std::vector<std::string_view> fields_of(std::string_view line) {
+  if (line.find_first_of(",;") == std::string_view::npos) return split_words(line);
+  std::vector<std::string_view> fields;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find_first_of(",;", begin), line.size());
+    fields.push_back(trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return fields;
+}
+
+/// A name of a column in the first line, in quotes or not: it begins with a letter and is no word for a number.
+bool is_name(std::string_view word) {
+  if (word.size() >= 2 && word.front() == '"' && word.back() == '"') word = trimmed(word.substr(1, word.size() - 2));
+  return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) && !same(word, "nan") &&
+         !same(word, "inf") && !same(word, "infinity");
+}
+
 void corners_of_polygons(std::string_view text, Mesh& mesh) {
   std::vector<Vec3> corners;
+  std::size_t last = 0;  // line of a corner
   const auto close = [&] {
+    if (!corners.empty() && corners.size() < 3)
+      refuse_line(last, "ends a polygon of " + std::to_string(corners.size()) +
+                            (corners.size() == 1 ? " corner" : " corners") + "; expected 3 or more");
     for (std::size_t i = 0; i < corners.size(); ++i) add_segment(mesh, corners[i], corners[(i + 1) % corners.size()]);
     corners.clear();
   };
   Lines lines(text);
   bool first = true;
   while (lines.next()) {
-    const std::string_view line = lines.line();
-    const auto words = split_words(line, " \t\r\f\v,;");
-    if (words.empty()) close();
-    if (words.empty() || words[0].starts_with('#')) continue;
-    const auto x = coordinate_of(words[0]), y = words.size() == 2 ? coordinate_of(words[1]) : std::nullopt;
-    const auto parts = split_words(line, ",;");
-    const bool names = first && !x &&
-                       std::isalpha(static_cast<unsigned char>(words[0].front() == '"' ? 'a' : words[0].front())) &&
-                       (parts.size() == 2 || (parts.size() == 1 && words.size() == 2));
+    const std::string_view line = trimmed(lines.line());
+    if (line.empty()) close();
+    if (line.empty() || line.starts_with('#')) continue;
+    const auto fields = fields_of(line);
+    const bool names = first && fields.size() == 2 && is_name(fields[0]) && is_name(fields[1]);
     first = false;
     if (names) continue;
+    const auto x = fields.size() == 2 ? coordinate_of(fields[0]) : std::nullopt,
+               y = fields.size() == 2 ? coordinate_of(fields[1]) : std::nullopt;
     if (!x || !y) refuse_line(lines.number(), "is not a corner x, y");
     corners.push_back({*x, *y, 0.0});
+    last = lines.number();
   }
   close();
 }

@@ -1,6 +1,7 @@
 #include "scene/mesh_vtk.hpp"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,10 +18,13 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
+#include "base/memory.hpp"
 #include "scene/mesh_words.hpp"
 
 namespace barchan {
@@ -29,7 +33,10 @@ using namespace mesh;
 
 namespace {
 
-constexpr unsigned most_seconds = 300;
+// What the child may take. Numbers of a damaged file can ask for any amount of both. VTK reads text at some 10 MB/s and
+// holds some 10 bytes for each byte of text, of compressed numbers up to a few hundred.
+constexpr double least_seconds = 10.0, seconds_a_byte = 1e-6;
+constexpr double least_memory = 1e9, memory_a_byte = 500.0;
 constexpr const char* unreadable = "cannot be read as what its name says it is";
 
 /// Hears VTK's complaints and keeps them off the terminal: the scene's message tells what is wrong.
@@ -135,16 +142,31 @@ bool send_mesh(int to, const Mesh& mesh) {
          send(to, mesh.segments.data(), sizes[1] * sizeof(Facet)) && send(to, mesh.problem.data(), sizes[2]);
 }
 
+void limit(__rlimit_resource what, double most) {
+  const auto value = static_cast<rlim_t>(most);
+  const rlimit both{value, value};
+  setrlimit(what, &both);
+}
+
+/// Bounds of time and memory that follow from the size of the file; the child ends with its parent.
+void bound_the_child(pid_t parent, const std::string& path) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it has ended already
+  std::error_code unseen;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, unseen));
+  const double bytes = unseen ? 0.0 : size;
+  limit(RLIMIT_CORE, 0.0);
+  limit(RLIMIT_CPU, std::ceil(least_seconds + seconds_a_byte * bytes));
+  limit(RLIMIT_AS, mapped_memory() + least_memory + memory_a_byte * bytes);
+}
+
 /// What the child does: nothing that it damages or prints reaches the program.
 [[noreturn]] void be_the_child(int to, const std::string& path, const std::string& suffix) {
   const int nowhere = open("/dev/null", O_WRONLY);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGALRM})
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGXCPU})
     std::signal(signal, SIG_DFL);
-  alarm(most_seconds);
   bool sent = false;
   try {
     sent = send_mesh(to, read_here(path, suffix));
@@ -184,7 +206,7 @@ Mesh unpacked(const std::string& bytes) {
 Mesh read_vtk_mesh(const std::string& path, const std::string& suffix) {
   int ends[2];
   if (pipe(ends) != 0) return {{}, {}, "cannot be read: " + std::string(std::strerror(errno))};
-  const pid_t child = fork();
+  const pid_t parent = getpid(), child = fork();
   if (child < 0) {
     close(ends[0]);
     close(ends[1]);
@@ -192,6 +214,7 @@ Mesh read_vtk_mesh(const std::string& path, const std::string& suffix) {
   }
   if (child == 0) {
     close(ends[0]);
+    bound_the_child(parent, path);
     be_the_child(ends[1], path, suffix);
   }
   close(ends[1]);
@@ -211,7 +234,28 @@ namespace {
 /// VTK takes what begins like a number for one, and what does not for the end of the array.
 std::string wrong_number(std::string_view text) {
   for (const std::string_view word : split_words(text, " \t\r\n\f\v"))
-    if (!coordinate_of(word)) return "has " + quoted(word) + " where a number is expected";
+    if (!coordinate_of(word)) return "has " + in_quotes(word) + " where a number is expected";
+  return "";
+}
+
+/// VTK makes room for as many components as an array says, however few numbers follow.
+std::string wrong_components(std::string_view head) {
+  constexpr std::string_view key = "NumberOfComponents=\"";
+  constexpr std::size_t most = 1000;
+  const std::size_t at = head.find(key);
+  if (at == std::string_view::npos) return "";
+  const std::string_view value = head.substr(at + key.size(), head.find('"', at + key.size()) - at - key.size());
+  const auto count = number_of<std::size_t>(value);
+  if (count && *count <= most) return "";
+  return "has an array of " + in_quotes(value) + " components; expected at most " + std::to_string(most);
+}
+
+/// Every number of points, cells and corners that a line of a legacy file states needs a byte at least.
+std::string wrong_counts(const std::vector<std::string_view>& words, std::size_t bytes, std::size_t line) {
+  for (std::size_t k = 1; k < words.size(); ++k)
+    if (const auto count = number_of<double>(words[k]); count && !(*count <= static_cast<double>(bytes)))
+      return "line " + std::to_string(line) + " states " + in_quotes(words[k]) + " numbers in a file of " +
+             std::to_string(bytes) + " bytes";
   return "";
 }
 
@@ -221,6 +265,7 @@ std::string wrong_in_xml(std::string_view text) {
     if (open == std::string_view::npos) return "";
     const std::string_view head = text.substr(at, open - at);
     at = open;
+    if (std::string problem = wrong_components(head); !problem.empty()) return problem;
     if (head.find("format=\"ascii\"") == std::string_view::npos || head.ends_with('/') ||
         head.find("type=\"String\"") != std::string_view::npos)
       continue;
@@ -243,6 +288,7 @@ std::string wrong_in_legacy(std::string_view text) {
     if (words[0] == "POINT_DATA" || words[0] == "CELL_DATA") return "";  // nothing is read behind it
     if (std::find(std::begin(of_cells), std::end(of_cells), words[0]) != std::end(of_cells)) {
       numbers = true;
+      if (std::string problem = wrong_counts(words, text.size(), lines.number()); !problem.empty()) return problem;
     } else if (words[0] == "METADATA" || words[0] == "FIELD") {
       numbers = false;
     } else if (numbers) {

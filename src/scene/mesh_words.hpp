@@ -32,7 +32,7 @@ struct Refused {
   refuse("line " + std::to_string(number) + " " + why);
 }
 
-inline std::string quoted(std::string_view word) { return "\"" + shortened(std::string(word)) + "\""; }
+inline std::string in_quotes(std::string_view word) { return "\"" + shortened(std::string(word)) + "\""; }
 
 inline std::vector<std::string_view> split_words(std::string_view line, std::string_view between = blanks) {
   std::vector<std::string_view> words;
@@ -99,7 +99,7 @@ inline Vec3 point_of(const std::vector<std::string_view>& words, std::size_t fir
   for (std::size_t d = 0; d < 3; ++d) {
     if (first + d >= words.size()) refuse_line(line, "has fewer than three coordinates");
     const auto value = coordinate_of(words[first + d]);
-    if (!value) refuse_line(line, "has " + quoted(words[first + d]) + " where a number is expected");
+    if (!value) refuse_line(line, "has " + in_quotes(words[first + d]) + " where a number is expected");
     x[d] = *value;
   }
   return x;

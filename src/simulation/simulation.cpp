@@ -9,6 +9,7 @@
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
+#include "scene/formula.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -28,6 +29,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
       plan_(plan),
       models_(joined(make_models(scene_, plan_), std::move(more))),
       schedule_(make_schedule(models_)) {
+  forget_formula_fault();  // those of shapes may have no number somewhere
   make_state(blocks);
   if (storage == Storage::shuffled) shuffle();
   work_ = std::make_unique<Workspace>(scene_, plan_, state_);
@@ -88,7 +90,7 @@ void Simulation::step(double largest) {
   ++state_.steps;
   work_->kick_time = 0.5 * state_.dt;
   schedule_.run(stage::strain_records, stage::kick);
-  if (!std::isfinite(state_.largest_acceleration)) watch_->explain(moment());
+  if (!std::isfinite(state_.largest_acceleration) || formula_fault()) watch_->explain(moment());
   for (const auto& model : models_)
     if (const auto trouble = model->trouble()) watch_->tell(*trouble, moment());
   if (watch_->due(state_.steps) || state_.largest_acceleration * state_.dt > watch_->signal_speed())
@@ -144,8 +146,9 @@ void Simulation::choose_step(double largest) {
 }
 
 void Simulation::check_start() {
+  check_columns();
   try {
-    if (!std::isfinite(state_.largest_acceleration)) watch_->explain(moment());
+    if (!std::isfinite(state_.largest_acceleration) || formula_fault()) watch_->explain(moment());
     check();
     const double dt = stable_step();
     if (state_.largest_acceleration * dt > watch_->signal_speed())
@@ -156,6 +159,17 @@ void Simulation::check_start() {
   } catch (const BreakdownError& e) {
     throw SceneError(located(scene_, "fill") + ": the scene is wrong at its start: " + e.what());
   }
+}
+
+/// A name finds one column of history.csv.
+void Simulation::check_columns() const {
+  std::vector<std::string> names = history().names;
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice == names.end()) return;
+  throw SceneError(located(scene_, scene_.force_meters.empty() ? "marker" : "force") +
+                   ": two columns of history.csv would be named \"" + *twice +
+                   "\"; expected another name of a [[force]], a [[marker]] or a phase");
 }
 
 void Simulation::archive(Archive& a) {

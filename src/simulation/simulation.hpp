@@ -96,6 +96,7 @@ class Simulation {
   Moment moment() const { return {state_.time, state_.dt, state_.steps}; }
   void make_state(const std::vector<ParticleBlock>& blocks);
   void shuffle();
+  void check_columns() const;
   FrameField values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const;
   /// What all phases that move have in a row of history.csv.
   void add_phase(std::size_t number, HistoryRow& row) const;

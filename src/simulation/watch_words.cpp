@@ -117,7 +117,7 @@ std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) con
   return std::nullopt;
 }
 
-/// A [[forcing]] whose formula is not finite at a particle: it is to blame, not the step. Nothing: there is none.
+/// A formula that is not finite is to blame, not the step. Nothing: there is none.
 std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
   for (const Force& f : forces_) {
     const PhaseParticles& p = see_.particles[f.phase];
@@ -133,11 +133,15 @@ std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
       }
     }
   }
+  if (const auto fault = formula_fault())
+    return "the formula \"" + shortened(fault->formula) + "\" gives " + brief(fault->value) + " at (" +
+           brief(fault->x[0]) + ", " + brief(fault->x[1]) + ", " + brief(fault->x[2]) + ") m, t = " + brief(fault->t) +
+           " s; expected " + fault->expected + " at every place and time";
   return std::nullopt;
 }
 
 void Watch::tell_worst(const Moment& now) const {
-  if (const auto formula = formula_to_blame(now)) throw BreakdownError(*formula);
+  if (const auto formula = formula_to_blame(now)) throw LastingBreakdown(*formula);
   std::int64_t lowest = -1;
   long wrong = 0;
   std::string what, whom;

@@ -40,6 +40,22 @@ TEST(Formula, CanBeMovedWithItsVariables) {
   EXPECT_EQ(second({3, 0, 0}, 5), 15);
 }
 
+TEST(Formula, RemembersTheFirstValueThatItMayNotHave) {
+  forget_formula_fault();
+  EXPECT_EQ(value("1/(x - 1)", {2, 0, 0}), 1.0);
+  EXPECT_EQ(Formula(Expression{"x", 0.0}).not_negative({2, 0, 0}), 2.0);
+  EXPECT_FALSE(formula_fault());
+  EXPECT_EQ(Formula(Expression{"-x", 0.0}).not_negative({2, 0, 0}, 3.0), -2.0);
+  EXPECT_TRUE(std::isinf(value("1/(x - 2)", {2, 0, 0})));
+  ASSERT_TRUE(formula_fault());
+  EXPECT_EQ(formula_fault()->formula, "-x ");
+  EXPECT_EQ(formula_fault()->value, -2.0);
+  EXPECT_EQ(formula_fault()->t, 3.0);
+  EXPECT_STREQ(formula_fault()->expected, "0 or more");
+  forget_formula_fault();
+  EXPECT_FALSE(formula_fault());
+}
+
 TEST(Formula, TellsWhatIsMalformed) {
   EXPECT_THROW(value("sin(x"), SceneError);
   EXPECT_EQ(formula_problem("sin(x)", "x y z"), "");

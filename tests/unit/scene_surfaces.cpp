@@ -234,6 +234,33 @@ TEST(Meshes, DamageIsRefusedByName) {
   EXPECT_EQ(wrong_number_of_vtk(corpus("text.vtp"), ".vtp"), "");
 }
 
+// A first line that is damaged was taken for a heading, and its corner was lost.
+TEST(Meshes, AHeadingOfCornersHasTwoNames) {
+  const std::string rest = "1,-1\n1,1\n-1,1\n";
+  for (const char* first : {"nan,-1", "-1,inf", "l,-1", "O,0", "\"-1\",\"-1\"", "x,,-1", "x -1", ",-1,-1", "x,y,z", "x"})
+    EXPECT_EQ(parse_corners(std::string(first) + "\n" + rest).problem, "line 1 is not a corner x, y") << first;
+  for (const char* head : {"x,y", "\"x [m]\",\"y [m]\"", "x y", "X ; Y"}) {
+    const Mesh mesh = parse_corners(std::string(head) + "\n-1,-1\n" + rest);
+    EXPECT_EQ(mesh.problem, "") << head;
+    EXPECT_EQ(mesh.segments.size(), 4u) << head;
+  }
+  EXPECT_EQ(parse_corners("-1,-1\n\n" + rest).problem, "line 1 ends a polygon of 1 corner; expected 3 or more");
+  EXPECT_EQ(parse_corners(rest + "\n0,0\n0,1").problem, "line 6 ends a polygon of 2 corners; expected 3 or more");
+  EXPECT_EQ(parse_corners("-1,-1\n,1,-1\n1,1\n").problem, "line 2 is not a corner x, y");
+}
+
+// VTK asked for 6 GB, or went on for minutes.
+TEST(Meshes, CountsThatAFileCannotHoldAreRefusedAtOnce) {
+  const auto damaged = [](const std::string& name, const std::string& from, const std::string& to) {
+    return read_surface(file_with("counts" + name.substr(name.rfind('.')), with(corpus(name), from, to))).problem;
+  };
+  EXPECT_NE(damaged("text.vtk", "POLYGONS 4 16", "POLYGONS 4 4294967295").find("states \"4294967295\" numbers in a file of"),
+            std::string::npos);
+  EXPECT_NE(damaged("text.vtp", "NumberOfComponents=\"3\"", "NumberOfComponents=\"99999999999999999999\"")
+                .find("components; expected at most 1000"),
+            std::string::npos);
+}
+
 TEST(Meshes, DamageOfVtkFilesIsRefused) {
   for (const auto& [from, to] : {std::pair{"0 2 1 0 1 3", "0 2 1 0 1 9999"}, std::pair{"3 6 9 12", "3 6 9 1200000"},
                                  std::pair{"NumberOfPoints=\"4\"", "NumberOfPoints=\"4000000000000000\""}}) {
