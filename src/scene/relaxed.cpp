@@ -30,6 +30,7 @@ class Border {
         region_(region_of_fill(scene, k, (band + kernel_radius + 1.0) * spacing_)),
         outside_(space_, kernel_radius * spacing_, dimensions_) {
     look_at_cells(scene);
+    outside_.arrange();
   }
 
   const Solid& region() const { return region_; }
@@ -138,6 +139,7 @@ class Relaxation {
     points_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i)  // those that move, and those that they see
       if (depth_[i] < (band + kernel_radius + 0.5) * border_.spacing()) points_.add(places_[i], border_.volume());
+    points_.arrange();
     const double dx = border_.spacing();
     // The layer forms in the first rounds, and then stands.
     const double hold = std::min(1.0, number / 100.0);
@@ -200,6 +202,7 @@ Evenness evenness_of(const Scene& scene, std::size_t k, const std::vector<Vec3>&
   const Border border(scene, k);
   PointCells points(border.space(), kernel_radius * border.spacing(), border.dimensions());
   for (const Vec3& x : places) points.add(x, border.volume());
+  points.arrange();
   Evenness even{1e300, 1e300, 0.0, 0.0, border.content()};
   with_kernel<double>(
       KernelKind::wendland_c2, kernel_radius * border.spacing(), border.dimensions(), [&](const auto& kernel) {
