@@ -90,7 +90,7 @@ def heaps(r):
               "| friction | rolling-friction | angle above the slot | of the heap below |", "| --- " * 4 + "|"]
     lines += [f"| {f['friction']} | {f['rolling']} | {f['angle']:.1f} | {f['below']:.1f} |" for f in r["frictions"]]
     return lines + ["", "rolling-friction was chosen for the angle, after 0.3 (one bed: 29.5) and 0.6 (32.8, 32.5, 38.1) had been seen. The angle depends on how a slope came to be: a bed whose end opens at once slides to rest at 25 to 27 degrees with friction 1.0 and rolling-friction 0.8 (an earlier form of "
-                    "`repose.toml`). A slope of 32 degrees of such grains that settled as such stays at rest (`dune.toml`)."]
+                    "`repose.toml`). A slope of 32 degrees of these grains, which settled in the form of a slope, stays at rest (`dune.toml`)."]
 
 
 def threshold(r):
@@ -178,7 +178,7 @@ def impact(r):
     lives = min(u for u, q in of.items() if min(q) > 0.01)
     return lines + ["", f"It dies on both beds at {dies:.2f} m/s and goes on on both at {lives:.2f} m/s: {dies / fluid:.2f} to {lives / fluid:.2f} of the fluid threshold of Shao & Lu 2000 for these grains "
                     f"({fluid:.3f} m/s); wanted 0.75 to 0.9 of the fluid threshold. The middle, {0.5 * (dies + lives):.2f} m/s, is {0.5 * (dies + lives) / fluid:.2f} of it, and "
-                    f"{0.5 * (dies + lives) / (1.18 * fluid):.2f} of our own fluid threshold, which is 1.18 times Shao & Lu's for 0.25 mm (above). The straight line of the fluxes begins at less: near its threshold "
+                    f"{0.5 * (dies + lives) / (1.18 * fluid):.2f} of our own fluid threshold, which is 1.18 times Shao & Lu's for 0.25 mm (above). The straight line through the fluxes meets zero at a smaller u*: near its threshold "
                     "the flux does not go to zero on that line, it stops."]
 
 
@@ -239,7 +239,7 @@ def resolved(r):
             lines += ["", f"The wind of u* = {row['u']} m/s, {1e3 * y[0]:.1f} mm over the bed and every fourth row above, m/s: " + ", ".join(f"{s:.2f}" for s in v[::4]) +
                       f". In the upper half of the air it is logarithmic with u* = {0.4 * slope:.3f} m/s."]
     for low, high, at in focus(one_of_each(r["runs"])):
-        lines.append(f"The winds of {low} and {high} m/s " + (f"cross {1e3 * at[0]:.1f} mm over the bed at {at[1]:.1f} m/s." if at else "do not cross below 20 mm."))
+        lines.append(f"The profiles of the wind of u* = {low} and {high} m/s " + (f"cross {1e3 * at[0]:.1f} mm over the bed at {at[1]:.1f} m/s." if at else "do not cross below 20 mm."))
     return lines
 
 

@@ -50,7 +50,7 @@ constexpr Key rows_of_keys[] = {
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
-    {"phases", "spacing", spacing_of_particles("that of the scene"), "m", "Distance between the particles of this phase.", positive},
+    {"phases", "spacing", spacing_of_particles("that of the scene; with a diameter the largest one"), "m", "Distance between the particles of this phase.", positive},
     {"phases", "density", at<&Phase::density>(required, "required; of a wall: that of a phase it interacts with"), "kg/m3",
      "Density at rest. Of grains: that of the grain's material.", positive, "", "wall"},
     {"phases", "viscosity", of<&FluidKeys::viscosity, &ColumnKeys::viscosity>(0.0, "0; of a column required"), "m2/s", "Kinematic viscosity.", not_negative},
@@ -60,8 +60,8 @@ constexpr Key rows_of_keys[] = {
      "Pressure as a function of density."},
     {"phases", "tait-exponent", of<&FluidKeys::tait_exponent>(7.0), "",
      "Exponent of Tait's equation of state, only with equation-of-state = \"tait\".", positive},
-    {"phases", "artificial-viscosity", of<&FluidKeys::artificial_viscosity, &ElasticKeys::artificial_viscosity>(0.0), "", "Monaghan's alpha.", not_negative},
-    {"phases", "artificial-viscosity-beta", of<&ElasticKeys::artificial_viscosity_beta>(0.0), "", "Monaghan's beta.", not_negative},
+    {"phases", "artificial-viscosity", of<&FluidKeys::artificial_viscosity, &ElasticKeys::artificial_viscosity>(0.0), "", "Monaghan's alpha. Of a body only with formulation = \"updated-lagrangian\".", not_negative},
+    {"phases", "artificial-viscosity-beta", of<&ElasticKeys::artificial_viscosity_beta>(0.0), "", "Monaghan's beta, with formulation = \"updated-lagrangian\".", not_negative},
     {"phases", "density-diffusion", of<&FluidKeys::density_diffusion>(0.05), "", "Delta of delta-SPH; 0 switches it off.", not_negative},
     {"phases", "enclosed", of<&FluidKeys::enclosed>("true of a fluid that is shut in"), "",
      "The fluid fills a closed space: its mean density is kept. barchan plan says what it is and why."},
@@ -90,7 +90,7 @@ constexpr Key rows_of_keys[] = {
      "Damping of Kelvin and Voigt, of a body with formulation = \"total-lagrangian\": a vibration of angular frequency w has the damping ratio "
      "w retardation/2.", not_negative},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "",
-     "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid: only with scheme = \"plain\"."},
+     "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid only with scheme = \"plain\", of a body only with formulation = \"updated-lagrangian\"."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",
      "Speed after over speed before a head-on collision of two grains. Quartz: 0.7 to 0.8; with 1 a bed never comes to rest.", {.at_most = 1.0, .above = 0.0}},
     {"phases", "contact-speed", of<&GrainsKeys::contact_speed>("chosen by the plan"), "m/s",
@@ -141,9 +141,9 @@ constexpr Key rows_of_keys[] = {
     {"phases.diameter", "spread", at<&SphereSize::spread>(0.0), "",
      "Diameters are spread evenly over mean (1 - spread) to mean (1 + spread), by the seed of the fill.", {.at_least = 0.0, .at_most = 0.5}},
 
-    {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid, else cubic-spline"), "",
+    {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid and in a total Lagrangian body, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},
-    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.1 of a contact; of bodies and repulsive walls required; a column has none"), "spacings",
+    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.6 in a total Lagrangian body, 1.1 of a contact; of updated Lagrangian bodies and repulsive walls required; a column has none"), "spacings",
      "Kernel radius (support), in spacings of the coarser of the two phases.", {.at_most = 8.0, .above = 0.0}},
     {"interactions.pair", "radius-in-metres", at<&Interaction::radius_in_metres>("radius says it"), "m",
      "Kernel radius (support) as a length, in place of radius.", positive},
@@ -170,7 +170,7 @@ constexpr Key rows_of_keys[] = {
      "Square lattice, close-packed lattice, random without overlap (up to 0.5 of the area or 0.35 of the volume), or rows that "
      "follow the ground: a bed of a wall, and the fluid above it. settled: a box or a bed of spheres that fell, or spheres of a file, that came to rest before the run. "
      "relaxed: the outermost layer follows the border of a box, disc, sphere, ring, polygon or surface, half a spacing inside, and the volumes are even; "
-     "\"the-rest\" goes round such shapes. Fluids and elastic bodies take rows, fitted or relaxed."},
+     "\"the-rest\" goes round such shapes. Fluids take rows, fitted or relaxed, bodies rows or relaxed, walls all but settled, grains all but fitted and relaxed."},
     {"fill", "leave-out", at<&Fill::leave_out>(LeaveOut::nothing), "",
      "What the shape leaves free: places nearer than 0.75 spacings to particles of earlier fills, as \"the-rest\" does, so that a fluid goes round a body."},
     {"fill", "perturb", at<&Fill::perturb>(0.0), "spacings",
@@ -303,7 +303,7 @@ constexpr Key rows_of_keys[] = {
     {"grid", "phase", at<&Grid::phase, Grid>(required), "", "Fluid that is measured."},
     {"grid", "min", at<&Grid::min>("that of the domain"), "m", "Lower corner."},
     {"grid", "max", at<&Grid::max>("that of the domain"), "m", "Upper corner; in 3D min and max with the same z (or x, y) make a plane."},
-    {"grid", "spacing", at<&Grid::spacing>("that of the scene"), "m", "Distance between points, adjusted so that it divides the sides.", positive},
+    {"grid", "spacing", at<&Grid::spacing>("that of the phase"), "m", "Distance between points, adjusted so that it divides the sides.", positive},
     {"grid", "every", at<&Grid::every, Grid>("that of history.csv"), "s", "Time between samples.", positive},
     {"grid", "start", at<&Grid::start, Grid>(0.0), "s", "Time of the first sample.", not_negative},
 
