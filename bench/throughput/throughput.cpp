@@ -144,6 +144,7 @@ int main(int argc, char** argv) {
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
   Simulation s(scene, plan, blocks);
+  s.measure_processor_time();
   for (int k = 0; k < warm; ++k) s.step(1.0);
   if (bare) {
     compare_with_bare(s, steps);

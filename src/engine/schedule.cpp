@@ -54,14 +54,14 @@ void Schedule::run(std::size_t first, std::size_t last) {
   for (std::size_t stage = first; stage <= last; ++stage) {
     if (tasks_[stage].empty()) continue;
     const auto start = Clock::now();
-    const double processor = thread_seconds();
+    const double processor = measures_processor_time_ ? thread_seconds() : 0.0;
     for (std::size_t k = 0; k < tasks_[stage].size(); ++k) {
       const Task& task = tasks_[stage][k];
       if (const std::size_t number = repeat_of_[stage][k]; number != once) repeat(task, repeats_[number]);
       else execute(task, seconds_[stage].first);
     }
     ++executed_[stage];
-    processor_seconds_[stage] += thread_seconds() - processor;
+    if (measures_processor_time_) processor_seconds_[stage] += thread_seconds() - processor;
     seconds_[stage].second += since(start);
   }
 }

@@ -53,7 +53,9 @@ class Schedule {
   /// task that touches a field that it did not declare throws std::logic_error (state/access.hpp).
   void run(std::size_t first, std::size_t last);
 
-  /// By stage: how often it was executed, wall time, and processor time of the calling thread (s).
+  /// From now on processor time is measured too: two calls of the kernel a stage, which small scenes would feel.
+  void measure_processor_time() { measures_processor_time_ = true; }
+  /// By stage: how often it was executed, wall time, and, if it is measured, processor time of the calling thread (s).
   const std::vector<long>& executed() const { return executed_; }
   const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
   const std::vector<double>& processor_seconds() const { return processor_seconds_; }
@@ -69,6 +71,7 @@ class Schedule {
   std::vector<long> executed_;
   std::vector<std::pair<std::string, double>> seconds_;
   std::vector<double> processor_seconds_;
+  bool measures_processor_time_ = false;
 };
 
 }  // namespace barchan

@@ -57,6 +57,7 @@ class Simulation {
   /// of the calling thread, which a benchmark on a busy machine can trust (s).
   const std::vector<long>& executed() const { return schedule_.executed(); }
   const std::vector<std::pair<std::string, double>>& seconds() const { return schedule_.seconds(); }
+  void measure_processor_time() { schedule_.measure_processor_time(); }
   const std::vector<double>& processor_seconds() const { return schedule_.processor_seconds(); }
   std::size_t bytes() const;
 
