@@ -1,29 +1,20 @@
 // A run that is saved between any two of its steps and loaded elsewhere goes on with the same bits, in every scene.
 #include <omp.h>
 
-#include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 
 #include "base/errors.hpp"
 
 #include "physics/drive.hpp"
+#include "physics/every_scene.hpp"
 #include "physics/small_scenes.hpp"
 
 namespace barchan {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> all_scenes() {
-  std::vector<std::string> names;
-  const fs::path top = BARCHAN_SOURCE_DIR "/scenes";
-  for (const auto& entry : fs::recursive_directory_iterator(top))
-    if (entry.path().extension() == ".toml")
-      names.push_back(fs::relative(entry.path(), top).replace_extension("").string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 /// The name of the first field that has other bits; "" if none has.
 std::string first_difference(const Simulation& a, const Simulation& b) {
@@ -40,8 +31,10 @@ std::string first_difference(const Simulation& a, const Simulation& b) {
   return "";
 }
 
-/// Saves `run` after each step up to `steps`; then loads each into `other`, which runs to the end as well.
-void expect_restarts(Simulation& run, Simulation& other, int steps, int stride) {
+/// Saves `run` after each step up to `steps`; then loads each into `other`, which runs to the end as well. `threads`:
+/// of the one and of the other; 0: as they are.
+void expect_restarts(Simulation& run, Simulation& other, int steps, int stride, std::array<int, 2> threads = {0, 0}) {
+  if (threads[0] > 0) omp_set_num_threads(threads[0]);
   std::vector<std::vector<char>> saved;
   for (int k = 0; k < steps; ++k) {
     Archive a;
@@ -49,6 +42,7 @@ void expect_restarts(Simulation& run, Simulation& other, int steps, int stride) 
     saved.push_back(a.bytes());
     run.step(1e300);
   }
+  if (threads[1] > 0) omp_set_num_threads(threads[1]);
   for (int k = 0; k < steps; k += stride) {
     Archive a(saved[static_cast<std::size_t>(k)]);
     ASSERT_NO_THROW(other.archive(a));
@@ -59,17 +53,14 @@ void expect_restarts(Simulation& run, Simulation& other, int steps, int stride) 
 }
 
 class RestartOf : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, RestartOf, ::testing::ValuesIn(all_scenes()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '/', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Scenes, RestartOf, ::testing::ValuesIn(testing::all_scenes()),
+                         [](const auto& p) { return testing::test_name(p.param); });
 
 TEST_P(RestartOf, HasTheSameBitsOnAnotherNumberOfThreads) {
-  testing::Drive run(GetParam()), other(GetParam());
+  const auto fewer = testing::with_fewer_particles(GetParam());
+  testing::Drive run(GetParam(), fewer), other(GetParam(), fewer);
   const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  expect_restarts(run.simulation(), other.simulation(), 20, 1);
+  expect_restarts(run.simulation(), other.simulation(), 20, 1, {1, 2});
   omp_set_num_threads(threads);
 }
 

@@ -9,21 +9,12 @@
 #include <map>
 
 #include "physics/drive.hpp"
+#include "physics/every_scene.hpp"
 
 namespace barchan {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> all_scenes() {
-  std::vector<std::string> names;
-  const fs::path top = BARCHAN_SOURCE_DIR "/scenes";
-  for (const auto& entry : fs::recursive_directory_iterator(top))
-    if (entry.path().extension() == ".toml")
-      names.push_back(fs::relative(entry.path(), top).replace_extension("").string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 /// The places of a phase's particles in the order of their ids.
 std::vector<std::uint32_t> by_id(const PhaseParticles& p) {
@@ -59,15 +50,12 @@ std::string first_difference(const Simulation& a, const Simulation& b) {
 }
 
 class StorageOf : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, StorageOf, ::testing::ValuesIn(all_scenes()), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '/', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Scenes, StorageOf, ::testing::ValuesIn(testing::all_scenes()),
+                         [](const auto& p) { return testing::test_name(p.param); });
 
 TEST_P(StorageOf, DoesNotMatter) {
   constexpr int steps = 20;
-  const Scene scene = read_scene(testing::scene_file(GetParam()));
+  const Scene scene = read_scene(testing::scene_file(GetParam()), testing::with_fewer_particles(GetParam()));
   const auto blocks = make_particles(scene);
   const Plan plan = make_plan(scene, blocks);
   const int threads = omp_get_max_threads();
