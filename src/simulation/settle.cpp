@@ -13,6 +13,7 @@
 #include "scene/couplings.hpp"
 #include "scene/ground.hpp"
 #include "scene/places.hpp"
+#include "scene/settling_scene.hpp"
 #include "scene/shapes.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/settle_room.hpp"
@@ -26,99 +27,14 @@ namespace {
 // farther than `at_place` (diameters). A trial begins as the run does, with the contacts that were, and nothing slows
 // the grains.
 constexpr double at_rest = 2e-4, at_place = 5e-3;
-constexpr double trial_time = 6.0;   // sqrt(d/g)
-constexpr int most_trials = 8;       // deep beds may always find a grain that goes on a little
-constexpr double restitution = 0.2;  // while they settle
-constexpr double loose = 1.35;       // height of the lattice over that of the bed, for equal grains
+constexpr double trial_time = 6.0;  // sqrt(d/g)
+constexpr int most_trials = 8;      // deep beds may always find a grain that goes on a little
 // sqrt(d/g): in this time what slows the grains takes a speed to its e-th part; at the begin of a stage, when stiffer
 // contacts push them apart, and else.
 constexpr double slow_push = 0.05, slow_fall = 2.0, push = 0.5;
 constexpr double soft_overlap = 0.002;  // diameters: of the lowest grains in the soft bed
 constexpr double soft_impact = 0.03;    // diameters: of grains that fall into it
 constexpr double stiffer = 8.0;         // contacts from stage to stage
-const char* const box_name = "settling_box";
-// While contacts are soft, one number says how stiff they are; at last they have the law of the scene.
-constexpr ContactLaw soft_law = ContactLaw::linear;
-
-/// The scene in which the grains settle: they alone, the walls that they feel, and a box.
-Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
-  const Fill& fill = scene.fills[k];
-  const Phase& phase =
-      *std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
-  const SphereSize size = *phase.diameter();
-  Scene s;  // what is not named here does not exist while grains settle: motions, markers, forces, what is measured
-  s.file = scene.file;
-  s.name = scene.name;
-  s.places = scene.places;
-  s.dimensions = scene.dimensions;
-  s.spacing = scene.spacing;
-  s.precision = scene.precision;
-  s.domain = scene.domain;
-  s.phases = {phase};
-  s.domain.gravity = weight_share(scene, phase) * scene.domain.gravity;
-  s.time = scene.time;
-  s.output = scene.output;
-  std::get<GrainsKeys>(s.phases[0].own).restitution = std::min(restitution, phase.grains().restitution);
-  std::get<GrainsKeys>(s.phases[0].own).sleep = false;
-  s.output.fields.clear();
-  s.time.fixed_step.reset();
-  ContactLaw law = soft_law;
-  for (const Interaction& pair : scene.interactions) {
-    if (!of_spheres(pair) || (pair.a != phase.name && pair.b != phase.name)) continue;
-    const std::string& other = pair.a == phase.name ? pair.b : pair.a;
-    const auto found =
-        std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == other; });
-    if (other == phase.name) law = pair.law;
-    else if (!found->if_wall()) continue;
-    else s.phases.push_back(*found);
-    s.interactions.push_back(pair);
-  }
-  for (std::size_t f = 0; f < k; ++f)
-    for (const Phase& p : s.phases)
-      if (p.if_wall() && p.name == scene.fills[f].phase && !std::holds_alternative<SidesShape>(scene.fills[f].shape))
-        s.fills.push_back(scene.fills[f]);
-  std::erase_if(s.phases, [&](const Phase& p) {
-    return p.if_wall() &&
-           std::none_of(s.fills.begin(), s.fills.end(), [&](const Fill& f) { return f.phase == p.name; });
-  });
-  std::erase_if(s.interactions, [&](const Interaction& pair) {
-    const auto there = [&](const std::string& name) {
-      return std::any_of(s.phases.begin(), s.phases.end(), [&](const Phase& p) { return p.name == name; });
-    };
-    return !there(pair.a) || !there(pair.b);
-  });
-  const double height =
-      (c.high[1] - c.from) * loose * std::pow(1.0 + size.spread, scene.dimensions) + 3.0 * size.largest();
-  s.domain.origin = c.low;
-  s.domain.size = c.high - c.low;
-  s.domain.size[1] = c.from - c.low[1] + height;
-  Phase box;
-  box.name = box_name;
-  box.density = phase.density;
-  box.own = WallKeys{};
-  box.spacing = scene.spacing;
-  Fill sides;
-  sides.phase = box_name;
-  SidesShape shape{{"bottom"}, 1};
-  const char* const names[3][2] = {{"left", "right"}, {"", ""}, {"back", "front"}};
-  for (const std::size_t d : {std::size_t{0}, std::size_t{2}}) {
-    if (d == 2 && scene.dimensions == 2) continue;
-    const double whole = scene.domain.size[d];
-    s.domain.periodic[d] = scene.domain.periodic[d] && s.domain.size[d] > whole * (1.0 - 1e-9);
-    if (!s.domain.periodic[d]) shape.sides.insert(shape.sides.end(), {names[d][0], names[d][1]});
-  }
-  s.domain.periodic[1] = false;
-  sides.shape = shape;
-  s.phases.push_back(box);
-  Interaction at_box;
-  at_box.a = phase.name;
-  at_box.b = box_name;
-  at_box.law = law;
-  s.interactions.push_back(at_box);
-  s.fills.push_back(sides);
-  s.time.end = 1e3;
-  return s;
-}
 
 /// The loose lattice from which the grains fall: `s` is the scene in which they do.
 Fill loose_lattice(const Scene& s, const Fill& fill, const SettlingRoom& c, const SphereSize& size) {
@@ -147,7 +63,8 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
   Scene alone = s;
   alone.fills = {loose_lattice(s, fill, c, size)};
   std::vector<ParticleBlock> blocks = generate(s), grains = generate(alone);
-  const double stretch = loose * std::pow(1.0 + size.spread, s.dimensions), bottom = scene.domain.origin[1];
+  const double stretch = loose_lattice_height * std::pow(1.0 + size.spread, s.dimensions),
+               bottom = scene.domain.origin[1];
   // Fixed spheres: those of walls whose particles lie in the domain.
   const PeriodicSpace space(s.domain);
   const auto width = [](const Phase& p) { return p.diameter() ? p.diameter()->largest() : p.spacing; };
@@ -155,7 +72,7 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
   for (const Phase& p : s.phases) widest = std::max(widest, width(p));
   Places fixed(space, widest);
   for (std::size_t p = 1; p < s.phases.size(); ++p)
-    if (s.phases[p].name != box_name)
+    if (s.phases[p].name != settling_box)
       for (const Vec3& x : blocks[p].position) fixed.add(space.wrapped(x), width(s.phases[p]), 0);
   std::vector<Ground> floors;
   for (const Fill& f : s.fills)
@@ -293,7 +210,7 @@ std::vector<double> soft_stages(const Scene& s, double thickness) {
 
 /// The same with soft contacts of a stiffness.
 Scene softened(Scene s, double stiffness) {
-  for (Interaction& pair : s.interactions) pair.law = soft_law;
+  for (Interaction& pair : s.interactions) pair.law = soft_contact_law;
   std::get<GrainsKeys>(s.phases[0].own).stiffness = stiffness;
   s.time.largest_speed = 2.0 * slow_fall * std::sqrt(norm(s.domain.gravity) * s.phases[0].diameter()->mean);
   return s;

@@ -1,15 +1,9 @@
 // Where the grains of a settled fill stand: the box that they fall into, and beds that would settle in one place.
 #pragma once
 
-#include "scene/scene.hpp"
+#include "scene/settling_scene.hpp"
 
 namespace barchan {
-
-/// The box that a fill's grains fall into (m), and its height when they have settled.
-struct SettlingRoom {
-  Vec3 low{}, high{};
-  double from = 0.0;  // m, where the grains begin
-};
 
 /// The room of fill k, a box or a bed. Throws SceneError when the bed is higher than the domain.
 SettlingRoom settling_room(const Scene& scene, std::size_t k);
