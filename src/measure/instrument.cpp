@@ -121,12 +121,11 @@ class Maker {
     i.axis = 1;
     i.low = bounds_.low;
     i.high = bounds_.high;
-    i.diameter =
-        layout_.phases[i.phase].diameter > 0 ? layout_.phases[i.phase].diameter : layout_.phases[i.phase].spacing;
+    i.diameter = layout_.phases[i.phase].size;
     i.flight = s.flight * i.diameter;
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)
-      if (e.kind == EntryKind::column && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
+      if (e.wind_by_height && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
     const double height = i.high[1] - i.low[1];
     const double slices = s.count > 0 ? s.count : std::max(std::round(height / i.diameter), 1.0);
     for (double k = 0.5; k < slices; ++k) {

@@ -1,6 +1,7 @@
 #include "models/catalogue.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "models/bodies/body_contact_entry.hpp"
@@ -32,7 +33,7 @@ namespace {
 
 /// How a kind of phase enters the program.
 struct Kind {
-  bool moves, flows;
+  void (*declare)(const Scene&, std::size_t, Layout&);
   void (*describe)(const Scene&, const std::vector<ParticleBlock>&, std::size_t, Layout&, std::vector<std::string>&);
   std::unique_ptr<Model> (*make)(const Scene&, const Layout&, std::size_t);
 };
@@ -44,46 +45,88 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
-    case PhaseKind::fluid: return {true, true, describe_air, make<FluidPhase>};
+    case PhaseKind::fluid: return {declare_air, describe_air, make<FluidPhase>};
     case PhaseKind::elastic:
-      return {true, false, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
-    case PhaseKind::rigid: return {true, false, describe_rigid, make<RigidPhase>};
-    case PhaseKind::grains: return {true, false, describe_grains, make<GrainPhase>};
-    case PhaseKind::wall: return {false, false, describe_wall, make<Wall>};
-    case PhaseKind::column: return {false, false, describe_column, make<ColumnPhase>};
+      return {declare_elastic, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
+    case PhaseKind::rigid: return {declare_rigid, describe_rigid, make<RigidPhase>};
+    case PhaseKind::grains: return {declare_grains, describe_grains, make<GrainPhase>};
+    case PhaseKind::wall: return {declare_wall, describe_wall, make<Wall>};
+    case PhaseKind::column: return {declare_column, describe_column, make<ColumnPhase>};
   }
   return {};
 }
 
-EntryKind kind_of_entry(const Phase& a, const Phase& b) {
+/// How an entry enters the program.
+struct EntryKind {
+  void (*describe)(const Scene&, const Interaction&, const Layout&, PlanEntry&);
+  /// Null: the models of its phases do its work. May return null.
+  std::unique_ptr<Model> (*make)(const Scene&, const Layout&, const PlanEntry&) = nullptr;
+};
+
+template <class M>
+std::unique_ptr<Model> make_entry(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
+  return std::make_unique<M>(scene, layout, entry);
+}
+
+/// Throws SceneError when there is no law for the kinds of the two.
+EntryKind kind_of_entry(const Interaction& pair, const Phase& a, const Phase& b) {
   const auto is = [&](PhaseKind k, PhaseKind l) {
     return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
   };
   using enum PhaseKind;
-  if (is(fluid, fluid)) return EntryKind::fluid;
+  if (touch_as_bodies(pair, a, b))
+    return touch_by_surfaces(a, b) ? EntryKind{describe_rigid_contact, make_entry<RigidContact>}
+                                   : EntryKind{describe_body_contact, make_entry<BodyContact>};
+  if (is(fluid, fluid)) return {describe_fluids};
   if (is(fluid, wall))
-    return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? EntryKind::boundary : EntryKind::repulsive;
-  if (is(column, grains)) return EntryKind::column;
-  if (is(fluid, grains) || is(fluid, elastic) || is(fluid, rigid)) return EntryKind::coupling;
-  if (is(elastic, elastic)) return EntryKind::elastic;
+    return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? EntryKind{describe_boundary}
+                                                                   : EntryKind{describe_ghosts, make_ghosts};
+  if (is(column, grains)) return {describe_grains_in_column};
+  if (is(fluid, grains) && pair.drag_law != DragLaw::none) return {describe_sand_layer, make_entry<SandLayer>};
+  if (is(fluid, grains) || is(fluid, elastic) || is(fluid, rigid)) return {describe_coupling, make_drag_entry};
+  if (is(elastic, elastic)) return {is_total(a) ? describe_total_body : describe_elastic_pairs};
   const auto touches = [](const Phase& p) {
     return p.kind() == elastic || p.kind() == rigid || p.kind() == grains || p.kind() == wall;
   };
-  if (touches(a) && touches(b)) return EntryKind::contact;
+  if (touches(a) && touches(b))
+    return of_spheres(pair) ? EntryKind{describe_sphere_contact}
+                            : EntryKind{describe_kernel_contact, make_contact_entry};
   throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + a.kind_word() + ", and \"" + b.name +
                    "\", of kind " + b.kind_word() + "; expected no such entry");
 }
 
+std::unique_ptr<Model> make_of_entry(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  if (e.self_contact) return make_entry<BodyContact>(scene, layout, e);
+  const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
+  const EntryKind kind = kind_of_entry(*entry_between(scene, a, b), a, b);
+  return kind.make ? kind.make(scene, layout, e) : nullptr;
+}
+
+/// Fields of a phase for the fluid or the wind about it.
+void describe_surroundings(const Scene& scene, std::size_t number, PlanPhase& p) {
+  const Phase& phase = scene.phases[number];
+  if (phase.kind() == PhaseKind::rigid && meets(scene, phase, PhaseKind::fluid))
+    for (const Field f : {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
+      p.fields.push_back(f);
+  p.heats = phase.kind() != PhaseKind::fluid && rubs_on_energy(scene, phase);
+  if ((phase.kind() == PhaseKind::grains && meets(scene, phase, PhaseKind::column)) || drags_by_law(scene, phase))
+    p.fields.push_back(Field::drag_acceleration);
+}
+
 }  // namespace
+
+void declare_phases(const Scene& scene, Layout& layout) {
+  double thickest = 0.0;
+  for (std::size_t k = 0; k < layout.phases.size(); ++k) {
+    layout.phases[k].kind = scene.phases[k].kind_word();
+    kind_of(scene.phases[k]).declare(scene, k, layout);
+    thickest = std::max(thickest, layout.phases[k].diameter);
+  }
+  if (layout.dimensions == 2 && thickest > 0.0) layout.slab = thickest;
+}
 
 void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& blocks, Layout& layout,
                      std::vector<std::string>& warnings) {
-  for (std::size_t k = 0; k < layout.phases.size(); ++k) {
-    const Kind kind = kind_of(scene.phases[k]);
-    layout.phases[k].kind = scene.phases[k].kind_word();
-    layout.phases[k].moves = kind.moves;
-    layout.phases[k].flows = kind.flows;
-  }
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     kind_of(scene.phases[k]).describe(scene, blocks, k, layout, warnings);
   bool leaves = scene.domain.open.empty() || scene.domain.open.front() == "none";
@@ -91,28 +134,20 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   if (!leaves)
     throw SceneError(located(scene, "domain.open") +
                      ": nothing leaves through it; expected a scene with a fluid that has a free surface");
-  for (std::size_t k = 0; k < layout.phases.size(); ++k)
-    if (scene.phases[k].kind() == PhaseKind::rigid && meets(scene, scene.phases[k], PhaseKind::fluid))
-      for (const Field f :
-           {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
-        layout.phases[k].fields.push_back(f);
-  for (std::size_t k = 0; k < layout.phases.size(); ++k)
-    layout.phases[k].heats = !layout.phases[k].flows && rubs_on_energy(scene, scene.phases[k]);
-  for (std::size_t k = 0; k < layout.phases.size(); ++k)
-    if ((scene.phases[k].kind() == PhaseKind::grains && meets(scene, scene.phases[k], PhaseKind::column)) ||
-        drags_by_law(scene, scene.phases[k]))
-      layout.phases[k].fields.push_back(Field::drag_acceleration);
+  for (std::size_t k = 0; k < layout.phases.size(); ++k) describe_surroundings(scene, k, layout.phases[k]);
 }
 
-void classify(const Scene& scene, PlanEntry& e) {
+void describe_entry(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
-  e.kind = e.of_bodies ? EntryKind::contact : kind_of_entry(a, b);
-  if (e.kind == EntryKind::coupling && e.drag_law != DragLaw::none) e.kind = EntryKind::drag;
-  e.fluid = a.kind() == PhaseKind::fluid ? e.a : e.b;
+  e.fluid = a.kind() == PhaseKind::fluid || a.kind() == PhaseKind::column ? e.a : e.b;
   e.other = e.partner(e.fluid);
-  e.corrected = (e.kind == EntryKind::fluid || e.kind == EntryKind::boundary || e.kind == EntryKind::coupling) &&
-                scene.phases[e.fluid].fluid().scheme == FluidScheme::consistent;
-  e.corrected = e.corrected || (e.kind == EntryKind::elastic && e.a == e.b && is_total(a));
+  kind_of_entry(pair, a, b).describe(scene, pair, layout, e);
+}
+
+std::optional<PlanEntry> contact_with_itself(const Scene& scene, const Interaction& pair, const Layout& layout,
+                                             const PlanEntry& entry) {
+  if (!touches_itself(pair, scene.phases[entry.a], scene.phases[entry.b])) return std::nullopt;
+  return self_contact_of(scene, pair, layout, entry);
 }
 
 Models make_models(const Scene& scene, const Layout& layout) {
@@ -128,23 +163,15 @@ Models make_models(const Scene& scene, const Layout& layout) {
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if (layout.leaves(k)) models.push_back(std::make_unique<OpenSides>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
-    if (std::none_of(layout.entries.begin(), layout.entries.end(),
-                     [&](const PlanEntry& e) { return e.kind == EntryKind::coupling && e.other == k; }))
-      continue;
+    if (!layout.phases[k].moves || !layout.is_extended(k)) continue;
     if (scene.phases[k].kind() == PhaseKind::rigid)  // its surface moves before the fluid is extended into it
       models.push_back(std::make_unique<RigidInFluid>(scene, layout, k));
     models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
   }
-  if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.diameter > 0; }))
+  if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.own_steps; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
-  for (const auto& e : layout.entries) {
-    if (e.kind == EntryKind::drag) models.push_back(std::make_unique<SandLayer>(scene, layout, e));
-    if (e.drag > 0) models.push_back(make_drag_entry(scene, layout, e));
-    if (e.of_surfaces) models.push_back(std::make_unique<RigidContact>(scene, layout, e));
-    else if (e.of_bodies) models.push_back(std::make_unique<BodyContact>(scene, layout, e));
-    else if ((e.kind == EntryKind::contact && !e.of_spheres()) || e.kind == EntryKind::repulsive)
-      models.push_back(make_contact_entry(scene, layout, e));
-  }
+  for (const auto& e : layout.entries)
+    if (auto model = make_of_entry(scene, layout, e)) models.push_back(std::move(model));
   add_grain_fluxes(scene, layout, models);
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));

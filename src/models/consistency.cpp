@@ -22,4 +22,17 @@ Consistency lattice_consistency(KernelKind kind, double radius, int dimensions) 
   return c;
 }
 
+void describe_kernel_sums(const Interaction& pair, int dimensions, PlanEntry& e) {
+  e.consistency = lattice_consistency(pair.kernel, pair.radius, dimensions);
+  e.meaning = "a contact law, not an approximation";
+}
+
+void describe_approximation(const Interaction& pair, int dimensions, const std::string& correction, PlanEntry& e) {
+  describe_kernel_sums(pair, dimensions, e);
+  e.corrected = !correction.empty();
+  e.meaning = e.corrected                  ? "corrected to first order " + correction
+              : e.consistency.consistent() ? "consistent"
+                                           : "off by more than 3 %, and nothing corrects it";
+}
+
 }  // namespace barchan

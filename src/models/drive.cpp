@@ -24,8 +24,7 @@ double of_profile(const Scene& scene, const Phase& fluid) {
   return u;
 }
 
-constexpr double most_pull = 2.0;         // times what a scene says
-constexpr double strongest_column = 0.7;  // m/s
+constexpr double most_pull = 2.0;  // times what a scene says
 
 }  // namespace
 
@@ -109,13 +108,13 @@ void Drive::archive(Archive& a) {
   a.number(name_ + ": hold in a tenth of the run", in_tenth_);
 }
 
-double stated_friction_velocity(const Scene& scene, const Phase& wind, double time) {
-  if (const ColumnKeys* column = wind.if_column())
-    return column->held ? 0.0 : std::abs(Formula(column->friction_velocity)({}, time));
+std::function<double(double time)> stated_friction_velocity(const Scene& scene, const Phase& fluid) {
   for (const Forcing& f : scene.forcings)
-    if (f.phase == wind.name && f.holds_force()) return std::abs(Formula(f.friction_velocity)({}, time));
-  if (const double u = of_profile(scene, wind); u > 0.0) return u;
-  return std::sqrt(std::abs(wall_pull(scene, wind)) / wind.density);
+    if (f.phase == fluid.name && f.holds_force())
+      return [u = f.friction_velocity](double time) { return std::abs(Formula(u)({}, time)); };
+  const double of_start = of_profile(scene, fluid);
+  const double u = of_start > 0.0 ? of_start : std::sqrt(std::abs(wall_pull(scene, fluid)) / fluid.density);
+  return [u](double) { return u; };
 }
 
 double largest_friction_velocity(const Scene& scene, const Expression& friction_velocity) {
@@ -123,17 +122,6 @@ double largest_friction_velocity(const Scene& scene, const Expression& friction_
   double largest = 0.0;
   for (int k = 0; k <= 64; ++k) largest = std::max(largest, std::abs(u({}, scene.time.end * k / 64.0)));
   return largest;
-}
-
-std::string beyond_measured_winds(const Scene& scene, const Phase& wind) {
-  const ColumnKeys* column = wind.if_column();
-  if (!column || column->held) return "";
-  const double u = largest_friction_velocity(scene, column->friction_velocity);
-  if (!(u > strongest_column)) return "";
-  return "phases." + wind.name + ".friction-velocity: " + brief(u) +
-         " m/s is beyond the winds in which a column's flux of sand agrees with measurements, 0.24 to 0.7 m/s: above "
-         "0.8 m/s it is 1.5 times too large, and the height of the layer grows with the wind, which measured ones do "
-         "not";
 }
 
 void add_pull(HistoryRow& row, const std::string& name, double pull, double density) {

@@ -63,16 +63,12 @@ class Drive {
   WindowMean in_row_, in_tenth_;  // m/s2, of the hold
 };
 
-/// What wind a scene states over grains (m/s): the friction velocity of a held force, of the profile of the start or of
-/// the walls' stress, the first that is there; of a column its own at the time t (s). 0: none.
-double stated_friction_velocity(const Scene& scene, const Phase& wind, double time);
+/// What wind a scene states over grains, m/s at a time (s): the friction velocity of a held force, of the profile of
+/// the start or of the walls' stress, the first that is there. 0: none.
+std::function<double(double time)> stated_friction_velocity(const Scene& scene, const Phase& fluid);
 
 /// The largest |u*| (m/s) of a force that is held, at 65 times of the run.
 double largest_friction_velocity(const Scene& scene, const Expression& friction_velocity);
-
-/// What plan and run tell of a column of wind that is stronger than those in which its flux agrees with measurements;
-/// empty: it is not.
-std::string beyond_measured_winds(const Scene& scene, const Phase& wind);
 
 /// Columns NAME_pull [Pa] and NAME_equivalent_friction_velocity [m/s].
 void add_pull(HistoryRow& row, const std::string& name, double pull, double density);

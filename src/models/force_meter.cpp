@@ -20,7 +20,7 @@ ForceOn::ForceOn(const Scene& scene, const Layout& layout, std::size_t number)
       meter_(scene.force_meters[number]),
       number_(number),
       set_(layout, meter_),
-      wall_(scene.phases[set_.phase()].if_wall() != nullptr) {
+      stays_(!layout.phases[set_.phase()].moves) {
   phase_ = set_.phase();
 }
 
@@ -30,13 +30,13 @@ void ForceOn::attach(Workspace& w) {
   w_ = &w;
   set_.attach(w, "force." + std::to_string(number_));
   for (const auto& e : layout_.entries) {
-    if (!wall_ || !e.has(phase_) || !(meter_.by.empty() || layout_.phases[e.partner(phase_)].name == meter_.by))
+    if (!stays_ || !e.has(phase_) || !(meter_.by.empty() || layout_.phases[e.partner(phase_)].name == meter_.by))
       continue;
-    if (e.of_spheres()) {
+    if (e.own_steps) {
       pushes_.push_back(w.sphere_pushes.size());
       w.sphere_pushes.push_back({phase_, e.partner(phase_), meter_.about});
     }
-    if (e.kind != EntryKind::boundary || e.other != phase_) continue;
+    if (!e.extends || e.other != phase_) continue;
     w.need_motion(e.fluid);
     fluids_.push_back({{&w.list(e.direction(phase_)), &w.motion[e.fluid], e.kernel, e.radius,
                         pair_viscosity(scene_, layout_, phase_, e.fluid), false},
@@ -60,18 +60,17 @@ bool ForceOn::touches_nothing_else(std::size_t fluid) const {
 void ForceOn::schedule(Schedule& s) {
   using enum Field;
   const FieldSet reads = FieldSet{position, velocity, acceleration};
-  const FieldSet writes = wall_ ? FieldSet{acceleration} : FieldSet{};
+  const FieldSet writes = stays_ ? FieldSet{acceleration} : FieldSet{};
   const std::string& name = layout_.phases[phase_].name;
   Touches touches{{name, reads, writes}};
   for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
-    if (e.kind == EntryKind::boundary && e.other == phase_)
-      touches.push_back({layout_.phases[e.fluid].name, reads, {}});
-  s.add({wall_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
+    if (stays_ && e.extends && e.other == phase_) touches.push_back({layout_.phases[e.fluid].name, reads, {}});
+  s.add({stays_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 
 void ForceOn::measure() {
   force_ = torque_ = {};
-  wall_ ? measure_wall() : add_sums(1.0, scene_.domain.gravity);
+  stays_ ? measure_wall() : add_sums(1.0, scene_.domain.gravity);
   sum_up();
 }
 

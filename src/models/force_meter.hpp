@@ -39,7 +39,7 @@ class ForceOn : public Model {
   const ForceMeter& meter_;
   std::size_t number_, phase_;
   SetOfBody set_;
-  bool wall_;
+  bool stays_;  // a wall: its fluids and spheres tell what acts on it, not its acceleration
   struct Felt {
     FluidNeighbour fluid;
     double share;  // of the sums

@@ -17,31 +17,6 @@
 
 namespace barchan {
 
-/// What an entry of the matrix does; it follows from the kinds of its two phases (models/catalogue.cpp).
-enum class EntryKind {
-  fluid,      // fluid-fluid: pressure, viscosity, density diffusion
-  boundary,   // fluid-wall: pressure and velocity extended into the wall (Adami et al. 2012)
-  repulsive,  // fluid-wall: one row of ghosts that push (Halik et al. 2015, section 6; Monaghan 1994)
-  coupling,   // fluid-grains, fluid-elastic: the solid is a moving wall and feels the reaction
-  column,     // column-grains: drag in a wind by height
-  drag,       // fluid-spheres: wind over sand, in layers near the ground (models/coupling/sand_layer.hpp)
-  contact,    // grains with grains, walls or bodies
-  elastic,    // elastic-elastic: stress
-};
-inline std::string to_string(EntryKind kind) {
-  switch (kind) {
-    case EntryKind::fluid: return "fluid";
-    case EntryKind::boundary: return "boundary";
-    case EntryKind::repulsive: return "repulsive";
-    case EntryKind::coupling: return "coupling";
-    case EntryKind::column: return "column";
-    case EntryKind::drag: return "drag";
-    case EntryKind::contact: return "contact";
-    case EntryKind::elastic: return "elastic";
-  }
-  return "";
-}
-
 /// How a turbulent fluid rubs on the other side of an entry (models/fluid/turbulence.hpp).
 enum class Friction {
   fluid,   // through the viscosity of both particles
@@ -62,44 +37,74 @@ struct Consistency {
 };
 Consistency lattice_consistency(KernelKind kernel, double radius_in_spacings, int dimensions);
 
+/// An entry of the matrix. Its numbers are those of the scene; its model declares the rest (a `describe_...` function
+/// that models/catalogue.cpp chooses). Where nothing is declared, the defaults hold.
 struct PlanEntry {
-  std::size_t a = 0, b = 0;  // phase numbers, a <= b
-  std::string name;          // "air-sand"
-  EntryKind kind = EntryKind::fluid;
-  std::size_t fluid = 0, other = 0;         // of laws between a fluid and something else: which is which
-  ContactLaw contact = ContactLaw::kernel;  // of EntryKind::contact
+  std::size_t a = 0, b = 0;                 // phase numbers, a <= b
+  std::string name;                         // "air-sand"
+  std::size_t fluid = 0, other = 0;         // of a law between a fluid or a wind and another phase: which is which
+  ContactLaw contact = ContactLaw::kernel;  // of a contact
   KernelKind kernel = KernelKind::cubic_spline;
-  double radius = 0;   // m; of spheres the distance at which the largest touch
+  double radius = 0;   // m; where sizes decide who touches, the distance at which the largest particles touch
   double spacing = 0;  // m, of its coarser phase
   Consistency consistency;
-  bool corrected = false;            // the consistent scheme divides by these sums: exact to first order all the same
+  bool corrected = false;            // its law divides by these sums: it is exact to first order all the same
   double drag = 0;                   // drag coefficient, 0: none
-  DragLaw drag_law = DragLaw::none;  // of grains in a column
+  DragLaw drag_law = DragLaw::none;  // of grains in a wind
   double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
-  bool of_bodies = false;            // of EntryKind::contact: bodies that touch at their spacings
-  bool of_surfaces = false;          // of these: their outlines touch, not their particles
-  bool of_many_elastic = false;      // of these: an elastic body of several particles is in it
-  double restitution = 1, friction = 0;  // of such
-  int forward = -1, backward = -1;       // directions: a looks for b, b looks for a; -1: not needed
+  double restitution = 1;            // of a contact of bodies
+  double friction = 0;               // of a contact of bodies: Coulomb's coefficient
+  int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
+
+  // What the plan prints. The model of every law sets `law` and `meaning`.
+  std::string law;          // its word, "coupling"; of a contact of spheres that of the scene, "hertz"
+  std::string kernel_word;  // the name of the kernel; "none" where a scene can give no kernel (spheres)
+  std::string meaning;      // what its kernel sums mean, or what decides in their place
+
+  // What the engine and other models ask. In brackets: which laws set it.
+  bool searched = true;          // the engine makes lists of its pairs; [false: winds, spheres, outlines, first shapes]
+  bool continues_fluid = false;  // a fluid sums its rates over these pairs [fluid, boundary, coupling]
+  bool extends = false;          // the fluid is extended into the other phase: extended records [boundary, coupling]
+  bool compact_only = false;     // in mixed precision its law reads compact records and no motion records [fluid]
+  bool reads_stress = false;     // its law reads the stress records of both phases [bodies, updated Lagrangian]
+  bool first_shape = false;      // its pairs are those of the body's first shape, found once [bodies, total Lagrangian]
+  bool self_contact = false;     // parts of one body touch that are far apart in its first shape [contact of bodies]
+  bool own_steps = false;        // its contacts act in the steps of models/grains/spheres.hpp [spheres]
+  bool by_outlines = false;      // outlines of bodies touch, and no particle feels anything by itself [rigid bodies]
+  bool gives_length = false;    // half of its radius is the smoothing length of a phase that has none [grains, spheres]
+  bool blows = false;           // `fluid` is a wind over grains: it drives them, and they brake it [winds over grains]
+  bool wind_by_height = false;  // the wind of a grain is that of its height (State::air) [column]
+
+  // What the watch, the budget and the warnings ask.
+  bool keeps_apart = false;   // two particles never stand in one place: the watch looks at its lists [contacts, bodies]
+  double stopping_depth = 0;  // m: it stops grains up to sound speed times this over the distance of two that touch;
+                              // 0: the watch has no such bound [contact through a kernel]
+  bool feeds = false;         // it gives its phases momentum and energy that no other particle loses [column]
+  bool feels_lattice = false;  // bodies touch the particles of a wall, whose lattice is rough [contact of bodies]
+
   bool has(std::size_t phase) const { return a == phase || b == phase; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
-  bool of_spheres() const { return kind == EntryKind::contact && barchan::of_spheres(contact); }
-  bool sees_solid() const { return kind == EntryKind::boundary || kind == EntryKind::coupling; }
-  /// The other phase is part of the neighbourhood in which a fluid sums its rates.
-  bool continues_fluid() const { return kind == EntryKind::fluid || sees_solid(); }
 };
+
+/// Declares that the law of an entry weighs with the kernel of the scene, and what its sums on a lattice are.
+void describe_kernel_sums(const Interaction& pair, int dimensions, PlanEntry& e);
+/// The same of a law that approximates integrals by these sums. `correction`: what makes it exact to first order, "by
+/// the consistent scheme"; empty: nothing does.
+void describe_approximation(const Interaction& pair, int dimensions, const std::string& correction, PlanEntry& e);
 
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.
 struct PhaseRules {
   double way = 0;                       // m a step
+  double way_in_lengths = 0;            // above 0: `way` is so many smoothing lengths, which the plan knows later
   double signal_speed = 0;              // m/s; what is faster is wrong
   bool contacts_limit_speed = false;    // the energy that its contacts can store bounds the speed
   double density_share = 0;             // |rho/rho0 - 1| at most; 0: the density must be above zero only
   double idle = 0.1;                    // of the sound speed: motion that disorder alone may cause
   bool pressure_stores_energy = false;  // the pressure of the start may become motion
-  bool pairs_up = false;                // its own particles may stand in pairs: they are searched
+  bool pairs_up = false;                // under too wide a kernel its particles stand in pairs: they are searched
+  bool tells_speed = false;             // a particle much faster than anything can have made it is told at the end
   bool stops_at_sides = false;          // a centre beyond a closed side is in the wall
   bool solid = false;                   // its contacts must be looked at the sooner, the faster it is
   std::string one = "particle";         // of it
@@ -110,33 +115,68 @@ struct PhaseRules {
   std::string stiffness_key;                                       // of its contacts
 };
 
+/// A phase as its model declares it: first what others ask while they describe themselves (`declare_...`), then all
+/// else (`describe_...`). models/catalogue.cpp calls both. Where nothing is declared, the defaults hold.
 struct PlanPhase {
   std::string name;
-  std::string kind;  // as the scene calls it
+  std::string kind;  // as the scene calls it, for frames and the plan's text
   std::size_t count = 0;
   double spacing = 0;           // m, of its particles at the start
-  double diameter = 0;          // m, mean, of spheres; 0: its particles are not spheres
-  double largest_diameter = 0;  // m
   double mass = 0;              // kg a particle (per metre of depth in 2D); of spheres that of the mean diameter
   double sound_speed = 0;       // m/s: of the equation of state, of compression waves, of a contact; 0 for walls
   double smoothing_length = 0;  // m
-  Friction friction = Friction::smooth;       // of a turbulent fluid on it
-  bool moves = true;                          // false: its particles stay in place
-  bool flows = false;                         // a fluid: has a pressure of its own
+
+  // Declared first. In brackets: which kinds set it.
+  bool moves = false;      // its particles are integrated in time; false: they stay in place [all but wall, column]
+  bool flows = false;      // it has a pressure of its own, by which it fills its room and gives way [fluid]
+  bool own_steps = false;  // models/grains/spheres.hpp moves its particles, in steps of their own [grains: spheres]
+  bool sphere_records = false;  // its particles have records of contacts of spheres [grains and walls with a diameter]
+  double diameter = 0;          // m, mean, that the scene gives grains; 0: it gives none [grains]
+  double size = 0;              // m, across a particle: the mean diameter [grains], else the spacing
+  double largest_size = 0;      // m, across the largest particle [grains], else the spacing
+  double weight_share = 1.0;    // of gravity, that grains feel: less than 1 with buoyancy [grains]
+  double surface_speed = 0;     // m/s, the largest with which the scene lets the surface slide [wall]
+
+  // Its motion and its contacts.
+  bool kicked = false;  // CommonWork ends its step, v += dt/2 a; false: its own model does [fluid, elastic, grains]
+  bool tells_motion = false;  // its own model fills Workspace::carried, from which a fluid knows its motion [rigid]
+  bool separate = false;  // its particles move one by one: a fluid follows their velocities, not their blows [grains]
+  bool yields = false;    // a contact can push single particles; false: it is as hard as a wall [as kicked, spheres]
+  double contact_restitution = 1;       // of a contact through a kernel [grains]
+  double contact_stiffness = 0;         // N/m, of a contact with another body (2D: N/m a metre) [rigid]
+  std::vector<RigidBody> rigid_bodies;  // at the start [rigid]
+
+  // A fluid, and what a fluid asks of its neighbours.
+  Friction friction = Friction::smooth;       // of a turbulent fluid on it [fluid, grains, wall]
+  double roughness = 0;                       // m, z0 of the logarithmic law; 0: smooth [grains, wall]
+  Vec3 stress{};                              // Pa, with which its surface pulls a fluid [wall]
   bool held = false;                          // a fluid whose bulk speed is held
   bool free_surface = false;                  // a fluid that does not fill its space
   std::array<std::array<bool, 2>, 3> open{};  // sides of the domain through which it leaves, by axis: {lower, upper}
   bool eddies = false;                        // a fluid whose viscosity varies, or with a wall whose stress is given
-  bool body = false;                          // elastic
-  bool fixed_neighbours = false;        // a body whose neighbours are those of its first shape: nobody searches them
-  bool heats = false;                   // a solid in a fluid whose internal energy is asked for
-  bool enclosed = false;                // a fluid whose mean density is kept
-  double wind = 0;                      // m/s, what a column of air can reach: a bound for the watch
-  std::string enclosure = "";           // why it is enclosed or not, of a fluid
-  std::string physics = "";             // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
-  std::vector<RigidBody> rigid_bodies;  // at the start; none of a phase of another kind
-  double weight_share = 1.0;            // of gravity, that grains feel: less than 1 with buoyancy
-  double contact_stiffness = 0;         // N/m, of a rigid body with another (2D: N/m a metre)
+  bool heats = false;          // a solid in a fluid whose internal energy is asked for [models/catalogue.cpp]
+  bool enclosed = false;       // a fluid whose mean density is kept
+  std::string enclosure = "";  // why a fluid is enclosed or not; empty: nobody asks
+
+  // A wind over grains.
+  bool driven = false;     // the scene says what drives this wind: the flux of grains is measured [fluid, column]
+  double wind = 0;         // m/s, what a column of air can reach: a bound for the watch [column]
+  std::string too_strong;  // the warning of a wind beyond measurements; empty: the wind is within them [column]
+  /// m/s at a time (s), the friction velocity that the scene states; empty: it states none [fluid, column].
+  std::function<double(double time)> friction_velocity;
+
+  // A body.
+  bool deforms = false;           // its entry with itself holds it together, and it bends [elastic]
+  bool fixed_neighbours = false;  // its neighbours are those of its first shape: nobody searches them [elastic]
+  bool stress_records = false;    // its particles have stress records [elastic]
+
+  // What the budget and the warnings ask.
+  bool collides = false;        // its grains pass through each other without an entry of their own [grains: spheres]
+  bool noiseless = false;       // forces of its pairs have no noise, and keep the angular momentum [elastic, rigid]
+  bool counts_drive = false;    // the work of a [[motion]] on it is in Model::budget_energy [elastic]
+  bool takes_momentum = false;  // what pushes it loses momentum that no particle gets [wall]
+  bool gives_energy = false;    // its surface slides or pulls, and so gives energy to the others [wall]
+  std::string physics = "";     // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
   std::vector<Field> fields;
   PhaseRules rules;
 
@@ -156,6 +196,15 @@ struct Layout {
   bool leaves(std::size_t phase) const {  // some side is open to it
     const auto& o = phases[phase].open;
     return std::any_of(o.begin(), o.end(), [](const auto& ends) { return ends[0] || ends[1]; });
+  }
+  /// Whether some fluid is extended into the phase, which then has extended records.
+  bool is_extended(std::size_t phase) const {
+    return std::any_of(entries.begin(), entries.end(),
+                       [&](const PlanEntry& e) { return e.extends && e.other == phase; });
+  }
+  /// m, at which the largest particles of an entry touch.
+  double touching_distance(const PlanEntry& e) const {
+    return 0.5 * (phases[e.a].largest_size + phases[e.b].largest_size);
   }
   double particles() const;
   /// For a task that touches these of all phases.

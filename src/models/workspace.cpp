@@ -114,8 +114,8 @@ void pack_carried(const PhaseParticles& p, RecordArray& records, double kick) {
   }
 }
 
-/// A solid that a fluid asks how it moves; rigid bodies tell that themselves (models/bodies/rigid_phase.hpp).
-bool moves_by_itself(const PlanPhase& p) { return p.heats && p.rigid_bodies.empty(); }
+/// A solid that a fluid asks how it moves, and whose own model does not tell.
+bool must_be_told(const PlanPhase& p) { return p.heats && !p.tells_motion; }
 
 std::vector<double> spacings(const Layout& layout) {
   std::vector<double> all;
@@ -142,8 +142,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   // need_motion.
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
-    if (e.sees_solid()) seen[e.other] = true;
-    if (e.kind != EntryKind::fluid) read[e.a] = read[e.b] = true;
+    if (e.extends) seen[e.other] = true;
+    if (!e.compact_only) read[e.a] = read[e.b] = true;
   }
   eddies.resize(phases);
   ground_stress.resize(phases);
@@ -203,7 +203,7 @@ void CommonWork::schedule(Schedule& s) {
   Touches sorted, carried;
   for (const auto& p : layout_.phases) {
     sorted.push_back(p.all_fields());
-    if (moves_by_itself(p)) carried.push_back({p.name, {position, velocity, acceleration}, {}});
+    if (must_be_told(p)) carried.push_back({p.name, {position, velocity, acceleration}, {}});
   }
   s.add({stage::neighbours, "all", sorted, [this] { find_neighbours(); }});
   s.add({stage::pack, "all", layout_.of_all({position, velocity, density, pressure, stress}, {}), [this] { pack(); }});
@@ -255,17 +255,14 @@ void CommonWork::pack() {
 void CommonWork::carry() {
   const bool flat = layout_.dimensions == 2;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
-    if (!moves_by_itself(layout_.phases[k])) continue;
+    if (!must_be_told(layout_.phases[k])) continue;
     const PhaseParticles& p = w_->particles(k);
     flat ? pack_carried<2>(p, w_->carried[k], kick_of(k)) : pack_carried<3>(p, w_->carried[k], kick_of(k));
     w_->carried[k].fill_images(w_->neighbours.grid(k), layout_.dimensions);
   }
 }
 
-double CommonWork::kick_of(std::size_t phase) const {
-  const PlanPhase& p = layout_.phases[phase];
-  return p.moves && !(p.diameter > 0) && p.rigid_bodies.empty() ? w_->kick_time : 0.0;
-}
+double CommonWork::kick_of(std::size_t phase) const { return layout_.phases[phase].kicked ? w_->kick_time : 0.0; }
 
 void CommonWork::kick() {
   double largest = 0.0;

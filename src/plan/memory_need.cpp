@@ -94,27 +94,25 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     const double motion = plan.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size,
                  stress = plan.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size,
                  carried = plan.dimensions == 2 ? CarriedRecord<2>::size : CarriedRecord<3>::size;
-    const bool seen = std::any_of(plan.entries.begin(), plan.entries.end(),
-                                  [&](const PlanEntry& e) { return e.sees_solid() && e.other == k; });
-    records += all * wide *
-               (motion * (seen ? 2.0 : 1.0) + (p.heats ? carried : 0.0) +
-                (p.body && !p.fixed_neighbours ? stress + (pulled ? ArtificialStressRecord::size : 0) : 0.0) +
-                (p.eddies ? 4.0 : 0.0));
+    records +=
+        all * wide *
+        (motion * (plan.is_extended(k) ? 2.0 : 1.0) + (p.heats ? carried : 0.0) +
+         (p.stress_records ? stress + (pulled ? ArtificialStressRecord::size : 0) : 0.0) + (p.eddies ? 4.0 : 0.0));
     if (p.fixed_neighbours) {  // models/bodies/reference_body.hpp: constants and sums of a particle; the search before
       const double numbers = dimensions == 2 ? 11.0 : 24.0, gradient = dimensions == 2 ? 5.0 : 10.0;
       const double number = scene.precision == Precision::mixed ? index : wide;
       records += n * (numbers * number + (gradient + dimensions) * wide + index);
       for (const auto& e : plan.entries)
-        if (e.kind == EntryKind::elastic && e.a == k) start += n * 40.0 * (1.0 + e.consistency.neighbours);
+        if (e.first_shape && e.a == k) start += n * 40.0 * (1.0 + e.consistency.neighbours);
       for (const auto& e : plan.entries)  // models/bodies/self_contact.hpp
-        if (e.of_bodies && e.a == k && e.b == k) records += n * (2.0 * wide + index * (dimensions == 2 ? 25.0 : 93.0));
+        if (e.self_contact && e.a == k) records += n * (2.0 * wide + index * (dimensions == 2 ? 25.0 : 93.0));
     }
     const double search = all * dimensions * narrow * 1.125 + (all - n) * sizeof(Image);
     grids += cells(plan, k) * 4.0 * index + search + 2.0 * n * index;
     past += own + cells(plan, k) * 2.0 * index + search;
     frames += n * (written * wide + id + 3.0 * index);
     start += n * 2.0 * sizeof(Vec3);
-    if (scene.phases[k].diameter()) contacts += n * contacts_of_a_sphere(plan.dimensions);
+    if (p.sphere_records) contacts += n * contacts_of_a_sphere(plan.dimensions);
     if (p.moves) kept += n * ((2.0 * dimensions + 2.0) * wide + id);
   }
   MemoryNeed need;

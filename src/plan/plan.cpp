@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
@@ -45,40 +44,35 @@ double driven_speed(const Scene& scene, const Motion& motion, const std::vector<
   return speed + reach * largest_in_time(scene, motion.angular_velocity->about);
 }
 
-double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
+double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& blocks, const Plan& plan) {
   double speed = scene.time.largest_speed;
   if (speed > 0) return speed;
   for (const auto& b : blocks)
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
-  for (const auto& p : scene.phases) {
-    const WallKeys* wall = p.if_wall();
-    if (!wall) continue;
-    const Formula u(wall->velocity[0]), v(wall->velocity[1]), w(wall->velocity[2]);
-    for (int k = 0; k <= 16; ++k) {
-      const double t = scene.time.end * k / 16.0;
-      speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
-    }
-  }
+  for (const PlanPhase& p : plan.phases) speed = std::max(speed, p.surface_speed);
   for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion, blocks));
   double height = 0;
   for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
-/// The first direction of an entry, and its opposite. A wall searches only the fluid that is extended into it.
-void add_directions(const Scene& scene, Plan& plan, PlanEntry& e) {
-  if (e.kind == EntryKind::column || e.kind == EntryKind::drag) return;  // the wind is found by height: no search
-  if (e.of_surfaces) return;  // models/bodies/rigid_contact.hpp looks at outlines
+/// A phase that moves looks for its partner. A phase that stays feels nothing, and looks only for a fluid that is
+/// extended into it.
+void add_directions(Plan& plan, PlanEntry& e) {
+  if (!e.searched) return;
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
-  if (e.kind == EntryKind::elastic && plan.phases[e.a].fixed_neighbours) return;
-  if (e.of_bodies && (has_surfaces(scene, scene.phases[e.a]) || has_surfaces(scene, scene.phases[e.b]))) return;
-  if (e.of_spheres()) return;  // models/grains/spheres.hpp has its own search
-  const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.kind == EntryKind::boundary; };
+  const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.extends; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);
   if (e.a != e.b && looks(e.b)) e.backward = direction(e.b, e.a);
+}
+
+std::string word_of(KernelKind kernel) {
+  for (const Word& w : words_of<KernelKind>)
+    if (w.meaning == static_cast<int>(kernel)) return std::string(w.word);
+  return "";
 }
 
 void add_entries(const Scene& scene, Plan& plan) {
@@ -101,35 +95,19 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.drag_law = i.drag_law;
     e.lift = i.lift;
     e.gusts = i.gusts;
-    e.of_bodies = touch_as_bodies(i, scene.phases[e.a], scene.phases[e.b]);
-    e.of_surfaces = e.of_bodies && touch_by_surfaces(scene.phases[e.a], scene.phases[e.b]);
-    for (const PlanPhase& p : {plan.phases[e.a], plan.phases[e.b]}) e.of_many_elastic |= p.body && p.count > 1;
     e.restitution = i.restitution.value_or(1.0);
     e.friction = i.friction.value_or(0.0);
-    classify(scene, e);
-    if (e.of_spheres() || e.of_bodies) {
-      const auto across = [&](std::size_t k) {
-        return plan.phases[k].diameter > 0 ? plan.phases[k].largest_diameter : plan.phases[k].spacing;
-      };
-      e.radius = 0.5 * (across(e.a) + across(e.b));
-    } else if (e.kind != EntryKind::column && e.kind != EntryKind::drag) {
-      e.consistency = lattice_consistency(i.kernel, i.radius, scene.dimensions);
-    }
-    add_directions(scene, plan, e);
+    e.kernel_word = word_of(i.kernel);
+    describe_entry(scene, i, plan, e);
+    add_directions(plan, e);
     plan.entries.push_back(e);
-    if (e.a == e.b || (e.kind == EntryKind::contact && !e.of_bodies)) {
+    if (e.a == e.b || e.gives_length) {
       for (const std::size_t p : {e.a, e.b})
         if (e.a == e.b || plan.phases[p].smoothing_length == 0) plan.phases[p].smoothing_length = 0.5 * e.radius;
     }
-    if (touches_itself(i, scene.phases[e.a], scene.phases[e.b])) {  // an entry of its own: it is searched
-      e.name += " contact";
-      e.kind = EntryKind::contact;
-      e.of_bodies = true;
-      e.corrected = false;
-      e.consistency = {};
-      e.radius = plan.phases[e.a].spacing;
-      add_directions(scene, plan, e);
-      plan.entries.push_back(e);
+    if (auto contact = contact_with_itself(scene, i, plan, e)) {
+      add_directions(plan, *contact);
+      plan.entries.push_back(*contact);
     }
   }
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
@@ -138,7 +116,7 @@ void add_entries(const Scene& scene, Plan& plan) {
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
     if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // no search
-    if (p.flows) p.rules.way = 2.0 * p.smoothing_length;
+    if (p.rules.way_in_lengths > 0.0) p.rules.way = p.rules.way_in_lengths * p.smoothing_length;
   }
 }
 
@@ -173,27 +151,17 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   plan.bounds.low = scene.domain.origin;
   plan.bounds.high = scene.domain.origin + scene.domain.size;
   plan.bounds.periodic = scene.domain.periodic;
-  plan.largest_speed = largest_speed(scene, blocks);
-  double thickest = 0;
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& p = scene.phases[k];
     PlanPhase q;
     q.name = p.name;
     q.count = blocks[k].position.size();
-    q.spacing = p.spacing;
+    q.spacing = q.size = q.largest_size = p.spacing;
     q.mass = (p.density > 0 ? p.density : 1.0) * std::pow(p.spacing, scene.dimensions);
-    if (p.if_grains()) q.weight_share = weight_share(scene, p);
-    if (const auto size = p.diameter(); size && p.if_grains()) {
-      q.diameter = size->mean;
-      q.largest_diameter = size->largest();
-      thickest = std::max(thickest, size->mean);
-    }
     plan.phases.push_back(q);
   }
-  if (scene.dimensions == 2 && thickest > 0) plan.slab = thickest;
-  for (std::size_t k = 0; k < plan.phases.size(); ++k)
-    if (PlanPhase& q = plan.phases[k]; q.diameter > 0)
-      q.mass = scene.phases[k].density * std::numbers::pi / 6.0 * std::pow(q.diameter, 3) / plan.slab;
+  declare_phases(scene, plan);
+  plan.largest_speed = largest_speed(scene, blocks, plan);
   describe_phases(scene, blocks, plan, plan.warnings);
   add_entries(scene, plan);
   const Models models = make_models(scene, plan);

@@ -16,39 +16,10 @@ std::string line(const char* format, A... a) {
   return text;
 }
 
-const char* kernel_name(KernelKind k) { return k == KernelKind::wendland_c2 ? "wendland-c2" : "cubic-spline"; }
-
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
   for (const auto& w : words) all += (all.empty() ? "" : ", ") + w;
   return all.empty() ? "none" : all;
-}
-
-/// A contact with a law by name has this name.
-std::string law_of(const PlanEntry& e) {
-  if (e.kind == EntryKind::contact && e.contact != ContactLaw::kernel)
-    for (const Word& w : words_of<ContactLaw>)
-      if (w.meaning == static_cast<int>(e.contact)) return std::string(w.word);
-  return to_string(e.kind);
-}
-
-std::string number(double value) { return line("%.3g", value); }
-
-/// What the kernel sums of an entry mean.
-std::string meaning(const PlanEntry& e) {
-  if (e.kind == EntryKind::drag) return "no kernel: the mean wind about the grain, in layers near the ground";
-  if (e.kind == EntryKind::column) return "no kernel: the wind of the grain's height";
-  if (e.corrected && e.kind == EntryKind::elastic) return "corrected to first order in the body's first shape";
-  if (e.corrected) return "corrected to first order by the consistent scheme";
-  if (e.of_spheres()) return "spheres: touching decides";
-  if (e.of_bodies && e.restitution < 1.0 && e.of_many_elastic)
-    return "bodies: touching decides; restitution " + number(e.restitution) +
-           " is of two particles, bodies of many keep more (0.91 to 0.93 measured)";
-  if (e.of_bodies) return "bodies: touching decides";
-  if (e.kind == EntryKind::contact || e.kind == EntryKind::repulsive) return "a contact law, not an approximation";
-  if (e.consistency.consistent()) return "consistent";
-  if (e.kind == EntryKind::elastic && e.a != e.b) return "a contact law, not an approximation";
-  return "off by more than 3 %, and nothing corrects it";
 }
 
 /// In steps of the planned length (s).
@@ -77,12 +48,13 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
             "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
-    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), law_of(e).c_str(),
-              e.of_spheres() ? "-" : kernel_name(e.kernel), e.radius / e.spacing, e.consistency.neighbours,
-              e.consistency.volume_sum, e.consistency.gradient_sum, meaning(e).c_str());
+    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), e.law.c_str(),
+              e.kernel_word == "none" ? "-" : e.kernel_word.c_str(), e.radius / e.spacing, e.consistency.neighbours,
+              e.consistency.volume_sum, e.consistency.gradient_sum, e.meaning.c_str());
   t += "\n";
   for (const auto& p : plan.phases)
-    if (p.flows) t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
+    if (!p.enclosure.empty())
+      t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
   t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
   for (const auto& r : plan.repeats)
     t += line("repeats %s of %s: one in %.4g s, %s\n", r.name.c_str(), r.owner.c_str(), r.interval,
@@ -129,7 +101,7 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
     q["mass"] = p.mass;
     q["sound_speed"] = p.sound_speed;
     q["smoothing_length"] = p.smoothing_length;
-    if (p.flows) {
+    if (!p.enclosure.empty()) {
       q["enclosed"] = p.enclosed;
       q["enclosure"] = p.enclosure;
     }
@@ -139,15 +111,15 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   }
   for (const auto& e : plan.entries) {
     nlohmann::ordered_json q;
-    q["law"] = law_of(e);
-    q["kernel"] = e.of_spheres() ? "none" : kernel_name(e.kernel);
+    q["law"] = e.law;
+    q["kernel"] = e.kernel_word;
     q["radius"] = e.radius;
     q["neighbours"] = e.consistency.neighbours;
     q["volume_sum"] = e.consistency.volume_sum;
     q["gradient_sum"] = e.consistency.gradient_sum;
     q["consistent"] = e.consistency.consistent();
     q["corrected"] = e.corrected;
-    q["meaning"] = meaning(e);
+    q["meaning"] = e.meaning;
     j["interactions"][e.name] = q;
   }
   for (const auto& [name, count] : estimate.pairs) j["interactions"][name]["pairs"] = count;

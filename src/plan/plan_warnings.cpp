@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "models/drive.hpp"
-#include "plan/plan.hpp"
 #include "output/numbers.hpp"
+#include "plan/plan.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -31,7 +30,7 @@ bool stands_behind_sides(const Scene& scene, const Phase& wall) {
 
 void warn_of_pairing(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries)
-    if (e.kind == EntryKind::fluid && e.kernel == KernelKind::cubic_spline &&
+    if (plan.phases[e.a].rules.pairs_up && plan.phases[e.b].rules.pairs_up && e.kernel == KernelKind::cubic_spline &&
         e.radius > widest_cubic_spline * e.spacing * (1.0 + 1e-9))
       plan.warnings.push_back(
           "interactions." + e.name +
@@ -60,7 +59,7 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
 void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (p.body && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]) &&
+    if (p.deforms && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]) &&
         !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
                               p.name + "\" together");
@@ -68,12 +67,12 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
 }
 
 /// A wall that bodies touch by its particles is rough by their lattice: a ball leaves it sideways.
-void warn_of_lattices(const Scene& scene, Plan& plan) {
+void warn_of_lattices(Plan& plan) {
   for (const PlanEntry& e : plan.entries)
     for (const std::size_t wall : {e.a, e.b})
-      if (e.of_bodies && !e.of_surfaces && scene.phases[wall].if_wall() && !has_surfaces(scene, scene.phases[wall]))
+      if (e.feels_lattice && !plan.phases[wall].moves)
         plan.warnings.push_back(
-            "interactions." + e.name + ": the shape of \"" + scene.phases[wall].name +
+            "interactions." + e.name + ": the shape of \"" + plan.phases[wall].name +
             "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
             "shape with one: sides, box, cube, polygon, surface of lines, in 2D also disc, ring, in 3D sphere");
 }
@@ -85,7 +84,7 @@ void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blo
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const auto is_own = [&](const Fill& fill) { return fill.phase == plan.phases[k].name; };
     const auto fill = std::find_if(scene.fills.begin(), scene.fills.end(), is_own);
-    if (!plan.phases[k].body || std::count_if(scene.fills.begin(), scene.fills.end(), is_own) != 1) continue;
+    if (!plan.phases[k].deforms || std::count_if(scene.fills.begin(), scene.fills.end(), is_own) != 1) continue;
     const auto* box = std::get_if<BoxShape>(&fill->shape);
     if (!box || fill->packing != Packing::square || blocks[k].position.size() < 2) continue;
     const double dx = plan.phases[k].spacing;
@@ -118,7 +117,7 @@ void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blo
 void warn_of_background_pressure(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (!p.flows || !p.free_surface || scene.phases[k].fluid().scheme != FluidScheme::plain) continue;
+    if (!p.free_surface || scene.phases[k].fluid().scheme != FluidScheme::plain) continue;
     if (scene.phases[k].fluid().background_pressure > 0)
       plan.warnings.push_back("phases." + p.name +
                               ".background-pressure: it blows the free surface of a fluid of the plain scheme away (a "
@@ -131,7 +130,7 @@ void warn_of_background_pressure(const Scene& scene, Plan& plan) {
 void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
   for (std::size_t a = 0; a < plan.phases.size(); ++a) {
     const PlanPhase& p = plan.phases[a];
-    if (p.diameter > 0 && p.moves && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
+    if (p.collides && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
         !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": the grains of \"" + p.name +
                               "\" pass through each other");
@@ -144,32 +143,25 @@ void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
   }
 }
 
-bool are_grains(const PlanPhase& phase) { return phase.kind == "grains"; }
-
 /// What holds the mean speed of a wind pulls as hard as grains brake, and no friction velocity is given.
 void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
     const Forcing& f = scene.forcings[k];
     if (f.hold != Hold::bulk_speed) continue;
     for (const PlanEntry& e : plan.entries)
-      for (const std::size_t fluid : {e.a, e.b})
-        if (plan.phases[fluid].name == f.phase && (e.kind == EntryKind::drag || e.kind == EntryKind::coupling) &&
-            are_grains(plan.phases[e.partner(fluid)]))
-          plan.warnings.push_back(
-              "forcing." + std::to_string(k) +
-              ".hold: a wind whose bulk speed is held is pulled as hard as the grains of \"" +
-              plan.phases[e.partner(fluid)].name +
-              "\" brake it: its friction velocity u* is a result, which history.csv tells (" + f.phase +
-              "_equivalent_friction_velocity); hold = \"stress\" or \"pressure-gradient\" keeps u*");
+      if (e.blows && plan.phases[e.fluid].name == f.phase)
+        plan.warnings.push_back(
+            "forcing." + std::to_string(k) +
+            ".hold: a wind whose bulk speed is held is pulled as hard as the grains of \"" + plan.phases[e.other].name +
+            "\" brake it: its friction velocity u* is a result, which history.csv tells (" + f.phase +
+            "_equivalent_friction_velocity); hold = \"stress\" or \"pressure-gradient\" keeps u*");
   }
 }
 
-void warn_of_strong_columns(const Scene& scene, Plan& plan) {
+void warn_of_strong_winds(Plan& plan) {
   for (const PlanEntry& e : plan.entries)
-    for (const std::size_t wind : {e.a, e.b})
-      if (const std::string told = beyond_measured_winds(scene, scene.phases[wind]);
-          e.kind == EntryKind::column && !told.empty())
-        plan.warnings.push_back(told);
+    if (const std::string& told = plan.phases[e.fluid].too_strong; e.blows && !told.empty())
+      plan.warnings.push_back(told);
 }
 
 /// Frames and rows cut steps: more often than steps, and the run is as much longer.
@@ -216,8 +208,9 @@ void warn_of_weight(const Scene& scene, Plan& plan) {
 
 /// A radius below one spacing meets no neighbour: it may have been meant in the other unit.
 void warn_of_small_radius(const Scene& scene, Plan& plan) {
-  for (const Interaction& pair : scene.interactions) {
-    if (of_spheres(pair) || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
+  for (const PlanEntry& e : plan.entries) {
+    const Interaction& pair = *entry_between(scene, scene.phases[e.a], scene.phases[e.b]);
+    if (e.own_steps || e.self_contact || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
     plan.warnings.push_back(
         "interactions." + pair.a + "-" + pair.b + ": a radius below one spacing meets no neighbour of a lattice; " +
         (pair.radius_in_metres ? "radius says one in spacings" : "radius-in-metres says one in metres"));
@@ -231,11 +224,11 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
   warn_of_what_does_not_meet(scene, plan);
-  warn_of_lattices(scene, plan);
+  warn_of_lattices(plan);
   warn_of_background_pressure(scene, plan);
   warn_of_thickness(scene, blocks, plan);
   warn_of_held_speed_over_grains(scene, plan);
-  warn_of_strong_columns(scene, plan);
+  warn_of_strong_winds(plan);
   warn_of_output(scene, plan);
   warn_of_late_instruments(scene, plan);
   warn_of_weight(scene, plan);

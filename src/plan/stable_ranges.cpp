@@ -41,21 +41,20 @@ class Comparison {
       compare(kind, "safety", plan_.fixed_step / limit, "time.step", " of the stability limit");
     }
     const std::string of = "phases." + p.name;
-    if (p.flows && plan_.largest_speed > 0)
+    if (p.sound_speed > 0 && plan_.largest_speed > 0)
       compare(kind, "sound", p.sound_speed / plan_.largest_speed, of + ".sound-speed", " of the largest speed");
-    if (!p.flows && p.sound_speed > 0)
+    if (p.sound_speed > 0)
       compare(kind, "elastic speed", plan_.largest_speed / p.sound_speed, of + ".young",
               ", the largest speed over that of sound,");
     for (const PlanEntry& e : plan_.entries)
-      if (e.a == k && e.b == k && !e.of_spheres())
-        compare(kind, "radius", e.radius / e.spacing, "interactions." + e.name, " spacings");
+      if (e.a == k && e.b == k) compare(kind, "radius", e.radius / e.spacing, "interactions." + e.name, " spacings");
     for (std::size_t f = 0; f < scene_.fills.size(); ++f)
       if (scene_.fills[f].phase == p.name && scene_.fills[f].perturb > 0)
         compare(kind, "disorder", scene_.fills[f].perturb, "fill." + std::to_string(f) + ".perturb", " spacings");
   }
 
   void entry(const PlanEntry& e) {
-    if (e.kind != EntryKind::fluid || e.a == e.b) return;
+    if (!e.continues_fluid || e.extends || e.a == e.b) return;  // no interface of two fluids
     const double a = scene_.phases[e.a].density, b = scene_.phases[e.b].density;
     compare(plan_.phases[e.a].physics, "density ratio", std::max(a, b) / std::min(a, b), "interactions." + e.name,
             ", the ratio of the densities,");

@@ -10,24 +10,17 @@ namespace barchan {
 
 namespace {
 
-bool moves(const WallKeys& wall) {
-  return wall.shear_stress || std::any_of(wall.velocity.begin(), wall.velocity.end(),
-                                          [](const Expression& e) { return e.is_formula() || e.value != 0.0; });
-}
-
 /// Of the sound speed: at this speed and below the weight of a fluid whose particles spread a little (its centre of
 /// mass rises) is of the size of its kinetic energy.
 constexpr double slow = 0.005;
 
 double energy_at(double speed, double mass) { return 0.5 * mass * speed * speed; }
 
-bool is_body(const PlanPhase& p) { return p.body || !p.rigid_bodies.empty(); }
-
-/// What drives bodies without a term of the budget: rigid ones are turned by torques.
-bool drives_rigid_bodies(const Scene& scene, const Plan& plan) {
+/// Whether something drives a phase and its work is no term of the energy.
+bool drives_uncounted(const Scene& scene, const Plan& plan) {
   return std::any_of(scene.motions.begin(), scene.motions.end(), [&](const Motion& motion) {
     return std::none_of(plan.phases.begin(), plan.phases.end(),
-                        [&](const PlanPhase& p) { return p.name == motion.phase && p.body; });
+                        [&](const PlanPhase& p) { return p.name == motion.phase && p.counts_drive; });
   });
 }
 
@@ -35,24 +28,21 @@ bool drives_rigid_bodies(const Scene& scene, const Plan& plan) {
 
 Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravity_(scene.domain.gravity) {
   bool walls = false, moving_walls = false;
-  of_bodies_ = true;
+  noiseless_ = true;
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
     if (p.moves)
       moving_.push_back({k, p.flows ? p.sound_speed : 0.0, p.flows ? scene.phases[k].density : 0.0, p.weight_share});
-    if (p.moves) of_bodies_ = of_bodies_ && is_body(p);
-    sound_speed_ = std::max(sound_speed_, plan.phases[k].sound_speed);
-    if (const WallKeys* wall = scene.phases[k].if_wall()) {
-      walls = true;
-      moving_walls = moving_walls || moves(*wall);
-    }
+    if (p.moves) noiseless_ = noiseless_ && p.noiseless;
+    sound_speed_ = std::max(sound_speed_, p.sound_speed);
+    walls = walls || p.takes_momentum;
+    moving_walls = moving_walls || p.gives_energy;
   }
-  const bool blown = std::any_of(plan.entries.begin(), plan.entries.end(),
-                                 [](const PlanEntry& e) { return e.kind == EntryKind::column; });  // it gives and takes
+  const bool blown = std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.feeds; });
   const bool pushed = !scene.forcings.empty() || blown, forced = pushed || !scene.motions.empty();
-  keeps_energy_ = !pushed && !moving_walls && !drives_rigid_bodies(scene, plan);
-  of_bodies_ = of_bodies_ && !moving_.empty();
-  keeps_turning_ = of_bodies_ && !walls && !forced && has_centre(plan);
+  keeps_energy_ = !pushed && !moving_walls && !drives_uncounted(scene, plan);
+  noiseless_ = noiseless_ && !moving_.empty();
+  keeps_turning_ = noiseless_ && !walls && !forced && has_centre(plan);
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan.dimensions); ++d) {
     keeps_momentum_[d] = !walls && !forced && gravity_[d] == 0.0;
     if (plan.bounds.periodic[d] && gravity_[d] != 0.0) keeps_energy_ = false;  // it falls for ever
@@ -116,10 +106,10 @@ std::optional<double> Budget::turning_drift(const State& state) const {
 
 std::optional<double> Budget::energy_growth(const State& state, double held) const {
   const Sums now = sums(state);
-  const double scale = std::max({now.kinetic, start_.kinetic, held}), quiet = of_bodies_ ? idle_bodies : idle;
+  const double scale = std::max({now.kinetic, start_.kinetic, held}), quiet = noiseless_ ? idle_bodies : idle;
   if (!keeps_energy_ || !(scale > energy_at(quiet * sound_speed_, now.mass))) return std::nullopt;
   const double growth = now.mechanical() + held - start_.mechanical();
-  if (of_bodies_ || scale > energy_at(slow * sound_speed_, now.mass)) return growth / scale;
+  if (noiseless_ || scale > energy_at(slow * sound_speed_, now.mass)) return growth / scale;
   // The noise of the pressure moves a fluid that rests. A slow motion counts where the scene begins with it.
   const bool fluids = std::all_of(moving_.begin(), moving_.end(), [](const Moving& m) { return m.density > 0.0; });
   if (!fluids || !(start_.kinetic > energy_at(idle * sound_speed_, now.mass))) return std::nullopt;
@@ -142,12 +132,12 @@ void Budget::report(const State& state, Warnings& warnings, double held) const {
                      " %: updated Lagrangian bodies cannot turn; formulation = \"total-lagrangian\" can");
   if (const auto growth = energy_growth(state, held); growth && *growth > energy_bound)
     warnings.add("energy", "the energy of the motion, of the weight and of the " +
-                               std::string(of_bodies_ ? "strain" : "compression") + " together grew by " +
+                               std::string(noiseless_ ? "strain" : "compression") + " together grew by " +
                                brief(100.0 * *growth) + " % of the " +
-                               (of_bodies_ ? "larger of the energies of motion and strain" : "kinetic energy") +
+                               (noiseless_ ? "larger of the energies of motion and strain" : "kinetic energy") +
                                ", although nothing in the scene gives it; expected at most " +
                                brief(100.0 * energy_bound) + " %: " +
-                               (of_bodies_ || start_.kinetic > energy_at(slow * sound_speed_, start_.mass)
+                               (noiseless_ || start_.kinetic > energy_at(slow * sound_speed_, start_.mass)
                                     ? "a smaller time.safety may help"
                                     : "the fluid spread a little and its centre of mass rose; of so slow a motion the "
                                       "weight then gains as much as the motion has; a smaller spacing makes it less"));

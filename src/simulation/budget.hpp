@@ -24,7 +24,7 @@ class Budget {
   static constexpr double energy_bound = 0.05;    // of the energy of the motion
   /// Slower motion than this part of the sound speed is idle: its energy is not looked at.
   static constexpr double idle = 1e-5;
-  /// The same where there are bodies alone, whose pairs have no noise.
+  /// The same where only bodies move, whose pairs have no noise.
   static constexpr double idle_bodies = 1e-9;
   /// Of the angular momentum of bodies, in the largest that their motion about the centre can have.
   static constexpr double turning_bound = 0.01;
@@ -65,7 +65,7 @@ class Budget {
   Vec3 gravity_{};  // m/s2
   std::array<bool, 3> keeps_momentum_{};
   bool keeps_energy_ = false, keeps_turning_ = false;
-  bool of_bodies_ = false;    // nothing but bodies moves
+  bool noiseless_ = false;    // nothing moves but phases whose pairs have no noise (PlanPhase::noiseless)
   double sound_speed_ = 0.0;  // m/s, the largest
   Sums start_;
 };

@@ -70,7 +70,7 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
   }
   state_.ids.next = first;
   for (const auto& model : models_) model->begin(state_, blocks);
-  face_walls(scene_, plan_, state_);
+  face_walls(plan_, state_);
 }
 
 /// Puts the particles of every phase into an order without meaning, the same in every run.

@@ -5,7 +5,6 @@
 
 #include "engine/integrate.hpp"
 #include "engine/pair_loop.hpp"
-#include "kernels/kernel.hpp"
 #include "models/drive.hpp"
 #include "models/walls/sides.hpp"
 #include "scene/couplings.hpp"
@@ -108,9 +107,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
     face *= see_.scene.domain.size[d];
     shortest = std::min(shortest, see_.scene.domain.size[d]);
   }
-  for (const auto& p : see_.scene.phases)
-    if (const WallKeys* wall = p.if_wall(); wall && wall->shear_stress)
-      pull += norm(*wall->shear_stress) * face / shortest;
+  for (const auto& p : see_.plan.phases) pull += norm(p.stress) * face / shortest;
   for (const Forcing& f : see_.scene.forcings)
     if (const Phase* fluid = find_phase(see_.scene, f.phase); fluid && f.holds_force())
       pull +=
@@ -162,13 +159,9 @@ void Watch::make_guards() {
       if (!e.has(k)) continue;
       if (rules.pairs_up && e.a == e.b) g.own_list = e.forward;
       const std::size_t other = e.partner(k);
-      if (rules.contacts_limit_speed && e.kind == EntryKind::contact) {
-        // The largest energy that the contact can store, 1/2 K g(0)^2 with K = m c^2/d^2 (laws/kernel_contact.hpp).
-        with_kernel<double>(e.kernel, e.radius, plan.dimensions, [&](const auto& kernel) {
-          const double d = 0.5 * (p.spacing + plan.phases[other].spacing),
-                       depth = (kernel.value(0.0) - kernel.value(d)) / std::abs(kernel.derivative(d));
-          g.signal_speed = std::min(g.signal_speed, p.sound_speed * depth / d);
-        });
+      if (rules.contacts_limit_speed && e.stopping_depth > 0.0) {
+        const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
+        g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
       if (plan.phases[other].moves || see_.particles[other].size() == 0) continue;
       Sides sides;
@@ -196,13 +189,10 @@ void Watch::make_pairs() {
   };
   const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
   for (const auto& e : see_.plan.entries) {
-    if ((e.kind != EntryKind::contact && e.kind != EntryKind::elastic) || e.of_spheres())
-      continue;                                     // spheres: Model::trouble
-    if (e.forward < 0 && e.backward < 0) continue;  // first neighbours for ever
+    if (!e.keeps_apart || (e.forward < 0 && e.backward < 0)) continue;
     const bool turned = wall(e.a);
     const bool at_wall = wall(e.a) || wall(e.b);
-    pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward,
-                      e.kind == EntryKind::elastic,
+    pairs_.push_back({turned ? e.b : e.a, turned ? e.a : e.b, turned ? e.backward : e.forward, e.reads_stress,
                       (at_wall ? WatchBounds::wall_depth : WatchBounds::coincidence) * between(e.a, e.b), e.radius});
   }
 }

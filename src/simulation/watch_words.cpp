@@ -302,7 +302,7 @@ void Watch::note_speed(double given, const Moment& now) {
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const double speed = fastest_of_[g.phase];
-    if (!see_.plan.phases[g.phase].flows || !(speed > WatchBounds::remarkable_speed * given) ||
+    if (!see_.plan.phases[g.phase].rules.tells_speed || !(speed > WatchBounds::remarkable_speed * given) ||
         speed < 1.01 * fastest_.value)
       continue;
     Extreme found{speed / given, -1.0, now.time, g.phase, 0, {}, now.step};

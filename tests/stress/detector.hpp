@@ -20,9 +20,9 @@ class Detector {
         if (std::string w = wrong_alone(k, i); !w.empty()) return w;
     }
     for (const auto& e : s_.plan().entries) {
-      if (e.kind == EntryKind::contact || e.kind == EntryKind::elastic)
+      if (e.keeps_apart || e.first_shape || e.by_outlines || e.own_steps)
         if (least_distance(e.a, e.b) < (wall(e.a) || wall(e.b) ? 0.6 : 0.2)) return "two in one place";
-      if (e.kind == EntryKind::fluid && e.a == e.b && paired(e.a) > 0.05) return "pairs";
+      if (e.a == e.b && s_.plan().phases[e.a].rules.pairs_up && paired(e.a) > 0.05) return "pairs";
     }
     return "";
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "scene/couplings.hpp"
 
@@ -18,7 +19,7 @@ BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry&
   double stiffness = 1e300, inverse_mass = 0.0;
   for (const std::size_t k : {e.a, e.b}) {  // of a body with itself twice
     const PlanPhase& p = layout.phases[k];
-    if (!p.moves || !p.rigid_bodies.empty()) continue;  // as hard and as heavy as a wall
+    if (!p.yields) continue;
     const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
     stiffness = std::min(stiffness, softness * modulus * std::pow(p.spacing, layout.dimensions - 2));
     inverse_mass += 1.0 / p.mass;
@@ -46,10 +47,38 @@ std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const P
 
 }  // namespace
 
+void describe_body_contact(const Scene& scene, const Interaction&, const Layout& layout, PlanEntry& e) {
+  const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
+  e.law = "contact";
+  e.meaning = "bodies: touching decides";
+  const bool many = (a.deforms && a.count > 1) || (b.deforms && b.count > 1);
+  if (e.restitution < 1.0 && many) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.3g", e.restitution);
+    e.meaning += "; restitution " + std::string(number) +
+                 " is of two particles, bodies of many keep more (0.91 to 0.93 measured)";
+  }
+  e.radius = layout.touching_distance(e);
+  e.keeps_apart = true;
+  const bool surfaces = has_surfaces(scene, scene.phases[e.a]) || has_surfaces(scene, scene.phases[e.b]);
+  e.searched = !surfaces;
+  e.feels_lattice = !surfaces && !(a.moves && b.moves);
+}
+
+PlanEntry self_contact_of(const Scene& scene, const Interaction& pair, const Layout& layout, const PlanEntry& held) {
+  PlanEntry e = held;
+  e.name += " contact";
+  e.first_shape = e.corrected = false;
+  e.self_contact = true;
+  e.consistency = {};
+  describe_body_contact(scene, pair, layout, e);
+  return e;
+}
+
 BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
     : scene_(scene), layout_(layout), entry_(entry), law_(law_of(scene, layout, entry)) {
   for (const std::size_t k : {entry.a, entry.b})
-    if (const Phase& wall = scene.phases[k]; !layout.phases[k].moves && has_surfaces(scene, wall)) {
+    if (const Phase& wall = scene.phases[k]; has_surfaces(scene, wall)) {
       sides_ = sides_of(scene, layout, wall);
       surfaces_.emplace(scene, layout, wall);
     }
@@ -57,9 +86,8 @@ BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEnt
 
 void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
   if (!itself()) return;
-  const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
-    return e.kind == EntryKind::elastic && e.a == entry_.a && e.b == entry_.b;
-  });
+  const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(),
+                                 [&](const PlanEntry& e) { return e.first_shape && e.a == entry_.a; });
   far_ = FarPairs(blocks[entry_.a].position, layout_.bounds, layout_.phases[entry_.a].spacing, held->radius);
 }
 
@@ -98,7 +126,7 @@ void BodyContact::schedule(Schedule& s) {
 bool BodyContact::of_single_particles() const {
   return std::any_of(layout_.phases.begin(), layout_.phases.end(), [&](const PlanPhase& p) {
     const auto k = static_cast<std::size_t>(&p - layout_.phases.data());
-    if (!entry_.has(k) || !p.moves || !p.rigid_bodies.empty()) return false;
+    if (!entry_.has(k) || !p.yields) return false;
     return p.count == 1 || std::none_of(layout_.entries.begin(), layout_.entries.end(),
                                         [&](const PlanEntry& e) { return e.a == k && e.b == k; });
   });

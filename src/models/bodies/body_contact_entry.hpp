@@ -10,6 +10,11 @@
 
 namespace barchan {
 
+/// An entry of bodies that touch by their particles: with another body or with a wall.
+void describe_body_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+/// The contact of a body with itself; `held`: its entry that holds it together.
+PlanEntry self_contact_of(const Scene& scene, const Interaction& pair, const Layout& layout, const PlanEntry& held);
+
 class BodyContact : public Model {
  public:
   BodyContact(const Scene& scene, const Layout& layout, const PlanEntry& entry);

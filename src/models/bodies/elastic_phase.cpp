@@ -80,6 +80,11 @@ void refuse_turning(const Scene& scene, const ParticleBlock& block) {
   }
 }
 
+void declare_elastic(const Scene&, std::size_t number, Layout& layout) {
+  PlanPhase& p = layout.phases[number];
+  p.moves = p.kicked = p.yields = true;
+}
+
 void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                       std::vector<std::string>&) {
   using enum Field;
@@ -93,8 +98,9 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
     const auto& names = scene.output.fields;
     return std::find(names.begin(), names.end(), info(field).name) != names.end();
   };
-  p.body = true;
+  p.deforms = p.noiseless = p.counts_drive = true;
   p.fixed_neighbours = phase.elastic().formulation == Formulation::total_lagrangian;
+  p.stress_records = !p.fixed_neighbours;
   if (!p.fixed_neighbours) p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration};
   if (!p.fixed_neighbours || asked(stress)) p.fields.push_back(stress);
@@ -105,6 +111,13 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
   if (asked(contact_force) && touches_as_body(scene, phase)) p.fields.push_back(contact_force);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
   p.rules = elastic_rules(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
+}
+
+void describe_elastic_pairs(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {
+  e.law = "elastic";
+  e.reads_stress = e.keeps_apart = true;
+  describe_approximation(pair, scene.dimensions, "", e);
+  if (e.a != e.b && !e.consistency.consistent()) e.meaning = "a contact law, not an approximation";
 }
 
 ElasticPhase::ElasticPhase(const Scene& scene, const Layout& layout, std::size_t number)
@@ -136,7 +149,7 @@ void ElasticPhase::attach(Workspace& w) {
   const bool pulled = has_artificial_stress(scene_);
   if (pulled) w.artificial[number_] = RecordArray(ArtificialStressRecord::size);
   for (const auto& e : layout_.entries) {
-    if (!e.has(number_) || e.kind != EntryKind::elastic) continue;
+    if (!e.has(number_) || !e.reads_stress) continue;
     const std::size_t other = e.partner(number_);
     const double dx = 0.5 * (plan_.spacing + layout_.phases[other].spacing);
     const double weight = with_kernel<double>(e.kernel, e.radius, layout_.dimensions,
@@ -171,7 +184,7 @@ void ElasticPhase::limits(std::vector<StepLimit>& limits) const {
   if (plan_.count == 0) return;
   double smallest = plan_.smoothing_length;
   for (const auto& e : layout_.entries)
-    if (e.kind == EntryKind::elastic && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
+    if (e.reads_stress && e.has(number_)) smallest = std::min(smallest, 0.5 * e.radius);
   limits.push_back({"elastic " + plan_.name,
                     scene_.time.safety * (StepConstants::elastic * smallest / plan_.sound_speed),
                     "0.25 h/c_P: compression waves"});

@@ -10,8 +10,12 @@
 
 namespace barchan {
 
+void declare_elastic(const Scene& scene, std::size_t number, Layout& layout);
 void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                       std::vector<std::string>& warnings);
+
+/// An entry of updated Lagrangian bodies, with themselves or with each other: stress.
+void describe_elastic_pairs(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
 
 class ElasticPhase : public Model {
  public:

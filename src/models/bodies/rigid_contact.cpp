@@ -39,6 +39,14 @@ double reach_of(const std::vector<ContactSurface>& surfaces, const Vec3& place) 
 
 }  // namespace
 
+void describe_rigid_contact(const Scene&, const Interaction&, const Layout& layout, PlanEntry& e) {
+  e.law = "contact";
+  e.meaning = "bodies: touching decides";
+  e.radius = layout.touching_distance(e);
+  e.searched = false;
+  e.by_outlines = true;
+}
+
 RigidContact::RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
     : scene_(scene), layout_(layout), entry_(entry) {
   double stiffness = 1e300;

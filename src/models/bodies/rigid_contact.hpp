@@ -9,6 +9,9 @@
 
 namespace barchan {
 
+/// An entry of rigid bodies, or of rigid bodies with a wall.
+void describe_rigid_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+
 class RigidContact : public Model {
  public:
   RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry);

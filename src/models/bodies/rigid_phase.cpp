@@ -45,10 +45,13 @@ PhaseRules rigid_rules(const PlanPhase& p, double largest_speed, const std::stri
 
 }  // namespace
 
+void declare_rigid(const Scene&, std::size_t number, Layout& layout) { layout.phases[number].moves = true; }
+
 void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                     std::vector<std::string>&) {
   PlanPhase& p = layout.phases[number];
   const RigidKeys& keys = scene.phases[number].rigid();
+  p.tells_motion = p.noiseless = true;
   p.fields = {Field::position, Field::velocity, Field::acceleration};
   p.rigid_bodies = rigid_bodies(scene, blocks[number], number, layout);
   double heaviest = 0.0;
@@ -74,7 +77,7 @@ RigidPhase::RigidPhase(const Scene& scene, const Layout& layout, std::size_t num
       limit_{"motion " + plan_.name, 1e300, "a tenth of a radian, a fifth of a spacing"} {
   for (const Motion& motion : scene.motions) holds_.emplace_back(motion);
   felt_ = forces_.any() || std::any_of(layout.entries.begin(), layout.entries.end(),
-                                       [&](const PlanEntry& e) { return e.has(number) && !e.of_surfaces; });
+                                       [&](const PlanEntry& e) { return e.has(number) && !e.by_outlines; });
 }
 
 void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {

@@ -11,6 +11,7 @@
 
 namespace barchan {
 
+void declare_rigid(const Scene& scene, std::size_t number, Layout& layout);
 void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                     std::vector<std::string>& warnings);
 

@@ -97,6 +97,13 @@ void TotalWork<T>::resize(std::size_t size, std::size_t width, int dimensions, b
 template struct TotalWork<float>;
 template struct TotalWork<double>;
 
+void describe_total_body(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {
+  e.law = "elastic";
+  e.searched = false;
+  e.first_shape = true;
+  describe_approximation(pair, scene.dimensions, "in the body's first shape", e);
+}
+
 TotalPhase::TotalPhase(const Scene& scene, const Layout& layout, std::size_t number)
     : scene_(scene),
       layout_(layout),
@@ -106,7 +113,7 @@ TotalPhase::TotalPhase(const Scene& scene, const Layout& layout, std::size_t num
       forces_(scene, phase_.name),
       limit_{"stretch " + phase_.name, 1e300, "its stiffest vibration, as deformed"} {
   for (const auto& e : layout.entries)
-    if (e.kind == EntryKind::elastic && e.a == number && e.b == number) own_ = &e;
+    if (e.first_shape && e.a == number) own_ = &e;
   const ElasticKeys& keys = phase_.elastic();
   parameters_.law = keys.elasticity;
   parameters_.moduli = ElasticModuli::of(keys.young, keys.poisson, keys.retardation);

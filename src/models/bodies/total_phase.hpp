@@ -24,6 +24,9 @@ class TotalBody {
   virtual void archive(Archive& a) = 0;
 };
 
+/// The entry of a total Lagrangian body with itself.
+void describe_total_body(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+
 class TotalPhase : public Model {
  public:
   TotalPhase(const Scene& scene, const Layout& layout, std::size_t number);

@@ -31,24 +31,10 @@ class Diameters {
 constexpr double fine_diameters = 20.0;  // of fine cells above the grains of the start
 constexpr double cells_a_diameter = 4.0;
 constexpr double most_cells = 20000.0;
-constexpr double most_over_friction_velocity = 35.0;  // of a wind: ln(1 m/1 um)/0.4
 /// Of sqrt(d/g), the time in which a grain falls half its diameter: 20 us for 0.25 mm.
 constexpr double interval_share = 0.004;
 
 }  // namespace
-
-void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
-                     std::vector<std::string>&) {
-  const ColumnKeys& keys = scene.phases[number].column();
-  layout.phases[number].physics = "column";
-  const Formula friction_velocity(keys.friction_velocity);
-  constexpr int moments = 64;
-  double& wind = layout.phases[number].wind;
-  for (int k = 0; k <= moments; ++k)
-    wind = std::max(wind, most_over_friction_velocity * friction_velocity({}, scene.time.end * k / moments));
-  if (keys.speed) wind = std::max(wind, std::abs(*keys.speed));
-  if (keys.log_profile) wind = std::max(wind, log_wind(*keys.log_profile, scene.domain.size[1]));
-}
 
 ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t number)
     : scene_(scene),
@@ -59,12 +45,11 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
       area_(scene.domain.size[0] * (layout.dimensions == 3 ? scene.domain.size[2] : 1.0)),
       friction_velocity_(keys_.friction_velocity) {
   for (const PlanEntry& e : layout.entries) {
-    if (e.kind != EntryKind::column || !e.has(number)) continue;
+    if (!e.has(number)) continue;
     const std::size_t grains = e.partner(number);
     const PlanPhase& plan = layout.phases[grains];
-    const double d = plan.diameter > 0.0 ? plan.diameter : plan.spacing;
-    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, d, plan.diameter > 0.0, {}, {}});
-    diameter_ = std::max(diameter_, d);
+    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, plan.size, plan.own_steps, {}, {}});
+    diameter_ = std::max(diameter_, plan.size);
     crowded_ = crowded_ || e.drag_law == DragLaw::di_felice;
   }
   const double g = std::abs(scene.domain.gravity[1]);
@@ -363,7 +348,7 @@ void ColumnPhase::find_voidage() {
 }
 
 void ColumnPhase::report(Warnings& warnings) const {
-  const std::string told = beyond_measured_winds(scene_, scene_.phases[number_]);
+  const std::string& told = layout_.phases[number_].too_strong;
   if (!feeling_.empty() && !told.empty()) warnings.add("wind of " + scene_.phases[number_].name, told);
 }
 

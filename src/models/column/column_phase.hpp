@@ -15,8 +15,12 @@
 
 namespace barchan {
 
+void declare_column(const Scene& scene, std::size_t number, Layout& layout);
 void describe_column(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                      std::vector<std::string>& warnings);
+
+/// An entry of a column with grains: drag in a wind by height.
+void describe_grains_in_column(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
 
 class ColumnPhase : public Model {
  public:

@@ -7,6 +7,7 @@
 namespace barchan {
 
 std::unique_ptr<Model> make_drag_entry(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  if (!(e.drag > 0)) return nullptr;
   const double d = layout.phases[e.other].spacing,
                section = layout.dimensions == 2 ? d : 0.25 * std::numbers::pi * d * d;
   const double density = scene.phases[e.fluid].density, reach = GrainBarrier::reach * d;

@@ -7,6 +7,7 @@
 
 namespace barchan {
 
+/// Null: the entry has no such drag.
 std::unique_ptr<Model> make_drag_entry(const Scene& scene, const Layout& layout, const PlanEntry& entry);
 
 }  // namespace barchan

@@ -21,7 +21,7 @@ constexpr double light = 1.5;  // m_s/m that an acoustic step bears
 RigidInFluid::RigidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
     : scene_(scene), layout_(layout), solid_(solid) {
   for (const auto& e : layout.entries)
-    if (e.kind == EntryKind::coupling && e.other == solid) reach_ = std::max(reach_, e.radius);
+    if (e.extends && e.other == solid) reach_ = std::max(reach_, e.radius);
 }
 
 void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks) {
@@ -41,8 +41,7 @@ double answering_share(const RigidBody& body, const Scene& scene, const Layout& 
   if (body.hold == RigidBody::Hold::driven) return 0.0;
   double density = 0.0;  // kg/m3
   for (const auto& e : layout.entries)
-    if (e.kind == EntryKind::coupling && e.other == body.phase)
-      density = std::max(density, scene.phases[e.fluid].density);
+    if (e.extends && e.other == body.phase) density = std::max(density, scene.phases[e.fluid].density);
   // A row round the disc or ball that holds the body, and not more than the body's volume.
   const double reach = body.reach, round = layout.dimensions == 2 ? 2.0 * pi * reach : 4.0 * pi * reach * reach;
   const double row =
@@ -60,7 +59,7 @@ void RigidInFluid::limits(std::vector<StepLimit>& limits) const {
   for (const RigidBody& body : layout_.phases[solid_].rigid_bodies)
     share = std::max(share, answering_share(body, scene_, layout_));
   for (const auto& e : layout_.entries)
-    if (e.kind == EntryKind::coupling && e.other == solid_) {
+    if (e.extends && e.other == solid_) {
       const PlanPhase& fluid = layout_.phases[e.fluid];
       acoustic = std::min(
           acoustic, StepConstants::acoustic * fluid.smoothing_length / (fluid.sound_speed + layout_.largest_speed));
@@ -93,7 +92,7 @@ void RigidInFluid::find_surface(const RigidBody& body, const std::vector<Vec3>& 
 void RigidInFluid::attach(Workspace& w) {
   w_ = &w;
   for (const auto& e : layout_.entries)
-    if (e.kind == EntryKind::coupling && e.other == solid_)
+    if (e.extends && e.other == solid_)
       felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
                        pair_viscosity(scene_, layout_, solid_, e.fluid), false});
   const std::size_t n = w.particles(solid_).size();

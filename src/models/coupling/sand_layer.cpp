@@ -10,6 +10,13 @@
 
 namespace barchan {
 
+void describe_sand_layer(const Scene&, const Interaction&, const Layout&, PlanEntry& e) {
+  e.law = "drag";
+  e.meaning = "no kernel: the mean wind about the grain, in layers near the ground";
+  e.searched = false;  // by place
+  e.blows = true;
+}
+
 SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& entry)
     : scene_(scene),
       layout_(layout),

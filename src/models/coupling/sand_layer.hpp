@@ -30,9 +30,11 @@
 
 namespace barchan {
 
+/// An entry of a fluid and of spheres with a law of drag by name.
+void describe_sand_layer(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+
 class SandLayer : public Model {
  public:
-  /// `entry`: of law drag.
   SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& entry);
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;

@@ -4,14 +4,20 @@
 
 namespace barchan {
 
+void describe_coupling(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
+  e.law = "coupling";
+  e.blows = layout.phases[e.other].separate;
+  describe_extension(scene, pair, e);
+}
+
 SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
-    : scene_(scene), layout_(layout), solid_(solid), grains_(layout.phases[solid].friction == Friction::grains) {}
+    : scene_(scene), layout_(layout), solid_(solid), separate_(layout.phases[solid].separate) {}
 
 void SolidInFluid::attach(Workspace& w) {
   w_ = &w;
   sources_ = extension_sources(w, solid_);
   for (const auto& e : layout_.entries) {
-    if (e.kind != EntryKind::coupling || e.other != solid_) continue;
+    if (!e.extends || e.other != solid_) continue;
     fluids_.push_back(e.fluid);
     felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
                      pair_viscosity(scene_, layout_, solid_, e.fluid), false});
@@ -21,24 +27,23 @@ void SolidInFluid::attach(Workspace& w) {
 void SolidInFluid::schedule(Schedule& s) {
   using enum Field;
   const std::string& name = layout_.phases[solid_].name;
-  FieldSet reads{position, velocity, acceleration};
-  if (!layout_.phases[solid_].rigid_bodies.empty())
-    reads = reads | FieldSet{wall_depth, wall_normal, surface_velocity, surface_acceleration};
-  s.add({stage::extend_solids, name, {{name, reads, {}}}, [this] { extend(); }});
+  const FieldSet moving{position, velocity, acceleration},
+      surface{wall_depth, wall_normal, surface_velocity, surface_acceleration};  // of a solid that has them
+  s.add({stage::extend_solids, name, {{name, moving | surface, {}}}, [this] { extend(); }});
   s.add({stage::reaction, name, {{name, {position, velocity, density}, {acceleration}}}, [this] { react(); }});
 }
 
 void SolidInFluid::extend() {
   // The acceleration of the last step: the one of this step is computed later.
   extend_into_solid(w_->particles(solid_), w_->extended[solid_], sources_, scene_.domain.gravity,
-                    ExtensionRule{Slip::no_slip, !grains_, grains_});
+                    ExtensionRule{Slip::no_slip, !separate_, separate_});
   share_extended(*w_, solid_);
 }
 
 void SolidInFluid::react() {
   PhaseParticles& solid = w_->particles(solid_);
-  for (const auto& fluid : felt_) fluid_reaction(solid, w_->extended[solid_], fluid, grains_);
-  if (!grains_) return;
+  for (const auto& fluid : felt_) fluid_reaction(solid, w_->extended[solid_], fluid, separate_);
+  if (!separate_) return;
   for (std::size_t c = 0; c < felt_.size(); ++c)
     if (layout_.phases[fluids_[c]].eddies)
       eddy_reaction(solid, w_->extended[solid_], felt_[c], w_->eddies[fluids_[c]], felt_[c].viscosity);

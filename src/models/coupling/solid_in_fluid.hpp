@@ -8,9 +8,12 @@
 
 namespace barchan {
 
+/// An entry of a fluid and grains or bodies: the solid is a moving wall and feels the reaction.
+void describe_coupling(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+
 class SolidInFluid : public Model {
  public:
-  /// For the phase `solid` and all its coupling entries.
+  /// For the phase `solid` and all fluids that are extended into it.
   SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid);
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
@@ -22,7 +25,7 @@ class SolidInFluid : public Model {
   const Scene& scene_;
   const Layout& layout_;
   std::size_t solid_;
-  bool grains_;
+  bool separate_;  // its particles move one by one (PlanPhase::separate)
   Workspace* w_ = nullptr;
   std::vector<ExtensionSource> sources_;
   std::vector<FluidNeighbour> felt_;  // by fluid

@@ -52,9 +52,10 @@ PhaseRules rules_of(const PlanPhase& p, const std::string& step_key) {
   const double c = p.sound_speed;
   PhaseRules r;
   r.signal_speed = c;
+  r.way_in_lengths = 2.0;
   r.density_share = 0.3;
   r.idle = 0.1;
-  r.pressure_stores_energy = r.pairs_up = true;
+  r.pressure_stores_energy = r.pairs_up = r.tells_speed = true;
   r.if_not_finite = key + "sound-speed or " + key + "density-diffusion";
   r.if_passed = "lower " + step_key + " or raise " + key + "sound-speed";
   r.if_dense = "the pressure ran away, or neighbours are too few: lower the spacing or " + step_key +
@@ -71,6 +72,11 @@ PhaseRules rules_of(const PlanPhase& p, const std::string& step_key) {
 
 }  // namespace
 
+void declare_air(const Scene&, std::size_t number, Layout& layout) {
+  PlanPhase& p = layout.phases[number];
+  p.moves = p.flows = p.kicked = p.yields = true;
+}
+
 void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                   std::vector<std::string>& warnings) {
   const Phase& phase = scene.phases[number];
@@ -79,6 +85,8 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   p.physics = phase.fluid().scheme == FluidScheme::plain ? "plain fluid" : "consistent fluid";
   p.eddies = has_eddies(scene, phase);
   for (const auto& f : scene.forcings) p.held = p.held || (f.hold != Hold::none && f.phase == phase.name);
+  p.driven = Drive::exists(scene, phase);
+  p.friction_velocity = stated_friction_velocity(scene, phase);
   enclose(scene, blocks, number, layout, warnings);
   p.fields = fields_of(scene, phase, p);
   p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
@@ -87,6 +95,16 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
                      ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
                      "can be chosen; give sound-speed or time.largest-speed");
   p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety");
+}
+
+std::string correction_of(const Scene& scene, std::size_t fluid) {
+  return scene.phases[fluid].fluid().scheme == FluidScheme::consistent ? "by the consistent scheme" : "";
+}
+
+void describe_fluids(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {
+  e.law = "fluid";
+  e.continues_fluid = e.compact_only = true;
+  describe_approximation(pair, scene.dimensions, correction_of(scene, e.fluid), e);
 }
 
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid) {
@@ -128,7 +146,7 @@ void FluidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 /// The ground of fitted rows, if the fluid feels the wall that it is of.
 Relief FluidPhase::relief() const {
   for (const auto& e : layout_.entries) {
-    if (e.kind != EntryKind::boundary || e.fluid != number_) continue;
+    if (!e.extends || e.fluid != number_ || layout_.phases[e.other].moves) continue;
     const std::string& wall = scene_.phases[e.other].name;
     for (const auto& fill : scene_.fills) {
       if (fill.phase != wall || fill.packing != Packing::fitted) continue;
@@ -202,7 +220,8 @@ void FluidPhase::attach(Workspace& w) {
   q.gravity = scene_.domain.gravity;
   q.acceleration = forces_.uniform();
   for (const auto& e : layout_.entries)
-    if (e.kind == EntryKind::coupling && e.fluid == number_) q.pores = 0.5 * q.sound_speed / q.smoothing_length;
+    if (e.extends && e.fluid == number_ && layout_.phases[e.other].moves)  // what moves may leave holes
+      q.pores = 0.5 * q.sound_speed / q.smoothing_length;
   q.lattice_moment = lattice_moment(layout_, number_);
   if (plan_.free_surface) {
     surface_ = std::make_unique<SurfaceFinder>();
@@ -237,9 +256,9 @@ void FluidPhase::attach(Workspace& w) {
 
 void FluidPhase::bind_entries() {
   for (const auto& e : layout_.entries) {
-    if (!e.has(number_) || !e.continues_fluid()) continue;
+    if (!e.has(number_) || !e.continues_fluid) continue;
     const std::size_t other = e.partner(number_);
-    const bool solid = !layout_.phases[other].flows;
+    const bool solid = e.extends;
     if (keys_.energy && !solid) w_->need_motion(other);
     FluidNeighbour n{
         &w_->list(e.direction(number_)),
@@ -258,7 +277,7 @@ void FluidPhase::bind_entries() {
     else fluids_.push_back(n);
   }
   for (const auto& e : layout_.entries)
-    if (e.kind == EntryKind::boundary && e.fluid == number_)
+    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves)
       close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
 }
 
@@ -267,7 +286,7 @@ void FluidPhase::look_for_voids() {
   parameters_.ends = false;
   parameters_.loose = &loose_;
   for (const auto& e : layout_.entries) {
-    if (!e.has(number_) || !e.continues_fluid()) continue;
+    if (!e.has(number_) || !e.continues_fluid) continue;
     const std::size_t other = e.partner(number_);
     const VoidFinder::Seen seen{&w_->list(e.direction(number_)), &w_->particles(other), &w_->neighbours.grid(other),
                                 VoidFinder::ball * std::max(plan_.spacing, layout_.phases[other].spacing)};
@@ -304,17 +323,16 @@ void FluidPhase::bind_eddies() {
 
 /// How this fluid rubs on another phase, and whether that is ground.
 void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles) {
-  const Phase& o = scene_.phases[other];
-  e.friction = layout_.phases[other].friction;
+  const PlanPhase& o = layout_.phases[other];
+  e.friction = o.friction;
   if (e.friction == Friction::fluid) {
-    if (layout_.phases[other].eddies) e.eddies = &w_->eddies[other];
+    if (o.eddies) e.eddies = &w_->eddies[other];
     e.root = std::sqrt(e.pair.viscosity);
   }
-  const WallKeys* wall = o.if_wall();
-  if (wall) {
+  if (!o.moves) {  // its surface may slide
     e.wall = &w_->particles(other);
-    e.stress = wall->shear_stress.value_or(Vec3{});
-    e.roughness = wall->roughness.value_or(0.0);
+    e.stress = o.stress;
+    e.roughness = o.roughness;
     if (e.friction == Friction::rough && drags_by_law(scene_, phase_)) e.given = &w_->ground_stress[number_];
   }
   if (e.friction == Friction::grains) {
@@ -323,12 +341,12 @@ void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides
     const bool drag = std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& entry) {
       return entry.drag > 0 && entry.has(number_) && entry.has(other);
     });
-    e.roughness = eddies_.roughness = drag ? 0.0 : o.grains().roughness.value_or(o.spacing / 30.0);
+    e.roughness = eddies_.roughness = drag ? 0.0 : o.roughness;
     eddies_.grain_reach = std::max(eddies_.grain_reach, e.pair.radius);
   }
   if (e.friction != Friction::rough && e.friction != Friction::smooth && e.friction != Friction::grains) return;
   ground_phases_.push_back({&w_->particles(other), o.spacing});
-  if (!wall) {
+  if (o.moves) {
     particles = true;
     return;
   }

@@ -20,10 +20,17 @@
 
 namespace barchan {
 
+/// What other phases ask of a fluid while they describe themselves.
+void declare_air(const Scene& scene, std::size_t number, Layout& layout);
 /// What the plan has to know of a fluid before anything else: mass, sound speed, fields, whether it is shut in.
 /// Throws SceneError when no sound speed can be chosen. `warnings`: what the scene may mean otherwise.
 void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                   std::vector<std::string>& warnings);
+
+/// An entry of two fluids, or of a fluid with itself.
+void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+/// What makes the sums of a fluid exact to first order; empty: nothing does.
+std::string correction_of(const Scene& scene, std::size_t fluid);
 
 class FluidPhase : public Model {
  public:

@@ -12,12 +12,16 @@ namespace barchan {
 double creyssels_flux(double u) { return std::max(0.167 * (u * u - 0.171 * 0.171), 0.0); }
 
 GrainFlux::GrainFlux(const Scene& scene, const Layout& layout, std::size_t wind, std::size_t grains)
-    : scene_(scene), wind_(wind), grains_(grains), area_(ground_area(scene)), tenth_(warning_interval(scene)) {
+    : scene_(scene),
+      wind_(layout.phases[wind]),
+      grains_(grains),
+      area_(ground_area(scene)),
+      tenth_(warning_interval(scene)) {
   const std::string& name = scene.phases[grains].name;
   const auto& layers = scene.measuring.saltation;
   if (std::none_of(layers.begin(), layers.end(), [&](const SaltationLayer& layer) { return layer.name == name; }))
     column_ = name + "_flux [kg/m/s]";
-  const double d = layout.phases[grains].diameter;  // 0: no spheres
+  const double d = layout.phases[grains].diameter;
   measured_ = d >= finest && d <= coarsest;
 }
 
@@ -44,7 +48,7 @@ void GrainFlux::history(HistoryRow& row) const {
 }
 
 void GrainFlux::report(Warnings& warnings) const {
-  const double u = stated_friction_velocity(scene_, scene_.phases[wind_], w_->state.time);
+  const double u = wind_.friction_velocity(w_->state.time);
   if (!mean_.any() || u < weakest || u > strongest) return;
   const double mean = mean_.recent(tenth_), law = creyssels_flux(u);
   const std::string& name = scene_.phases[grains_].name;
@@ -66,17 +70,11 @@ void GrainFlux::archive(Archive& a) {
 
 void add_grain_fluxes(const Scene& scene, const Layout& layout, Models& models) {
   std::vector<bool> done(scene.phases.size(), false);
-  for (const PlanEntry& e : layout.entries)
-    for (const std::size_t wind : {e.a, e.b}) {
-      const std::size_t grains = e.partner(wind);
-      const ColumnKeys* column = scene.phases[wind].if_column();
-      const bool blows = (e.kind == EntryKind::column && column && !column->held) ||
-                         ((e.kind == EntryKind::drag || e.kind == EntryKind::coupling) && layout.phases[wind].flows &&
-                          Drive::exists(scene, scene.phases[wind]));
-      if (!blows || done[grains] || layout.phases[grains].kind != "grains") continue;
-      done[grains] = true;
-      models.push_back(std::make_unique<GrainFlux>(scene, layout, wind, grains));
-    }
+  for (const PlanEntry& e : layout.entries) {
+    if (!e.blows || !layout.phases[e.fluid].driven || done[e.other]) continue;
+    done[e.other] = true;
+    models.push_back(std::make_unique<GrainFlux>(scene, layout, e.fluid, e.other));
+  }
 }
 
 }  // namespace barchan

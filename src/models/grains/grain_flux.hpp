@@ -35,7 +35,8 @@ class GrainFlux : public Model {
   void sample();
 
   const Scene& scene_;
-  std::size_t wind_, grains_;
+  const PlanPhase& wind_;
+  std::size_t grains_;
   std::string column_;
   double area_, tenth_;  // m2, of the ground (2D: of a metre of depth); s
   bool measured_;        // such grains were measured

@@ -6,6 +6,7 @@
 
 namespace barchan {
 
+void declare_grains(const Scene& scene, std::size_t number, Layout& layout);
 void describe_grains(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                      std::vector<std::string>& warnings);
 

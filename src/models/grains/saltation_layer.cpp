@@ -5,9 +5,7 @@
 
 namespace barchan {
 
-double mean_diameter(const Layout& layout, std::size_t phase) {
-  return layout.phases[phase].diameter > 0.0 ? layout.phases[phase].diameter : layout.phases[phase].spacing;
-}
+double mean_diameter(const Layout& layout, std::size_t phase) { return layout.phases[phase].size; }
 
 double ground_area(const Scene& scene) {
   return scene.domain.size[0] * (scene.dimensions == 3 ? scene.domain.size[2] : 1.0);
@@ -16,7 +14,7 @@ double ground_area(const Scene& scene) {
 const AirProfile* air_around(const Layout& layout, const State& state, std::size_t grains) {
   for (const PlanEntry& e : layout.entries)
     for (const AirProfile& air : state.air)
-      if (e.kind == EntryKind::column && e.has(grains) && e.partner(grains) == air.phase) return &air;
+      if (e.wind_by_height && e.has(grains) && e.partner(grains) == air.phase) return &air;
   return nullptr;
 }
 

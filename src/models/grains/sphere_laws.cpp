@@ -17,11 +17,11 @@ double mass_of(const Layout& layout, std::size_t phase, double share = 1.0) {
   return layout.phases[phase].mass * layout.slab * share * share * share;
 }
 
-/// The phases of an entry that are grains.
-std::vector<std::size_t> grains_of(const Scene& scene, const PlanEntry& e) {
+/// The phases of an entry whose particles are moved; the other one is a wall.
+std::vector<std::size_t> grains_of(const Layout& layout, const PlanEntry& e) {
   std::vector<std::size_t> grains;
   for (const std::size_t k : {e.a, e.b})
-    if (scene.phases[k].if_grains()) grains.push_back(k);
+    if (layout.phases[k].own_steps) grains.push_back(k);
   return grains;
 }
 
@@ -38,6 +38,16 @@ typename Row::Law law_of(const Scene& scene, const Layout& layout, const std::ve
 }
 
 }  // namespace
+
+void describe_sphere_contact(const Scene&, const Interaction& pair, const Layout& layout, PlanEntry& e) {
+  for (const Word& w : words_of<ContactLaw>)
+    if (w.meaning == static_cast<int>(pair.law)) e.law = w.word;
+  e.kernel_word = "none";
+  e.meaning = "spheres: touching decides";
+  e.radius = layout.touching_distance(e);
+  e.searched = false;  // by SphereSearch
+  e.own_steps = e.gives_length = true;
+}
 
 SphereImpact impact_of(const Layout& layout, std::size_t phase, double speed) {
   return {0.5 * mass_of(layout, phase), 0.25 * layout.phases[phase].diameter, speed};
@@ -58,8 +68,8 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
   const std::size_t n = layout.phases.size();
   table_.assign(n * n, SphereSearch::none);
   for (const auto& e : layout.entries) {
-    if (!e.of_spheres()) continue;
-    const std::vector<std::size_t> grains = grains_of(scene, e);
+    if (!e.own_steps) continue;
+    const std::vector<std::size_t> grains = grains_of(layout, e);
     double restitution = 1.0;
     for (const std::size_t k : grains) restitution = std::min(restitution, scene.phases[k].grains().restitution);
     table_[e.a * n + e.b] = table_[e.b * n + e.a] = static_cast<std::uint32_t>(laws_.size());
@@ -76,7 +86,8 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
     });
     reach_ = std::max(reach_, e.radius);
   }
-  for (const auto& p : layout.phases) reach_ = std::max(reach_, p.largest_diameter);
+  for (const auto& p : layout.phases)
+    if (p.own_steps) reach_ = std::max(reach_, p.largest_size);
 }
 
 std::size_t SphereLaws::numbers(int dimensions) const {
@@ -93,10 +104,10 @@ std::size_t SphereLaws::numbers(int dimensions) const {
 SphereImpact SphereLaws::shortest_impact(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   double inverse_mass = 0.0, curvature = 0.0;
   // Walls are the second of all pairs.
-  const bool turned = !scene.phases[e.a].if_grains();
+  const bool turned = !layout.phases[e.a].own_steps;
   for (const std::size_t k : {turned ? e.b : e.a, turned ? e.a : e.b}) {
     const PlanPhase& p = layout.phases[k];
-    const bool moves = scene.phases[k].if_grains() != nullptr;
+    const bool moves = p.own_steps;
     inverse_densities_.push_back(moves ? std::pow(0.5 * p.diameter, 3) / mass_of(layout, k) : 0.0);
     const auto size = scene.phases[k].diameter();
     const double least = size ? 1.0 - size->spread : 1.0;

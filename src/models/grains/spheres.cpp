@@ -12,7 +12,7 @@ Spheres::Spheres(const Scene& scene, const Layout& layout) : scene_(scene), layo
 void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   for (std::size_t k = 0; k < layout_.phases.size(); ++k) {
     const PlanPhase& plan = layout_.phases[k];
-    if (plan.diameter > 0.0) {
+    if (plan.own_steps) {
       parts_.push_back({k, moving_, plan.count, 0.5 * plan.diameter});
       moving_ += plan.count;
       PhaseParticles& p = state.phases[k];
@@ -93,7 +93,7 @@ void Spheres::schedule(Schedule& s) {
   const FieldSet moved{position, velocity, contact_acceleration, angular_velocity, angular_acceleration};
   Touches sorted, stepped;
   for (const auto& p : layout_.phases)
-    if (p.diameter > 0.0) {
+    if (p.own_steps) {
       owners += (owners.empty() ? "" : ", ") + p.name;
       sorted.push_back(p.all_fields());
       stepped.push_back({p.name, {acceleration, radius}, moved});
@@ -104,8 +104,9 @@ void Spheres::schedule(Schedule& s) {
 }
 
 void Spheres::limits(std::vector<StepLimit>& limits) const {
-  const bool air = std::any_of(layout_.phases.begin(), layout_.phases.end(), [](const auto& p) { return p.flows; });
-  if (laws_.laws().empty() || air) return;
+  // Sound in a fluid limits the step besides.
+  const bool sound = std::any_of(layout_.phases.begin(), layout_.phases.end(), [](const auto& p) { return p.flows; });
+  if (laws_.laws().empty() || sound) return;
   limits.push_back({"contacts", 8.0 * scene_.time.safety * laws_.step(),
                     "eight steps of the grains, each a twelfth of a contact's duration (without loss less)"});
 }

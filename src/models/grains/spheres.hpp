@@ -47,6 +47,9 @@ class SphereLaws {
   bool rubs_ = false, rolls_ = false;
 };
 
+/// An entry of spheres with spheres or with a wall.
+void describe_sphere_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+
 /// Two mean spheres of a phase that meet with a speed (m/s).
 SphereImpact impact_of(const Layout& layout, std::size_t phase, double speed);
 /// Throws: neither the key nor a largest speed says how stiff the grains of the phase are.

@@ -4,9 +4,36 @@
 #include <cmath>
 
 #include "kernels/kernel.hpp"
+#include "models/fluid/fluid_phase.hpp"
 #include "models/walls/wall_normals.hpp"
 
 namespace barchan {
+
+namespace {
+
+/// The largest size (m/s) of the velocity that a wall says, at 17 times of the run.
+double largest_in_time(const Scene& scene, const VectorExpression& velocity) {
+  const Formula u(velocity[0]), v(velocity[1]), w(velocity[2]);
+  double speed = 0.0;
+  for (int k = 0; k <= 16; ++k) {
+    const double t = scene.time.end * k / 16.0;
+    speed = std::max(speed, norm({u({0, 0, 0}, t), v({0, 0, 0}, t), w({0, 0, 0}, t)}));
+  }
+  return speed;
+}
+
+bool slides(const WallKeys& wall) {
+  return std::any_of(wall.velocity.begin(), wall.velocity.end(),
+                     [](const Expression& e) { return e.is_formula() || e.value != 0.0; });
+}
+
+}  // namespace
+
+void declare_wall(const Scene& scene, std::size_t number, Layout& layout) {
+  const WallKeys& keys = scene.phases[number].wall();
+  layout.phases[number].surface_speed = largest_in_time(scene, keys.velocity);
+  layout.phases[number].sphere_records = keys.diameter.has_value();
+}
 
 void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                    std::vector<std::string>&) {
@@ -17,10 +44,24 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
                : keys.slip == Slip::free_slip ? Friction::slip
                : keys.roughness               ? Friction::rough
                                               : Friction::smooth;
+  p.roughness = keys.roughness.value_or(0.0);
+  p.stress = keys.shear_stress.value_or(Vec3{});
+  p.takes_momentum = true;
+  p.gives_energy = keys.shear_stress || slides(keys);
   p.fields = {position, velocity, wall_normal, wall_depth};
   if (std::any_of(scene.force_meters.begin(), scene.force_meters.end(),
                   [&](const ForceMeter& meter) { return meter.phase == scene.phases[number].name; }))
     p.fields.push_back(acceleration);
+}
+
+void describe_extension(const Scene& scene, const Interaction& pair, PlanEntry& e) {
+  e.continues_fluid = e.extends = true;
+  describe_approximation(pair, scene.dimensions, correction_of(scene, e.fluid), e);
+}
+
+void describe_boundary(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {
+  e.law = "boundary";
+  describe_extension(scene, pair, e);
 }
 
 Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
@@ -30,8 +71,7 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
       plan_(layout.phases[number]),
       number_(number),
       velocity_(compile(phase_.wall().velocity)) {
-  extended_ = std::any_of(layout.entries.begin(), layout.entries.end(),
-                          [&](const PlanEntry& e) { return e.sees_solid() && e.other == number; });
+  extended_ = layout.is_extended(number);
   // A wall whose stress is given leaves the fluid's velocity along it alone.
   const WallKeys& keys = phase_.wall();
   rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
@@ -132,7 +172,7 @@ std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) 
   };
   std::vector<ExtensionSource> sources;
   for (const auto& e : w.layout.entries)
-    if (e.sees_solid() && e.other == solid)
+    if (e.extends && e.other == solid)
       sources.push_back({&w.list(e.direction(solid)), &w.motion[e.fluid], e.kernel, e.radius,
                          w.scene.phases[e.fluid].density, e.drag > 0 ? weight_about_a_lone_particle(e) : 0.0});
   return sources;
@@ -146,16 +186,15 @@ void share_extended(Workspace& w, std::size_t solid) {
                            : w.compact[solid]->copy<3>(w.extended[solid], count);
 }
 
-void face_walls(const Scene& scene, const Layout& layout, State& state) {
+void face_walls(const Layout& layout, State& state) {
   std::vector<PhaseParticles*> walls;
   bool slips = false;
   double coarsest = 0.0;  // m
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
-    if (!scene.phases[k].if_wall()) continue;
+    if (layout.phases[k].moves || !state.phases[k].has(Field::wall_normal)) continue;
     walls.push_back(&state.phases[k]);
     coarsest = std::max(coarsest, layout.phases[k].spacing);
-    const WallKeys& s = scene.phases[k].wall();
-    slips = slips || s.slip == Slip::free_slip || s.roughness || s.shear_stress;
+    slips = slips || layout.phases[k].friction != Friction::smooth;
   }
   if (slips) find_wall_normals(walls, layout.bounds, coarsest);
 }

@@ -10,8 +10,14 @@
 
 namespace barchan {
 
+void declare_wall(const Scene& scene, std::size_t number, Layout& layout);
 void describe_wall(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                    std::vector<std::string>& warnings);
+
+/// An entry of a fluid with a wall into which its pressure and velocity are extended (Adami et al. 2012).
+void describe_boundary(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+/// The same without a name of the law: the fluid is extended into the other phase, whatever that does.
+void describe_extension(const Scene& scene, const Interaction& pair, PlanEntry& e);
 
 class Wall : public Model {
  public:
@@ -41,9 +47,9 @@ class Wall : public Model {
 
 /// Normals of the walls inside the domain, where some wall's surface must know which way it faces: once all walls have
 /// begun.
-void face_walls(const Scene& scene, const Layout& layout, State& state);
+void face_walls(const Layout& layout, State& state);
 
-/// What a solid sees of the fluids of its boundary and coupling entries.
+/// What a solid sees of the fluids that are extended into it.
 std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid);
 /// The same records for fluids in mixed precision, after extended records were made.
 void share_extended(Workspace& w, std::size_t solid);

@@ -1,0 +1,57 @@
+// What the plan has to know of a column of air and of its entries.
+#include <algorithm>
+#include <cmath>
+
+#include "models/column/column_phase.hpp"
+#include "models/drive.hpp"
+#include "output/numbers.hpp"
+#include "scene/log_wind.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr double most_over_friction_velocity = 35.0;  // of a wind: ln(1 m/1 um)/0.4
+constexpr double strongest_column = 0.7;              // m/s, u* up to which its flux agrees with measurements
+
+/// The warning of a column that is stronger; empty: it is not.
+std::string beyond_measured_winds(const Scene& scene, const Phase& wind, const ColumnKeys& keys) {
+  const double u = keys.held ? 0.0 : largest_friction_velocity(scene, keys.friction_velocity);
+  if (!(u > strongest_column)) return "";
+  return "phases." + wind.name + ".friction-velocity: " + brief(u) +
+         " m/s is beyond the winds in which a column's flux of sand agrees with measurements, 0.24 to 0.7 m/s: above "
+         "0.8 m/s it is 1.5 times too large, and the height of the layer grows with the wind, which measured ones do "
+         "not";
+}
+
+}  // namespace
+
+void declare_column(const Scene&, std::size_t, Layout&) {}  // the defaults: nothing of it moves
+
+void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
+                     std::vector<std::string>&) {
+  const ColumnKeys& keys = scene.phases[number].column();
+  layout.phases[number].physics = "column";
+  layout.phases[number].driven = !keys.held;
+  layout.phases[number].too_strong = beyond_measured_winds(scene, scene.phases[number], keys);
+  if (!keys.held)
+    layout.phases[number].friction_velocity = [u = keys.friction_velocity](double time) {
+      return std::abs(Formula(u)({}, time));
+    };
+  const Formula friction_velocity(keys.friction_velocity);
+  constexpr int moments = 64;
+  double& wind = layout.phases[number].wind;
+  for (int k = 0; k <= moments; ++k)
+    wind = std::max(wind, most_over_friction_velocity * friction_velocity({}, scene.time.end * k / moments));
+  if (keys.speed) wind = std::max(wind, std::abs(*keys.speed));
+  if (keys.log_profile) wind = std::max(wind, log_wind(*keys.log_profile, scene.domain.size[1]));
+}
+
+void describe_grains_in_column(const Scene&, const Interaction&, const Layout&, PlanEntry& e) {
+  e.law = "column";
+  e.meaning = "no kernel: the wind of the grain's height";
+  e.searched = false;  // by height
+  e.blows = e.wind_by_height = e.feeds = true;
+}
+
+}  // namespace barchan
