@@ -18,9 +18,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 
 #include "base/aligned.hpp"
 #include "engine/cell_grid.hpp"
+#include "state/access.hpp"
 
 namespace barchan {
 
@@ -47,9 +49,25 @@ struct CarriedRecord {
                        old_rate = Dim == 2 ? 7 : 12;
 };
 
+/// Whose records these are, for the check of access in builds with assertions, and whether their images are of now.
+struct RecordLabel {
+  std::string phase;  // empty: of no run, nobody checks
+  Record record = Record::motion;
+  bool images_of_now = false;  // the images are copies of the records as they are
+
+  /// Throws std::logic_error when a task is running that did not declare that it reads them, or images of an earlier
+  /// moment.
+  void check_read([[maybe_unused]] bool images) const {
+#ifndef NDEBUG
+    if (!phase.empty()) AccessGuard::check(phase, record, images, images_of_now);
+#endif
+  }
+};
+
 /// Records of one phase.
 class RecordArray {
  public:
+  RecordArray() : RecordArray(0) {}
   explicit RecordArray(int size) : size_(static_cast<std::size_t>(size)) {}
 
   /// Room for `particles` + `images` + the dummy. Allocates only to grow.
@@ -64,11 +82,20 @@ class RecordArray {
   }
 
   double* operator[](std::size_t k) { return data_.data() + k * size_; }
-  const double* operator[](std::size_t k) const { return data_.data() + k * size_; }
-  const double* data() const { return data_.data(); }
+  const double* operator[](std::size_t k) const {
+    label.check_read(k >= particles_);
+    return data_.data() + k * size_;
+  }
+  /// For who reads particles and images.
+  const double* data() const {
+    label.check_read(true);
+    return data_.data();
+  }
   std::size_t stride() const { return size_; }
   std::uint32_t dummy() const { return static_cast<std::uint32_t>(dummy_); }
   std::size_t bytes() const { return data_.capacity() * sizeof(double); }
+
+  RecordLabel label;
 
   /// Copies the images from their sources, shifted by their periods. The first `dimensions` fields are the position.
   void fill_images(const CellGrid& grid, int dimensions) {
@@ -77,7 +104,7 @@ class RecordArray {
 #pragma omp parallel for schedule(static)
     for (std::int64_t q = 0; q < n; ++q) {
       const Image& image = images[static_cast<std::size_t>(q)];
-      const double* from = (*this)[image.source];
+      const double* from = data_.data() + image.source * size_;
       double* to = (*this)[particles_ + static_cast<std::size_t>(q)];
       for (std::size_t f = 0; f < size_; ++f) to[f] = from[f];
       for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d) to[d] += image.shift[d] * grid.period()[d];
@@ -131,7 +158,7 @@ class CompactRecords {
     r[2 * Dim + 1] = static_cast<float>(volume);
   }
 
-  /// Copies `count` records (particles, images) of the same layout.
+  /// Copies the records of `count` particles, of the same layout.
   template <int Dim>
   void copy(const RecordArray& from, std::size_t count) {
     using R = MotionRecord<Dim>;
@@ -165,10 +192,20 @@ class CompactRecords {
     }
   }
 
-  const float* data() const { return data_.data(); }
+  /// For who reads particles and images.
+  const float* data() const {
+    label.check_read(true);
+    return data_.data();
+  }
   float* operator[](std::size_t k) { return data_.data() + k * size; }
-  const float* operator[](std::size_t k) const { return data_.data() + k * size; }
+  const float* operator[](std::size_t k) const {
+    label.check_read(k >= particles_);
+    return data_.data() + k * size;
+  }
   double unit() const { return unit_; }
+
+  RecordLabel label;
+
   std::size_t bytes() const { return data_.capacity() * sizeof(float); }
 
  private:
@@ -180,6 +217,19 @@ class CompactRecords {
   std::array<double, 3> middle_{};
   std::size_t particles_ = 0;
   AlignedVector<float> data_;
+};
+
+/// What pair loops load of a neighbour beside its motion record; order as there.
+struct EddyRecords {
+  AlignedVector<double> root;   // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]
+  AlignedVector<double> touch;  // Pa s, of pairs with grains next to the particle
+  RecordLabel label;
+  void resize(std::size_t particles, std::size_t images);
+  void fill_images(std::size_t particles, const CellGrid& grid);
+  /// Gives the motion records of `count` particles, in two dimensions, their roots.
+  void give_roots(RecordArray& records, std::size_t count) const;
+  void give_roots(CompactRecords& records, std::size_t count) const;
+  std::size_t bytes() const;
 };
 
 }  // namespace barchan

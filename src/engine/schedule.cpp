@@ -1,7 +1,9 @@
 #include "engine/schedule.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <stdexcept>
 
 namespace barchan {
 
@@ -19,18 +21,12 @@ double thread_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-void execute(const Task& task, [[maybe_unused]] const std::string& stage) {
-#ifndef NDEBUG
-  const AccessGuard guard(stage.c_str(), task.owner.c_str(), task.touches);
-#endif
-  task.call();
-}
-
 }  // namespace
 
 Schedule::Schedule(std::span<const char* const> stages)
     : tasks_(stages.size()),
       repeat_of_(stages.size()),
+      images_(stages.size()),
       executed_(stages.size(), 0),
       processor_seconds_(stages.size(), 0.0) {
   for (const char* name : stages) seconds_.emplace_back(name, 0.0);
@@ -39,13 +35,45 @@ Schedule::Schedule(std::span<const char* const> stages)
 void Schedule::add(Task task) {
   repeat_of_[task.stage].push_back(task.repeat ? repeats_.size() : once);
   if (task.repeat) repeats_.push_back({task.repeat->name, task.owner, task.stage, task.repeat->interval});
+  images_[task.stage].emplace_back();
   tasks_[task.stage].push_back(std::move(task));
 }
 
-void Schedule::repeat(const Task& task, RepeatCount& count) {
+void Schedule::use(Halo& halo, const std::vector<std::string>& phases) {
+  halo_ = &halo;
+  for (std::size_t stage = 0; stage < tasks_.size(); ++stage)
+    for (std::size_t k = 0; k < tasks_[stage].size(); ++k) {
+      Images& images = images_[stage][k] = {};
+      for (const Touch& t : tasks_[stage][k].touches)
+        for (std::size_t r = 0; r < record_count; ++r) {
+          const auto record = static_cast<Record>(r);
+          if (!t.records.ghosts.has(record) && !t.records.writes.has(record)) continue;
+          const auto found = std::find(phases.begin(), phases.end(), t.phase);
+          if (found == phases.end()) throw std::logic_error("a task has records of \"" + t.phase + "\", no phase");
+          const auto number = static_cast<std::size_t>(found - phases.begin());
+          if (t.records.ghosts.has(record)) images.read.emplace_back(number, record);
+          if (t.records.writes.has(record)) images.written.emplace_back(number, record);
+        }
+    }
+}
+
+void Schedule::execute(const Task& task, const Images& images) {
+  if (halo_)
+    for (const auto& [phase, record] : images.read) halo_->fill_images(phase, record);
+  {
+#ifndef NDEBUG
+    const AccessGuard guard(name(task.stage).c_str(), task.owner.c_str(), task.touches);
+#endif
+    task.call();
+  }
+  if (halo_)
+    for (const auto& [phase, record] : images.written) halo_->outdate_images(phase, record);
+}
+
+void Schedule::repeat(const Task& task, const Images& images, RepeatCount& count) {
   const auto start = Clock::now();
   const long times = task.repeat->times();
-  for (long k = 0; k < times; ++k) execute(task, seconds_[task.stage].first);
+  for (long k = 0; k < times; ++k) execute(task, images);
   count.calls += times;
   count.seconds += since(start);
 }
@@ -57,8 +85,9 @@ void Schedule::run(std::size_t first, std::size_t last) {
     const double processor = measures_processor_time_ ? thread_seconds() : 0.0;
     for (std::size_t k = 0; k < tasks_[stage].size(); ++k) {
       const Task& task = tasks_[stage][k];
-      if (const std::size_t number = repeat_of_[stage][k]; number != once) repeat(task, repeats_[number]);
-      else execute(task, seconds_[stage].first);
+      const Images& images = images_[stage][k];
+      if (const std::size_t number = repeat_of_[stage][k]; number != once) repeat(task, images, repeats_[number]);
+      else execute(task, images);
     }
     ++executed_[stage];
     if (measures_processor_time_) processor_seconds_[stage] += thread_seconds() - processor;

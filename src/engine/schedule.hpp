@@ -7,8 +7,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/halo.hpp"
 #include "state/access.hpp"
 
 namespace barchan {
@@ -44,6 +46,9 @@ class Schedule {
   explicit Schedule(std::span<const char* const> stages);
 
   void add(Task task);
+  /// From now on the halo makes the images that a task reads right before it. `phases`: their names, by number. Throws
+  /// std::logic_error of a task with records of another phase. The halo must outlive the schedule's runs.
+  void use(Halo& halo, const std::vector<std::string>& phases);
   bool has(std::size_t stage) const { return !tasks_[stage].empty(); }
   const std::vector<Task>& tasks(std::size_t stage) const { return tasks_[stage]; }
   std::size_t stages() const { return tasks_.size(); }
@@ -63,11 +68,18 @@ class Schedule {
   const std::vector<RepeatCount>& repeats() const { return repeats_; }
 
  private:
-  void repeat(const Task& task, RepeatCount& count);
+  /// Records of phases by number.
+  struct Images {
+    std::vector<std::pair<std::size_t, Record>> read, written;
+  };
+  void repeat(const Task& task, const Images& images, RepeatCount& count);
+  void execute(const Task& task, const Images& images);
 
   std::vector<std::vector<Task>> tasks_;
   std::vector<std::vector<std::size_t>> repeat_of_;  // by stage and task: number of its repeat, `once`
   std::vector<RepeatCount> repeats_;
+  std::vector<std::vector<Images>> images_;  // by stage and task
+  Halo* halo_ = nullptr;
   std::vector<long> executed_;
   std::vector<std::pair<std::string, double>> seconds_;
   std::vector<double> processor_seconds_;

@@ -37,8 +37,8 @@ void ForceOn::attach(Workspace& w) {
       w.sphere_pushes.push_back({phase_, e.partner(phase_), meter_.about});
     }
     if (!e.extends || e.other != phase_) continue;
-    w.need_motion(e.fluid);
-    fluids_.push_back({{&w.list(e.direction(phase_)), &w.motion[e.fluid], e.kernel, e.radius,
+    w.need(e.fluid, Record::motion);
+    fluids_.push_back({{&w.list(e.direction(phase_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                         pair_viscosity(scene_, layout_, phase_, e.fluid), false},
                        e.corrected ? 1.0 / e.consistency.gradient_sum : 1.0,
                        e.fluid,
@@ -62,9 +62,10 @@ void ForceOn::schedule(Schedule& s) {
   const FieldSet reads = FieldSet{position, velocity, acceleration};
   const FieldSet writes = stays_ ? FieldSet{acceleration} : FieldSet{};
   const std::string& name = layout_.phases[phase_].name;
-  Touches touches{{name, reads, writes}};
+  Touches touches{{name, reads, writes, {stays_ ? RecordSet{Record::extended} : RecordSet{}, {}, {}}}};
   for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
-    if (stays_ && e.extends && e.other == phase_) touches.push_back({layout_.phases[e.fluid].name, reads, {}});
+    if (stays_ && e.extends && e.other == phase_)
+      touches.push_back({layout_.phases[e.fluid].name, reads, {}, {{}, {Record::motion}, {}}});
   s.add({stays_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 
@@ -98,7 +99,7 @@ void ForceOn::measure_wall() {
   PhaseParticles& wall = w_->particles(phase_);
   for (const Felt& felt : fluids_) {
     for (int d = 0; d < layout_.dimensions; ++d) std::fill_n(wall.column(Field::acceleration, d), wall.size(), 0.0);
-    fluid_reaction(wall, w_->extended[phase_], felt.fluid, false);
+    fluid_reaction(wall, w_->records(phase_, Record::extended), felt.fluid, false);
     add_sums(felt.share, {0, 0, 0});
   }
   if (!balance_) return;

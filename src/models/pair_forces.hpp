@@ -43,18 +43,18 @@ class ForceEntry : public Model {
  private:
   void act_on(std::size_t phase, Schedule& s) {
     if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves) return;
-    s.add({stage_, entry_.name, {{layout_.phases[phase].name, reads_, {Field::acceleration}}}, [this, phase] {
-             push(phase);
-           }});
+    const RecordTouch motion{{}, {Record::motion}, {}};
+    Touches touches{{layout_.phases[phase].name, reads_, {Field::acceleration}, motion}};
+    if (entry_.a != entry_.b) touches.push_back({layout_.phases[entry_.partner(phase)].name, {}, {}, motion});
+    s.add({stage_, entry_.name, touches, [this, phase] { push(phase); }});
   }
   /// The particles of one phase feel those of the other.
   void push(std::size_t phase) {
     Law law = law_;
     if constexpr (requires { law.a_is_fluid; }) law.a_is_fluid = phase == entry_.fluid;
-    const std::size_t other = entry_.partner(phase);
-    pair_forces(
-        w_->particles(phase), w_->motion[phase],
-        PairEntry<Law>{&w_->list(entry_.direction(phase)), &w_->motion[other], entry_.kernel, entry_.radius, law});
+    pair_forces(w_->particles(phase), w_->records(phase, Record::motion),
+                PairEntry<Law>{&w_->list(entry_.direction(phase)), &w_->records(entry_.partner(phase), Record::motion),
+                               entry_.kernel, entry_.radius, law});
   }
 
   const Layout& layout_;

@@ -72,10 +72,9 @@ void pack_motion(const PhaseParticles& p, RecordArray& records, const Workspace:
   }
 }
 
-/// The same in mixed precision, with the images.
+/// The same in mixed precision.
 template <int Dim>
-void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGrid& grid, bool fixed_volume,
-                  double volume) {
+void pack_compact(const PhaseParticles& p, CompactRecords& records, bool fixed_volume, double volume) {
   const auto n = static_cast<std::int64_t>(p.size());
   const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
   const double* pressure = p.column(Field::pressure);
@@ -91,7 +90,6 @@ void pack_compact(const PhaseParticles& p, CompactRecords& records, const CellGr
     }
     records.write<Dim>(k, at, speed, pressure[k], rho ? mass / rho[k] : volume);
   }
-  records.fill_images<Dim>(grid, x);
 }
 
 /// Velocities at the end of the step, `kick` (s) after those of now; nothing turns.
@@ -135,50 +133,61 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
       packing(layout_.phases.size()) {
   neighbours.adapt_skin();
   const std::size_t phases = layout.phases.size();
-  const int size = layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size;
-  const int carried_size = layout.dimensions == 2 ? CarriedRecord<2>::size : CarriedRecord<3>::size;
   const bool mixed = scene.precision == Precision::mixed;
   // Records in double are read by: every law but the fluid's own in mixed precision, and by tasks that call
-  // need_motion.
+  // need.
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
     if (e.extends) seen[e.other] = true;
     if (!e.compact_only) read[e.a] = read[e.b] = true;
   }
-  eddies.resize(phases);
   ground_stress.resize(phases);
   for (std::size_t k = 0; k < phases; ++k) {
-    motion.emplace_back(read[k] ? size : 0);
-    extended.emplace_back(seen[k] ? size : 0);
-    stress.emplace_back(0);
-    artificial.emplace_back(0);
-    carried.emplace_back(layout.phases[k].heats ? carried_size : 0);
-    compact.push_back(mixed && (layout.phases[k].flows || seen[k]) ? std::make_unique<CompactRecords>(layout.bounds)
-                                                                   : nullptr);
+    const PlanPhase& p = layout.phases[k];
+    records_.push_back(std::make_unique<PhaseRecords>(p.name, layout.dimensions));
+    if (read[k]) need(k, Record::motion);
+    if (seen[k]) need(k, Record::extended);
+    if (p.heats) need(k, Record::carried);
+    if (p.eddies) need(k, Record::eddies);
+    if (mixed && (p.flows || seen[k])) records_[k]->make_compact(layout.bounds);
   }
 }
 
-void Workspace::need_motion(std::size_t phase) {
-  if (motion[phase].stride() == 0)
-    motion[phase] = RecordArray(layout.dimensions == 2 ? MotionRecord<2>::size : MotionRecord<3>::size);
+RecordArray& Workspace::to_write(std::size_t phase, Record record) {
+#ifndef NDEBUG
+  AccessGuard::check_write(layout.phases[phase].name, record);
+#endif
+  return records_[phase]->array(record);
+}
+
+CompactRecords* Workspace::compact_to_write(std::size_t phase) {
+  CompactRecords* const records = records_[phase]->compact();
+#ifndef NDEBUG
+  if (records) AccessGuard::check_write(layout.phases[phase].name, Record::compact);
+#endif
+  return records;
+}
+
+EddyRecords& Workspace::eddies_to_write(std::size_t phase) {
+#ifndef NDEBUG
+  AccessGuard::check_write(layout.phases[phase].name, Record::eddies);
+#endif
+  return records_[phase]->eddies();
+}
+
+void Workspace::fill_images(std::size_t phase, Record record) {
+  if (neighbours.has_grid(phase)) records_[phase]->fill_images(record, state.phases[phase], neighbours.grid(phase));
 }
 
 void Workspace::fit_records() {
-  for (std::size_t k = 0; k < state.phases.size(); ++k) {
-    if (!neighbours.has_grid(k)) continue;
-    const std::size_t n = state.phases[k].size(), images = neighbours.grid(k).images();
-    for (RecordArray* r : {&motion[k], &extended[k], &stress[k], &carried[k], &artificial[k]})
-      if (r->stride() > 0) r->resize(n, images);
-    if (compact[k]) compact[k]->resize(n, images);
-    if (layout.phases[k].eddies) eddies[k].resize(n, images);
-  }
+  for (std::size_t k = 0; k < state.phases.size(); ++k)
+    if (neighbours.has_grid(k)) records_[k]->fit(state.phases[k].size(), neighbours.grid(k).images());
 }
 
 std::size_t Workspace::bytes() const {
   std::size_t total = neighbours.bytes();
   for (const auto& p : state.phases) total += p.bytes();
-  for (const auto* set : {&motion, &extended, &stress, &carried, &artificial})
-    for (const auto& r : *set) total += r.bytes();
+  for (const auto& r : records_) total += r->bytes();
   return total;
 }
 
@@ -203,10 +212,15 @@ void CommonWork::schedule(Schedule& s) {
   Touches sorted, carried;
   for (const auto& p : layout_.phases) {
     sorted.push_back(p.all_fields());
-    if (must_be_told(p)) carried.push_back({p.name, {position, velocity, acceleration}, {}});
+    if (must_be_told(p))
+      carried.push_back(
+          {p.name, {position, velocity, acceleration}, {}, {.own = {}, .ghosts = {}, .writes = {Record::carried}}});
   }
   s.add({stage::neighbours, "all", sorted, [this] { find_neighbours(); }});
-  s.add({stage::pack, "all", layout_.of_all({position, velocity, density, pressure, stress}, {}), [this] { pack(); }});
+  Touches packed = layout_.of_all({position, velocity, density, pressure, stress}, {});
+  for (Touch& t : packed)
+    t.records.writes = {Record::motion, Record::compact, Record::extended, Record::stress, Record::artificial};
+  s.add({stage::pack, "all", packed, [this] { pack(); }});
   if (!carried.empty()) s.add({stage::energy, "all", carried, [this] { carry(); }});
   s.add({stage::kick, "all", layout_.of_all({acceleration}, {velocity}), [this] { kick(); }});
 }
@@ -231,24 +245,20 @@ void CommonWork::pack() {
     if (!w_->neighbours.has_grid(k)) continue;
     const double volume = std::pow(layout_.phases[k].spacing, layout_.dimensions);
     const PhaseParticles& p = w_->particles(k);
-    const CellGrid& grid = w_->neighbours.grid(k);
     const Workspace::Packing& how = w_->packing[k];
-    if (layout_.phases[k].flows && w_->compact[k])
-      flat ? pack_compact<2>(p, *w_->compact[k], grid, how.fixed_volume, volume)
-           : pack_compact<3>(p, *w_->compact[k], grid, how.fixed_volume, volume);
-    for (RecordArray* records : {&w_->motion[k], &w_->extended[k]}) {
-      if (records->stride() == 0) continue;
-      flat ? pack_motion<2>(p, *records, how, volume) : pack_motion<3>(p, *records, how, volume);
-      records->fill_images(grid, layout_.dimensions);
+    if (layout_.phases[k].flows && w_->compact(k)) {
+      CompactRecords& compact = *w_->compact_to_write(k);
+      flat ? pack_compact<2>(p, compact, how.fixed_volume, volume)
+           : pack_compact<3>(p, compact, how.fixed_volume, volume);
     }
-    if (w_->stress[k].stride() > 0) {
-      pack_stress(p, w_->stress[k]);
-      w_->stress[k].fill_images(grid, layout_.dimensions);
+    for (const Record record : {Record::motion, Record::extended}) {
+      if (!w_->has(k, record)) continue;
+      RecordArray& records = w_->to_write(k, record);
+      flat ? pack_motion<2>(p, records, how, volume) : pack_motion<3>(p, records, how, volume);
     }
-    if (w_->artificial[k].stride() > 0) {
-      pack_artificial_stress(p, w_->scene.phases[k].elastic().artificial_stress, w_->artificial[k]);
-      w_->artificial[k].fill_images(grid, 0);
-    }
+    if (w_->has(k, Record::stress)) pack_stress(p, w_->to_write(k, Record::stress));
+    if (w_->has(k, Record::artificial))
+      pack_artificial_stress(p, w_->scene.phases[k].elastic().artificial_stress, w_->to_write(k, Record::artificial));
   }
 }
 
@@ -257,8 +267,8 @@ void CommonWork::carry() {
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
     if (!must_be_told(layout_.phases[k])) continue;
     const PhaseParticles& p = w_->particles(k);
-    flat ? pack_carried<2>(p, w_->carried[k], kick_of(k)) : pack_carried<3>(p, w_->carried[k], kick_of(k));
-    w_->carried[k].fill_images(w_->neighbours.grid(k), layout_.dimensions);
+    RecordArray& records = w_->to_write(k, Record::carried);
+    flat ? pack_carried<2>(p, records, kick_of(k)) : pack_carried<3>(p, records, kick_of(k));
   }
 }
 

@@ -4,16 +4,17 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/neighbours.hpp"
-#include "engine/records.hpp"
+#include "engine/phase_records.hpp"
 #include "models/fluid/turbulence.hpp"
 #include "models/model.hpp"
 
 namespace barchan {
 
-class Workspace {
+class Workspace : public Halo {
  public:
   /// Makes the records that the entries' laws read, by phase. All three must outlive it.
   Workspace(const Scene& scene, const Layout& layout, State& state);
@@ -23,12 +24,7 @@ class Workspace {
   State& state;
   Neighbours neighbours;
 
-  std::vector<RecordArray> motion, extended, stress;     // by phase; extended: a solid as the fluid sees it
-  std::vector<RecordArray> carried;                      // by phase: how a solid moves at the end of the step
-  std::vector<RecordArray> artificial;                   // by phase: artificial stress of bodies
-  std::vector<std::unique_ptr<CompactRecords>> compact;  // by phase, mixed precision: what models/fluid reads
-  std::vector<EddyRecords> eddies;                       // by phase
-  std::vector<AlignedVector<double>> ground_stress;      // Pa, by fluid and particle; empty: walls say it themselves
+  std::vector<AlignedVector<double>> ground_stress;  // Pa, by fluid and particle; empty: walls say it themselves
 
   /// What spheres of a phase do to a wall in a step (N s and N m s, not by depth), for a meter that asks (attach).
   struct SpherePush {
@@ -52,16 +48,29 @@ class Workspace {
 
   PhaseParticles& particles(std::size_t phase) { return state.phases[phase]; }
   const PairList& list(int direction) const { return neighbours.list(static_cast<std::size_t>(direction)); }
-  /// Records of particles and images of a phase.
-  std::size_t records(std::size_t phase) const { return state.phases[phase].size() + neighbours.grid(phase).images(); }
-  /// In attach: a task will read the motion records of this phase. In mixed precision a fluid has compact ones only,
-  /// unless a law other than its own reads it.
-  void need_motion(std::size_t phase);
+  /// Records that tasks read. In a build with assertions only those tasks may that declared it (Touch::records).
+  const RecordArray& records(std::size_t phase, Record record) const { return records_[phase]->array(record); }
+  const CompactRecords* compact(std::size_t phase) const { return std::as_const(*records_[phase]).compact(); }
+  const EddyRecords& eddies(std::size_t phase) const { return records_[phase]->eddies(); }
+  bool has(std::size_t phase, Record record) const { return records_[phase]->has(record); }
+  /// The same for a task that writes them.
+  RecordArray& to_write(std::size_t phase, Record record);
+  CompactRecords* compact_to_write(std::size_t phase);
+  EddyRecords& eddies_to_write(std::size_t phase);
+  /// In attach: a task will read these records of the phase. In mixed precision a fluid has no motion records unless a
+  /// law other than its own reads them, or a task that says so here.
+  void need(std::size_t phase, Record record) { records_[phase]->make(record); }
+  /// One call for whoever reads images outside of the schedule; before tasks, the schedule calls it.
+  void fill_images(std::size_t phase, Record record) override;
+  void outdate_images(std::size_t phase, Record record) override { records_[phase]->outdate_images(record); }
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;
   /// The epoch of the lists; loading makes the lists and the records' sizes as they were.
   void archive(Archive& a);
+
+ private:
+  std::vector<std::unique_ptr<PhaseRecords>> records_;  // by phase
 };
 
 /// What every scene needs: sorting, searching, packing, and the kick that ends a step.

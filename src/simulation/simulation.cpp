@@ -37,17 +37,22 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   for (const auto& l : plan_.limits) state_.limit_counts[l.name] = 0;
   for (const char* name : {"force", "output", "fixed", "retreat"}) state_.limit_counts[name] = 0;
   state_.dt = plan_.step();
+  std::vector<std::string> names;
+  for (const auto& p : plan_.phases) names.push_back(p.name);
+  schedule_.use(*work_, names);
   schedule_.run(stage::walls, stage::energy);
   work_->must_search = true;
   schedule_.run(stage::walls, stage::energy);  // the weights of the consistent Laplacian are those of the pass before
   for (const auto& model : models_)
     if (const StepLimit* l = model->moving_limit()) state_.limit_counts[l->name] = 0;
-  watch_ = std::make_unique<Watch>(
-      Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, work_->motion, work_->stress});
+  watch_ = std::make_unique<Watch>(Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, *work_});
   budget_.emplace(scene_, plan_, state_);
   Touches seen;
   for (const auto& p : plan_.phases) seen.push_back({p.name, FieldSet(p.fields), {}});
+  for (const auto& e : plan_.entries)
+    if (e.keeps_apart) seen[e.a].records.ghosts = seen[e.b].records.ghosts = {Record::motion, Record::stress};
   schedule_.add({stage::watch, "all", seen, [this] { watch_->look(moment()); }});
+  schedule_.use(*work_, names);
   schedule_.run(stage::kick,
                 stage::kick);  // moves nothing; finds the largest acceleration, which limits the first step
 }

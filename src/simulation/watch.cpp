@@ -273,8 +273,9 @@ double Watch::look_at_phases(const Moment& now) {
 
 bool Watch::too_near(Apart& pair) const {
   const PairList& list = see_.neighbours.list(static_cast<std::size_t>(pair.list));
-  const auto& records = pair.stress ? see_.stress : see_.motion;
-  const RecordArray &own = records[pair.a], &others = records[pair.b];
+  const Record record = pair.stress ? Record::stress : Record::motion;
+  see_.work.fill_images(pair.b, record);  // no task may have read them since they were packed
+  const RecordArray &own = see_.work.records(pair.a, record), &others = see_.work.records(pair.b, record);
   const std::size_t n = see_.particles[pair.a].size();
   const double least = see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
                        : pair.stress             ? least_separation<3, 16>(n, list, own, others)

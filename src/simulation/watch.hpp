@@ -14,7 +14,7 @@
 
 #include "base/warnings.hpp"
 #include "engine/neighbours.hpp"
-#include "engine/records.hpp"
+#include "models/workspace.hpp"
 #include "plan/plan.hpp"
 #include "scene/formula.hpp"
 #include "simulation/kept_state.hpp"
@@ -42,13 +42,13 @@ struct Moment {
 
 class Watch {
  public:
-  /// What it looks at; all must outlive it. `stress` holds the records of elastic bodies, `motion` those of all others.
+  /// What it looks at; all must outlive it.
   struct Sight {
     const Scene& scene;
     const Plan& plan;
     const std::vector<PhaseParticles>& particles;
     const Neighbours& neighbours;
-    const std::vector<RecordArray>&motion, &stress;
+    Workspace& work;
   };
   explicit Watch(const Sight& sight);
 

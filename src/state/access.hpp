@@ -1,7 +1,9 @@
-// Which fields of which phases a task of the schedule may touch. Checked in builds with assertions, free in all others.
+// Which fields and records of which phases a task of the schedule may touch. Checked in builds with assertions, free in
+// all others; from what tasks say of records the engine knows when images must be made (engine/halo.hpp).
 #pragma once
 
 #include <bitset>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -31,10 +33,41 @@ class FieldSet {
   std::bitset<field_count> bits_;
 };
 
-/// The fields of one phase that a task reads and those that it writes.
+/// What passes over pairs read of a phase, packed by particle (engine/records.hpp).
+enum class Record : std::uint8_t { motion, compact, extended, stress, artificial, carried, eddies };
+inline constexpr std::size_t record_count = 7;
+const char* name_of(Record record);
+
+/// A set of kinds of records.
+class RecordSet {
+ public:
+  RecordSet() = default;
+  RecordSet(std::initializer_list<Record> records) {
+    for (const Record r : records) bits_.set(static_cast<std::size_t>(r));
+  }
+  bool has(Record r) const { return bits_.test(static_cast<std::size_t>(r)); }
+  RecordSet operator|(const RecordSet& other) const {
+    RecordSet both;
+    both.bits_ = bits_ | other.bits_;
+    return both;
+  }
+
+ private:
+  std::bitset<record_count> bits_;
+};
+
+/// The records of one phase that a task reads of its particles alone (`own`), those that it reads of particles and of
+/// their images (`ghosts`), and those that it writes, of particles: before the next task that reads their images these
+/// are made anew.
+struct RecordTouch {
+  RecordSet own, ghosts, writes;
+};
+
+/// The fields of one phase that a task reads and those that it writes; its records.
 struct Touch {
   std::string phase;
   FieldSet reads, writes;
+  RecordTouch records{};
 };
 using Touches = std::vector<Touch>;
 
@@ -56,8 +89,21 @@ class AccessGuard {
   static void check(const std::string& phase, Field field) {
     if (allowed_ != nullptr && !may(phase, field)) refuse(phase, field);
   }
+  /// The same of records that a task reads, of particles or of images; images must be `of_now` besides.
+  static void check(const std::string& phase, Record record, bool images, bool of_now) {
+    if (allowed_ == nullptr) return;
+    if (!may_read(phase, record, images)) refuse(phase, record, images ? "reads images of" : "reads");
+    if (images && !of_now) refuse(phase, record, "reads old images of");
+  }
+  /// The same of records that a task writes.
+  static void check_write(const std::string& phase, Record record) {
+    if (allowed_ != nullptr && !may_write(phase, record)) refuse(phase, record, "writes");
+  }
 
  private:
+  static bool may_read(const std::string& phase, Record record, bool images);
+  static bool may_write(const std::string& phase, Record record);
+  [[noreturn]] static void refuse(const std::string& phase, Record record, const char* what);
   static bool may(const std::string& phase, Field field);
   [[noreturn]] static void refuse(const std::string& phase, Field field);
   inline static thread_local const Touches* allowed_ = nullptr;

@@ -103,7 +103,10 @@ void BodyContact::archive(Archive& a) {
 void BodyContact::schedule(Schedule& s) {
   using enum Field;
   const auto touched = [this](std::size_t phase) -> Touches {
-    return {{layout_.phases[phase].name, {position, velocity}, {acceleration, contact_force}}};
+    const RecordTouch motion{{}, {Record::motion}, {}};
+    Touches touches{{layout_.phases[phase].name, {position, velocity}, {acceleration, contact_force}, motion}};
+    if (!itself()) touches.push_back({layout_.phases[entry_.partner(phase)].name, {}, {}, motion});
+    return touches;
   };
   if (itself()) {
     s.add({stage::contacts, entry_.name, touched(entry_.a), [this] { push_itself(); }});
@@ -141,15 +144,15 @@ void BodyContact::limits(std::vector<StepLimit>& limits) const {
 }
 
 void BodyContact::push(std::size_t phase) {
-  body_contact_forces(w_->particles(phase), w_->motion[phase], w_->list(entry_.direction(phase)),
-                      w_->motion[entry_.partner(phase)], law_, w_->state.dt);
+  body_contact_forces(w_->particles(phase), w_->records(phase, Record::motion), w_->list(entry_.direction(phase)),
+                      w_->records(entry_.partner(phase), Record::motion), law_, w_->state.dt);
 }
 
 void BodyContact::push_itself() {
   PhaseParticles& body = w_->particles(entry_.a);
   if (must_choose_) far_.choose(body, w_->list(entry_.forward), w_->neighbours.grid(entry_.a));
   must_choose_ = false;
-  body_contact_forces(body, w_->motion[entry_.a], far_, law_, w_->state.dt);
+  body_contact_forces(body, w_->records(entry_.a, Record::motion), far_, law_, w_->state.dt);
 }
 
 void BodyContact::push_from_sides(std::size_t phase) {

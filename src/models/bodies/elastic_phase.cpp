@@ -145,17 +145,17 @@ void ElasticPhase::attach(Workspace& w) {
                  keys.artificial_viscosity_beta,
                  std::sqrt(bulk / phase_.density),
                  scene_.domain.gravity};
-  w.stress[number_] = RecordArray(layout_.dimensions == 2 ? StressRecord<2>::size : StressRecord<3>::size);
+  w.need(number_, Record::stress);
   const bool pulled = has_artificial_stress(scene_);
-  if (pulled) w.artificial[number_] = RecordArray(ArtificialStressRecord::size);
+  if (pulled) w.need(number_, Record::artificial);
   for (const auto& e : layout_.entries) {
     if (!e.has(number_) || !e.reads_stress) continue;
     const std::size_t other = e.partner(number_);
     const double dx = 0.5 * (plan_.spacing + layout_.phases[other].spacing);
     const double weight = with_kernel<double>(e.kernel, e.radius, layout_.dimensions,
                                               [&](const auto& kernel) { return kernel.value(dx); });
-    neighbours_.push_back({&w.list(e.direction(number_)), &w.stress[other], e.kernel, e.radius,
-                           layout_.phases[other].mass, pulled ? &w.artificial[other] : nullptr,
+    neighbours_.push_back({&w.list(e.direction(number_)), &w.records(other, Record::stress), e.kernel, e.radius,
+                           layout_.phases[other].mass, pulled ? &w.records(other, Record::artificial) : nullptr,
                            weight > 0.0 ? 1.0 / weight : 0.0});
   }
 }
@@ -170,10 +170,20 @@ void ElasticPhase::schedule(Schedule& s) {
     return {{plan_.name, reads, writes}};
   };
   s.add({stage::kick_and_drift, plan_.name, own({acceleration, energy_rate}, moved), [this] { kick_and_drift(); }});
-  s.add({stage::strain_records, plan_.name, own({position, velocity, density, pressure, Field::stress}, {}),
-         [this] { pack_middle(); }});
-  s.add({stage::strain, plan_.name, own(all, all), [this] { this->strain(); }});
-  s.add({stage::elastic, plan_.name, own(all, loaded), [this] { load(); }});
+  Touches middle = own({position, velocity, density, pressure, Field::stress}, {}), strained = own(all, all),
+          pushed = own(all, loaded);
+  middle.front().records.writes = {Record::stress};
+  strained.front().records.ghosts = {Record::stress};
+  pushed.front().records.ghosts = {Record::stress, Record::artificial};
+  for (const auto& e : layout_.entries) {
+    if (!e.has(number_) || !e.reads_stress || e.partner(number_) == number_) continue;
+    const std::string& other = layout_.phases[e.partner(number_)].name;
+    strained.push_back({other, {}, {}, strained.front().records});
+    pushed.push_back({other, {}, {}, pushed.front().records});
+  }
+  s.add({stage::strain_records, plan_.name, middle, [this] { pack_middle(); }});
+  s.add({stage::strain, plan_.name, strained, [this] { this->strain(); }});
+  s.add({stage::elastic, plan_.name, pushed, [this] { load(); }});
   if (!heats) return;
   s.add({stage::energy, plan_.name, own({acceleration}, {energy_rate}), [this] { take_power(); }});
   s.add({stage::kick, plan_.name, own({energy_rate}, {energy}),
@@ -197,14 +207,11 @@ void ElasticPhase::kick_and_drift() {
   if (phase_.elastic().energy) advance_energy(w_->particles(number_), half);
 }
 
-void ElasticPhase::pack_middle() {
-  pack_stress(w_->particles(number_), w_->stress[number_]);
-  w_->stress[number_].fill_images(w_->neighbours.grid(number_), layout_.dimensions);
-}
+void ElasticPhase::pack_middle() { pack_stress(w_->particles(number_), w_->to_write(number_, Record::stress)); }
 
 void ElasticPhase::strain() {
   PhaseParticles& p = w_->particles(number_);
-  elastic_strain(p, w_->stress[number_], neighbours_, parameters_, w_->state.dt);
+  elastic_strain(p, w_->records(number_, Record::stress), neighbours_, parameters_, w_->state.dt);
   drift(p, 0.5 * w_->state.dt);
 }
 
@@ -218,8 +225,9 @@ void ElasticPhase::derive() {
 
 void ElasticPhase::load() {
   PhaseParticles& p = w_->particles(number_);
-  const RecordArray& artificial = w_->artificial[number_];
-  elastic_forces(p, w_->stress[number_], neighbours_, parameters_, artificial.stride() > 0 ? &artificial : nullptr);
+  const RecordArray& artificial = w_->records(number_, Record::artificial);
+  elastic_forces(p, w_->records(number_, Record::stress), neighbours_, parameters_,
+                 artificial.stride() > 0 ? &artificial : nullptr);
   if (phase_.elastic().energy)
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
       const double* a = std::as_const(p).column(Field::acceleration, static_cast<int>(d));

@@ -99,7 +99,7 @@ void RigidPhase::tell_fluids() {
   using R = CarriedRecord<Dim>;
   constexpr std::size_t axes = Dim == 2 ? 1 : 3, first = Dim == 2 ? 2 : 0;
   const PhaseParticles& p = w_->particles(number_);
-  RecordArray& records = w_->carried[number_];
+  RecordArray& records = w_->to_write(number_, Record::carried);
   renew_carriers();
   for (std::size_t k = 0; k < bodies(); ++k) old_rates_[k] = carriers_[k].rate;
   carriers_.clear();
@@ -129,7 +129,6 @@ void RigidPhase::tell_fluids() {
       r[R::old_rate + d] = old_rates_[body_of[k]][first + d];
     }
   }
-  records.fill_images(w_->neighbours.grid(number_), Dim);
 }
 template void RigidPhase::tell_fluids<2>();
 template void RigidPhase::tell_fluids<3>();

@@ -113,7 +113,10 @@ void RigidPhase::schedule(Schedule& s) {
            kick_and_drift();
          }});
   s.add({stage::rigid_loads, plan_.name, {{plan_.name, {position}, {acceleration}}}, [this] { clear_loads(); }});
-  s.add({stage::rigid, plan_.name, {{plan_.name, {position, acceleration}, {acceleration}}}, [this] { sum_loads(); }});
+  const RecordTouch told{{}, {}, plan_.heats ? RecordSet{Record::carried} : RecordSet{}};
+  s.add({stage::rigid, plan_.name, {{plan_.name, {position, acceleration}, {acceleration}, told}}, [this] {
+           sum_loads();
+         }});
   s.add({stage::kick, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { finish_kick(); }});
 }
 

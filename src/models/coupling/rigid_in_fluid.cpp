@@ -93,7 +93,7 @@ void RigidInFluid::attach(Workspace& w) {
   w_ = &w;
   for (const auto& e : layout_.entries)
     if (e.extends && e.other == solid_)
-      felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
+      felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                        pair_viscosity(scene_, layout_, solid_, e.fluid), false});
   const std::size_t n = w.particles(solid_).size();
   rates_.resize(n);
@@ -109,7 +109,11 @@ void RigidInFluid::schedule(Schedule& s) {
          name + ", surface",
          {{name, {acceleration}, {wall_normal, surface_velocity, surface_acceleration}}},
          [this] { move_surface(); }});
-  s.add({stage::reaction, name + ", torque", {{name, {position, velocity}, {}}}, [this] { turn(); }});
+  Touches felt{{name, {position, velocity}, {}, {{Record::extended}, {}, {}}}};
+  for (const auto& e : layout_.entries)
+    if (e.extends && e.other == solid_)
+      felt.push_back({layout_.phases[e.fluid].name, {}, {}, {{}, {Record::motion}, {}}});
+  s.add({stage::reaction, name + ", torque", felt, [this] { turn(); }});
 }
 
 /// Normals and velocities of the nearest places of the surface, and the accelerations that the pressure follows.
@@ -137,7 +141,7 @@ void RigidInFluid::move_surface() {
 
 /// Adds to the torques on the bodies.
 void RigidInFluid::turn() {
-  turning_friction(w_->extended[solid_], felt_, rates_, areas_, couples_, layout_.dimensions);
+  turning_friction(w_->records(solid_, Record::extended), felt_, rates_, areas_, couples_, layout_.dimensions);
   const PhaseParticles& p = w_->particles(solid_);
   for (std::size_t b = 0; b < bodies_; ++b) {
     RigidBody& body = w_->state.bodies[first_body_ + b];

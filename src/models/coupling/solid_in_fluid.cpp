@@ -19,7 +19,7 @@ void SolidInFluid::attach(Workspace& w) {
   for (const auto& e : layout_.entries) {
     if (!e.extends || e.other != solid_) continue;
     fluids_.push_back(e.fluid);
-    felt_.push_back({&w.list(e.direction(solid_)), &w.motion[e.fluid], e.kernel, e.radius,
+    felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                      pair_viscosity(scene_, layout_, solid_, e.fluid), false});
   }
 }
@@ -29,24 +29,29 @@ void SolidInFluid::schedule(Schedule& s) {
   const std::string& name = layout_.phases[solid_].name;
   const FieldSet moving{position, velocity, acceleration},
       surface{wall_depth, wall_normal, surface_velocity, surface_acceleration};  // of a solid that has them
-  s.add({stage::extend_solids, name, {{name, moving | surface, {}}}, [this] { extend(); }});
-  s.add({stage::reaction, name, {{name, {position, velocity, density}, {acceleration}}}, [this] { react(); }});
+  s.add({stage::extend_solids, name, extension_touches(layout_, solid_, moving | surface), [this] { extend(); }});
+  Touches felt{{name, {position, velocity, density}, {acceleration}, {{Record::extended}, {}, {}}}};
+  for (const auto& e : layout_.entries)
+    if (e.extends && e.other == solid_)
+      felt.push_back({layout_.phases[e.fluid].name, {}, {}, {{}, {Record::motion, Record::eddies}, {}}});
+  s.add({stage::reaction, name, felt, [this] { react(); }});
 }
 
 void SolidInFluid::extend() {
   // The acceleration of the last step: the one of this step is computed later.
-  extend_into_solid(w_->particles(solid_), w_->extended[solid_], sources_, scene_.domain.gravity,
+  extend_into_solid(w_->particles(solid_), w_->to_write(solid_, Record::extended), sources_, scene_.domain.gravity,
                     ExtensionRule{Slip::no_slip, !separate_, separate_});
   share_extended(*w_, solid_);
 }
 
 void SolidInFluid::react() {
   PhaseParticles& solid = w_->particles(solid_);
-  for (const auto& fluid : felt_) fluid_reaction(solid, w_->extended[solid_], fluid, separate_);
+  const RecordArray& extended = w_->records(solid_, Record::extended);
+  for (const auto& fluid : felt_) fluid_reaction(solid, extended, fluid, separate_);
   if (!separate_) return;
   for (std::size_t c = 0; c < felt_.size(); ++c)
     if (layout_.phases[fluids_[c]].eddies)
-      eddy_reaction(solid, w_->extended[solid_], felt_[c], w_->eddies[fluids_[c]], felt_[c].viscosity);
+      eddy_reaction(solid, extended, felt_[c], w_->eddies(fluids_[c]), felt_[c].viscosity);
 }
 
 }  // namespace barchan

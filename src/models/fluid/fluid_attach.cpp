@@ -259,21 +259,21 @@ void FluidPhase::bind_entries() {
     if (!e.has(number_) || !e.continues_fluid) continue;
     const std::size_t other = e.partner(number_);
     const bool solid = e.extends;
-    if (keys_.energy && !solid) w_->need_motion(other);
+    if (keys_.energy && !solid) w_->need(other, Record::motion);
     FluidNeighbour n{
         &w_->list(e.direction(number_)),
-        solid ? &w_->extended[other] : &w_->motion[other],
+        &w_->records(other, solid ? Record::extended : Record::motion),
         e.kernel,
         e.radius,
         pair_viscosity(scene_, layout_, number_, other),
         solid || other == number_,
-        w_->compact[other].get(),
+        w_->compact(other),
         !solid && other != number_ && keys_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);
     if (!keys_.energy) continue;
-    if (solid) solids_.push_back({n, &w_->carried[other]});
+    if (solid) solids_.push_back({n, &w_->records(other, Record::carried)});
     else fluids_.push_back(n);
   }
   for (const auto& e : layout_.entries)
@@ -307,7 +307,7 @@ void FluidPhase::bind_eddies() {
     EddyNeighbour e;
     e.pair = n;
     for (std::size_t other = 0; other < layout_.phases.size(); ++other)
-      if (n.records == &w_->motion[other] || n.records == &w_->extended[other])
+      if (n.records == &w_->records(other, Record::motion) || n.records == &w_->records(other, Record::extended))
         bind_friction(e, other, sides, particles);
     eddy_neighbours_.push_back(e);
   }
@@ -326,7 +326,7 @@ void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides
   const PlanPhase& o = layout_.phases[other];
   e.friction = o.friction;
   if (e.friction == Friction::fluid) {
-    if (o.eddies) e.eddies = &w_->eddies[other];
+    if (o.eddies) e.eddies = &w_->eddies(other);
     e.root = std::sqrt(e.pair.viscosity);
   }
   if (!o.moves) {  // its surface may slide

@@ -36,16 +36,22 @@ void FluidPhase::schedule(Schedule& s) {
     return {{plan_.name, reads, writes}};
   };
   // With what goes on where the fluid ends: walls that move, places of solids and other fluids about a void.
-  const auto beside = [this](Touches touches, const FieldSet& read_there) {
+  const auto beside = [this](Touches touches, const FieldSet& read_there, const RecordSet& ghosts = {}) {
+    touches.front().records.ghosts = ghosts;
     for (const auto& e : layout_.entries)
       if (e.has(number_) && e.partner(number_) != number_)
-        touches.push_back({layout_.phases[e.partner(number_)].name, read_there, {}});
+        touches.push_back({layout_.phases[e.partner(number_)].name, read_there, {}, {{}, ghosts, {}}});
     return touches;
   };
+  const RecordSet summed = scene_.precision == Precision::mixed
+                               ? RecordSet{Record::compact, Record::eddies}
+                               : RecordSet{Record::motion, Record::extended, Record::eddies};
   s.add({stage::kick_and_drift, plan_.name, {plan_.all_fields()}, [this] { kick_and_drift(); }});
-  if (plan_.eddies)
-    s.add({stage::eddies, plan_.name, beside(own({position, velocity, eddy_viscosity}, {ground_distance}), {velocity}),
-           [this] { find_eddies(); }});
+  if (plan_.eddies) {
+    Touches touches = beside(own({position, velocity, eddy_viscosity}, {ground_distance}), {velocity});
+    touches.front().records.writes = {Record::eddies, Record::motion, Record::compact};
+    s.add({stage::eddies, plan_.name, touches, [this] { find_eddies(); }});
+  }
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
   if (corrected) writes = writes | FieldSet{anisotropy};
   if (plan_.eddies) {
@@ -55,12 +61,15 @@ void FluidPhase::schedule(Schedule& s) {
   if (plan_.free_surface) writes = writes | FieldSet{wholeness, surface_normal};
   if (std::find(plan_.fields.begin(), plan_.fields.end(), near_void) != plan_.fields.end())
     writes = writes | FieldSet{near_void};
-  s.add({stage::fluid, plan_.name, beside(own(reads, writes), {position}), [this] { rate(); }});
+  s.add({stage::fluid, plan_.name, beside(own(reads, writes), {position}, summed), [this] { rate(); }});
   if (plan_.free_surface)
     s.add({stage::surface, plan_.name, own({position, wholeness}, {surface_normal}), [this] { find_surface(); }});
   if (keys_.energy) {
-    s.add({stage::energy, plan_.name, own({position, velocity, density, pressure, acceleration}, {energy_rate}),
-           [this] { fluid_energy(*particles_, w_->motion[number_], fluids_, solids_, w_->kick_time); }});
+    const Touches worked = beside(own({position, velocity, density, pressure, acceleration}, {energy_rate}), {},
+                                  {Record::motion, Record::extended, Record::carried});
+    s.add({stage::energy, plan_.name, worked, [this] {
+             fluid_energy(*particles_, w_->records(number_, Record::motion), fluids_, solids_, w_->kick_time);
+           }});
     s.add({stage::kick, plan_.name, own({energy_rate}, {Field::energy}),
            [this] { advance_energy(*particles_, w_->kick_time); }});
   }
@@ -90,13 +99,11 @@ void FluidPhase::kick_and_drift() {
 }
 
 void FluidPhase::find_eddies() {
-  auto& records = w_->eddies[number_];
+  EddyRecords& records = w_->eddies_to_write(number_);
   largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
-  records.fill_images(particles_->size(), w_->neighbours.grid(number_));
   if (layout_.dimensions == 2) {
-    const std::size_t count = w_->records(number_);
-    if (w_->compact[number_]) records.give_roots(*w_->compact[number_], count);
-    else records.give_roots(w_->motion[number_], count);
+    if (CompactRecords* compact = w_->compact_to_write(number_)) records.give_roots(*compact, particles_->size());
+    else records.give_roots(w_->to_write(number_, Record::motion), particles_->size());
   }
   for (auto& e : eddy_neighbours_)
     if (e.wall && e.wall->size() > 0)
@@ -114,11 +121,11 @@ void FluidPhase::rate() {
   q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
   const auto rates = [&](const auto& own) {
     if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, keys_.scheme);
-    else eddy_rates(*particles_, own, w_->eddies[number_], eddy_neighbours_, q, eddies_);
+    else eddy_rates(*particles_, own, w_->eddies(number_), eddy_neighbours_, q, eddies_);
   };
   if (q.loose && loose_.place.size() < particles_->size()) loose_.place.resize(particles_->size());
-  if (w_->compact[number_]) rates(*w_->compact[number_]);
-  else rates(w_->motion[number_]);
+  if (w_->compact(number_)) rates(*w_->compact(number_));
+  else rates(w_->records(number_, Record::motion));
   if (q.loose) q.ends = voids_.find(*particles_, seen_, neighbours_.front().radius, plan_.spacing, loose_);
   if (plan_.enclosed) keep_mean_density(*particles_);
   forces_.add(*particles_, w_->state.time, false);

@@ -4,23 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "engine/records.hpp"
 #include "laws/eddies.hpp"
 #include "models/fluid/fluid_rates.hpp"
 #include "models/fluid/ground_distance.hpp"
 #include "models/layout.hpp"
 
 namespace barchan {
-
-/// What pair loops load of a neighbour beside its motion record; order as there.
-struct EddyRecords {
-  AlignedVector<double> root;   // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]
-  AlignedVector<double> touch;  // Pa s, of pairs with grains next to the particle
-  void resize(std::size_t particles, std::size_t images);
-  void fill_images(std::size_t particles, const CellGrid& grid);
-  /// Gives `count` motion records of two dimensions (particles, images) their roots.
-  void give_roots(RecordArray& records, std::size_t count) const;
-  void give_roots(CompactRecords& records, std::size_t count) const;
-};
 
 struct EddyNeighbour {
   FluidNeighbour pair;

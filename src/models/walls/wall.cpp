@@ -140,9 +140,8 @@ void Wall::schedule(Schedule& s) {
   using enum Field;
   s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
   if (extended_)
-    s.add({stage::extend_walls, plan_.name, {{plan_.name, {position, velocity, wall_depth, wall_normal}, {}}}, [this] {
-             extend();
-           }});
+    s.add({stage::extend_walls, plan_.name,
+           extension_touches(layout_, number_, {position, velocity, wall_depth, wall_normal}), [this] { extend(); }});
 }
 
 void Wall::slide() {
@@ -157,7 +156,8 @@ void Wall::slide() {
 }
 
 void Wall::extend() {
-  extend_into_solid(w_->particles(number_), w_->extended[number_], sources_, scene_.domain.gravity, rule_, bend_);
+  extend_into_solid(w_->particles(number_), w_->to_write(number_, Record::extended), sources_, scene_.domain.gravity,
+                    rule_, bend_);
   share_extended(*w_, number_);
 }
 
@@ -173,17 +173,25 @@ std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) 
   std::vector<ExtensionSource> sources;
   for (const auto& e : w.layout.entries)
     if (e.extends && e.other == solid)
-      sources.push_back({&w.list(e.direction(solid)), &w.motion[e.fluid], e.kernel, e.radius,
+      sources.push_back({&w.list(e.direction(solid)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                          w.scene.phases[e.fluid].density, e.drag > 0 ? weight_about_a_lone_particle(e) : 0.0});
   return sources;
 }
 
+Touches extension_touches(const Layout& layout, std::size_t solid, const FieldSet& reads) {
+  Touches touches{{layout.phases[solid].name, reads, {}, {{}, {}, {Record::extended, Record::compact}}}};
+  for (const auto& e : layout.entries)
+    if (e.extends && e.other == solid)
+      touches.push_back({layout.phases[e.fluid].name, {}, {}, {{}, {Record::motion}, {}}});
+  return touches;
+}
+
 void share_extended(Workspace& w, std::size_t solid) {
-  w.extended[solid].fill_images(w.neighbours.grid(solid), w.layout.dimensions);
-  if (!w.compact[solid]) return;
-  const std::size_t count = w.records(solid);
-  w.layout.dimensions == 2 ? w.compact[solid]->copy<2>(w.extended[solid], count)
-                           : w.compact[solid]->copy<3>(w.extended[solid], count);
+  CompactRecords* const compact = w.compact_to_write(solid);
+  if (!compact) return;
+  const RecordArray& extended = w.records(solid, Record::extended);
+  const std::size_t count = w.particles(solid).size();
+  w.layout.dimensions == 2 ? compact->copy<2>(extended, count) : compact->copy<3>(extended, count);
 }
 
 void face_walls(const Layout& layout, State& state) {

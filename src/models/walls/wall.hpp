@@ -53,5 +53,7 @@ void face_walls(const Layout& layout, State& state);
 std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid);
 /// The same records for fluids in mixed precision, after extended records were made.
 void share_extended(Workspace& w, std::size_t solid);
+/// What a task touches that extends fluids into a solid, whose fields it reads.
+Touches extension_touches(const Layout& layout, std::size_t solid, const FieldSet& reads);
 
 }  // namespace barchan

@@ -1,0 +1,47 @@
+#include "engine/records.hpp"
+
+namespace barchan {
+
+void EddyRecords::resize(std::size_t particles, std::size_t images) {
+  const std::size_t needed = particles + images + 1;  // and the dummy
+  for (auto* values : {&root, &touch}) {
+    if (values->size() < needed) values->resize(needed + images / 4 + 64);
+    (*values)[particles + images] = 0.0;
+  }
+}
+
+void EddyRecords::fill_images(std::size_t particles, const CellGrid& grid) {
+  const auto& images = grid.image_list();
+  const auto n = static_cast<std::int64_t>(images.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    root[particles + k] = root[images[k].source];
+    touch[particles + k] = touch[images[k].source];
+  }
+}
+
+namespace {
+
+template <class T, class Records>
+void copy_roots(const AlignedVector<double>& root, Records& records, std::size_t count) {
+  const auto n = static_cast<std::int64_t>(count);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    records[k][MotionRecord<2>::root] = static_cast<T>(root[k]);
+  }
+}
+
+}  // namespace
+
+void EddyRecords::give_roots(RecordArray& records, std::size_t count) const {
+  copy_roots<double>(root, records, count);
+}
+void EddyRecords::give_roots(CompactRecords& records, std::size_t count) const {
+  copy_roots<float>(root, records, count);
+}
+
+std::size_t EddyRecords::bytes() const { return (root.capacity() + touch.capacity()) * sizeof(double); }
+
+}  // namespace barchan
