@@ -11,6 +11,66 @@ namespace {
 
 constexpr double restitution = 0.2;  // of grains while they settle
 
+/// Adds the walls that the grains, the first phase of `s`, feel and that stand in the domain, with their entries.
+/// Returns the law of two grains.
+ContactLaw add_walls(const Scene& scene, std::size_t k, Scene& s) {
+  const std::string name = s.phases[0].name;
+  ContactLaw law = soft_contact_law;
+  for (const Interaction& pair : scene.interactions) {
+    if (!of_spheres(pair) || (pair.a != name && pair.b != name)) continue;
+    const std::string& other = pair.a == name ? pair.b : pair.a;
+    const auto found =
+        std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == other; });
+    if (other == name) law = pair.law;
+    else if (!found->if_wall()) continue;
+    else s.phases.push_back(*found);
+    s.interactions.push_back(pair);
+  }
+  for (std::size_t f = 0; f < k; ++f)
+    for (const Phase& p : s.phases)
+      if (p.if_wall() && p.name == scene.fills[f].phase && !std::holds_alternative<SidesShape>(scene.fills[f].shape))
+        s.fills.push_back(scene.fills[f]);
+  std::erase_if(s.phases, [&](const Phase& p) {
+    return p.if_wall() &&
+           std::none_of(s.fills.begin(), s.fills.end(), [&](const Fill& f) { return f.phase == p.name; });
+  });
+  std::erase_if(s.interactions, [&](const Interaction& pair) {
+    const auto there = [&](const std::string& which) {
+      return std::any_of(s.phases.begin(), s.phases.end(), [&](const Phase& p) { return p.name == which; });
+    };
+    return !there(pair.a) || !there(pair.b);
+  });
+  return law;
+}
+
+/// Adds the box about the domain of `s`: a floor, and sides where the domain is not periodic.
+void add_box(const Scene& scene, ContactLaw law, Scene& s) {
+  Phase box;
+  box.name = settling_box;
+  box.density = s.phases[0].density;
+  box.own = WallKeys{};
+  box.spacing = scene.spacing;
+  Fill sides;
+  sides.phase = settling_box;
+  SidesShape shape{{"bottom"}, 1};
+  const char* const names[3][2] = {{"left", "right"}, {"", ""}, {"back", "front"}};
+  for (const std::size_t d : {std::size_t{0}, std::size_t{2}}) {
+    if (d == 2 && scene.dimensions == 2) continue;
+    const double whole = scene.domain.size[d];
+    s.domain.periodic[d] = scene.domain.periodic[d] && s.domain.size[d] > whole * (1.0 - 1e-9);
+    if (!s.domain.periodic[d]) shape.sides.insert(shape.sides.end(), {names[d][0], names[d][1]});
+  }
+  s.domain.periodic[1] = false;
+  sides.shape = shape;
+  s.phases.push_back(box);
+  Interaction at_box;
+  at_box.a = s.phases[0].name;
+  at_box.b = settling_box;
+  at_box.law = law;
+  s.interactions.push_back(at_box);
+  s.fills.push_back(sides);
+}
+
 }  // namespace
 
 Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
@@ -34,60 +94,13 @@ Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
   std::get<GrainsKeys>(s.phases[0].own).sleep = false;
   s.output.fields.clear();
   s.time.fixed_step.reset();
-  ContactLaw law = soft_contact_law;
-  for (const Interaction& pair : scene.interactions) {
-    if (!of_spheres(pair) || (pair.a != phase.name && pair.b != phase.name)) continue;
-    const std::string& other = pair.a == phase.name ? pair.b : pair.a;
-    const auto found =
-        std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == other; });
-    if (other == phase.name) law = pair.law;
-    else if (!found->if_wall()) continue;
-    else s.phases.push_back(*found);
-    s.interactions.push_back(pair);
-  }
-  for (std::size_t f = 0; f < k; ++f)
-    for (const Phase& p : s.phases)
-      if (p.if_wall() && p.name == scene.fills[f].phase && !std::holds_alternative<SidesShape>(scene.fills[f].shape))
-        s.fills.push_back(scene.fills[f]);
-  std::erase_if(s.phases, [&](const Phase& p) {
-    return p.if_wall() &&
-           std::none_of(s.fills.begin(), s.fills.end(), [&](const Fill& f) { return f.phase == p.name; });
-  });
-  std::erase_if(s.interactions, [&](const Interaction& pair) {
-    const auto there = [&](const std::string& name) {
-      return std::any_of(s.phases.begin(), s.phases.end(), [&](const Phase& p) { return p.name == name; });
-    };
-    return !there(pair.a) || !there(pair.b);
-  });
+  const ContactLaw law = add_walls(scene, k, s);
   const double height = (c.high[1] - c.from) * loose_lattice_height * std::pow(1.0 + size.spread, scene.dimensions) +
                         3.0 * size.largest();
   s.domain.origin = c.low;
   s.domain.size = c.high - c.low;
   s.domain.size[1] = c.from - c.low[1] + height;
-  Phase box;
-  box.name = settling_box;
-  box.density = phase.density;
-  box.own = WallKeys{};
-  box.spacing = scene.spacing;
-  Fill sides;
-  sides.phase = settling_box;
-  SidesShape shape{{"bottom"}, 1};
-  const char* const names[3][2] = {{"left", "right"}, {"", ""}, {"back", "front"}};
-  for (const std::size_t d : {std::size_t{0}, std::size_t{2}}) {
-    if (d == 2 && scene.dimensions == 2) continue;
-    const double whole = scene.domain.size[d];
-    s.domain.periodic[d] = scene.domain.periodic[d] && s.domain.size[d] > whole * (1.0 - 1e-9);
-    if (!s.domain.periodic[d]) shape.sides.insert(shape.sides.end(), {names[d][0], names[d][1]});
-  }
-  s.domain.periodic[1] = false;
-  sides.shape = shape;
-  s.phases.push_back(box);
-  Interaction at_box;
-  at_box.a = phase.name;
-  at_box.b = settling_box;
-  at_box.law = law;
-  s.interactions.push_back(at_box);
-  s.fills.push_back(sides);
+  add_box(scene, law, s);
   s.time.end = 1e3;
   return s;
 }

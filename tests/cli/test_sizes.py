@@ -27,7 +27,6 @@ LONG_FUNCTIONS = {
                                                       "docs/method.md; each uses what the ones before it found",
     "models/bodies/updated_lagrangian.cpp: strain": "loop and closing terms of the strain of a body, an in-place update of its stress",
     "models/grains/sphere_forces.cpp: group_of": "contacts side by side: their geometry, springs and dashpots share registers",
-    "simulation/settle.cpp: settling_scene": "one statement a key of the scene in which a bed settles",
 }
 
 
