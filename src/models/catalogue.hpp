@@ -1,6 +1,8 @@
 // Which model each phase and each entry of a scene has: the one place that asks for the kind of a phase.
 #pragma once
 
+#include <optional>
+
 #include "models/model.hpp"
 
 namespace barchan {

@@ -2,6 +2,7 @@
 // what is remembered of a hold.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
