@@ -164,7 +164,8 @@ void Watch::tell_worst(const Moment& now) const {
 void Watch::tell_pair(const Apart& pair, const Moment& now) const {
   const PhaseParticles &a = see_.particles[pair.a], &b = see_.particles[pair.b];
   const PairList& list = see_.neighbours.list(static_cast<std::size_t>(pair.list));
-  const auto& records = pair.stress ? see_.stress : see_.motion;
+  const Record record = pair.stress ? Record::stress : Record::motion;
+  const RecordArray &own = see_.work.records(pair.a, record), &others = see_.work.records(pair.b, record);
   const CellGrid& grid = see_.neighbours.grid(pair.b);
   std::size_t first = 0, with = 0;
   double distance = 0.0;
@@ -178,7 +179,7 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
       if (at >= b.size() && image >= grid.images()) continue;  // the dummy
       double r2 = 0.0;
       for (std::size_t d = 0; d < static_cast<std::size_t>(a.dimensions()); ++d)
-        r2 += std::pow(records[pair.a][k][d] - records[pair.b][at][d], 2);
+        r2 += std::pow(own[k][d] - others[at][d], 2);
       if (!(std::sqrt(r2) < least)) continue;
       least = distance = std::sqrt(r2);
       first = k;

@@ -7,6 +7,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "engine/phase_records.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
@@ -62,6 +63,51 @@ TEST(Schedule, FindsATaskThatTouchesWhatItDidNotDeclare) {
   EXPECT_NO_THROW(s.run(0, 0));
   EXPECT_THROW(s.run(1, 1), std::logic_error);
   EXPECT_NO_THROW((void)p.column(Field::velocity)) << "outside of tasks all is free";
+}
+
+/// Notes what is asked of it.
+class Notes : public Halo {
+ public:
+  void fill_images(std::size_t phase, Record record) override { text += " fill " + what(phase, record); }
+  void outdate_images(std::size_t phase, Record record) override { text += " old " + what(phase, record); }
+  std::string text;
+
+ private:
+  static std::string what(std::size_t phase, Record record) { return std::to_string(phase) + name_of(record); }
+};
+
+TEST(Schedule, HasTheImagesMadeThatATaskReadsRightBeforeIt) {
+  Schedule s(stages);
+  Notes halo;
+  s.add({0, "air", {{"air", {}, {}, {{}, {}, {Record::motion}}}}, [&] { halo.text += " pack"; }});
+  s.add({1, "sand", {{"sand", {}, {}, {{Record::motion}, {}, {}}}, {"air", {}, {}, {{}, {Record::motion}, {}}}}, [&] {
+           halo.text += " push";
+         }});
+  s.use(halo, {"sand", "air"});
+  s.run(0, 2);
+  EXPECT_EQ(halo.text, " pack old 1motion fill 1motion push") << "what a task reads of particles alone needs no images";
+  s.add({2, "snow", {{"snow", {}, {}, {{}, {Record::stress}, {}}}}, [] {}});
+  EXPECT_THROW(s.use(halo, {"sand", "air"}), std::logic_error);
+}
+
+TEST(Schedule, FindsATaskThatReadsRecordsWhichItDidNotDeclare) {
+#ifdef NDEBUG
+  GTEST_SKIP() << "checked in builds with assertions";
+#endif
+  PhaseRecords air("air", 2);
+  air.make(Record::motion);
+  air.fit(3, 2);
+  const RecordArray& records = air.array(Record::motion);
+  const auto read = [&](const RecordTouch& touch, std::size_t k) {
+    Schedule s(stages);
+    s.add({0, "air", {{"air", {}, {}, touch}}, [&records, k] { (void)records[k]; }});
+    s.run(0, 0);
+  };
+  EXPECT_NO_THROW(read({{Record::motion}, {}, {}}, 2));
+  EXPECT_THROW(read({{Record::stress}, {}, {}}, 2), std::logic_error);
+  EXPECT_THROW(read({{Record::motion}, {}, {}}, 3), std::logic_error) << "the first image";
+  EXPECT_THROW(read({{}, {Record::motion}, {}}, 3), std::logic_error) << "nobody has made the images";
+  EXPECT_NO_THROW((void)records[3]) << "outside of tasks all is free";
 }
 
 }  // namespace
