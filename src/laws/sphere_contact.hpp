@@ -44,6 +44,7 @@ struct SphereContact {
   using Smooth = SphereContact<Normal, Damping>;
   static constexpr bool rubs = Friction::rubs, rolls = Rolling::rolls;
   static_assert(rubs || !rolls, "the springs of the rolling resistance are as stiff as those of the friction");
+  static_assert(remembered_by<Damping, 2>() == 0, "nobody asks a damping part what it remembers");
   /// Of the numbers that a contact remembers the first are lengths of springs across the normal (m), which hold
   /// left_behind() when it ends.
   template <std::size_t Dim>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,9 @@ struct PhaseRules {
   std::string stiffness_key;                                       // of its contacts
 };
 
+/// Whether output.fields names the field.
+bool is_output(const Scene& scene, Field field);
+
 /// A phase as its model declares it: first what others ask while they describe themselves (`declare_...`), then all
 /// else (`describe_...`). models/catalogue.cpp calls both. Where nothing is declared, the defaults hold.
 struct PlanPhase {
@@ -178,7 +182,12 @@ struct PlanPhase {
   bool gives_energy = false;    // its surface slides or pulls, and so gives energy to the others [wall]
   std::string physics = "";     // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
   std::vector<Field> fields;
+  std::vector<void (*)(PhaseParticles&)> derivations;  // of fields that only outputs read, before a frame and a row
   PhaseRules rules;
+
+  /// Fields that only outputs read: the phase has those that output.fields names, and `derive` makes them from the
+  /// others.
+  void derive_for_output(const Scene& scene, std::initializer_list<Field> of, void (*derive)(PhaseParticles&));
 
   /// For a task that touches all of them.
   Touch all_fields() const { return {name, FieldSet(fields), FieldSet(fields)}; }

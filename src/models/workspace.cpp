@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "engine/integrate.hpp"
 #include "models/bodies/artificial_stress.hpp"
@@ -35,6 +36,18 @@ const std::array<const char*, stage::count> stage::names{"kick and drift",
                                                          "fluid energy",
                                                          "kick",
                                                          "watch"};
+
+bool is_output(const Scene& scene, Field field) {
+  const auto& names = scene.output.fields;
+  return std::find(names.begin(), names.end(), info(field).name) != names.end();
+}
+
+void PlanPhase::derive_for_output(const Scene& scene, std::initializer_list<Field> of,
+                                  void (*derive)(PhaseParticles&)) {
+  const std::size_t before = fields.size();
+  std::copy_if(of.begin(), of.end(), std::back_inserter(fields), [&](Field f) { return is_output(scene, f); });
+  if (fields.size() > before) derivations.push_back(derive);
+}
 
 double Layout::particles() const {
   double n = 0;
@@ -260,6 +273,11 @@ void CommonWork::pack() {
     if (w_->has(k, Record::artificial))
       pack_artificial_stress(p, w_->scene.phases[k].elastic().artificial_stress, w_->to_write(k, Record::artificial));
   }
+}
+
+void CommonWork::derive() {
+  for (std::size_t k = 0; k < layout_.phases.size(); ++k)
+    for (const auto derive_fields : layout_.phases[k].derivations) derive_fields(w_->particles(k));
 }
 
 void CommonWork::carry() {

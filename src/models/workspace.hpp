@@ -79,6 +79,7 @@ class CommonWork : public Model {
   explicit CommonWork(const Layout& layout) : layout_(layout) {}
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
+  void derive() override;
 
  private:
   void find_neighbours();

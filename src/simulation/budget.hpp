@@ -4,7 +4,7 @@
 // that axis; the angular momentum of bodies about their common centre, when nothing else is in the scene. Energy may
 // only fall (into heat) when no force acts and no wall moves: the sum of the kinetic energy, that of the weight, that
 // which the compression of the fluids stores, and the strain of bodies less the work of what drives them. Mass has no
-// budget: a particle carries its own, and none is made or taken away.
+// budget: a particle carries its own. What is made or taken away is booked by who does it (State::departed).
 #pragma once
 
 #include <array>

@@ -31,7 +31,8 @@ struct Retreat {
   void archive(Archive& a);
 };
 
-/// What left the run through open sides, of one phase: as it was when it left (SI; by metre of depth in 2D).
+/// What left the run, of one phase: as it was when it left (SI; by metre of depth in 2D). Who makes particles books them
+/// with the opposite sign.
 struct Departed {
   std::int64_t phase = 0, particles = 0;
   double first = 0.0;  // s, when the first one left
@@ -43,7 +44,7 @@ struct State {
   std::vector<PhaseParticles> phases;
   std::deque<AirProfile> air;      // wind by height: of phases that are air without particles, of layers over sand
   std::vector<RigidBody> bodies;   // rigid, in the order of their phases and fills
-  std::vector<Departed> departed;  // of the phases that may leave
+  std::vector<Departed> departed;  // of the models that take particles away or make them
   IdSource ids;                    // of the particles that will be made
   double time = 0.0, dt = 0.0;     // s
   long steps = 0;

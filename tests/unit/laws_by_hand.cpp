@@ -53,7 +53,8 @@ TouchingSpheres<V, Dim> spheres(double overlap) {
 /// N and J: the force along the normal and what is stored, of spheres without losses.
 template <class Law>
 std::array<double, 2> push_and_store(const Law& law, double overlap) {
-  std::array<V, 0> memory;
+  std::array<V, Law::template numbers<2>> memory;
+  memory.fill(V(0.0));
   const auto f = Law::touch(typename Law::template Constants<V>(law, 1e-9), spheres<2>(overlap), memory);
   return {f.force[0][0], f.stored[0]};
 }

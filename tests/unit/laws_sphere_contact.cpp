@@ -45,7 +45,8 @@ After meet(const L& law, double mass_a, double mass_b, double speed, double slip
   const typename L::template Constants<V> constants(law, dt);
   V x = V(2.0 * radius + 2.0 * speed * dt) + V(speed * dt / phases) * V::iota(), y(0.0);
   V u(-speed), v(slip), spin_a(0.0), spin_b(0.0), lost(0.0), deepest(0.0);
-  std::array<V, 1> memory{V(0.0)};
+  std::array<V, L::template numbers<2>> memory;
+  memory.fill(V(0.0));
   for (int k = 0; k < 60; ++k) {
     TouchingSpheres<V, 2> s;
     s.normal = {V(1.0), V(0.0)};

@@ -20,6 +20,12 @@ namespace barchan {
 
 namespace {
 
+/// Von Mises and principal stresses.
+void write_from_stress(PhaseParticles& p) {
+  const SolidFields fields(p);
+  for (std::size_t k = 0; k < p.size(); ++k) fields.write_from_stress(k);
+}
+
 double compression_speed(const ElasticKeys& p, double density) {
   const double lame = p.young * p.poisson / ((1 + p.poisson) * (1 - 2 * p.poisson));
   const double shear = p.young / (2 * (1 + p.poisson));
@@ -94,21 +100,20 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
     if (!is_total(phase)) refuse_turning(scene, blocks[number]);
   }
   PlanPhase& p = layout.phases[number];
-  const auto asked = [&](Field field) {
-    const auto& names = scene.output.fields;
-    return std::find(names.begin(), names.end(), info(field).name) != names.end();
-  };
   p.deforms = p.noiseless = p.counts_drive = true;
   p.fixed_neighbours = phase.elastic().formulation == Formulation::total_lagrangian;
   p.stress_records = !p.fixed_neighbours;
   if (!p.fixed_neighbours) p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration};
-  if (!p.fixed_neighbours || asked(stress)) p.fields.push_back(stress);
+  if (!p.fixed_neighbours || is_output(scene, stress)) p.fields.push_back(stress);
   if (!p.fixed_neighbours && phase.elastic().energy) p.fields.insert(p.fields.end(), {energy, energy_rate});
-  for (const Field field : {von_mises_stress, principal_stress})
-    if (asked(field)) p.fields.push_back(field);
-  if (p.fixed_neighbours && asked(strain)) p.fields.push_back(strain);
-  if (asked(contact_force) && touches_as_body(scene, phase)) p.fields.push_back(contact_force);
+  if (p.fixed_neighbours) {  // TotalPhase::derive
+    for (const Field field : {von_mises_stress, principal_stress, strain})
+      if (is_output(scene, field)) p.fields.push_back(field);
+  } else {
+    p.derive_for_output(scene, {von_mises_stress, principal_stress}, write_from_stress);
+  }
+  if (is_output(scene, contact_force) && touches_as_body(scene, phase)) p.fields.push_back(contact_force);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
   p.rules = elastic_rules(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
 }
@@ -213,14 +218,6 @@ void ElasticPhase::strain() {
   PhaseParticles& p = w_->particles(number_);
   elastic_strain(p, w_->records(number_, Record::stress), neighbours_, parameters_, w_->state.dt);
   drift(p, 0.5 * w_->state.dt);
-}
-
-/// Von Mises and principal stresses.
-void ElasticPhase::derive() {
-  PhaseParticles& p = w_->particles(number_);
-  if (!p.has(Field::von_mises_stress) && !p.has(Field::principal_stress)) return;
-  const SolidFields fields(p);
-  for (std::size_t k = 0; k < p.size(); ++k) fields.write_from_stress(k);
 }
 
 void ElasticPhase::load() {

@@ -23,7 +23,6 @@ class ElasticPhase : public Model {
   void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
-  void derive() override;
   void history(HistoryRow& row) const override;
   double budget_energy() override { return strain_energy(); }
   void limits(std::vector<StepLimit>& limits) const override;
