@@ -47,6 +47,9 @@ function(barchan_read_headers_once target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # g++ 12 forgets that <string> is a system header and warns of "a" + string. Preset dev keeps these warnings.
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+    if(NOT BARCHAN_ARCH STREQUAL "dispatch")  # and of its own intrinsics for AVX-512
+      target_compile_options(${target} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)
+    endif()
   endif()
 endfunction()
 

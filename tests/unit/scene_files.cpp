@@ -24,10 +24,14 @@ TEST(SceneFiles, AllReadAndMakeParticles) {
     ++count;
     try {
       Scene scene = read_scene(entry.path().string());
-      for (Fill& fill :
-           scene.fills)  // EveryScene.RunsInTheProgram lets them settle, which takes minutes in a sanitizer
-        if (fill.packing == Packing::settled) fill.packing = Packing::hexagonal;
       EXPECT_FALSE(scene.title.empty()) << entry.path();
+      // EveryScene.RunsInTheProgram lets them settle and relax, which takes minutes in a sanitizer.
+      bool relaxes = false;
+      for (Fill& fill : scene.fills) {
+        if (fill.packing == Packing::settled) fill.packing = Packing::hexagonal;
+        relaxes = relaxes || fill.packing == Packing::relaxed;
+      }
+      if (relaxes) continue;
       const auto blocks = make_particles(scene);
       for (std::size_t k = 0; k < blocks.size(); ++k) {
         const bool column = scene.phases[k].kind() == PhaseKind::column;
