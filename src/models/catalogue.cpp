@@ -95,11 +95,16 @@ EntryKind kind_of_entry(const Interaction& pair, const Phase& a, const Phase& b)
                    "\", of kind " + b.kind_word() + "; expected no such entry");
 }
 
-std::unique_ptr<Model> make_of_entry(const Scene& scene, const Layout& layout, const PlanEntry& e) {
-  if (e.self_contact) return make_entry<BodyContact>(scene, layout, e);
+void add_of_entry(const Scene& scene, const Layout& layout, const PlanEntry& e, Models& models) {
+  if (e.self_contact) {
+    models.push_back(make_entry<BodyContact>(scene, layout, e));
+    return;
+  }
   const Phase &a = scene.phases[e.a], &b = scene.phases[e.b];
   const EntryKind kind = kind_of_entry(*entry_between(scene, a, b), a, b);
-  return kind.make ? kind.make(scene, layout, e) : nullptr;
+  if (!kind.make) return;
+  models.push_back(kind.make(scene, layout, e));
+  if (!models.back()) models.pop_back();  // this entry needs none: a coupling without drag
 }
 
 /// Fields of a phase for the fluid or the wind about it.
@@ -170,8 +175,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
   }
   if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.own_steps; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
-  for (const auto& e : layout.entries)
-    if (auto model = make_of_entry(scene, layout, e)) models.push_back(std::move(model));
+  for (const auto& e : layout.entries) add_of_entry(scene, layout, e, models);
   add_grain_fluxes(scene, layout, models);
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));
