@@ -31,8 +31,8 @@ struct Retreat {
   void archive(Archive& a);
 };
 
-/// What left the run, of one phase: as it was when it left (SI; by metre of depth in 2D). Who makes particles books them
-/// with the opposite sign.
+/// What left the run, of one phase: as it was when it left (SI; by metre of depth in 2D). Who makes particles books
+/// them with the opposite sign.
 struct Departed {
   std::int64_t phase = 0, particles = 0;
   double first = 0.0;  // s, when the first one left

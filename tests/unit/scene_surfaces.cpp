@@ -237,7 +237,8 @@ TEST(Meshes, DamageIsRefusedByName) {
 // A first line that is damaged was taken for a heading, and its corner was lost.
 TEST(Meshes, AHeadingOfCornersHasTwoNames) {
   const std::string rest = "1,-1\n1,1\n-1,1\n";
-  for (const char* first : {"nan,-1", "-1,inf", "l,-1", "O,0", "\"-1\",\"-1\"", "x,,-1", "x -1", ",-1,-1", "x,y,z", "x"})
+  for (const char* first :
+       {"nan,-1", "-1,inf", "l,-1", "O,0", "\"-1\",\"-1\"", "x,,-1", "x -1", ",-1,-1", "x,y,z", "x"})
     EXPECT_EQ(parse_corners(std::string(first) + "\n" + rest).problem, "line 1 is not a corner x, y") << first;
   for (const char* head : {"x,y", "\"x [m]\",\"y [m]\"", "x y", "X ; Y"}) {
     const Mesh mesh = parse_corners(std::string(head) + "\n-1,-1\n" + rest);
@@ -254,8 +255,9 @@ TEST(Meshes, CountsThatAFileCannotHoldAreRefusedAtOnce) {
   const auto damaged = [](const std::string& name, const std::string& from, const std::string& to) {
     return read_surface(file_with("counts" + name.substr(name.rfind('.')), with(corpus(name), from, to))).problem;
   };
-  EXPECT_NE(damaged("text.vtk", "POLYGONS 4 16", "POLYGONS 4 4294967295").find("states \"4294967295\" numbers in a file of"),
-            std::string::npos);
+  EXPECT_NE(
+      damaged("text.vtk", "POLYGONS 4 16", "POLYGONS 4 4294967295").find("states \"4294967295\" numbers in a file of"),
+      std::string::npos);
   EXPECT_NE(damaged("text.vtp", "NumberOfComponents=\"3\"", "NumberOfComponents=\"99999999999999999999\"")
                 .find("components; expected at most 1000"),
             std::string::npos);
