@@ -193,7 +193,9 @@ pid_t start_run(const std::filesystem::path& directory) {
   const pid_t child = fork();
   if (child == 0) {
     putenv(const_cast<char*>(variable.c_str()));
-    unsetenv("GTEST_TOTAL_SHARDS");  // of this process, if a runner divides the tests
+    // A runner may have divided the tests of this process: the child runs the one that it is told, whatever its share.
+    unsetenv("GTEST_TOTAL_SHARDS");
+    unsetenv("GTEST_SHARD_INDEX");
     execl("/proc/self/exe", "test", "--gtest_also_run_disabled_tests", "--gtest_filter=Series.DISABLED_RunToBeKilled",
           "--gtest_brief=1", nullptr);
     _exit(1);
