@@ -14,6 +14,12 @@ double PressureLaw::operator()(double density) const {
   return stiffness * (std::pow(density / reference_density, exponent) - 1.0) + background;
 }
 
+double PressureLaw::density(double pressure) const {
+  const double over = (pressure - background) / (reference_density * sound_speed * sound_speed);
+  if (exponent == 1.0) return reference_density * (1.0 + over);
+  return reference_density * std::pow(1.0 + exponent * over, 1.0 / exponent);
+}
+
 namespace {
 
 template <std::size_t Dim>

@@ -12,6 +12,7 @@ struct PressureLaw {
   double exponent;           // Tait's gamma; 1 is the linear equation of state
   double background;         // Pa
   double operator()(double density) const;
+  double density(double pressure) const;  ///< kg/m3, at which the pressure is this
 };
 
 /// v += half_kick a; x += drift (v + du), du the shift velocity where the phase has one. If `pressure` is given:

@@ -12,7 +12,7 @@ namespace {
 /// Builds the instruments of one scene.
 class Maker {
  public:
-  Maker(const Scene& scene, const Layout& layout) : scene_(scene), bounds_(layout.bounds), layout_(layout) {}
+  Maker(const Scene& scene, const Layout& layout) : scene_(scene), bounds_(layout.domain), layout_(layout) {}
 
   Instrument common(const Measured& measured, InstrumentKind kind, const std::string& prefix) const {
     Instrument i;

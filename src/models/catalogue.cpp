@@ -15,6 +15,7 @@
 #include "models/coupling/rigid_in_fluid.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
+#include "models/fluid/flow_zone.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "models/fluid/open_sides.hpp"
 #include "models/force_meter.hpp"
@@ -167,6 +168,9 @@ Models make_models(const Scene& scene, const Layout& layout) {
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if (layout.leaves(k)) models.push_back(std::make_unique<OpenSides>(scene, layout, k));
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    for (const FlowEnd& end : layout.phases[k].flow_ends)
+      models.push_back(std::make_unique<FlowZone>(scene, layout, k, end));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     if (!layout.phases[k].moves || !layout.is_extended(k)) continue;
     if (scene.phases[k].kind() == PhaseKind::rigid)  // its surface moves before the fluid is extended into it

@@ -12,6 +12,7 @@
 
 #include "base/fields.hpp"
 #include "engine/neighbours.hpp"
+#include "scene/flow_ends.hpp"
 #include "scene/scene.hpp"
 #include "state/access.hpp"
 #include "state/rigid_body.hpp"
@@ -157,6 +158,7 @@ struct PlanPhase {
   bool held = false;                          // a fluid whose bulk speed is held
   bool free_surface = false;                  // a fluid that does not fill its space
   std::array<std::array<bool, 2>, 3> open{};  // sides of the domain through which it leaves, by axis: {lower, upper}
+  std::vector<FlowEnd> flow_ends;             // sides through which it enters or leaves, with their zones
   bool eddies = false;                        // a fluid whose viscosity varies, or with a wall whose stress is given
   bool heats = false;          // a solid in a fluid whose internal energy is asked for [models/catalogue.cpp]
   bool enclosed = false;       // a fluid whose mean density is kept
@@ -198,13 +200,25 @@ struct Layout {
   double largest_speed = 0;  // m/s; the automatic sound speed is ten times this
   double slab = 1;    // m, in 2D the thickness of the slab of the spheres: the largest mean diameter; 1 without spheres
   double skin = 0.1;  // of the lists, in their radii; the widest
-  Bounds bounds;
+  Bounds domain;       // that of the scene
+  Bounds bounds;       // where particles may be: the domain, and the zones beyond sides through which a fluid flows
   std::vector<PlanPhase> phases;
   std::vector<PlanEntry> entries;
   std::vector<Direction> directions;
   bool leaves(std::size_t phase) const {  // some side is open to it
     const auto& o = phases[phase].open;
     return std::any_of(o.begin(), o.end(), [](const auto& ends) { return ends[0] || ends[1]; });
+  }
+  /// Whether some fluid flows through a side: then particles stand beyond the domain.
+  bool flows_through() const {
+    return std::any_of(phases.begin(), phases.end(), [](const PlanPhase& p) { return !p.flow_ends.empty(); });
+  }
+  /// Whether a particle stands in the domain, and not in a zone beyond a side through which a fluid flows.
+  bool in_domain(const PhaseParticles& p, std::size_t k) const {
+    for (const PlanPhase& phase : phases)
+      for (const FlowEnd& end : phase.flow_ends)
+        if (end.beyond(p.column(Field::position, static_cast<int>(end.axis()))[k]) > 0.0) return false;
+    return true;
   }
   /// Whether some fluid is extended into the phase, which then has extended records.
   bool is_extended(std::size_t phase) const {

@@ -365,6 +365,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_open(scene, report);
   check_domain(scene, report);
   check_forcings(scene, report);
+  check_flow_ends(scene, report);
   check_winds(scene, report);
   check_physics(scene, report);
   check_bodies(scene, report);

@@ -57,6 +57,9 @@ void read_surfaces(Scene& scene, const Report& report);
 /// Of the run as a whole: names of files, its state in ParaView, how often it writes, its distance from zero.
 void check_run(const Scene& scene, const Report& report);
 
+/// Of sides through which fluids flow: who cannot, and sides that are closed.
+void check_flow_ends(const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

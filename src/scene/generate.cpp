@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "scene/couplings.hpp"
 #include "scene/fitted.hpp"
+#include "scene/flow_ends.hpp"
 #include "scene/formula.hpp"
 #include "scene/ground.hpp"
 #include "scene/lattice.hpp"
@@ -257,7 +258,7 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     const auto phase =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
-    std::vector<Vec3> places;
+    std::vector<Vec3> places, even;  // even: before they were disturbed
     SettledGrains settled;
     const bool from_file = std::holds_alternative<FileShape>(fill.shape);
     if (fill.packing == Packing::settled || from_file) {
@@ -267,6 +268,8 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
       places = settled.position;
     } else {
       places = places_of(scene, k, occupied);
+      leave_out_beyond_flow_ends(scene, *phase, places);
+      even = places;
       perturb(places, fill, scene);
     }
     check_places(places, k, scene, phase->kind(), occupied);
@@ -296,6 +299,7 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
       block.depth.resize(block.position.size(), 0.0);
     }
     if (!block.bend.empty()) block.bend.resize(block.position.size(), {});
+    continue_beyond_flow_ends(scene, *phase, even, first, block);
   }
   return blocks;
 }

@@ -298,6 +298,21 @@ struct Forcing {
   bool holds_force() const { return hold == Hold::stress || hold == Hold::pressure_gradient; }
 };
 
+/// A side of the domain through which a fluid enters (scene/flow_ends.hpp).
+struct Inflow {
+  std::string phase;
+  Side side{};
+  VectorExpression velocity;              // m/s, formulas in x, y, z, t
+  std::optional<LogProfile> log_profile;  // added to `velocity`, along x
+};
+/// A side through which it leaves, and enters again where the flow turns.
+struct Outflow {
+  std::string phase;
+  Side side{};
+  Expression pressure;          // Pa, beyond the side; a formula in x, y, z, t
+  std::optional<double> layer;  // m, in which sound is absorbed beyond the side; empty: 20 spacings
+};
+
 /// A set of particles of an elastic body, by their places at the start; or the rigid bodies whose centres stand there.
 struct BodySet {
   std::string phase;
@@ -397,6 +412,8 @@ struct Scene {
   std::vector<std::array<std::string, 2>> apart;  // pairs of phases that do not interact, as the scene says
   std::vector<Fill> fills;
   std::vector<Forcing> forcings;
+  std::vector<Inflow> inflows;
+  std::vector<Outflow> outflows;
   std::vector<Motion> motions;
   std::vector<Marker> markers;
   std::vector<ForceMeter> force_meters;

@@ -48,8 +48,7 @@ constexpr auto find_with_particles(std::index_sequence<k...>) {
 inline constexpr auto kinds_with_particles = find_with_particles(Kinds{});
 
 inline constexpr std::array axes{Word{"x", 0}, Word{"y", 1}, Word{"z", 2}};
-inline constexpr std::array sides_of_domain{Word{"bottom", 0}, Word{"top", 1},   Word{"left", 2},
-                                            Word{"right", 3},  Word{"front", 4}, Word{"back", 5}};
+inline constexpr auto sides_of_domain = words_of<Side>;
 inline constexpr std::array sides_or_none{sides_of_domain[0], sides_of_domain[1], sides_of_domain[2],
                                           sides_of_domain[3], sides_of_domain[4], sides_of_domain[5],
                                           Word{"none", 6}};
@@ -107,10 +106,12 @@ constexpr Slot fill_shape() {
           .open = [](void* fill) -> void* { return &static_cast<Fill*>(fill)->shape; }};
 }
 
-constexpr Slot fill_velocity(const char* in_words) {
-  Slot slot = at<&Fill::velocity>(in_words);
+/// A velocity of a fill or an inflow: components, or a section with a profile.
+template <auto member, class Otherwise>
+constexpr Slot velocity_or_profile(Otherwise text) {
+  Slot slot = at<member>(text);
   slot.accepts |= as_section;
-  slot.open = [](void* fill) { return fill; };
+  slot.open = [](void* object) { return object; };
   return slot;
 }
 

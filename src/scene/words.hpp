@@ -102,4 +102,11 @@ template <>
 inline constexpr std::array words_of<Precision>{word("double", Precision::double_precision),
                                                 word("mixed", Precision::mixed)};
 
+/// A side of the domain. bottom, top: y; left, right: x; back, front: z.
+enum class Side { bottom, top, left, right, front, back };
+template <>
+inline constexpr std::array words_of<Side>{word("bottom", Side::bottom), word("top", Side::top),
+                                           word("left", Side::left),     word("right", Side::right),
+                                           word("front", Side::front),   word("back", Side::back)};
+
 }  // namespace barchan

@@ -30,6 +30,18 @@ std::vector<RestingContact> Simulation::resting_contacts(std::size_t phase) cons
 
 std::size_t Simulation::bytes() const { return work_->bytes() + (watch_ ? watch_->bytes() : 0); }
 
+/// Whether outputs have a particle: those in zones beyond sides with a flow belong to the world outside.
+bool Simulation::is_shown(const PhaseParticles& p, std::size_t k) const {
+  return !flows_through_ || plan_.in_domain(p, k);
+}
+
+std::size_t Simulation::shown_of(std::size_t phase) const {
+  const PhaseParticles& p = state_.phases[phase];
+  std::size_t n = p.size();
+  for (std::size_t k = 0; flows_through_ && k < p.size(); ++k) n -= is_shown(p, k) ? 0 : 1;
+  return n;
+}
+
 Frame Simulation::frame(int index) const {
   for (const auto& model : models_) model->derive();
   Frame f;
@@ -37,8 +49,8 @@ Frame Simulation::frame(int index) const {
   f.step = state_.steps;
   f.time = state_.time;
   for (std::size_t d = 0; d < static_cast<std::size_t>(plan_.dimensions); ++d) {
-    f.domain[2 * d] = plan_.bounds.low[d];
-    f.domain[2 * d + 1] = plan_.bounds.high[d];
+    f.domain[2 * d] = plan_.domain.low[d];
+    f.domain[2 * d + 1] = plan_.domain.high[d];
   }
   std::size_t n = 0;
   std::vector<std::size_t> written;
@@ -47,7 +59,7 @@ Frame Simulation::frame(int index) const {
     f.phase_kinds.push_back(plan_.phases[k].kind);
     if (!plan_.phases[k].moves && !scene_.output.walls) continue;
     written.push_back(k);
-    n += state_.phases[k].size();
+    n += shown_of(k);
   }
   f.points.reserve(3 * n);
   f.id.reserve(n);
@@ -63,6 +75,7 @@ Frame Simulation::frame(int index) const {
   for (const std::size_t k : written) {
     const auto& p = state_.phases[k];
     for (std::size_t i = 0; i < p.size(); ++i) {
+      if (!is_shown(p, i)) continue;
       for (int d = 0; d < 3; ++d)
         f.points.push_back(d < plan_.dimensions ? inside(p.column(Field::position, d)[i], d) : 0.0);
       f.id.push_back(p.id()[i]);
@@ -88,7 +101,7 @@ FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& wr
   for (const std::size_t k : written) {
     const auto& p = state_.phases[k];
     for (std::size_t i = 0; i < p.size(); ++i)
-      for (int c = 0; c < out.components; ++c) {
+      for (int c = 0; c < out.components && is_shown(p, i); ++c) {
         double value = 0.0;
         if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
         else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
@@ -101,12 +114,13 @@ FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& wr
 
 void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   const auto& p = state_.phases[k];
-  const std::size_t n = p.size();
+  const std::size_t n = p.size(), shown = shown_of(k);
   std::array<const double*, 3> v{};
   for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
   double fastest = 0.0;
   const bool sizes = p.has(Field::radius);
   const double square = reproducible_sum(n, [&](std::size_t i) {
+    if (!is_shown(p, i)) return 0.0;
     double s = 0;
     for (int d = 0; d < plan_.dimensions; ++d)
       s += v[static_cast<std::size_t>(d)][i] * v[static_cast<std::size_t>(d)][i];
@@ -116,10 +130,11 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   std::array<double, 3> mean{};
   for (int d = 0; d < plan_.dimensions; ++d) {
     const auto c = static_cast<std::size_t>(d);
-    const double total = reproducible_sum(n, [&](std::size_t i) { return v[c][i]; });
+    const double total = reproducible_sum(n, [&](std::size_t i) { return is_shown(p, i) ? v[c][i] : 0.0; });
     row.values[HistoryRow::momentum_x + c] +=
-        sizes ? reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[c][i]; }) : p.mass() * total;
-    mean[c] = n > 0 ? total / static_cast<double>(n) : 0.0;
+        sizes ? reproducible_sum(n, [&](std::size_t i) { return is_shown(p, i) ? p.mass_of(i) * v[c][i] : 0.0; })
+              : p.mass() * total;
+    mean[c] = shown > 0 ? total / static_cast<double>(shown) : 0.0;
   }
   fastest = std::sqrt(fastest);
   row.raise(HistoryRow::largest_speed, fastest);

@@ -27,6 +27,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
                        Models more)
     : scene_(scene),
       plan_(plan),
+      flows_through_(plan.flows_through()),
       models_(joined(make_models(scene_, plan_), std::move(more))),
       schedule_(make_schedule(models_)) {
   forget_formula_fault();  // those of shapes may have no number somewhere

@@ -99,12 +99,15 @@ class Simulation {
   void shuffle();
   void check_columns() const;
   FrameField values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const;
+  bool is_shown(const PhaseParticles& p, std::size_t k) const;
+  std::size_t shown_of(std::size_t phase) const;
   /// What all phases that move have in a row of history.csv.
   void add_phase(std::size_t number, HistoryRow& row) const;
   void rule(const std::string& name, double value, double& dt);
 
   Scene scene_;
   Plan plan_;
+  bool flows_through_;  // particles stand beyond the domain (Layout::flows_through)
   State state_;
   Models models_;
   Schedule schedule_;

@@ -97,6 +97,13 @@ std::string place_text(const Vec3& x, int dimensions) {
   return text;
 }
 
+bool flows_through(const Scene& scene, const Phase& fluid, std::size_t axis, bool upper) {
+  const auto ends = flow_ends(scene, fluid);
+  return std::any_of(ends.begin(), ends.end(), [&](const FlowEnd& end) {
+    return end.axis() == axis && is_upper(end.side) == upper;
+  });
+}
+
 /// The place of a cell without a particle about it that is next to the fluid; empty when there is none. Space behind a
 /// row of solids, as in a hill of fitted rows, is three cells from the fluid.
 std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid) {
@@ -142,7 +149,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
     const Cells::Cell cell = walls.cell_of(x);
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       for (const long side : {0l, walls.counts()[axis] - 1}) {
-        if (scene.domain.periodic[axis] || cell[axis] != side) continue;
+        if (scene.domain.periodic[axis] || cell[axis] != side || flows_through(scene, phase, axis, side > 0)) continue;
         Cells::Cell beyond = cell;
         beyond[axis] += side == 0 ? -1 : 1;
         if (!walls.taken_about(beyond, 1, axis)) {
@@ -152,6 +159,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
         }
       }
   }
+  if (!flow_ends(scene, phase).empty()) return result.why = "it flows through a side", result;
   result.shut_in = true;
   result.why = walled ? "shut in by walls, and no free space" : "no free space, and every side is periodic";
   return result;

@@ -11,6 +11,7 @@
 #include "models/walls/sides.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -27,6 +28,15 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
   p.enclosure = said ? "as the scene says" : seen.why;
   p.free_surface = !p.enclosed && seen.open;
   p.open = open_sides(scene, fluid, p.free_surface);
+  p.flow_ends = flow_ends(scene, scene.phases[fluid]);
+  p.takes_momentum = p.gives_energy = !p.flow_ends.empty();
+  for (const FlowEnd& end : p.flow_ends) {
+    const auto& places = blocks[fluid].position;
+    if (std::any_of(places.begin(), places.end(), [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 0.0; })) continue;
+    throw SceneError(located(scene, end.inflow ? "inflow" : "outflow") + ": no particle of \"" + p.name +
+                     "\" stands in the last row at the side \"" + word_of(end.side) +
+                     "\" at the start, from which lanes follow; expected a fill that reaches this side");
+  }
   if (said.value_or(false) && !seen.free_space.empty())
     warnings.push_back("phases." + p.name + ".enclosed: there is free space at " + seen.free_space +
                        ", so that the mean density should be free; leave the key out");
@@ -153,7 +163,7 @@ Relief FluidPhase::relief() const {
       std::array<int, 2> counts{};
       for (std::size_t c = 0; c < (layout_.dimensions == 3 ? 2 : 1); ++c)
         counts[c] = static_cast<int>(std::ceil(2.0 * scene_.domain.size[2 * c] / plan_.spacing));
-      return {layout_.bounds, counts, fitted_heights(scene_, counts)};
+      return {layout_.domain, counts, fitted_heights(scene_, counts)};  // beyond it goes on as at its sides
     }
   }
   return {};
@@ -285,6 +295,7 @@ void FluidPhase::bind_entries() {
 void FluidPhase::look_for_voids() {
   parameters_.ends = false;
   parameters_.loose = &loose_;
+  for (const FlowEnd& end : plan_.flow_ends) voids_.leave_out(end);
   for (const auto& e : layout_.entries) {
     if (!e.has(number_) || !e.continues_fluid) continue;
     const std::size_t other = e.partner(number_);

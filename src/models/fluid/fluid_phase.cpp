@@ -162,19 +162,23 @@ const StepLimit* FluidPhase::moving_limit() {
 
 void FluidPhase::history(HistoryRow& row) const {
   const std::size_t n = particles_->size();
-  const auto count = static_cast<double>(n);
+  const bool all = plan_.flow_ends.empty();
+  const auto counts = [&](std::size_t i) { return all || layout_.in_domain(*particles_, i); };
+  const double count =
+      all ? static_cast<double>(n) : reproducible_sum(n, [&](std::size_t i) { return counts(i) ? 1.0 : 0.0; });
   const double* rho = std::as_const(*particles_).column(Field::density);
   const double* pressure = std::as_const(*particles_).column(Field::pressure);
   double worst = 0.0;
   const double squares = reproducible_sum(n, [&](std::size_t i) {
+    if (!counts(i)) return 0.0;
     const double e = std::abs(rho[i] / phase_.density - 1.0);
     worst = std::max(worst, e);
     return e * e;
   });
   row.raise(HistoryRow::largest_density_error, worst);
   row.add(plan_.name + "_mean_pressure [Pa]",
-          n > 0 ? reproducible_sum(n, [&](std::size_t i) { return pressure[i]; }) / count : 0.0);
-  row.add(plan_.name + "_density_error_rms", n > 0 ? std::sqrt(squares / count) : 0.0);
+          count > 0.0 ? reproducible_sum(n, [&](std::size_t i) { return counts(i) ? pressure[i] : 0.0; }) / count : 0.0);
+  row.add(plan_.name + "_density_error_rms", count > 0.0 ? std::sqrt(squares / count) : 0.0);
   if (keys_.energy) {
     const double* e = std::as_const(*particles_).column(Field::energy);
     row.add(plan_.name + "_internal_energy [J]",

@@ -68,6 +68,12 @@ bool beside_void(const PhaseParticles& fluid, std::span<const Seen> seen, double
 
 }  // namespace
 
+bool VoidFinder::is_left_out(const PhaseParticles& fluid, std::size_t k) const {
+  return std::any_of(ends_.begin(), ends_.end(), [&](const FlowEnd& end) {
+    return end.beyond(fluid.column(Field::position, static_cast<int>(end.axis()))[k]) > end.layer;
+  });
+}
+
 template <int Dim>
 bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
                          LooseParticles& loose) {
@@ -89,6 +95,7 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
   for (std::int64_t q = 0; q < count; ++q) {
     const std::uint32_t noted = loose.place[static_cast<std::size_t>(q)];
     const std::size_t k = noted & ~LooseParticles::broken;
+    if (is_left_out(fluid, k)) continue;
     const bool beside = beside_void<dim>(fluid, seen, radius, spacing, k);
     if ((k == noted || until_ > 0) && !beside) continue;
     if (!beside) ++broken;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "engine/cell_grid.hpp"
 #include "engine/pair_list.hpp"
 #include "models/fluid/fluid_rates.hpp"
+#include "scene/flow_ends.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
@@ -41,6 +43,9 @@ class VoidFinder {
     double width;
   };
 
+  /// Places beyond an end of a zone with a flow are not looked at: the last rows of the zone have nothing behind them.
+  void leave_out(const FlowEnd& end) { ends_.push_back(end); }
+
   /// `seen`: the fluid's own entry first. `radius`: of that (m). `spacing`: of the fluid (m). `loose`: what the pass
   /// over the rates noted; emptied. Returns whether any particle is beside a void.
   bool find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing, LooseParticles& loose);
@@ -55,6 +60,8 @@ class VoidFinder {
  private:
   template <int Dim>
   bool find_in(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing, LooseParticles& loose);
+  bool is_left_out(const PhaseParticles& fluid, std::size_t k) const;
+  std::vector<FlowEnd> ends_;
   std::int64_t near_ = 0;  // 1: some particle is beside a void
   std::int64_t unresolved_ = 0;
   std::int64_t until_ = settling + 1;  // steps until a broken neighbourhood counts

@@ -1,0 +1,89 @@
+// Of sides through which fluids flow: what cannot enter or leave, and sides that are no such sides.
+#include <algorithm>
+
+#include "scene/checks.hpp"
+#include "scene/flow_ends.hpp"
+
+namespace barchan {
+namespace {
+
+/// One section [[inflow]] or [[outflow]].
+struct Section {
+  std::string dotted;  // "inflow.0"
+  const std::string& phase;
+  Side side;
+};
+
+std::vector<Section> sections_of(const Scene& scene) {
+  std::vector<Section> all;
+  for (std::size_t k = 0; k < scene.inflows.size(); ++k)
+    all.push_back({"inflow." + std::to_string(k), scene.inflows[k].phase, scene.inflows[k].side});
+  for (std::size_t k = 0; k < scene.outflows.size(); ++k)
+    all.push_back({"outflow." + std::to_string(k), scene.outflows[k].phase, scene.outflows[k].side});
+  return all;
+}
+
+void check_fluid(const Scene& scene, const Section& section, const Report& report) {
+  const std::string at = section.dotted + ".phase";
+  if (report.touched(at) || !report.has(at)) return;
+  const Phase* phase = find_phase(scene, section.phase);
+  if (!phase) return report(at, unknown_phase(section.phase, scene));
+  if (phase->kind() != PhaseKind::fluid)
+    return report(at, "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
+  if (!report.touched("phases") && phase->fluid().energy)
+    report(at, "what enters \"" + phase->name +
+                   "\" has no internal energy that the scene says; expected no phases." + phase->name + ".energy");
+  if (!report.touched("phases") && phase->fluid().enclosed.value_or(false))
+    report(at, "\"" + phase->name + "\" flows through a side and is no closed content; expected no phases." +
+                   phase->name + ".enclosed");
+  for (std::size_t k = 0; k < scene.forcings.size(); ++k)
+    if (scene.forcings[k].phase == phase->name && scene.forcings[k].hold != Hold::none)
+      report(at, "forcing." + std::to_string(k) + " holds \"" + phase->name +
+                     "\", and what enters says how it flows; expected one of the two");
+}
+
+void check_side(const Scene& scene, const Section& section, const std::vector<Section>& others, const Report& report) {
+  const std::string at = section.dotted + ".side";
+  if (report.touched(at) || !report.has(at) || report.touched("domain") || report.touched("dimensions")) return;
+  const std::string word = word_of(section.side);
+  check_side_names({word}, at, scene, report);
+  if (report.touched(at)) return;
+  for (const Section& other : others) {
+    if (&other == &section) break;
+    if (other.side == section.side && other.phase == section.phase)
+      return report(at, "\"" + section.phase + "\" flows through \"" + word + "\" by " + other.dotted +
+                            " too; expected one section a side");
+    if (axis_of(other.side) != axis_of(section.side))
+      return report(at, "\"" + word + "\" and \"" + word_of(other.side) + "\" of " + other.dotted +
+                            " meet in a corner, beyond which nothing is said; expected sides of one axis");
+  }
+  const auto& open = scene.domain.open;
+  if (std::find(open.begin(), open.end(), word) != open.end())
+    return report(at, "\"" + word + "\" stands in domain.open, where particles are gone; expected one of the two");
+  const Phase* fluid = find_phase(scene, section.phase);
+  for (const Fill& fill : scene.fills) {
+    const auto* sides = std::get_if<SidesShape>(&fill.shape);
+    const Phase* wall = find_phase(scene, fill.phase);
+    if (sides && wall && fluid && entry_between(scene, *fluid, *wall) &&
+        std::find(sides->sides.begin(), sides->sides.end(), word) != sides->sides.end())
+      return report(at, "the wall \"" + wall->name + "\" closes \"" + word + "\" to \"" + section.phase +
+                            "\"; expected a side without such a wall");
+  }
+}
+
+}  // namespace
+
+void check_flow_ends(const Scene& scene, const Report& report) {
+  const std::vector<Section> sections = sections_of(scene);
+  for (const Section& section : sections) {
+    check_fluid(scene, section, report);
+    check_side(scene, section, sections, report);
+  }
+  for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
+    const std::string dotted = "inflow." + std::to_string(k);
+    if (scene.inflows[k].log_profile && scene.inflows[k].side != Side::left && !report.touched(dotted))
+      report(dotted + ".velocity", "a logarithmic wind blows along x; expected side = \"left\", or formulas");
+  }
+}
+
+}  // namespace barchan

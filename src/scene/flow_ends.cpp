@@ -1,0 +1,130 @@
+#include "scene/flow_ends.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/couplings.hpp"
+#include "scene/log_wind.hpp"
+
+namespace barchan {
+
+std::size_t axis_of(Side side) {
+  return side == Side::left || side == Side::right ? 0 : side == Side::bottom || side == Side::top ? 1 : 2;
+}
+
+bool is_upper(Side side) { return side == Side::right || side == Side::top || side == Side::front; }
+
+std::string word_of(Side side) {
+  for (const Word& word : words_of<Side>)
+    if (word.meaning == static_cast<int>(side)) return std::string(word.word);
+  return "";
+}
+
+namespace {
+
+constexpr double layer_in_spacings = 20.0;  // of an outflow that does not say it; docs/method.md, Open sides
+
+/// Rows of given values: as wide as the kernel of the fluid, and one more, since the last row enters as a whole.
+double rows_beyond(const Scene& scene, const Phase& fluid) {
+  const Interaction* own = entry_between(scene, fluid, fluid);
+  return std::ceil(own ? own->radius : 3.0) + 1.0;
+}
+
+FlowEnd make_end(const Scene& scene, const Phase& fluid, Side side, double layer) {
+  FlowEnd end;
+  end.side = side;
+  const std::size_t axis = axis_of(side);
+  end.place = scene.domain.origin[axis] + (is_upper(side) ? scene.domain.size[axis] : 0.0);
+  end.layer = fluid.spacing * std::round(layer / fluid.spacing);
+  end.length = end.layer + fluid.spacing * rows_beyond(scene, fluid);
+  return end;
+}
+
+void add_ends(const Scene& scene, const Phase& fluid, std::vector<FlowEnd>& ends) {
+  for (const Inflow& inflow : scene.inflows) {
+    if (inflow.phase != fluid.name) continue;
+    ends.push_back(make_end(scene, fluid, inflow.side, 0.0));
+    ends.back().inflow = &inflow;
+  }
+  for (const Outflow& outflow : scene.outflows) {
+    if (outflow.phase != fluid.name) continue;
+    ends.push_back(make_end(scene, fluid, outflow.side, outflow.layer.value_or(layer_in_spacings * fluid.spacing)));
+    ends.back().outflow = &outflow;
+  }
+}
+
+/// The ends beyond which a phase goes on; of several fluids through one side the longest zone.
+std::vector<FlowEnd> ends_of(const Scene& scene, const Phase& phase) {
+  if (!phase.if_wall()) return flow_ends(scene, phase);
+  std::vector<FlowEnd> longest;
+  for (const FlowEnd& end : flow_ends(scene)) {
+    const auto same = std::find_if(longest.begin(), longest.end(), [&](const FlowEnd& e) { return e.side == end.side; });
+    if (same == longest.end()) longest.push_back(end);
+    else if (same->length < end.length) *same = end;
+  }
+  return longest;
+}
+
+template <class Values>
+void copy_value(Values& values, std::size_t from) {
+  if (values.size() > from) values.push_back(values[from]);
+}
+
+}  // namespace
+
+std::vector<FlowEnd> flow_ends(const Scene& scene, const Phase& fluid) {
+  std::vector<FlowEnd> ends;
+  add_ends(scene, fluid, ends);
+  return ends;
+}
+
+std::vector<FlowEnd> flow_ends(const Scene& scene) {
+  std::vector<FlowEnd> ends;
+  for (const Phase& phase : scene.phases) add_ends(scene, phase, ends);
+  return ends;
+}
+
+GivenVelocity::GivenVelocity(const Scene& scene, const FlowEnd& end)
+    : components_{Formula(end.inflow->velocity[0]), Formula(end.inflow->velocity[1]), Formula(end.inflow->velocity[2])},
+      log_(end.inflow->log_profile),
+      ground_(scene),
+      bottom_(scene.domain.origin[1]),
+      place_(end.place) {}
+
+Vec3 GivenVelocity::operator()(const Vec3& x, double t) const {
+  Vec3 v{components_[0](x, t), components_[1](x, t), components_[2](x, t)};
+  if (log_) v[0] += log_wind(*log_, x[1] - bottom_ - (log_->over_ground ? ground_.height(place_, x[2]) : 0.0));
+  return v;
+}
+
+void leave_out_beyond_flow_ends(const Scene& scene, const Phase& phase, std::vector<Vec3>& places) {
+  if (!phase.if_wall()) return;
+  for (const FlowEnd& end : ends_of(scene, phase))
+    std::erase_if(places, [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 1e-6 * phase.spacing; });
+}
+
+void continue_beyond_flow_ends(const Scene& scene, const Phase& phase, const std::vector<Vec3>& places,
+                               std::size_t first, ParticleBlock& block) {
+  const double dx = phase.spacing;
+  for (const FlowEnd& end : ends_of(scene, phase)) {
+    const std::size_t axis = end.axis();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double inside = -end.beyond(places[k][axis]);
+      if (inside < -1e-6 * dx || inside >= (1.0 - 1e-6) * dx) continue;
+      for (int row = 1; row * dx - inside < end.length - 1e-6 * dx; ++row) {
+        Vec3 x = places[k];
+        x[axis] = end.at(row * dx - inside);
+        block.position.push_back(x);
+        const std::size_t from = first + k;
+        copy_value(block.velocity, from);
+        copy_value(block.pressure, from);
+        copy_value(block.radius, from);
+        copy_value(block.normal, from);
+        copy_value(block.depth, from);
+        copy_value(block.bend, from);
+      }
+    }
+  }
+}
+
+}  // namespace barchan
