@@ -140,6 +140,7 @@ struct PlanPhase {
   double largest_size = 0;      // m, across the largest particle [grains], else the spacing
   double weight_share = 1.0;    // of gravity, that grains feel: less than 1 with buoyancy [grains]
   double surface_speed = 0;     // m/s, the largest with which the scene lets the surface slide [wall]
+  bool travels = false;         // a [[motion]] carries it as a rigid whole; `moves` is false: nothing pushes it [wall]
 
   // Its motion and its contacts.
   bool kicked = false;  // CommonWork ends its step, v += dt/2 a; false: its own model does [fluid, elastic, grains]

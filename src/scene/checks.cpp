@@ -369,6 +369,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_physics(scene, report);
   check_bodies(scene, report);
   check_rigid(scene, report);
+  check_motions(scene, report);
   check_columns(scene, report);
   check_walls(scene, report);
   check_measuring(scene, report);

@@ -163,7 +163,7 @@ void Watch::make_guards() {
         const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
         g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
-      if (plan.phases[other].moves || see_.particles[other].size() == 0) continue;
+      if (plan.phases[other].moves || plan.phases[other].travels || see_.particles[other].size() == 0) continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
       for (std::size_t d = 0; d < 3; ++d) {

@@ -127,9 +127,11 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
   result.free_space = find_free_space(scene, blocks, fluid);
   result.open = !result.free_space.empty();
   bool walled = false;
+  std::string piston;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     if (!entry_between(scene, phase, scene.phases[k])) continue;
     walled = walled || !layout.phases[k].moves;
+    if (layout.phases[k].travels) piston = layout.phases[k].name;
     if (layout.phases[k].flows && k != fluid) return result.why = layout.phases[k].name + " can give way", result;
   }
   if (!result.free_space.empty()) return result.why = "free space at " + result.free_space, result;
@@ -152,6 +154,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
         }
       }
   }
+  if (!piston.empty()) return result.why = piston + " moves, and the room with it", result;
   result.shut_in = true;
   result.why = walled ? "shut in by walls, and no free space" : "no free space, and every side is periodic";
   return result;

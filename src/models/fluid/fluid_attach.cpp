@@ -277,7 +277,7 @@ void FluidPhase::bind_entries() {
     else fluids_.push_back(n);
   }
   for (const auto& e : layout_.entries)
-    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves)
+    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves && !layout_.phases[e.other].travels)
       close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
 }
 

@@ -33,7 +33,7 @@ struct SurfaceBend {
 /// What a solid does to the fluid about it.
 struct ExtensionRule {
   Slip slip = Slip::no_slip;
-  bool accelerates = false;   // the fluid's pressure follows the acceleration of its particles: an elastic body
+  bool accelerates = false;   // the fluid's pressure follows the acceleration of its particles: a body, a driven wall
   bool own_velocity = false;  // its particles keep their own velocity: grains
 };
 
