@@ -112,6 +112,8 @@ struct ExtendedState {
     for (std::size_t d = 0; d < Dim; ++d) v[d] = mean[d] + (stuck_normal - mean_normal) * normal[d];
     return v;
   }
+  /// Whether the fluid goes away from the wall. Without a normal nobody knows: it does.
+  bool parts() const { return along_normal(mean) >= along_normal(wall); }
   /// Pressure (Pa) of a curved wall over that of a flat one: lever = sum W rho (phi_a + phi_w).
   double turning_pressure(const double* bend, double lever) const {
     const double across = along_normal(mean) - along_normal(wall);

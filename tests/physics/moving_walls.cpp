@@ -28,8 +28,8 @@ const PhaseParticles& phase(const Simulation& run, const std::string& name) {
   throw std::runtime_error("no phase " + name);
 }
 
-class Piston : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Schemes, Piston, testing::Values("consistent", "plain"),
+class Piston : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, Piston, ::testing::Values("consistent", "plain"),
                          [](const auto& scheme) { return std::string(scheme.param); });
 
 // Behind the front the pressure is rho D U, D = U/2 + sqrt(c^2 + U^2/4), and the speed that of the piston.
@@ -42,7 +42,7 @@ TEST_P(Piston, MakesThePressureOfItsSpeed) {
   int count = 0;
   for (std::size_t k = 0; k < water.size(); ++k) {
     const double x = water.column(Field::position, 0)[k], p = water.column(Field::pressure)[k];
-    if (x > 0.05 + front * 0.08 + 0.1) ahead = std::max(ahead, std::abs(p));
+    if (x > 0.05 + front * 0.08 + 0.2) ahead = std::max(ahead, std::abs(p));
     if (x > 0.65) continue;  // the front is at 0.854 m
     pressure += p;
     speed += water.column(Field::velocity, 0)[k];
@@ -100,8 +100,8 @@ end = 1
 largest-speed = 1
 )toml";
 
-class Vessel : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Schemes, Vessel, testing::Values("consistent", "plain"),
+class Vessel : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, Vessel, ::testing::Values("consistent", "plain"),
                          [](const auto& scheme) { return std::string(scheme.param); });
 
 // Without the wall's acceleration in its pressure (Adami et al. 2012) the water would sink into the wall.
@@ -121,7 +121,7 @@ TEST_P(Vessel, WaterRestsInAVesselThatSpeedsUp) {
   EXPECT_LT(error, 0.05 * 125.0);
 }
 
-/// A viscous fluid in a ring between a fixed core and nothing: it turns as a whole with its vessel.
+/// A viscous fluid in a drum: it turns as a whole with its vessel.
 const std::string whirl = R"toml(
 spacing = 0.05
 [domain]
@@ -142,7 +142,8 @@ phase = "drum"
 shape = { ring = { centre = [1.5, 1.5], inner = 1, outer = 1.25 } }
 [[fill]]
 phase = "oil"
-shape = { disc = { centre = [1.5, 1.5], radius = 1 } }
+shape = { formula = "1 - (x - 1.5)^2 - (y - 1.5)^2" }
+leave-out = "earlier-fills"
 velocity = ["-(y - 1.5)", "x - 1.5"]
 pressure = "500*((x - 1.5)^2 + (y - 1.5)^2)"
 [[motion]]
@@ -213,7 +214,9 @@ TEST(Belt, CarriesAGrainRoundThePeriodicDomain) {
 }
 
 TEST(Drum, CarriesGrainsRoundAndLosesNone) {
-  const auto run = small::simulation(small::drum, {"motion.0.velocity=[0, 0]", "motion.0.angular-velocity=10"});
+  const auto run =
+      small::simulation(small::drum + "[[force]]\nname = \"drum\"\nphase = \"drum\"\nabout = [0.01, 0.01]\n",
+                        {"phases.sand.sleep=false", "motion.0.velocity=[0, 0]", "motion.0.angular-velocity=10"});
   const PhaseParticles& sand = run->phases()[0];
   const auto centre = [&] {
     double x = 0.0;

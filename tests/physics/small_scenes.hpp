@@ -498,7 +498,7 @@ end = 10
 largest-speed = 2
 )toml";
 
-/// A paddle that turns and sways in water with a surface, beyond a side of the tank and back.
+/// A paddle that turns and sways in water with a surface.
 inline const std::string paddle = R"toml(
 spacing = 0.02
 [domain]
@@ -533,8 +533,8 @@ leave-out = "earlier-fills"
 [[motion]]
 phase = "paddle"
 about = [0.75, 0.3]
-velocity = ["1.5*cos(20*t)", 0]
-angular-velocity = "4*sin(30*t)"
+velocity = ["cos(20*t)", "0.4*sin(20*t)"]
+angular-velocity = "2*sin(30*t)"
 [[force]]
 name = "paddle"
 phase = "paddle"
@@ -575,9 +575,6 @@ phase = "drum"
 about = [0.01, 0.01]
 velocity = [0, "0.05*cos(200*t)"]
 angular-velocity = "20*t"
-[[force]]
-name = "drum"
-phase = "drum"
 [time]
 end = 10
 largest-speed = 1
