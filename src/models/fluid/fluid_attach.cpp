@@ -95,6 +95,9 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
                      ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
                      "can be chosen; give sound-speed or time.largest-speed");
   p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety");
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (layout.phases[k].travels && entry_between(scene, phase, scene.phases[k]))
+      p.rules.if_dense += "; or \"" + layout.phases[k].name + "\", which moves, leaves it too little or too much room";
 }
 
 std::string correction_of(const Scene& scene, std::size_t fluid) {
@@ -248,7 +251,10 @@ void FluidPhase::attach(Workspace& w) {
     q.void_pressure = lifted ? -pressure_lift(phase_.density, speed, q.smoothing_length, keys_.viscosity) : 0.0;
   }
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
-  if (plan_.free_surface) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+  if (plan_.free_surface) {
+    boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+    moving_boxes_ = moving_boxes(w, number_, *particles_);
+  }
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
   if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
