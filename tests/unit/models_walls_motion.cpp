@@ -83,12 +83,12 @@ TEST(WallMotion, FollowsAnAxisThatTurns) {
 
 TEST(WallMotion, WithinAStepItIsBetweenTheBeginningAndTheEnd) {
   WallMotion motion(swaying(), 2, {});
-  motion.advance(0.0, 0.1);
+  motion.advance(0.0, 0.01);
   const Vec3 before = motion.now().now.place;
-  motion.advance(0.1, 0.1);
+  motion.advance(0.01, 0.01);
   EXPECT_EQ(motion.within_step(0.0).now.place, before);
-  EXPECT_EQ(motion.within_step(0.1).now.place, motion.now().now.place);
-  EXPECT_NEAR(motion.within_step(0.05).now.angle, 3.0 / 7.0 * std::sin(7.0 * 0.15), 1e-6);
+  EXPECT_EQ(motion.within_step(0.01).now.place, motion.now().now.place);
+  EXPECT_NEAR(motion.within_step(0.005).now.angle, 3.0 / 7.0 * std::sin(7.0 * 0.015), 1e-8);
 }
 
 TEST(WallMotion, AJumpOfTheVelocityIsSpreadOverTheSpan) {

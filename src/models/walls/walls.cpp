@@ -59,10 +59,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
     }
     const auto stuck = rule.own_velocity ? state.grain(alone) : state.no_slip();
     auto v = rule.slip == Slip::no_slip ? stuck : state.free_slip(stuck);
-    if (rule.lets_go && !(record[R::pressure] > 0.0)) {
-      record[R::pressure] = 0.0;
-      if (state.parts()) v = state.mean;
-    }
+    if (rule.lets_go) state.let_go(record[R::pressure], v);
     for (std::size_t d = 0; d < Dim; ++d) record[R::velocity + d] = v[d];
   };
   pair_pass<Dim, Law>(solid.size(), 64, own, {entries.data(), fluids.size()}, prepare, finish);
