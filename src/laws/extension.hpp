@@ -112,6 +112,13 @@ struct ExtendedState {
     for (std::size_t d = 0; d < Dim; ++d) v[d] = mean[d] + (stuck_normal - mean_normal) * normal[d];
     return v;
   }
+  /// Of a wall that does not pull: a pressure (Pa) below zero becomes zero, and fluid that goes away from the wall, or
+  /// beside a wall without a normal, has its own velocity v there.
+  void let_go(double& pressure, std::array<double, Dim>& v) const {
+    if (!(pressure <= 0.0)) return;
+    pressure = 0.0;
+    if (along_normal(mean) >= along_normal(wall)) v = mean;
+  }
   /// Pressure (Pa) of a curved wall over that of a flat one: lever = sum W rho (phi_a + phi_w).
   double turning_pressure(const double* bend, double lever) const {
     const double across = along_normal(mean) - along_normal(wall);

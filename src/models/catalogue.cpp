@@ -24,6 +24,7 @@
 #include "models/grains/grain_phase.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "models/grains/spheres.hpp"
+#include "models/walls/driven_wall.hpp"
 #include "models/walls/wall.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
@@ -114,6 +115,8 @@ void describe_surroundings(const Scene& scene, std::size_t number, PlanPhase& p)
   if (phase.kind() == PhaseKind::rigid && meets(scene, phase, PhaseKind::fluid))
     for (const Field f : {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
       p.fields.push_back(f);
+  if (p.travels && meets(scene, phase, PhaseKind::fluid))
+    for (const Field f : {Field::surface_velocity, Field::surface_acceleration}) p.fields.push_back(f);
   p.heats = phase.kind() != PhaseKind::fluid && rubs_on_energy(scene, phase);
   if ((phase.kind() == PhaseKind::grains && meets(scene, phase, PhaseKind::column)) || drags_by_law(scene, phase))
     p.fields.push_back(Field::drag_acceleration);
@@ -161,9 +164,12 @@ Models make_models(const Scene& scene, const Layout& layout) {
   models.push_back(std::make_unique<CommonWork>(layout));
   for (std::size_t k = 0; k < scene.force_meters.size(); ++k)  // they measure before driven sets go their way
     models.push_back(std::make_unique<ForceOn>(scene, layout, k));
-  for (std::size_t k = 0; k < scene.motions.size(); ++k)                        // they lead before their bodies move
-    if (find_phase(scene, scene.motions[k].phase)->kind() != PhaseKind::rigid)  // these hold themselves
+  for (std::size_t k = 0; k < scene.motions.size(); ++k) {  // they lead before their bodies move
+    const PhaseKind kind = find_phase(scene, scene.motions[k].phase)->kind();
+    if (kind == PhaseKind::wall) models.push_back(std::make_unique<DrivenWall>(scene, layout, k));
+    else if (kind != PhaseKind::rigid)  // these hold themselves
       models.push_back(std::make_unique<DrivenSet>(scene, layout, k));
+  }
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     models.push_back(kind_of(scene.phases[k]).make(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k)

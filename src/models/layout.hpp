@@ -141,6 +141,7 @@ struct PlanPhase {
   double largest_size = 0;      // m, across the largest particle [grains], else the spacing
   double weight_share = 1.0;    // of gravity, that grains feel: less than 1 with buoyancy [grains]
   double surface_speed = 0;     // m/s, the largest with which the scene lets the surface slide [wall]
+  bool travels = false;         // a [[motion]] carries it as a rigid whole; `moves` is false: nothing pushes it [wall]
 
   // Its motion and its contacts.
   bool kicked = false;  // CommonWork ends its step, v += dt/2 a; false: its own model does [fluid, elastic, grains]
@@ -200,8 +201,8 @@ struct Layout {
   double largest_speed = 0;  // m/s; the automatic sound speed is ten times this
   double slab = 1;    // m, in 2D the thickness of the slab of the spheres: the largest mean diameter; 1 without spheres
   double skin = 0.1;  // of the lists, in their radii; the widest
-  Bounds domain;       // that of the scene
-  Bounds bounds;       // where particles may be: the domain, and the zones beyond sides through which a fluid flows
+  Bounds domain;      // that of the scene
+  Bounds bounds;      // where particles may be: the domain, and the zones beyond sides through which a fluid flows
   std::vector<PlanPhase> phases;
   std::vector<PlanEntry> entries;
   std::vector<Direction> directions;

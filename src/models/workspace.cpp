@@ -155,6 +155,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     if (!e.compact_only) read[e.a] = read[e.b] = true;
   }
   ground_stress.resize(phases);
+  wall_motions.resize(phases, nullptr);
   for (std::size_t k = 0; k < phases; ++k) {
     const PlanPhase& p = layout.phases[k];
     records_.push_back(std::make_unique<PhaseRecords>(p.name, layout.dimensions));

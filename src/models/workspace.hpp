@@ -14,6 +14,8 @@
 
 namespace barchan {
 
+class WallMotion;
+
 class Workspace : public Halo {
  public:
   /// Makes the records that the entries' laws read, by phase. All three must outlive it.
@@ -33,6 +35,8 @@ class Workspace : public Halo {
     Vec3 impulse{}, turn{};
   };
   std::vector<SpherePush> sphere_pushes;
+
+  std::vector<const WallMotion*> wall_motions;  // by phase, of walls that travel; else null
 
   /// How the motion records of a phase are filled.
   struct Packing {

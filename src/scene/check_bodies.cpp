@@ -54,9 +54,12 @@ void check_set(const BodySet& set, const std::string& dotted, const Scene& scene
   if (report.touched(dotted) || !report.has(dotted + ".phase")) return;
   const Phase* phase = find_phase(scene, set.phase);
   if (!phase) return report(dotted + ".phase", unknown_phase(set.phase, scene));
-  if (!report.touched("phases." + phase->name + ".kind") && !walls && phase->kind() != PhaseKind::elastic &&
-      phase->kind() != PhaseKind::rigid)
-    return report(dotted + ".phase", "\"" + phase->name + "\" is no body; expected a phase of kind elastic or rigid");
+  const bool body = phase->kind() == PhaseKind::elastic || phase->kind() == PhaseKind::rigid,
+             wall = walls && phase->kind() == PhaseKind::wall;
+  if (!report.touched("phases." + phase->name + ".kind") && !body && !wall)
+    return report(dotted + ".phase", "\"" + phase->name + "\" is no body" + (walls ? " and no wall" : "") +
+                                         "; expected a phase of kind elastic" +
+                                         (walls ? ", rigid or wall" : " or rigid"));
   for (std::size_t d = 0; set.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
     if (!(set.box->min[d] <= set.box->max[d]))
       return report(dotted + ".box", "its lower corner lies above its upper one; expected min <= max");
@@ -141,7 +144,7 @@ void check_bodies(const Scene& scene, const Report& report) {
       check_contact(pair, *a, *b, report);
   }
   for (std::size_t k = 0; k < scene.motions.size(); ++k)
-    check_set(scene.motions[k], "motion." + std::to_string(k), scene, report);
+    check_set(scene.motions[k], "motion." + std::to_string(k), scene, report, true);
   check_names(scene.markers, "marker.", report);
   for (std::size_t k = 0; k < scene.markers.size(); ++k)
     if (const std::string dotted = "marker." + std::to_string(k) + ".name";

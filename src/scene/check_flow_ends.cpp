@@ -31,8 +31,8 @@ void check_fluid(const Scene& scene, const Section& section, const Report& repor
   if (phase->kind() != PhaseKind::fluid)
     return report(at, "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
   if (!report.touched("phases") && phase->fluid().energy)
-    report(at, "what enters \"" + phase->name +
-                   "\" has no internal energy that the scene says; expected no phases." + phase->name + ".energy");
+    report(at, "what enters \"" + phase->name + "\" has no internal energy that the scene says; expected no phases." +
+                   phase->name + ".energy");
   if (!report.touched("phases") && phase->fluid().enclosed.value_or(false))
     report(at, "\"" + phase->name + "\" flows through a side and is no closed content; expected no phases." +
                    phase->name + ".enclosed");

@@ -289,13 +289,18 @@ class PhysicsChecker {
 
   /// What plan.cpp chooses a sound speed from, as far as the document says it. What is in doubt counts as known.
   bool some_speed_is_known() const {
-    if (report_.touched("time") || report_.touched("domain") || report_.touched("fill") || report_.touched("phases"))
+    if (report_.touched("time") || report_.touched("domain") || report_.touched("fill") || report_.touched("phases") ||
+        report_.touched("motion"))
       return true;
     const auto moves = [](const Fill& f) {
       return !is_zero(f.velocity) || (f.log_profile && f.log_profile->friction_velocity > 0.0);
     };
+    const auto drives = [](const Motion& m) {
+      return !is_zero(m.velocity) || (m.angular_velocity && !is_zero(m.angular_velocity->about));
+    };
     return scene_.time.largest_speed > 0.0 || norm(scene_.domain.gravity) > 0.0 ||
            std::any_of(scene_.fills.begin(), scene_.fills.end(), moves) ||
+           std::any_of(scene_.motions.begin(), scene_.motions.end(), drives) ||
            std::any_of(scene_.phases.begin(), scene_.phases.end(),
                        [](const Phase& p) { return p.kind() == PhaseKind::wall && !is_zero(p.wall().velocity); });
   }

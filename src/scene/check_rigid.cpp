@@ -13,10 +13,11 @@ bool rigid(const Phase& phase) { return phase.kind() == PhaseKind::rigid; }
 void check_turning(const Motion& motion, const std::string& dotted, const Scene& scene, const Report& report) {
   const Phase* phase = find_phase(scene, motion.phase);
   if (!phase || report.touched(dotted + ".phase") || report.touched("phases." + phase->name + ".kind")) return;
+  if (phase->kind() == PhaseKind::wall) return;  // check_motions.cpp
   const bool rigid = phase->kind() == PhaseKind::rigid, free = motion.about && !motion.angular_velocity;
   for (const char* key : {".about", ".angular-velocity", ".torque", ".friction"})
     if (!rigid && report.has(dotted + key))
-      report(dotted + key, "only rigid bodies turn as a whole; expected a phase of kind rigid");
+      report(dotted + key, "only rigid bodies and walls turn as a whole; expected a phase of kind rigid or wall");
   if (!rigid) return;
   for (const char* key : {".torque", ".friction"})
     if (!free && report.has(dotted + key))

@@ -1,6 +1,6 @@
-// Walls: keys that their law does not read, and velocities that would carry them away. A wall's particles stay where
-// they are; its velocity is that at which its surface slides along itself, and only a fluid that sticks to it feels
-// that.
+// Walls: keys that their law does not read, and velocities that would carry them away. Without a [[motion]]
+// (check_motions.cpp) a wall's particles stay where they are; its velocity is that at which its surface slides along
+// itself, and only a fluid that sticks to it feels that.
 #include <cctype>
 #include <cmath>
 
@@ -121,10 +121,12 @@ void check_velocity(const Scene& scene, const Phase& wall, const Report& report)
       const bool slides = scene.domain.periodic[axis] || outside(fill.shape, scene.domain, scene.dimensions);
       if (slides && std::visit(SameAlong{scene.domain, axis}, fill.shape)) continue;
       const std::string name(1, "xyz"[axis]);
-      report(dotted, "along " + name + " it would carry the wall of fill." + std::to_string(k) +
-                         " away, and walls cannot move yet; expected 0 along " + name +
-                         " (a wall slides along its surface: along a side of the domain, or along a periodic axis when "
-                         "its shape is the same all along)");
+      report(dotted,
+             "along " + name + " it would carry the wall of fill." + std::to_string(k) +
+                 " away, and a surface that slides carries no wall; expected a [[motion]] of the wall, or 0 along " +
+                 name +
+                 " (a wall slides along its surface: along a side of the domain, or along a periodic axis when "
+                 "its shape is the same all along)");
     }
   }
 }

@@ -233,7 +233,7 @@ void check_held_force(const Scene& scene, const Report& report, std::size_t numb
   for (const Phase& wall : scene.phases) {
     if (wall.kind() != PhaseKind::wall || !entry_between(scene, fluid, wall)) continue;
     const Expression& along = wall.wall().velocity[0];
-    if (along.is_formula() || along.value != 0.0)
+    if (along.is_formula() || along.value != 0.0 || motion_of(scene, wall))
       tell("the wall \"" + wall.name +
            "\" moves along x, and what it gives the fluid is not known beforehand; "
            "expected walls at rest, or no hold where a moving wall drives the fluid");
@@ -370,6 +370,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_physics(scene, report);
   check_bodies(scene, report);
   check_rigid(scene, report);
+  check_motions(scene, report);
   check_columns(scene, report);
   check_walls(scene, report);
   check_measuring(scene, report);

@@ -51,6 +51,9 @@ void check_bodies(const Scene& scene, const Report& report);
 /// Of rigid bodies: what may touch them, and what turns.
 void check_rigid(const Scene& scene, const Report& report);
 
+/// Of walls that a [[motion]] carries: shapes and partners that know no such wall.
+void check_motions(const Scene& scene, const Report& report);
+
 /// Reads the files of surfaces into the scene. What is wrong with a file is told where the scene names it.
 void read_surfaces(Scene& scene, const Report& report);
 

@@ -74,6 +74,12 @@ bool solids_move_in(const Scene& scene, const Phase& fluid) {
   return false;
 }
 
+const Motion* motion_of(const Scene& scene, const Phase& phase) {
+  for (const Motion& motion : scene.motions)
+    if (motion.phase == phase.name) return &motion;
+  return nullptr;
+}
+
 double wall_pull(const Scene& scene, const Phase& fluid) {
   double pull = 0.0;
   for (const Fill& fill : scene.fills) {

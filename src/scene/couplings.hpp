@@ -38,6 +38,9 @@ double weight_share(const Scene& scene, const Phase& grains);
 /// Whether particles of grains or bodies are moving walls in the fluid and may leave holes in it.
 bool solids_move_in(const Scene& scene, const Phase& fluid);
 
+/// The [[motion]] of a phase; of several the first; null: none.
+const Motion* motion_of(const Scene& scene, const Phase& phase);
+
 /// The force along x (Pa, on the area of the ground) with which walls with `shear-stress` pull a fluid: of the sides
 /// bottom and top that they fill.
 double wall_pull(const Scene& scene, const Phase& fluid);

@@ -58,7 +58,8 @@ std::vector<FlowEnd> ends_of(const Scene& scene, const Phase& phase) {
   if (!phase.if_wall()) return flow_ends(scene, phase);
   std::vector<FlowEnd> longest;
   for (const FlowEnd& end : flow_ends(scene)) {
-    const auto same = std::find_if(longest.begin(), longest.end(), [&](const FlowEnd& e) { return e.side == end.side; });
+    const auto same =
+        std::find_if(longest.begin(), longest.end(), [&](const FlowEnd& e) { return e.side == end.side; });
     if (same == longest.end()) longest.push_back(end);
     else if (same->length < end.length) *same = end;
   }

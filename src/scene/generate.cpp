@@ -201,6 +201,15 @@ void append_radii(ParticleBlock& block, const SphereSize& size, unsigned seed) {
                            (size.spread > 0.0 ? random.uniform(1.0 - size.spread, 1.0 + size.spread) : 1.0));
 }
 
+/// Radii and contacts of spheres that settled.
+void append_settled(ParticleBlock& block, std::size_t first, const SettledGrains& settled) {
+  block.radius.insert(block.radius.end(), settled.radius.begin(), settled.radius.end());
+  for (RestingContact contact : settled.contacts) {
+    contact.sphere += first;
+    block.contacts.push_back(contact);
+  }
+}
+
 /// Where the surface of a fitted wall is, seen from each of its particles.
 void append_surface(ParticleBlock& block, std::size_t first, const BedShape& bed, const Scene& scene, double spacing) {
   const Terrain terrain(Ground(bed, scene.domain), scene.domain, spacing);
@@ -283,11 +292,7 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     block.parts.push_back({k, first});
     append(block, places, fill, scene);
     if (fill.angular_velocity) turn(block, first, *fill.angular_velocity);
-    block.radius.insert(block.radius.end(), settled.radius.begin(), settled.radius.end());
-    for (RestingContact contact : settled.contacts) {
-      contact.sphere += first;
-      block.contacts.push_back(contact);
-    }
+    append_settled(block, first, settled);
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_values(block, first, k, scene);
     if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)

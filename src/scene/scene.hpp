@@ -318,10 +318,10 @@ struct BodySet {
   std::string phase;
   std::optional<BoxShape> box;  // empty: all of them
 };
-/// A set that is held or driven.
+/// A set that is held or driven; or a wall, as a whole.
 struct Motion : BodySet {
   VectorExpression velocity;  // m/s, formulas in t
-  // Of rigid bodies:
+  // Of rigid bodies, the first two of walls too:
   std::optional<Vec3> about;                        // m, the place about which they turn; empty: their centres
   std::optional<AxialExpression> angular_velocity;  // 1/s, formulas in t; beside `about`: empty: they turn freely
   std::optional<AxialExpression> torque;            // N m, formulas in t, on bodies that turn freely about a place

@@ -131,7 +131,8 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
   for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
-  if (!see_.scene.motions.empty() || !see_.scene.inflows.empty()) start_speed_ += see_.plan.largest_speed;  // what drives or enters feeds energy
+  if (!see_.scene.motions.empty() || !see_.scene.inflows.empty())
+    start_speed_ += see_.plan.largest_speed;  // what drives or enters feeds energy
   torques_ =
       std::any_of(see_.scene.motions.begin(), see_.scene.motions.end(), [](const Motion& m) { return m.torque; });
 }
@@ -164,7 +165,7 @@ void Watch::make_guards() {
         const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
         g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
-      if (plan.phases[other].moves || see_.particles[other].size() == 0) continue;
+      if (plan.phases[other].moves || plan.phases[other].travels || see_.particles[other].size() == 0) continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
       for (std::size_t d = 0; d < 3; ++d) {

@@ -66,6 +66,34 @@ std::string wall(const std::string& keys) {
          "[[fill]]\nphase = \"wall\"\nshape = { sides = [\"bottom\"] }\n";
 }
 
+/// The square beside a gate that moves, with one thing changed.
+std::string gate(const std::string& from, const std::string& to) {
+  const std::string moved = R"toml(spacing = 0.1
+[domain]
+size = [1, 1]
+[phases.air]
+kind = "fluid"
+density = 1
+[phases.gate]
+kind = "wall"
+[interactions]
+air-air = 2.6
+air-gate = 2.6
+[[fill]]
+phase = "gate"
+shape = { box = { min = [0, 0], max = [0.3, 1] } }
+[[fill]]
+phase = "air"
+shape = { box = { min = [0.3, 0], max = [1, 1] } }
+[[motion]]
+phase = "gate"
+velocity = [0.1, 0]
+[time]
+end = 1
+)toml";
+  return with(moved, from, to);
+}
+
 /// The square over a fitted hill, with one thing changed.
 std::string hill(const std::string& from, const std::string& to) {
   const std::string ground = with(with(square_text, "air-air = 3.0\n", "air-air = 3.0\nair-hill = 3.0\n"),

@@ -498,6 +498,88 @@ end = 10
 largest-speed = 2
 )toml";
 
+/// A paddle that turns and sways in water with a surface.
+inline const std::string paddle = R"toml(
+spacing = 0.02
+[domain]
+size = [1, 0.8]
+periodic = ["x"]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-3
+sound-speed = 40
+scheme = "consistent"
+[phases.tank]
+kind = "wall"
+[phases.paddle]
+kind = "wall"
+[interactions]
+kernel = "wendland-c2"
+water-water = 2.6
+water-tank = 2.6
+water-paddle = 2.6
+[[fill]]
+phase = "tank"
+shape = { sides = ["bottom", "top"], layers = 3 }
+[[fill]]
+phase = "paddle"
+shape = { box = { min = [0.7, 0.2], max = [0.8, 0.5] } }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [1, 0.5] } }
+leave-out = "earlier-fills"
+[[motion]]
+phase = "paddle"
+about = [0.75, 0.3]
+velocity = ["cos(20*t)", "0.4*sin(20*t)"]
+angular-velocity = "2*sin(30*t)"
+[[force]]
+name = "paddle"
+phase = "paddle"
+[time]
+end = 10
+largest-speed = 3
+)toml";
+
+/// Spheres in a drum that turns and shakes, some of them asleep.
+inline const std::string drum = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.02, 0.02]
+gravity = [0, -9.81]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.1 }
+friction = 0.5
+rolling-friction = 0.1
+stiffness = 500
+sleep = true
+[phases.drum]
+kind = "wall"
+diameter = 1e-3
+[interactions]
+sand-sand = { law = "linear" }
+sand-drum = { law = "linear" }
+[[fill]]
+phase = "drum"
+shape = { ring = { centre = [0.01, 0.01], inner = 0.008, outer = 0.01 } }
+[[fill]]
+phase = "sand"
+shape = { formula = "min(0.007^2 - (x - 0.01)^2 - (y - 0.01)^2, 0.012 - y)" }
+packing = "staggered"
+[[motion]]
+phase = "drum"
+about = [0.01, 0.01]
+velocity = [0, "0.05*cos(200*t)"]
+angular-velocity = "20*t"
+[time]
+end = 10
+largest-speed = 1
+)toml";
+
 /// A scene as the parameter of a test.
 struct Named {
   const char* name;

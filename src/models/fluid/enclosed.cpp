@@ -99,9 +99,8 @@ std::string place_text(const Vec3& x, int dimensions) {
 
 bool flows_through(const Scene& scene, const Phase& fluid, std::size_t axis, bool upper) {
   const auto ends = flow_ends(scene, fluid);
-  return std::any_of(ends.begin(), ends.end(), [&](const FlowEnd& end) {
-    return end.axis() == axis && is_upper(end.side) == upper;
-  });
+  return std::any_of(ends.begin(), ends.end(),
+                     [&](const FlowEnd& end) { return end.axis() == axis && is_upper(end.side) == upper; });
 }
 
 /// The place of a cell without a particle about it that is next to the fluid; empty when there is none. Space behind a
@@ -134,9 +133,11 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
   result.free_space = find_free_space(scene, blocks, fluid);
   result.open = !result.free_space.empty();
   bool walled = false;
+  std::string piston;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     if (!entry_between(scene, phase, scene.phases[k])) continue;
     walled = walled || !layout.phases[k].moves;
+    if (layout.phases[k].travels) piston = layout.phases[k].name;
     if (layout.phases[k].flows && k != fluid) return result.why = layout.phases[k].name + " can give way", result;
   }
   if (!result.free_space.empty()) return result.why = "free space at " + result.free_space, result;
@@ -160,6 +161,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
       }
   }
   if (!flow_ends(scene, phase).empty()) return result.why = "it flows through a side", result;
+  if (!piston.empty()) return result.why = piston + " moves, and the room with it", result;
   result.shut_in = true;
   result.why = walled ? "shut in by walls, and no free space" : "no free space, and every side is periodic";
   return result;

@@ -10,8 +10,9 @@
 //     drho/dt -= s p'/c^2,   du_n/dt -= s w,   s = 3 A c d^2/L^3
 //   d from the side, L the layer, A = 6, w = p'/(rho c) bounded by twice u_n' = u_n - <u_n> and by zero. Of sound that
 //   goes outwards exp(-A) is left, and the layer sends none back by itself. <p>, <u_n> are means over
-//   `memory_in_layers` passages of sound through the layer; vortices and shear, which have little p', pass. Behind the layer the last rows have the pressure of the scene and the velocity of the layer's end,
-//   by lanes: outwards, or inwards where the flow turns.
+//   `memory_in_layers` passages of sound through the layer; vortices and shear, which have little p', pass. Behind the
+//   layer the last rows have the pressure of the scene and the velocity of the layer's end, by lanes: outwards, or
+//   inwards where the flow turns.
 //
 // Lanes (flow_lanes.hpp) are filled from behind: where the last particle of a lane has moved inwards by a spacing, a
 // new one stands a spacing behind it. What has passed the end of the zone is removed. Both happen each time that the
@@ -32,12 +33,12 @@ namespace barchan {
 
 class FlowZone : public Model {
  public:
-  static constexpr double absorbed = 6.0;             // A
-  static constexpr double memory_in_layers = 20.0;    // of <p> of an outflow, in L/c
-  static constexpr double memory_in_lengths = 10.0;   // of an inflow, in lengths of the domain over c
+  static constexpr double absorbed = 6.0;              // A
+  static constexpr double memory_in_layers = 20.0;     // of <p> of an outflow, in L/c
+  static constexpr double memory_in_lengths = 10.0;    // of an inflow, in lengths of the domain over c
   static constexpr double seen = 3.0, end_seen = 2.0;  // spacings inside from which an inflow, an outflow learns
-  static constexpr double settling = 10.0;            // dx/c, in which the end follows the layer's velocity
-  static constexpr double room = 0.7;                 // spacings between a new particle and others
+  static constexpr double settling = 10.0;             // dx/c, in which the end follows the layer's velocity
+  static constexpr double room = 0.7;                  // spacings between a new particle and others
 
   FlowZone(const Scene& scene, const Layout& layout, std::size_t fluid, const FlowEnd& end);
   void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
@@ -53,17 +54,17 @@ class FlowZone : public Model {
   enum Where : std::uint8_t { away, near, beyond };
   /// What a zone knows of a lane, from step to step.
   struct Lane {
-    std::array<double, 3> velocity{};       // m/s, of the end of an outflow
-    double pressure = 0.0, slope = 0.0;     // Pa, mean at the side; Pa/m, its slope inwards
-    double now = 0.0, depth = 0.0;          // Pa, at the side, less what sound changes on the way; m, from where
-    double outermost = 0.0;                 // m, of its last particle beyond the side
+    std::array<double, 3> velocity{};    // m/s, of the end of an outflow
+    double pressure = 0.0, slope = 0.0;  // Pa, mean at the side; Pa/m, its slope inwards
+    double now = 0.0, depth = 0.0;       // Pa, at the side, less what sound changes on the way; m, from where
+    double outermost = 0.0;              // m, of its last particle beyond the side
   };
   struct Mean {
     double pressure = 0.0, velocity = 0.0;  // Pa; m/s, along the axis
   };
   struct Gathered {
     std::int64_t count = 0;
-    std::array<LaneSum, 3> velocity{};  // in c
+    std::array<LaneSum, 3> velocity{};        // in c
     LaneSum pressure, depth, depth2, sloped;  // in rho c^2; in spacings
   };
 
@@ -90,8 +91,8 @@ class FlowZone : public Model {
   std::size_t fluid_;
   FlowEnd end_;
   PressureLaw law_;
-  std::string name_;  // "air_left"
-  double c_, rho_, dx_, reach_;  // m/s, kg/m3, m, m: how far inside it looks
+  std::string name_;                       // "air_left"
+  double c_, rho_, dx_, reach_;            // m/s, kg/m3, m, m: how far inside it looks
   std::optional<GivenVelocity> velocity_;  // of an inflow
   Formula pressure_;                       // of an outflow
   OwnColumn<std::uint8_t> where_;
@@ -100,12 +101,12 @@ class FlowZone : public Model {
 
   FlowLanes lanes_;
   std::vector<Lane> lane_;
-  std::vector<Mean> means_;                 // of the layer, by lane and spacing beyond the side
-  std::vector<double> past_, past_times_;   // Pa, s: an inflow's pressures of earlier steps, a row of lanes each
-  std::int64_t newest_ = 0;                 // row of past_
-  double entered_ = 0.0, left_ = 0.0;       // kg
-  double gone_ = 0.0;                       // spacings that the fastest flow went since lanes were filled
-  double started_ = 0.0;                    // 1: lanes have values
+  std::vector<Mean> means_;                // of the layer, by lane and spacing beyond the side
+  std::vector<double> past_, past_times_;  // Pa, s: an inflow's pressures of earlier steps, a row of lanes each
+  std::int64_t newest_ = 0;                // row of past_
+  double entered_ = 0.0, left_ = 0.0;      // kg
+  double gone_ = 0.0;                      // spacings that the fastest flow went since lanes were filled
+  double started_ = 0.0;                   // 1: lanes have values
 
   std::vector<std::uint32_t> members_;  // places of those near or beyond
   std::vector<Gathered> sums_;

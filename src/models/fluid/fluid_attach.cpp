@@ -32,7 +32,8 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
   p.takes_momentum = p.gives_energy = !p.flow_ends.empty();
   for (const FlowEnd& end : p.flow_ends) {
     const auto& places = blocks[fluid].position;
-    if (std::any_of(places.begin(), places.end(), [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 0.0; })) continue;
+    if (std::any_of(places.begin(), places.end(), [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 0.0; }))
+      continue;
     throw SceneError(located(scene, end.inflow ? "inflow" : "outflow") + ": no particle of \"" + p.name +
                      "\" stands in the last row at the side \"" + word_of(end.side) +
                      "\" at the start, from which lanes follow; expected a fill that reaches this side");
@@ -105,6 +106,9 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
                      ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
                      "can be chosen; give sound-speed or time.largest-speed");
   p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety");
+  for (std::size_t k = 0; k < layout.phases.size(); ++k)
+    if (layout.phases[k].travels && entry_between(scene, phase, scene.phases[k]))
+      p.rules.if_dense += "; or \"" + layout.phases[k].name + "\", which moves, leaves it too little or too much room";
 }
 
 std::string correction_of(const Scene& scene, std::size_t fluid) {
@@ -258,7 +262,10 @@ void FluidPhase::attach(Workspace& w) {
     q.void_pressure = lifted ? -pressure_lift(phase_.density, speed, q.smoothing_length, keys_.viscosity) : 0.0;
   }
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
-  if (plan_.free_surface) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+  if (plan_.free_surface) {
+    boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+    moving_boxes_ = moving_boxes(w, number_, *particles_);
+  }
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
   if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
@@ -287,7 +294,7 @@ void FluidPhase::bind_entries() {
     else fluids_.push_back(n);
   }
   for (const auto& e : layout_.entries)
-    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves)
+    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves && !layout_.phases[e.other].travels)
       close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
 }
 

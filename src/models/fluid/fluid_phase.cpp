@@ -95,6 +95,7 @@ void FluidPhase::kick_and_drift() {
   if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
   if (keeps_inside_) hold_inside(*particles_, held_);
   if (!boxes_.empty()) hold_outside(*particles_, boxes_, layout_.bounds);
+  for (const MovingBox& box : moving_boxes_) hold_outside(*particles_, box, layout_.bounds, w_->state.time + 0.5 * dt);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
 }
 
@@ -176,8 +177,9 @@ void FluidPhase::history(HistoryRow& row) const {
     return e * e;
   });
   row.raise(HistoryRow::largest_density_error, worst);
-  row.add(plan_.name + "_mean_pressure [Pa]",
-          count > 0.0 ? reproducible_sum(n, [&](std::size_t i) { return counts(i) ? pressure[i] : 0.0; }) / count : 0.0);
+  row.add(
+      plan_.name + "_mean_pressure [Pa]",
+      count > 0.0 ? reproducible_sum(n, [&](std::size_t i) { return counts(i) ? pressure[i] : 0.0; }) / count : 0.0);
   row.add(plan_.name + "_density_error_rms", count > 0.0 ? std::sqrt(squares / count) : 0.0);
   if (keys_.energy) {
     const double* e = std::as_const(*particles_).column(Field::energy);

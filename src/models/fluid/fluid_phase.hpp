@@ -11,6 +11,7 @@
 #include "models/drive.hpp"
 #include "models/fluid/energy.hpp"
 #include "models/fluid/held_boxes.hpp"
+#include "models/fluid/moving_boxes.hpp"
 #include "models/fluid/relief.hpp"
 #include "models/fluid/surface.hpp"
 #include "models/fluid/turbulence.hpp"
@@ -84,6 +85,7 @@ class FluidPhase : public Model {
   std::optional<Drive> drive_;  // where something drives it along x
   bool keeps_inside_ = false;
   std::vector<HeldBox> boxes_;
+  std::vector<MovingBox> moving_boxes_;  // the same of walls that move
 
   // with eddies
   std::vector<EddyNeighbour> eddy_neighbours_;

@@ -59,7 +59,8 @@ std::vector<HeldBox> held_boxes(const Scene& scene, const Layout& layout, std::s
     const auto* box = std::get_if<BoxShape>(&fill.shape);
     const Phase* wall = find_phase(scene, fill.phase);
     if (!box || !wall || !entry_between(scene, scene.phases[fluid], *wall)) continue;
-    if (layout.phases[static_cast<std::size_t>(wall - scene.phases.data())].moves) continue;
+    const PlanPhase& plan = layout.phases[static_cast<std::size_t>(wall - scene.phases.data())];
+    if (plan.moves || plan.travels) continue;
     const HeldBox held{box->min, box->max};
     bool empty = true;
     for (std::size_t k = 0; k < particles.size(); ++k)

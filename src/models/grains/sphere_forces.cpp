@@ -59,7 +59,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
   const bool watched =
       std::any_of(step.watched.begin(), step.watched.end(), [&](const WatchedLaw& w) { return w.law == group.law; });
   // Pairs that may touch within a step.
-  const V margin(step.dt * (chunk.fastest + (group.weight < 1.0 ? step.fastest : chunk.fastest)));
+  const V margin(step.dt * (chunk.fastest + (group.weight < 1.0 ? step.fastest : chunk.fastest) + step.fastest_wall));
   const double* records = step.records;
   const std::size_t stride = R::size, of_a_batch = step.numbers * batch;
   double* of_batch = chunk.of_pair(group.first * batch, step.numbers);

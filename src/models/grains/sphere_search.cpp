@@ -111,7 +111,7 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
   for (std::size_t c = cells; c > 0; --c) begin_[c] = begin_[c - 1];
   begin_[0] = 0;
   lively_.assign(s.asleep ? cells : 0, 0);
-  for (std::size_t k = 0; s.asleep && k < s.moving; ++k)
+  for (std::size_t k = 0; s.asleep && k < s.all; ++k)
     if (!s.asleep[k]) lively_[cell_of_[k]] = 1;
   cells_.lively = lively_.data();
   cells_.begin = begin_.data();

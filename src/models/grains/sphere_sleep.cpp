@@ -36,6 +36,10 @@ void SphereSleep::make_room(std::vector<Part> parts, std::size_t moving, std::si
   at_.assign(all, 1);
 }
 
+void SphereSleep::keep_awake(std::size_t first, std::size_t count) {
+  if (on()) std::fill_n(at_.begin() + static_cast<std::ptrdiff_t>(first), count, std::uint8_t{0});
+}
+
 void SphereSleep::renumber(const std::vector<std::uint32_t>& to, std::size_t moving) {
   if (!on()) return;
   const auto move = [&](auto& values, std::size_t each, auto of_new) {

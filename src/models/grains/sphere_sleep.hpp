@@ -33,6 +33,8 @@ class SphereSleep {
   void renumber(const std::vector<std::uint32_t>& to, std::size_t moving);
   /// Wakes those; numbers may be there twice, and of fixed ones.
   void wake(const std::vector<std::uint32_t>& numbers);
+  /// Fixed spheres that count as awake: of a wall that travels, so that whom it disturbs wakes. After make_room.
+  void keep_awake(std::size_t first, std::size_t count);
   bool on() const { return !parts_.empty(); }
   std::size_t sleeping() const { return sleeping_; }
 

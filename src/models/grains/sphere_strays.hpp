@@ -34,6 +34,8 @@ class SphereStrays {
              std::vector<SphereChunk>& chunks);
 
   const double* places() const { return places_.data(); }
+  /// m, of everybody who is no stray, of walls too.
+  double allowance() const { return least_; }
   double slack() const { return 2.0 * least_; }
   /// One over the square of each allowance (1/m2).
   const float* tightness() const { return tightness_.data(); }

@@ -4,7 +4,8 @@
 // whose particles are spheres, then two far away that pad the lists. A record holds
 //   2D  x y r moved | vx vy w -            3D  x y z r | vx vy vz moved | wx wy wz moved
 // `moved` (floats): the way since the last search. What a step does not change stands in another one, ax ay (az) 1/m:
-// the acceleration by all but contacts, and the inverse mass (0 of walls).
+// the acceleration by all but contacts, and the inverse mass (0 of walls). Walls have a velocity and a spin where they
+// travel; no step of contacts changes their records.
 //
 // The records are there twice. A step reads one set and writes the other, so that one loop does all: a chunk of spheres
 // that has its forces can move on while its neighbours still read where it was.
@@ -142,6 +143,7 @@ struct SphereStep {
   std::array<double, 3> period{};          // m, 0: not periodic
   double dt = 0.0;                         // s
   double fastest = 0.0;                    // m/s, of all chunks
+  double fastest_wall = 0.0;               // m/s, of the spheres of walls that travel
   bool last = false;                       // of its bundle: half a kick, and into the columns
   bool rubs = false, rolls = false;        // some law does
   std::size_t numbers = 0;                 // of the memory of a pair

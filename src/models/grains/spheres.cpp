@@ -21,24 +21,13 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       if (p.has(Field::radius)) std::copy(blocks[k].radius.begin(), blocks[k].radius.end(), p.column(Field::radius));
     }
   }
-  // Particles of walls inside the domain are spheres; those behind a side of it are the side.
   const std::size_t n = layout_.phases.size();
   for (std::size_t k = 0; k < n; ++k) {
     const auto row = laws_.table().begin() + static_cast<std::ptrdiff_t>(k * n);
     if (layout_.phases[k].moves ||
         std::all_of(row, row + static_cast<std::ptrdiff_t>(n), [](auto law) { return law == SphereSearch::none; }))
       continue;
-    for (std::size_t i = 0; i < blocks[k].position.size(); ++i) {
-      const Vec3& x = blocks[k].position[i];
-      bool inside = true;
-      for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
-        inside =
-            inside && (layout_.bounds.periodic[d] || (x[d] >= layout_.bounds.low[d] && x[d] <= layout_.bounds.high[d]));
-      if (!inside) continue;
-      const double radius = blocks[k].radius.empty() ? 0.5 * layout_.phases[k].spacing : blocks[k].radius[i];
-      fixed_.insert(fixed_.end(), {x[0], x[1], x[2], radius});
-      fixed_kind_.push_back(static_cast<std::uint8_t>(k));
-    }
+    add_wall(k, blocks[k]);
   }
 }
 
@@ -59,6 +48,7 @@ void Spheres::attach(Workspace& w) {
   step_.columns = columns_.data();
   search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), sides_with_spheres(), step_.numbers);
   watch_walls();
+  bind_walls();
   ids_ = present_ids();
   sleep_.prepare(parts_that_may_sleep(), all(), layout_, norm(scene_.domain.gravity));
   make_room();
@@ -136,7 +126,7 @@ double Spheres::longest_step() const {
 /// A step of the scene begins: as many steps of the contacts as it needs.
 void Spheres::begin_steps() {
   const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : longest_step();
-  left_ = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
+  left_ = bundle_ = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
   if (others_are_there()) renumber();
   if (must_search_ || since_sort_ >= searches_a_sort) sort();
   point_at_columns();
@@ -144,6 +134,7 @@ void Spheres::begin_steps() {
   each_ = dt / static_cast<double>(left_);
   for (auto& push : w_->sphere_pushes) push.impulse = push.turn = {};
   sum_pushes(0.5 * each_);
+  carry_walls(each_);
   layout_.dimensions == 2 ? pack<2>(each_) : pack<3>(each_);
 }
 
@@ -224,7 +215,7 @@ void Spheres::pack(double dt) {
   }
   loaded_ = false;
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
-  if (must_search_ || others_sleep_) search();
+  if (must_search_ || others_sleep_ || walls_left_) search();
   else if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt);
 }
 
@@ -265,7 +256,7 @@ void Spheres::search() {
         layout_.dimensions == 2
             ? set_way<2>(records->data() + k * SphereRecord<2>::size, static_cast<std::size_t>(d), 0.0f)
             : set_way<3>(records->data() + k * SphereRecord<3>::size, static_cast<std::size_t>(d), 0.0f);
-  must_search_ = false;
+  must_search_ = walls_left_ = false;
   kept_ = 0;
   ++searches_;
   ++since_sort_;
@@ -342,7 +333,8 @@ void Spheres::go() {
   others_sleep_ = wakes;
   if (last) return;
   now_ = 1 - now_;
-  if (wakes) search();
+  carry_walls(static_cast<double>(bundle_ - left_ + 1) * dt);
+  if (wakes || walls_left_) search();
   else if (!(farthest < SphereStrays::used_up)) search_strays(dt);
 }
 

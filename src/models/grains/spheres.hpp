@@ -91,6 +91,12 @@ class Spheres : public Model {
     long changes = 0;          // of the particles (PhaseParticles::changes) that are taken over
   };
 
+  /// Spheres of a wall that travels, among the fixed ones.
+  struct SphereWall {
+    std::size_t phase = 0, first = 0, count = 0;
+    const WallMotion* motion = nullptr;
+  };
+
   std::size_t all() const { return moving_ + fixed_kind_.size(); }
   std::vector<std::int64_t> present_ids();
   std::vector<SphereSleep::Part> parts_that_may_sleep() const;
@@ -99,6 +105,7 @@ class Spheres : public Model {
   void make_room();
 
   std::vector<SphereSearch::Side> sides_with_spheres() const;
+  void add_wall(std::size_t phase, const ParticleBlock& block);
   void begin_steps();
   double longest_step() const;
   void sort();
@@ -114,6 +121,10 @@ class Spheres : public Model {
   template <int Dim>
   void make_records();
   SphereSet set();
+  void bind_walls();
+  void carry_walls(double elapsed);
+  template <int Dim>
+  void carry_wall(const SphereWall& wall, double elapsed);
   void watch_walls();
   void sum_pushes(double time);
   double slack() const { return slack_ * laws_.reach(); }
@@ -127,6 +138,8 @@ class Spheres : public Model {
   std::vector<Part> parts_;    // of the phases of grains
   std::vector<double> fixed_;  // x y z r of the walls' spheres
   std::vector<std::uint8_t> fixed_kind_;
+  std::vector<SphereWall> walls_;  // that travel
+  bool walls_left_ = false;        // one of their spheres went farther than the lists allow
   std::size_t moving_ = 0;
   std::vector<std::int64_t> ids_;  // of the spheres that move, by lasting number
 
@@ -150,6 +163,7 @@ class Spheres : public Model {
   bool others_sleep_ = false, fresh_ = false;  // than when the pairs were listed; and no step was made since
   double slack_ = 0.1;                         // of the reach
   long left_ = 0;                              // steps of the contacts in the present step of the scene
+  long bundle_ = 0;                            // all of them
   double each_ = 0.0;                          // s, of one of them
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;

@@ -105,6 +105,7 @@ void Spheres::make_room() {
   }
   layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
   sleep_.make_room(parts_that_may_sleep(), moving_, all());
+  for (const SphereWall& wall : walls_) sleep_.keep_awake(moving_ + wall.first, wall.count);
   search_.reserve(all(), chunks_, sleep_.on() ? &sleeping_ : nullptr);
   SphereSet sizes;
   sizes.dimensions = layout_.dimensions;

@@ -6,6 +6,7 @@
 #include "kernels/kernel.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "models/walls/wall_normals.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -33,6 +34,7 @@ void declare_wall(const Scene& scene, std::size_t number, Layout& layout) {
   const WallKeys& keys = scene.phases[number].wall();
   layout.phases[number].surface_speed = largest_in_time(scene, keys.velocity);
   layout.phases[number].sphere_records = keys.diameter.has_value();
+  layout.phases[number].travels = motion_of(scene, scene.phases[number]) != nullptr;
 }
 
 void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
@@ -47,7 +49,7 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
   p.roughness = keys.roughness.value_or(0.0);
   p.stress = keys.shear_stress.value_or(Vec3{});
   p.takes_momentum = true;
-  p.gives_energy = keys.shear_stress || slides(keys);
+  p.gives_energy = keys.shear_stress || slides(keys) || p.travels;
   p.fields = {position, velocity, wall_normal, wall_depth};
   if (std::any_of(scene.force_meters.begin(), scene.force_meters.end(),
                   [&](const ForceMeter& meter) { return meter.phase == scene.phases[number].name; }))
@@ -75,6 +77,9 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   // A wall whose stress is given leaves the fluid's velocity along it alone.
   const WallKeys& keys = phase_.wall();
   rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
+  rule_.accelerates = plan_.travels;
+  for (const auto& e : layout.entries)
+    if (plan_.travels && e.extends && e.other == number && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
 }
 
 namespace {
@@ -103,8 +108,9 @@ Vec3 out_of_walled_sides(const Scene& scene, const Bounds& bounds, const Vec3& x
 }  // namespace
 
 /// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
-/// particle outside the domain.
+/// particle outside the domain. Of a wall that travels DrivenWall knows them.
 void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  if (plan_.travels) return;
   PhaseParticles& wall = state.phases[number_];
   const ParticleBlock& block = blocks[number_];
   const Bounds& bounds = layout_.bounds;
@@ -138,10 +144,11 @@ void Wall::attach(Workspace& w) {
 
 void Wall::schedule(Schedule& s) {
   using enum Field;
-  s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
+  if (!plan_.travels) s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
+  FieldSet reads{position, velocity, wall_depth, wall_normal};
+  if (plan_.travels) reads = reads | FieldSet{surface_velocity, surface_acceleration};
   if (extended_)
-    s.add({stage::extend_walls, plan_.name,
-           extension_touches(layout_, number_, {position, velocity, wall_depth, wall_normal}), [this] { extend(); }});
+    s.add({stage::extend_walls, plan_.name, extension_touches(layout_, number_, reads), [this] { extend(); }});
 }
 
 void Wall::slide() {
@@ -199,7 +206,8 @@ void face_walls(const Layout& layout, State& state) {
   bool slips = false;
   double coarsest = 0.0;  // m
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
-    if (layout.phases[k].moves || !state.phases[k].has(Field::wall_normal)) continue;
+    const PlanPhase& p = layout.phases[k];
+    if (p.moves || p.travels || !state.phases[k].has(Field::wall_normal)) continue;
     walls.push_back(&state.phases[k]);
     coarsest = std::max(coarsest, layout.phases[k].spacing);
     slips = slips || layout.phases[k].friction != Friction::smooth;

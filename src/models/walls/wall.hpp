@@ -1,4 +1,5 @@
-// A wall phase: particles that stay in place, a surface that may slide, the fluids continued into it.
+// A wall phase: particles that stay in place (driven_wall.hpp: or travel), a surface that may slide, the fluids
+// continued into it.
 #pragma once
 
 #include <array>

@@ -58,7 +58,8 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
       record[R::pressure] += state.turning_pressure(&bend.values[at], simd::sum(s.lever));
     }
     const auto stuck = rule.own_velocity ? state.grain(alone) : state.no_slip();
-    const auto v = rule.slip == Slip::no_slip ? stuck : state.free_slip(stuck);
+    auto v = rule.slip == Slip::no_slip ? stuck : state.free_slip(stuck);
+    if (rule.lets_go) state.let_go(record[R::pressure], v);
     for (std::size_t d = 0; d < Dim; ++d) record[R::velocity + d] = v[d];
   };
   pair_pass<Dim, Law>(solid.size(), 64, own, {entries.data(), fluids.size()}, prepare, finish);

@@ -33,8 +33,9 @@ struct SurfaceBend {
 /// What a solid does to the fluid about it.
 struct ExtensionRule {
   Slip slip = Slip::no_slip;
-  bool accelerates = false;   // the fluid's pressure follows the acceleration of its particles: an elastic body
+  bool accelerates = false;   // the fluid's pressure follows the acceleration of its particles: a body, a driven wall
   bool own_velocity = false;  // its particles keep their own velocity: grains
+  bool lets_go = false;       // it does not pull: where the fluid has no pressure, it may leave
 };
 
 /// Writes velocity and pressure into the solid's motion records `own` (position and volume are there already), by the
