@@ -49,14 +49,16 @@ void check_contact(const Interaction& pair, const Phase& a, const Phase& b, cons
              "restitution or a total Lagrangian body");
 }
 
-void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report,
-               bool walls = false) {
+/// The kinds of phases that a set may be of; any: somebody else tells.
+enum class Holds { bodies, bodies_and_walls, any };
+
+void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report, Holds holds) {
   if (report.touched(dotted) || !report.has(dotted + ".phase")) return;
   const Phase* phase = find_phase(scene, set.phase);
   if (!phase) return report(dotted + ".phase", unknown_phase(set.phase, scene));
   const bool body = phase->kind() == PhaseKind::elastic || phase->kind() == PhaseKind::rigid,
-             wall = walls && phase->kind() == PhaseKind::wall;
-  if (!report.touched("phases." + phase->name + ".kind") && !body && !wall)
+             walls = holds == Holds::bodies_and_walls, known = body || (walls && phase->kind() == PhaseKind::wall);
+  if (!report.touched("phases." + phase->name + ".kind") && !known && holds != Holds::any)
     return report(dotted + ".phase", "\"" + phase->name + "\" is no body" + (walls ? " and no wall" : "") +
                                          "; expected a phase of kind elastic" +
                                          (walls ? ", rigid or wall" : " or rigid"));
@@ -144,7 +146,7 @@ void check_bodies(const Scene& scene, const Report& report) {
       check_contact(pair, *a, *b, report);
   }
   for (std::size_t k = 0; k < scene.motions.size(); ++k)
-    check_set(scene.motions[k], "motion." + std::to_string(k), scene, report, true);
+    check_set(scene.motions[k], "motion." + std::to_string(k), scene, report, Holds::bodies_and_walls);
   check_names(scene.markers, "marker.", report);
   for (std::size_t k = 0; k < scene.markers.size(); ++k)
     if (const std::string dotted = "marker." + std::to_string(k) + ".name";
@@ -152,11 +154,11 @@ void check_bodies(const Scene& scene, const Report& report) {
       report(dotted, "\"" + scene.markers[k].name +
                          "\" is a phase too, and the columns of both would have one name; expected another name");
   for (std::size_t k = 0; k < scene.markers.size(); ++k)
-    check_set(scene.markers[k], "marker." + std::to_string(k), scene, report);
+    check_set(scene.markers[k], "marker." + std::to_string(k), scene, report, Holds::bodies);
   check_names(scene.force_meters, "force.", report);
   for (std::size_t k = 0; k < scene.force_meters.size(); ++k) {
     const std::string dotted = "force." + std::to_string(k);
-    check_set(scene.force_meters[k], dotted, scene, report, true);
+    check_set(scene.force_meters[k], dotted, scene, report, Holds::any);
     check_force(scene.force_meters[k], dotted, scene, report);
   }
 }

@@ -172,8 +172,8 @@ TEST(Drum, TurnsOilAsAWhole) {
 // A gate that is pulled out of the water takes no jet along: nothing drives the water upwards but the pressure beside
 // it.
 TEST(Gate, IsLetGo) {
-  Drive drive("dam_gate", {"spacing=0.015", "fill.1.shape.box.max=[0.675, 0.45]"});
-  drive.to(0.1);
+  Drive drive("dam_gate");
+  drive.to(0.08);
   const PhaseParticles& water = drive.phase(0);
   double up = 0.0, front = 0.0;
   for (std::size_t k = 0; k < water.size(); ++k) {

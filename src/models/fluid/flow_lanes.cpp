@@ -32,8 +32,12 @@ FlowLanes::FlowLanes(std::vector<Vec3> places, std::size_t axis, double spacing,
 
 std::array<long, 2> FlowLanes::cell_of(const Vec3& x) const {
   std::array<long, 2> at{};
-  for (std::size_t c = 0; c < 2; ++c)
-    at[c] = std::clamp(static_cast<long>(std::floor((x[across_[c]] - low_[across_[c]]) / cell_)), 0l, count_[c] - 1);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const double period = periods_[across_[c]];
+    double over = x[across_[c]] - low_[across_[c]];
+    if (period > 0.0) over -= period * std::floor(over / period);
+    at[c] = std::clamp(static_cast<long>(std::floor(over / cell_)), 0l, count_[c] - 1);
+  }
   return at;
 }
 
@@ -69,7 +73,7 @@ std::size_t FlowLanes::nearest(const Vec3& x) const {
   };
   const long most = std::max(count_[0], count_[1]);
   for (long ring = 0; ring <= most; ++ring) {
-    if (least < 1e300 && least <= std::pow(static_cast<double>(ring - 1) * cell_, 2) && ring > 1) break;
+    if (ring > 2 && least <= std::pow(static_cast<double>(ring - 2) * cell_, 2)) break;
     for (long j = -ring; j <= ring; ++j)
       for (long i = -ring; i <= ring; ++i)
         if (std::max(std::abs(i), std::abs(j)) == ring) look(at[0] + i, at[1] + j);

@@ -89,7 +89,7 @@ void FlowZone::renew() {
   const double length = domain_.high[end_.axis()] - domain_.low[end_.axis()];
   const double mean_share = started_ > 0.0 ? std::min(1.0, dt * c_ / (memory_in_lengths * length)) : 1.0;
   if (end_.inflow) {
-    learn_inflow(share, mean_share);
+    learn_inflow(mean_share);
     remember_pressures(dt);
   } else {
     learn_outflow(share);
@@ -161,7 +161,7 @@ void FlowZone::gather() {
 }
 
 /// The pressure at the side and its slope, by lane.
-void FlowZone::learn_inflow(double share, double mean_share) {
+void FlowZone::learn_inflow(double mean_share) {
   const double scale = rho_ * c_ * c_;
   for (std::size_t k = 0; k < lane_.size(); ++k) {
     const Gathered& sum = sums_[k];
@@ -176,7 +176,6 @@ void FlowZone::learn_inflow(double share, double mean_share) {
     lane.now = scale * level - lane.slope * lane.depth;
     lane.pressure += mean_share * (lane.now - lane.pressure);
   }
-  static_cast<void>(share);
 }
 
 void FlowZone::remember_pressures(double dt) {

@@ -46,7 +46,6 @@ class FlowZone : public Model {
   void schedule(Schedule& s) override;
   /// NAME_SIDE_in, NAME_SIDE_out [kg] (kg/m in 2D): what passed the side so far.
   void history(HistoryRow& row) const override;
-  std::optional<std::string> trouble() const override { return trouble_; }
   void archive(Archive& a) override;
 
  private:
@@ -71,7 +70,7 @@ class FlowZone : public Model {
   void renew();
   void sort_out();
   void gather();
-  void learn_inflow(double share, double mean_share);
+  void learn_inflow(double mean_share);
   void learn_outflow(double share);
   void remember_pressures(double dt);
   void remove_and_create();
@@ -97,7 +96,6 @@ class FlowZone : public Model {
   Formula pressure_;                       // of an outflow
   OwnColumn<std::uint8_t> where_;
   Workspace* w_ = nullptr;
-  std::optional<std::string> trouble_;
 
   FlowLanes lanes_;
   std::vector<Lane> lane_;
