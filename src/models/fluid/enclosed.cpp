@@ -146,7 +146,9 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
   for (std::size_t k = 0; k < blocks.size(); ++k)
     if (!layout.phases[k].moves && entry_between(scene, phase, scene.phases[k]))
       for (const Vec3& x : blocks[k].position) walls.take(walls.cell_of(x));
+  const auto ends = flow_ends(scene, phase);
   for (const Vec3& x : blocks[fluid].position) {
+    if (std::any_of(ends.begin(), ends.end(), [&](const FlowEnd& e) { return e.beyond(x[e.axis()]) > 0.0; })) continue;
     const Cells::Cell cell = walls.cell_of(x);
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       for (const long side : {0l, walls.counts()[axis] - 1}) {
@@ -160,7 +162,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
         }
       }
   }
-  if (!flow_ends(scene, phase).empty()) return result.why = "it flows through a side", result;
+  if (!ends.empty()) return result.why = "it flows through a side", result;
   if (!piston.empty()) return result.why = piston + " moves, and the room with it", result;
   result.shut_in = true;
   result.why = walled ? "shut in by walls, and no free space" : "no free space, and every side is periodic";
