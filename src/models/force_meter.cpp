@@ -14,10 +14,26 @@ const char* const axes[] = {"x", "y", "z"};
 
 }  // namespace
 
+namespace {
+
+/// A wall goes on beyond sides through which a fluid flows: what is measured is the part beside the domain.
+ForceMeter in_the_domain(ForceMeter meter, const Layout& layout) {
+  const bool stays = std::any_of(layout.phases.begin(), layout.phases.end(),
+                                 [&](const PlanPhase& p) { return p.name == meter.phase && !p.moves; });
+  if (!stays || meter.box || !layout.flows_through()) return meter;
+  BoxShape box{{-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}};
+  for (const PlanPhase& phase : layout.phases)
+    for (const FlowEnd& end : phase.flow_ends) (is_upper(end.side) ? box.max : box.min)[end.axis()] = end.place;
+  meter.box = box;
+  return meter;
+}
+
+}  // namespace
+
 ForceOn::ForceOn(const Scene& scene, const Layout& layout, std::size_t number)
     : scene_(scene),
       layout_(layout),
-      meter_(scene.force_meters[number]),
+      meter_(in_the_domain(scene.force_meters[number], layout)),
       number_(number),
       set_(layout, meter_),
       stays_(!layout.phases[set_.phase()].moves) {

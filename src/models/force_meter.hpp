@@ -36,7 +36,7 @@ class ForceOn : public Model {
 
   const Scene& scene_;
   const Layout& layout_;
-  const ForceMeter& meter_;
+  const ForceMeter meter_;
   std::size_t number_, phase_;
   SetOfBody set_;
   bool stays_;  // a wall: its fluids and spheres tell what acts on it, not its acceleration
