@@ -38,4 +38,17 @@ BARCHAN_SIMD_INLINE void store_four(Four v, double* column, std::size_t k, std::
   std::copy_n(x.data(), count, column + k);
 }
 
+/// Writes fields of four records that stand side by side, `stride` apart: lane k of values[f] becomes field f of record
+/// k.
+template <std::size_t Fields>
+BARCHAN_SIMD_INLINE void store_records(std::array<Four, Fields> values, double* records, std::size_t stride) {
+  constexpr std::size_t whole = Fields / 4 * 4;
+  for (std::size_t f = 0; f < whole; f += 4) {
+    simd::transpose(values[f], values[f + 1], values[f + 2], values[f + 3]);
+    for (std::size_t k = 0; k < 4; ++k) values[f + k].store(records + k * stride + f);
+  }
+  for (std::size_t f = whole; f < Fields; ++f)
+    for (std::size_t k = 0; k < 4; ++k) records[k * stride + f] = values[f][static_cast<int>(k)];
+}
+
 }  // namespace barchan

@@ -2,23 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace barchan {
+#include "engine/reproducible_sum.hpp"
 
-double PressureLaw::operator()(double density) const {
-  if (exponent == 1.0) return sound_speed * sound_speed * (density - reference_density) + background;
-  const double stiffness = reference_density * sound_speed * sound_speed / exponent;
-  return stiffness * (std::pow(density / reference_density, exponent) - 1.0) + background;
-}
-
-double PressureLaw::density(double pressure) const {
-  const double over = (pressure - background) / (reference_density * sound_speed * sound_speed);
-  if (exponent == 1.0) return reference_density * (1.0 + over);
-  return reference_density * std::pow(1.0 + exponent * over, 1.0 / exponent);
-}
+namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
@@ -71,16 +62,16 @@ template <std::size_t Dim>
 double kick_all(PhaseParticles& phase, double half_kick) {
   const auto v = columns<Dim>(phase, Field::velocity), a = columns<Dim>(phase, Field::acceleration);
   const auto n = static_cast<std::int64_t>(phase.size());
-  double most = 0.0, sum = 0.0;  // the sum of zeros is NaN when an acceleration is not finite, whatever the order
-#pragma omp parallel for simd schedule(static) reduction(max : most) reduction(+ : sum)
+  std::int64_t most = 0;
+#pragma omp parallel for simd schedule(static) reduction(max : most)
   for (std::int64_t k = 0; k < n; ++k)
     for (std::size_t d = 0; d < Dim; ++d) {
-      const double size = std::abs(a[d][k]);
-      v[d][k] += half_kick * a[d][k];
-      most = size > most ? size : most;
-      sum += 0.0 * size;
+      const double rate = a[d][k];
+      v[d][k] += half_kick * rate;
+      most = std::max(most, bits_of_size(rate));
     }
-  return std::isfinite(sum) ? most : std::numeric_limits<double>::infinity();
+  const auto largest = std::bit_cast<double>(most);
+  return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -121,23 +112,4 @@ double kick(PhaseParticles& phase, double half_kick) {
   return phase.dimensions() == 2 ? kick_all<2>(phase, half_kick) : kick_all<3>(phase, half_kick);
 }
 
-void hold_inside(PhaseParticles& phase, const Sides& sides) {
-  const auto n = static_cast<std::int64_t>(phase.size());
-  const double* rho = sides.margin_of_off > 0.0 ? phase.column(Field::density) : nullptr;
-  const double most = Sides::off * sides.rest;
-#pragma omp parallel
-  for (int d = 0; d < phase.dimensions(); ++d) {
-    const auto c = static_cast<std::size_t>(d);
-    double *x = phase.column(Field::position, d), *v = phase.column(Field::velocity, d);
-#pragma omp for simd schedule(static) nowait
-    for (std::int64_t k = 0; k < n; ++k) {
-      const double place = x[k], speed = v[k];
-      const double margin = rho != nullptr && std::abs(rho[k] - sides.rest) > most ? sides.margin_of_off : sides.margin;
-      const double low = sides.low[c] + margin, high = sides.high[c] - margin;
-      v[k] = place < low ? std::max(speed, 0.0) : place > high ? std::min(speed, 0.0) : speed;
-      x[k] = place < low ? low : place > high ? high : place;
-    }
-  }
-}
-
-}  // namespace barchan
+}  // namespace barchan::BARCHAN_TARGET

@@ -1,5 +1,7 @@
 #include "engine/means.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -20,14 +22,12 @@ void add_everywhere(double* values, std::size_t size, double amount) {
 
 double reproducible_mean(const double* values, std::size_t size) {
   const auto n = static_cast<std::int64_t>(size);
-  double largest = 0.0, zeros = 0.0, high = 0.0, low = 0.0;
-#pragma omp parallel for simd schedule(static) reduction(max : largest) reduction(+ : zeros)
-  for (std::int64_t k = 0; k < n; ++k) {
-    const double of_this = std::abs(values[k]);
-    largest = of_this > largest ? of_this : largest;
-    zeros += 0.0 * of_this;  // NaN when a value is not finite
-  }
-  if (!(zeros == 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  double high = 0.0, low = 0.0;
+  std::int64_t most = 0;
+#pragma omp parallel for simd schedule(static) reduction(max : most)
+  for (std::int64_t k = 0; k < n; ++k) most = std::max(most, bits_of_size(values[k]));
+  const auto largest = std::bit_cast<double>(most);
+  if (!std::isfinite(largest)) return std::numeric_limits<double>::quiet_NaN();
   if (largest < least_term) return 0.0;
   const SumCuts cuts(largest, size);
 #pragma omp parallel for simd schedule(static) reduction(+ : high, low)

@@ -67,46 +67,62 @@ double Neighbours::apart(const Range& a, const Range& b) {
 
 namespace {
 
-/// Least and largest of x - low - old over the places from begin to end.
-BARCHAN_SIMD_INLINE void displacements(const double* x, const float* old, std::uint32_t begin, std::uint32_t end,
-                                       double low, float& least, float& most) {
-  constexpr std::uint32_t width = 4;
+/// Least and largest displacements along the axes, by lanes, of the particles that were given.
+template <std::size_t Dim>
+struct Displacements {
+  static constexpr std::uint32_t width = 4;
   using Wide = simd::Vec<double, width>;
   using Short = simd::Vec<float, width>;
-  least = std::numeric_limits<float>::max();
-  most = -least;
-  if (end - begin < width) {
-    for (std::uint32_t k = begin; k < end; ++k) {
-      const float moved = static_cast<float>(x[k] - low) - old[k];
-      least = moved < least ? moved : least;
-      most = moved > most ? moved : most;
+
+  /// x: positions (m), low: corner of the domain (m), old: the search positions that the lists are of.
+  BARCHAN_SIMD_INLINE void add(const std::array<const double*, 3>& x, const std::array<const float*, 3>& old,
+                               const Vec3& low, std::uint32_t begin, std::uint32_t end) {
+    if (end - begin < width) {
+      for (std::uint32_t k = begin; k < end; ++k)
+        for (std::size_t d = 0; d < Dim; ++d) widen(d, Short(static_cast<float>(x[d][k] - low[d]) - old[d][k]));
+      return;
     }
-    return;
+    for (std::uint32_t k = begin; k < end; k += width) {
+      const std::uint32_t at = std::min(k, end - width);  // the last vector overlaps the one before
+      for (std::size_t d = 0; d < Dim; ++d)
+        widen(d, simd::convert<float>(Wide::load(x[d] + at) - Wide(low[d])) - Short::load(old[d] + at));
+    }
   }
-  Short lower(least), upper(most);
-  for (std::uint32_t k = begin; k < end; k += width) {
-    const std::uint32_t at = std::min(k, end - width);  // the last vector overlaps the one before
-    const Short moved = simd::convert<float>(Wide::load(x + at) - Wide(low)) - Short::load(old + at);
-    lower = simd::min(moved, lower);
-    upper = simd::max(moved, upper);
+  float least(std::size_t d) const {
+    float value = std::numeric_limits<float>::max();
+    for (int lane = 0; lane < static_cast<int>(width); ++lane) value = std::min(value, lower_[d][lane]);
+    return value;
   }
-  for (int lane = 0; lane < static_cast<int>(width); ++lane) {
-    least = std::min(least, lower[lane]);
-    most = std::max(most, upper[lane]);
+  float most(std::size_t d) const {
+    float value = -std::numeric_limits<float>::max();
+    for (int lane = 0; lane < static_cast<int>(width); ++lane) value = std::max(value, upper_[d][lane]);
+    return value;
   }
-}
+
+ private:
+  BARCHAN_SIMD_INLINE void widen(std::size_t d, const Short& moved) {
+    lower_[d] = simd::min(moved, lower_[d]);
+    upper_[d] = simd::max(moved, upper_[d]);
+  }
+  template <std::size_t... d>
+  static constexpr std::array<Short, Dim> all(float value, std::index_sequence<d...>) {
+    return {((void)d, Short(value))...};
+  }
+  std::array<Short, Dim> lower_ = all(std::numeric_limits<float>::max(), std::make_index_sequence<Dim>{});
+  std::array<Short, Dim> upper_ = all(-std::numeric_limits<float>::max(), std::make_index_sequence<Dim>{});
+};
 
 /// What sorting and searching cost, in evaluations of all pairs of one step; measured.
 double rebuild_cost(int dimensions) { return dimensions == 2 ? 1.5 : 1.0; }
 
 }  // namespace
 
+template <std::size_t Dim>
 void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
   const CellGrid& grid = *grids_[phase];
   std::array<const double*, 3> x{};
   std::array<const float*, 3> old{};
-  const auto dimensions = static_cast<std::size_t>(bounds_.dimensions);
-  for (std::size_t d = 0; d < dimensions; ++d) {
+  for (std::size_t d = 0; d < Dim; ++d) {
     x[d] = particles.column(Field::position, static_cast<int>(d));
     old[d] = grid.search_position(static_cast<int>(d));
   }
@@ -115,20 +131,20 @@ void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
   for (std::int64_t q = 0; q < n; ++q) {
     Range& all = ranges_[phase][static_cast<std::size_t>(q)];
     all.clear();
-    for (const BlockRun& run : grid.runs(static_cast<std::size_t>(q))) {
-      Range range;
-      range.low.fill(0.0f);
-      range.high.fill(0.0f);
-      for (std::size_t d = 0; d < dimensions; ++d)
-        displacements(x[d], old[d], run.begin, run.end, bounds_.low[d], range.low[d], range.high[d]);
-      all.widen(range);
+    const auto runs = grid.runs(static_cast<std::size_t>(q));
+    if (runs.empty()) continue;
+    Displacements<Dim> moved;
+    for (const BlockRun& run : runs) moved.add(x, old, bounds_.low, run.begin, run.end);
+    for (std::size_t d = 0; d < 3; ++d) {
+      all.low[d] = d < Dim ? moved.least(d) : 0.0f;
+      all.high[d] = d < Dim ? moved.most(d) : 0.0f;
     }
   }
 }
 
 bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
   for (std::size_t p = 0; p < grids_.size(); ++p)
-    if (grids_[p]) measure(particles[p], p);
+    if (grids_[p]) bounds_.dimensions == 2 ? measure<2>(particles[p], p) : measure<3>(particles[p], p);
   // A pair that no list holds stood more than radius + skin apart. In the same or adjacent blocks it comes within the
   // radius only by a relative displacement of a skin; elsewhere it stood a whole block apart.
   Range all;

@@ -63,6 +63,7 @@ class Neighbours {
   void choose_skin();
   static double apart(const Range& a, const Range& b);
   bool still_valid(const std::vector<PhaseParticles>& particles);
+  template <std::size_t Dim>
   void measure(const PhaseParticles& particles, std::size_t phase);
   bool has_moved(std::size_t phase) const;
   void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,16 +39,16 @@ class SumCuts {
   double high_, low_;  // 1.5 times 2^52 times the quantum of a part: adding it rounds to the quantum
 };
 
+/// The bits of |x| as a whole number. They have the order of the numbers; those of infinity and NaN are above all.
+inline std::int64_t bits_of_size(double x) { return std::bit_cast<std::int64_t>(x) & 0x7fff'ffff'ffff'ffff; }
+
 /// The largest of |values|; infinite or NaN where one of them is.
 inline double largest_of(const double* values, std::size_t n) {
-  double most = 0.0, sum = 0.0;  // the sum of zeros is NaN when a value is not finite, whatever the order
-#pragma omp simd reduction(max : most) reduction(+ : sum)
-  for (std::size_t k = 0; k < n; ++k) {
-    const double size = std::abs(values[k]);
-    most = size > most ? size : most;
-    sum += 0.0 * size;
-  }
-  return sum == 0.0 ? most : std::numeric_limits<double>::quiet_NaN();
+  std::int64_t most = 0;
+#pragma omp simd reduction(max : most)
+  for (std::size_t k = 0; k < n; ++k) most = std::max(most, bits_of_size(values[k]));
+  const auto largest = std::bit_cast<double>(most);
+  return std::isfinite(largest) ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Below this no term counts: its parts could not be told from zero.

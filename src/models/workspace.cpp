@@ -64,47 +64,6 @@ std::array<const double*, Dim> columns(const PhaseParticles& p, Field field) {
   return c;
 }
 
-template <int Dim>
-void pack_motion(const PhaseParticles& p, RecordArray& records, const Workspace::Packing& how, double volume) {
-  using R = MotionRecord<Dim>;
-  const auto n = static_cast<std::int64_t>(p.size());
-  const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
-  const double* pressure = how.pressure ? p.column(Field::pressure) : nullptr;
-  const double* rho = how.pressure && !how.fixed_volume ? p.column(Field::density) : nullptr;
-  const double mass = p.mass();
-#pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    double* r = records[k];
-    for (std::size_t d = 0; d < Dim; ++d) {
-      r[R::position + d] = x[d][k];
-      r[R::velocity + d] = v[d][k];
-    }
-    r[R::pressure] = pressure ? pressure[k] : 0.0;
-    r[R::volume] = rho ? mass / rho[k] : volume;
-  }
-}
-
-/// The same in mixed precision.
-template <int Dim>
-void pack_compact(const PhaseParticles& p, CompactRecords& records, bool fixed_volume, double volume) {
-  const auto n = static_cast<std::int64_t>(p.size());
-  const auto x = columns<Dim>(p, Field::position), v = columns<Dim>(p, Field::velocity);
-  const double* pressure = p.column(Field::pressure);
-  const double* rho = fixed_volume ? nullptr : p.column(Field::density);
-  const double mass = p.mass();
-#pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    std::array<double, Dim> at, speed;
-    for (std::size_t d = 0; d < Dim; ++d) {
-      at[d] = x[d][k];
-      speed[d] = v[d][k];
-    }
-    records.write<Dim>(k, at, speed, pressure[k], rho ? mass / rho[k] : volume);
-  }
-}
-
 /// Velocities at the end of the step, `kick` (s) after those of now; nothing turns.
 template <int Dim>
 void pack_carried(const PhaseParticles& p, RecordArray& records, double kick) {
@@ -254,22 +213,14 @@ void CommonWork::find_neighbours() {
 }
 
 void CommonWork::pack() {
-  const bool flat = layout_.dimensions == 2;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k) {
     if (!w_->neighbours.has_grid(k)) continue;
     const double volume = std::pow(layout_.phases[k].spacing, layout_.dimensions);
     const PhaseParticles& p = w_->particles(k);
-    const Workspace::Packing& how = w_->packing[k];
-    if (layout_.phases[k].flows && w_->compact(k)) {
-      CompactRecords& compact = *w_->compact_to_write(k);
-      flat ? pack_compact<2>(p, compact, how.fixed_volume, volume)
-           : pack_compact<3>(p, compact, how.fixed_volume, volume);
-    }
-    for (const Record record : {Record::motion, Record::extended}) {
-      if (!w_->has(k, record)) continue;
-      RecordArray& records = w_->to_write(k, record);
-      flat ? pack_motion<2>(p, records, how, volume) : pack_motion<3>(p, records, how, volume);
-    }
+    const MotionPacking& how = w_->packing[k];
+    if (layout_.phases[k].flows && w_->compact(k)) pack_compact(p, *w_->compact_to_write(k), how, volume);
+    for (const Record record : {Record::motion, Record::extended})
+      if (w_->has(k, record)) pack_motion(p, w_->to_write(k, record), how, volume);
     if (w_->has(k, Record::stress)) pack_stress(p, w_->to_write(k, Record::stress));
     if (w_->has(k, Record::artificial))
       pack_artificial_stress(p, w_->scene.phases[k].elastic().artificial_stress, w_->to_write(k, Record::artificial));

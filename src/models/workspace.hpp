@@ -11,6 +11,7 @@
 #include "engine/phase_records.hpp"
 #include "models/fluid/turbulence.hpp"
 #include "models/model.hpp"
+#include "models/packing.hpp"
 
 namespace barchan {
 
@@ -38,12 +39,7 @@ class Workspace : public Halo {
 
   std::vector<const WallMotion*> wall_motions;  // by phase, of walls that travel; else null
 
-  /// How the motion records of a phase are filled.
-  struct Packing {
-    bool pressure = false;      // with its pressure; else 0
-    bool fixed_volume = false;  // its spacing's volume for all; else mass/density
-  };
-  std::vector<Packing> packing;  // by phase
+  std::vector<MotionPacking> packing;  // by phase
   std::vector<std::function<void()>>
       when_sorted;            // called when particles have new places, beside the search: may only read them
   bool must_search = true;    // sort and search whatever the motion was

@@ -941,6 +941,31 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
   }
 }
 
+// Rows become columns: lane k of the result's vector j is lane j of vector k.
+template <class T>
+BARCHAN_SIMD_INLINE void transpose(Vec<T, 4>& a, Vec<T, 4>& b, Vec<T, 4>& c, Vec<T, 4>& d) {
+  if constexpr (detail::kind<T, 4> == detail::Kind::native) {
+    const auto ab = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6), AB = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7);
+    const auto cd = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6), CD = __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
+    a.v = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+    b.v = __builtin_shufflevector(AB, CD, 0, 1, 4, 5);
+    c.v = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+    d.v = __builtin_shufflevector(AB, CD, 2, 3, 6, 7);
+  } else {
+    T x[4][4], y[4][4];
+    a.store(x[0]);
+    b.store(x[1]);
+    c.store(x[2]);
+    d.store(x[3]);
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k < 4; ++k) y[k][j] = x[j][k];
+    a = Vec<T, 4>::load(y[0]);
+    b = Vec<T, 4>::load(y[1]);
+    c = Vec<T, 4>::load(y[2]);
+    d = Vec<T, 4>::load(y[3]);
+  }
+}
+
 }  // namespace BARCHAN_TARGET
 }  // namespace barchan::simd
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/integrate.hpp"
+#include "engine/pressure_law.hpp"
 #include "laws/body_contact.hpp"
 #include "laws/extension.hpp"
 #include "laws/kept_drag.hpp"

@@ -289,6 +289,17 @@ TYPED_TEST(Vectors, RecordsAreTransposed) {
   expect_transposed<16, T, W>(16);
 }
 
+TEST(FourDoubles, AreTransposed) {
+  std::array<double, 16> rows;
+  for (std::size_t k = 0; k < 16; ++k) rows[k] = static_cast<double>(k);
+  using Four = Vec<double, 4>;
+  std::array<Four, 4> v;
+  for (std::size_t j = 0; j < 4; ++j) v[j] = Four::load(rows.data() + 4 * j);
+  transpose(v[0], v[1], v[2], v[3]);
+  for (std::size_t j = 0; j < 4; ++j)
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(v[j][static_cast<int>(k)], rows[4 * k + j]) << j << " " << k;
+}
+
 TEST(IntegerVectors, WrapAround) {
   const Vec<std::int32_t, 8> big(std::numeric_limits<std::int32_t>::max()), two(2);
   EXPECT_EQ((big + two)[3], std::numeric_limits<std::int32_t>::min() + 1);

@@ -1,5 +1,8 @@
 #include "models/bodies/updated_lagrangian.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "engine/fours.hpp"
 #include "engine/shares.hpp"
 #include "kernels/kernel.hpp"
@@ -17,22 +20,39 @@ void pack(const PhaseParticles& body, RecordArray& records) {
   using R = StressRecord<Dim>;
   const double mass = body.mass();
   const double *rho = body.column(Field::density), *p = body.column(Field::pressure);
-  const auto n = static_cast<std::int64_t>(body.size());
+  std::array<const double*, Dim> x{}, v{};
+  std::array<const double*, 6> stress{};
+  for (std::size_t d = 0; d < Dim; ++d) {
+    x[d] = body.column(Field::position, static_cast<int>(d));
+    v[d] = body.column(Field::velocity, static_cast<int>(d));
+  }
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e <= d; ++e)
+      stress[column_of[d][e]] = body.column(Field::stress, static_cast<int>(column_of[d][e]));
+  const std::size_t n = body.size();
+  const auto fours = static_cast<std::int64_t>((n + 3) / 4);
 #pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    double* r = records[k];
-    for (int d = 0; d < Dim; ++d) {
-      r[R::position + d] = body.column(Field::position, d)[k];
-      r[R::velocity + d] = body.column(Field::velocity, d)[k];
+  for (std::int64_t q = 0; q < fours; ++q) {
+    const std::size_t k = 4 * static_cast<std::size_t>(q), count = std::min(n - k, std::size_t{4});
+    std::array<Four, R::volume + 1> values;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      values[R::position + d] = load_four(x[d], k, count);
+      values[R::velocity + d] = load_four(v[d], k, count);
     }
-    const double inverse = 1.0 / (rho[k] * rho[k]);
+    const Four density = load_four(rho, k, count), pressure = load_four(p, k, count);
+    const Four inverse = Four(1.0) / (density * density);
     for (std::size_t d = 0; d < Dim; ++d)
       for (std::size_t e = 0; e <= d; ++e) {
-        const double s = body.column(Field::stress, static_cast<int>(column_of[d][e]))[k] - (d == e ? p[k] : 0.0);
-        r[static_cast<std::size_t>(R::stress) + stress_index<Dim>(d, e)] = s * inverse;
+        const Four s = load_four(stress[column_of[d][e]], k, count);
+        values[static_cast<std::size_t>(R::stress) + stress_index<Dim>(d, e)] = (d == e ? s - pressure : s) * inverse;
       }
-    r[R::volume] = mass / rho[k];
+    values[R::volume] = Four(mass) / density;
+    if (count == 4) {
+      store_records(values, records[k], R::size);
+    } else {
+      for (std::size_t lane = 0; lane < count; ++lane)
+        for (std::size_t f = 0; f < values.size(); ++f) records[k + lane][f] = values[f][static_cast<int>(lane)];
+    }
   }
 }
 

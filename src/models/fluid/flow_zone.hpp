@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/integrate.hpp"
+#include "engine/pressure_law.hpp"
 #include "models/fluid/flow_lanes.hpp"
 #include "models/model.hpp"
 #include "scene/formula.hpp"

@@ -6,8 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "engine/hold_inside.hpp"
 #include "engine/integrate.hpp"
 #include "engine/means.hpp"
+#include "engine/pressure_law.hpp"
 #include "models/drive.hpp"
 #include "models/fluid/energy.hpp"
 #include "models/fluid/held_boxes.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/cell_grid.hpp"
-#include "engine/integrate.hpp"
+#include "engine/hold_inside.hpp"
 
 namespace barchan {
 

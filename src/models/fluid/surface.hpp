@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/cell_grid.hpp"
-#include "engine/integrate.hpp"
 #include "engine/pair_list.hpp"
+#include "engine/pressure_law.hpp"
 #include "models/fluid/fluid_rates.hpp"
 #include "state/particles.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/cell_grid.hpp"
-#include "engine/integrate.hpp"
+#include "engine/hold_inside.hpp"
 
 namespace barchan {
 
