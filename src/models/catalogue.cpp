@@ -17,13 +17,14 @@
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/fluid/flow_zone.hpp"
 #include "models/fluid/fluid_phase.hpp"
-#include "models/fluid/open_sides.hpp"
 #include "models/force_meter.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_flux.hpp"
 #include "models/grains/grain_phase.hpp"
+#include "models/grains/grain_source.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "models/grains/spheres.hpp"
+#include "models/open_sides.hpp"
 #include "models/walls/driven_wall.hpp"
 #include "models/walls/wall.hpp"
 #include "scene/couplings.hpp"
@@ -142,7 +143,8 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   for (std::size_t k = 0; k < layout.phases.size(); ++k) leaves = leaves || layout.leaves(k);
   if (!leaves)
     throw SceneError(located(scene, "domain.open") +
-                     ": nothing leaves through it; expected a scene with a fluid that has a free surface");
+                     ": nothing leaves through it; expected a scene with a fluid that has a free surface, or with "
+                     "grains that have a diameter");
   for (std::size_t k = 0; k < layout.phases.size(); ++k) describe_surroundings(scene, k, layout.phases[k]);
 }
 
@@ -177,6 +179,8 @@ Models make_models(const Scene& scene, const Layout& layout) {
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     for (const FlowEnd& end : layout.phases[k].flow_ends)
       models.push_back(std::make_unique<FlowZone>(scene, layout, k, end));
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k)
+    models.push_back(std::make_unique<GrainSource>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     if (!layout.phases[k].moves || !layout.is_extended(k)) continue;
     if (scene.phases[k].kind() == PhaseKind::rigid)  // its surface moves before the fluid is extended into it

@@ -153,17 +153,18 @@ struct PlanPhase {
   std::vector<RigidBody> rigid_bodies;  // at the start [rigid]
 
   // A fluid, and what a fluid asks of its neighbours.
-  Friction friction = Friction::smooth;       // of a turbulent fluid on it [fluid, grains, wall]
-  double roughness = 0;                       // m, z0 of the logarithmic law; 0: smooth [grains, wall]
-  Vec3 stress{};                              // Pa, with which its surface pulls a fluid [wall]
-  bool held = false;                          // a fluid whose bulk speed is held
-  bool free_surface = false;                  // a fluid that does not fill its space
-  std::array<std::array<bool, 2>, 3> open{};  // sides of the domain through which it leaves, by axis: {lower, upper}
-  std::vector<FlowEnd> flow_ends;             // sides through which it enters or leaves, with their zones
-  bool eddies = false;                        // a fluid whose viscosity varies, or with a wall whose stress is given
-  bool heats = false;          // a solid in a fluid whose internal energy is asked for [models/catalogue.cpp]
-  bool enclosed = false;       // a fluid whose mean density is kept
-  std::string enclosure = "";  // why a fluid is enclosed or not; empty: nobody asks
+  Friction friction = Friction::smooth;  // of a turbulent fluid on it [fluid, grains, wall]
+  double roughness = 0;                  // m, z0 of the logarithmic law; 0: smooth [grains, wall]
+  Vec3 stress{};                         // Pa, with which its surface pulls a fluid [wall]
+  bool held = false;                     // a fluid whose bulk speed is held
+  bool free_surface = false;             // a fluid that does not fill its space
+  std::array<std::array<bool, 2>, 3>
+      open{};                      // sides of the domain behind which its particles are gone, by axis: {lower, upper}
+  std::vector<FlowEnd> flow_ends;  // sides through which it enters or leaves, with their zones
+  bool eddies = false;             // a fluid whose viscosity varies, or with a wall whose stress is given
+  bool heats = false;              // a solid in a fluid whose internal energy is asked for [models/catalogue.cpp]
+  bool enclosed = false;           // a fluid whose mean density is kept
+  std::string enclosure = "";      // why a fluid is enclosed or not; empty: nobody asks
 
   // A wind over grains.
   bool driven = false;     // the scene says what drives this wind: the flux of grains is measured [fluid, column]

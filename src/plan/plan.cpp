@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "models/catalogue.hpp"
+#include "models/grains/grain_source.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
@@ -60,6 +61,13 @@ double entering_speed(const Scene& scene, const std::vector<ParticleBlock>& bloc
   return speed;
 }
 
+/// m/s, of grains that enter.
+double influx_speed(const Scene& scene) {
+  double speed = 0.0;
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k) speed = std::max(speed, Arrivals(scene, k, 1.0).fastest());
+  return speed;
+}
+
 /// The domain and the zones beyond its sides, with room for a particle that is on its way out.
 Bounds bounds_with_zones(const Scene& scene, Bounds bounds) {
   for (const Phase& phase : scene.phases)
@@ -78,7 +86,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
   for (const PlanPhase& p : plan.phases) speed = std::max(speed, p.surface_speed);
   for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion, blocks));
-  speed = std::max(speed, entering_speed(scene, blocks));
+  speed = std::max({speed, entering_speed(scene, blocks), influx_speed(scene)});
   double height = 0;
   for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));

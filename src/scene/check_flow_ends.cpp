@@ -58,7 +58,10 @@ void check_side(const Scene& scene, const Section& section, const std::vector<Se
                             " meet in a corner, beyond which nothing is said; expected sides of one axis");
   }
   const auto& open = scene.domain.open;
-  if (std::find(open.begin(), open.end(), word) != open.end())
+  const bool grains = std::any_of(scene.phases.begin(), scene.phases.end(), [](const Phase& phase) {
+    return phase.kind() == PhaseKind::grains && phase.diameter();
+  });
+  if (!grains && std::find(open.begin(), open.end(), word) != open.end())
     return report(at, "\"" + word + "\" stands in domain.open, where particles are gone; expected one of the two");
   const Phase* fluid = find_phase(scene, section.phase);
   for (const Fill& fill : scene.fills) {

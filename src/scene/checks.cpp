@@ -366,6 +366,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_domain(scene, report);
   check_forcings(scene, report);
   check_flow_ends(scene, report);
+  check_influxes(scene, report);
   check_winds(scene, report);
   check_physics(scene, report);
   check_bodies(scene, report);

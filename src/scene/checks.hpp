@@ -62,6 +62,7 @@ void check_run(const Scene& scene, const Report& report);
 
 /// Of sides through which fluids flow: who cannot, and sides that are closed.
 void check_flow_ends(const Scene& scene, const Report& report);
+void check_influxes(const Scene& scene, const Report& report);
 
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);

@@ -12,6 +12,15 @@ std::size_t axis_of(Side side) {
   return side == Side::left || side == Side::right ? 0 : side == Side::bottom || side == Side::top ? 1 : 2;
 }
 
+Side side_of(Flank flank) {
+  switch (flank) {
+    case Flank::left: return Side::left;
+    case Flank::right: return Side::right;
+    case Flank::front: return Side::front;
+    case Flank::back: break;
+  }
+  return Side::back;
+}
 bool is_upper(Side side) { return side == Side::right || side == Side::top || side == Side::front; }
 
 std::string word_of(Side side) {

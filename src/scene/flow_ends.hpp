@@ -17,6 +17,7 @@ namespace barchan {
 /// The axis of a side and whether it is the upper one.
 std::size_t axis_of(Side side);
 bool is_upper(Side side);
+Side side_of(Flank flank);
 /// "left"
 std::string word_of(Side side);
 

@@ -32,6 +32,7 @@ constexpr Key rows_of_keys[] = {
     {"", "forcing", at<&Scene::forcings>("none"), "", "Body forces on single phases, and zones in which a fluid is brought to a velocity."},
     {"", "inflow", at<&Scene::inflows>("none"), "", "Sides of the domain through which a fluid enters."},
     {"", "outflow", at<&Scene::outflows>("none"), "", "Sides of the domain through which a fluid leaves."},
+    {"", "influx", at<&Scene::influxes>("none"), "", "Sides of the domain through which grains with a diameter enter. They leave through sides of domain.open."},
     {"", "motion", at<&Scene::motions>("none"), "", "Sets of particles of bodies that are clamped or driven; rigid bodies that are, or that turn about a place; walls that move."},
     {"", "marker", at<&Scene::markers>("none"), "", "Sets of particles of bodies whose mean place is written to history.csv."},
     {"", "force", at<&Scene::force_meters>("none"), "", "Walls and bodies, or parts of them, whose force and torque are written to history.csv."},
@@ -48,7 +49,7 @@ constexpr Key rows_of_keys[] = {
      "Lengths along x, y (and z). Along a periodic axis a whole number of spacings, and more than two kernel radii.", positive},
     {"domain", "periodic", periodic("none"), "", "Axes along which the domain repeats itself."},
     {"domain", "open", open_sides_of_domain("the side away from gravity, where no wall stands"), "",
-     "Sides through which a fluid with a free surface leaves the run: what passes one is counted and gone."},
+     "Sides through which a fluid with a free surface, or grains with a diameter, leave the run: what passes one is counted and gone. Grains leave through sides that are named here only."},
     {"domain", "gravity", at<&Domain::gravity>("zero"), "m/s2", "Acceleration of gravity, on every phase but walls."},
 
     {"phases", "kind", kind_of_phase(), "", "What the phase is made of."},
@@ -268,6 +269,21 @@ constexpr Key rows_of_keys[] = {
     {"outflow", "pressure", at<&Outflow::pressure>("0"), "Pa", "Pressure beyond the side and its absorbing layer.", {}, "x y z t"},
     {"outflow", "layer", at<&Outflow::layer>("20 spacings"), "m",
      "Length of the layer beyond the side in which sound is absorbed; the fluid flows on in it. Short sound needs a short layer.", not_negative},
+
+    {"influx", "phase", at<&Influx::phase>(required), "", "Grains with a diameter that enter."},
+    {"influx", "side", at<&Influx::side>(required), "", "Side of the domain beside the ground. Grains enter at its plane."},
+    {"influx", "flux", at<&Influx::flux>(required), "kg/m/s",
+     "Mass that enters by second and by metre of width: the mean; the times are those of a Poisson process.", positive},
+    {"influx", "file", at<&Influx::file>("none: the distributions below"), "",
+     "Frame of another run (.vtp or .vtu): grains that enter have the height, velocity and radius of a grain in flight there, drawn with a weight that is its speed through "
+     "the side. If diameters differ, that run needs output.fields = [\"radius\"]. A path from the folder of the scene."},
+    {"influx", "above", at<&Influx::above>("the bottom of the domain"), "m", "y from which on grains enter; in a file only grains higher than this are taken."},
+    {"influx", "decay-height", at<&Influx::decay_height>("required without file"), "m", "Height over which the flux falls by a factor e.", positive},
+    {"influx", "speed", at<&Influx::speed>("required without file"), "m/s", "Mean speed through the side; none is below a tenth of it.", positive},
+    {"influx", "speed-spread", at<&Influx::speed_spread>(0.0), "m/s", "Standard deviation of the speed.", not_negative},
+    {"influx", "angle", at<&Influx::angle>(0.0), "degrees", "Mean angle of the velocity over the horizontal; negative: downwards.", {.at_least = -60.0, .at_most = 60.0}},
+    {"influx", "angle-spread", at<&Influx::angle_spread>(0.0), "degrees", "Standard deviation of the angle.", {.at_least = 0.0, .at_most = 60.0}},
+    {"influx", "seed", at<&Influx::seed>(1), "", "Of the random numbers.", not_negative},
 
     {"motion", "phase", at<&Motion::phase, Motion>(required), "",
      "Elastic or rigid phase. Or a wall, which moves as a rigid whole: a piston, a gate, a drum. Laminar fluids and spheres feel it; sides of the domain stay."},

@@ -313,6 +313,20 @@ struct Outflow {
   std::optional<double> layer;  // m, in which sound is absorbed beyond the side; empty: 20 spacings
 };
 
+/// A side through which grains with a diameter enter (models/grains/grain_source.hpp).
+struct Influx {
+  std::string phase;
+  Flank side{};
+  double flux{};     // kg/(m s), mass that enters by metre of width and second
+  std::string file;  // frame of another run, from whose grains in flight those that enter are drawn; empty: none
+  std::optional<double> above;         // m, y from which on grains enter; empty: the bottom of the domain
+  std::optional<double> decay_height;  // m, over which the flux falls by a factor e
+  std::optional<double> speed;         // m/s, mean, through the side
+  double speed_spread{};               // m/s, standard deviation
+  double angle{}, angle_spread{};      // degrees, upwards from the horizontal; standard deviation
+  unsigned seed{};
+};
+
 /// A set of particles of an elastic body, by their places at the start; or the rigid bodies whose centres stand there.
 struct BodySet {
   std::string phase;
@@ -414,6 +428,7 @@ struct Scene {
   std::vector<Forcing> forcings;
   std::vector<Inflow> inflows;
   std::vector<Outflow> outflows;
+  std::vector<Influx> influxes;
   std::vector<Motion> motions;
   std::vector<Marker> markers;
   std::vector<ForceMeter> force_meters;

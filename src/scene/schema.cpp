@@ -147,6 +147,7 @@ std::string scene_tables() {
       {"inflow.velocity", "`velocity = { ... }` of an inflow"},
       {"inflow.velocity.log-profile", "`log-profile = { ... }`"},
       {"outflow", "`[[outflow]]`"},
+      {"influx", "`[[influx]]`"},
       {"motion", "`[[motion]]`"},
       {"motion.box", "`motion.box`"},
       {"marker", "`[[marker]]`"},

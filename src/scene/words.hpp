@@ -102,6 +102,12 @@ template <>
 inline constexpr std::array words_of<Precision>{word("double", Precision::double_precision),
                                                 word("mixed", Precision::mixed)};
 
+/// A side of the domain beside the ground.
+enum class Flank { left, right, front, back };
+template <>
+inline constexpr std::array words_of<Flank>{word("left", Flank::left), word("right", Flank::right),
+                                            word("front", Flank::front), word("back", Flank::back)};
+
 /// A side of the domain. bottom, top: y; left, right: x; back, front: z.
 enum class Side { bottom, top, left, right, front, back };
 template <>

@@ -131,7 +131,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
   for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
-  if (!see_.scene.motions.empty() || !see_.scene.inflows.empty())
+  if (!see_.scene.motions.empty() || !see_.scene.inflows.empty() || !see_.scene.influxes.empty())
     start_speed_ += see_.plan.largest_speed;  // what drives or enters feeds energy
   torques_ =
       std::any_of(see_.scene.motions.begin(), see_.scene.motions.end(), [](const Motion& m) { return m.torque; });
@@ -154,7 +154,7 @@ void Watch::make_guards() {
       g.closed[d] = {-1, -1};
       g.low[d] = room.periodic[d] ? -1e300 : room.low[d] - margin;
       g.high[d] = room.periodic[d] ? 1e300 : room.high[d] + margin;
-      if (p.open[d][0]) g.low[d] = -1e300;  // models/fluid/open_sides.hpp takes what passes it
+      if (p.open[d][0]) g.low[d] = -1e300;  // models/open_sides.hpp takes what passes it
       if (p.open[d][1]) g.high[d] = 1e300;
     }
     for (const auto& e : plan.entries) {

@@ -150,7 +150,7 @@ class Watch {
   std::vector<Force> forces_;
   KeptState good_;
   long next_ = 1, looks_ = 0;
-  double mass_ = 0.0;               // kg of what moves
+  double mass_ = 0.0;               // kg of what moves, at the start
   double start_energy_ = 0.0;       // J: kinetic and elastic at the beginning, and what disorder may free
   double start_speed_ = 0.0;        // m/s, from it
   double start_fastest_ = 0.0;      // m/s

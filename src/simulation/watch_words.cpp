@@ -271,7 +271,10 @@ void Watch::look_at_energy(const Moment& now) {
   wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
   note_speed(speed - start_speed_, now);
-  const double bound = WatchBounds::energy * 0.5 * mass_ * speed * speed;
+  double mass = 0.0;  // of more particles than at the start: those that entered have no more than the largest speed
+  for (const Guard& g : guards_)
+    mass += see_.particles[g.phase].mass() * static_cast<double>(see_.particles[g.phase].size());
+  const double bound = WatchBounds::energy * 0.5 * std::max(mass, mass_) * speed * speed;
   if (energy_ <= bound) return;
   throw BreakdownError("the kinetic energy of all particles, " + brief(energy_) + " J, is more than " +
                        brief(WatchBounds::energy) +

@@ -225,6 +225,7 @@ std::vector<Place> places_of(const NamedKey& named) {
       if (section == name) places.push_back({base, "", section + "."});
     numbered("fill", scene.fills.size());
     numbered("forcing", scene.forcings.size());
+    numbered("influx", scene.influxes.size());
     numbered("probe", scene.measuring.probes.size());
     numbered("profile", scene.measuring.profiles.size());
     numbered("grid", scene.measuring.grids.size());

@@ -94,6 +94,40 @@ end = 1
   return with(moved, from, to);
 }
 
+/// Grains that enter through a side, with one thing changed.
+std::string influx(const std::string& from, const std::string& to) {
+  const std::string blown = R"toml(spacing = 0.002
+[domain]
+size = [0.1, 0.1]
+open = ["right"]
+[phases.sand]
+kind = "grains"
+density = 1000
+diameter = 0.002
+[phases.floor]
+kind = "wall"
+[interactions]
+sand-sand = { law = "linear" }
+sand-floor = { law = "linear" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "sand"
+shape = { points = [[0.05, 0.001]] }
+[[influx]]
+phase = "sand"
+side = "left"
+flux = 5
+decay-height = 0.02
+speed = 1
+[time]
+end = 0.02
+largest-speed = 3
+)toml";
+  return with(blown, from, to);
+}
+
 /// The square over a fitted hill, with one thing changed.
 std::string hill(const std::string& from, const std::string& to) {
   const std::string ground = with(with(square_text, "air-air = 3.0\n", "air-air = 3.0\nair-hill = 3.0\n"),

@@ -34,14 +34,14 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
   if (!(entry.gusts > 0.0)) return;
   const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
   const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
-  const double low = layout.bounds.low[0], size = layout.bounds.high[0] - low;
+  const double low = layout.domain.low[0], size = layout.domain.high[0] - low;
   gusts_.emplace(entry.gusts, viscosity_, bagnold, low, size,
                  static_cast<std::size_t>(std::max(1.0, std::round(size / layout.phases[fluid_].spacing))));
 }
 
 void SandLayer::attach(Workspace& w) {
   w_ = &w;
-  const double size = layout_.bounds.high[0] - layout_.bounds.low[0];
+  const double size = layout_.domain.high[0] - layout_.domain.low[0];
   const double spacing = layout_.phases[fluid_].spacing;
   const double long_enough = std::max(spacing, long_as * diameter_);
   const auto n = static_cast<std::size_t>(std::max(1.0, std::round(size / long_enough)));
@@ -73,20 +73,29 @@ void SandLayer::attach(Workspace& w) {
   w.ground_stress[fluid_].assign(w.particles(fluid_).size(), 0.0);
 }
 
+/// Beyond an open side the ground goes on as it is at the side, and the last layer does.
 SandLayer::Ground SandLayer::ground(double x) const {
-  const double step = width_ / static_cast<double>(samples_ * heights), low = layout_.bounds.low[0];
+  const double step = width_ / static_cast<double>(samples_ * heights), low = layout_.domain.low[0];
   const auto n = static_cast<long>(ground_.size()) - 1;
-  const double s = (x - low) / step;
-  const long k = ((static_cast<long>(std::floor(s)) % n) + n) % n;
-  const double share = s - std::floor(s), a = ground_[static_cast<std::size_t>(k)],
-               b = ground_[static_cast<std::size_t>(k) + 1];
-  const double slope = (b - a) / step, length = std::sqrt(1.0 + slope * slope);
+  const bool repeats = layout_.domain.periodic[0];
+  const double s = repeats ? (x - low) / step : std::clamp((x - low) / step, 0.0, static_cast<double>(n));
+  const double cell = repeats ? std::floor(s) : std::min(std::floor(s), static_cast<double>(n - 1));
+  const long k = ((static_cast<long>(cell) % n) + n) % n;
+  const double share = s - cell, a = ground_[static_cast<std::size_t>(k)], b = ground_[static_cast<std::size_t>(k) + 1];
+  const bool beyond = !repeats && (x < low || x > layout_.domain.high[0]);
+  const double slope = beyond ? 0.0 : (b - a) / step, length = std::sqrt(1.0 + slope * slope);
   return {a + share * (b - a), 1.0 / length, slope / length};
 }
 
 SandLayer::Between SandLayer::between(double x) const {
   const auto n = static_cast<long>(layers_.size());
-  const double s = (x - layout_.bounds.low[0]) / width_ - 0.5, whole = std::floor(s);
+  double s = (x - layout_.domain.low[0]) / width_ - 0.5;
+  if (!layout_.domain.periodic[0]) {
+    s = std::clamp(s, 0.0, static_cast<double>(n - 1));
+    const long left = std::min(static_cast<long>(s), std::max(n - 2, 0L)), right = std::min(left + 1, n - 1);
+    return {static_cast<std::size_t>(left), static_cast<std::size_t>(right), s - static_cast<double>(left)};
+  }
+  const double whole = std::floor(s);
   const long k = static_cast<long>(whole);
   return {static_cast<std::size_t>(((k % n) + n) % n), static_cast<std::size_t>((((k + 1) % n) + n) % n), s - whole};
 }
@@ -153,7 +162,7 @@ void SandLayer::act() {
 /// The speed of the air's particles along the ground, where the layer ends: by the weights by which places feel it.
 double SandLayer::top_speed(std::size_t column) const {
   const auto all = static_cast<long>(samples_);
-  const double middle = layout_.bounds.low[0] + (static_cast<double>(column) + 0.5) * width_;
+  const double middle = layout_.domain.low[0] + (static_cast<double>(column) + 0.5) * width_;
   double sum = 0.0;
   for (long k = 1 - all; k < all; ++k) {
     const double away = static_cast<double>(k) / static_cast<double>(all), x = middle + away * width_;

@@ -7,7 +7,7 @@
 #include "kernels/kernel.hpp"
 #include "models/fluid/enclosed.hpp"
 #include "models/fluid/fluid_phase.hpp"
-#include "models/fluid/open_sides.hpp"
+#include "models/open_sides.hpp"
 #include "models/walls/sides.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"

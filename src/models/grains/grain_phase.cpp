@@ -7,6 +7,7 @@
 
 #include "engine/integrate.hpp"
 #include "models/grains/spheres.hpp"
+#include "models/open_sides.hpp"
 #include "output/numbers.hpp"
 #include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
@@ -112,6 +113,7 @@ void declare_grains(const Scene& scene, std::size_t number, Layout& layout) {
     p.diameter = p.size = size->mean;
     p.largest_size = size->largest();
     p.own_steps = p.sphere_records = true;
+    p.open = open_sides_of_spheres(scene, number);
   }
   p.kicked = !p.own_steps;
 }

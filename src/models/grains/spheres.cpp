@@ -71,7 +71,7 @@ std::vector<SphereSearch::Side> Spheres::sides_with_spheres() const {
       for (const bool high : {false, true})
         if (std::find(shape->sides.begin(), shape->sides.end(), names[axis][high]) != shape->sides.end())
           sides.push_back({axis, static_cast<std::int16_t>(high ? -1 : 1),
-                           high ? layout_.bounds.high[axis] : layout_.bounds.low[axis],
+                           high ? layout_.domain.high[axis] : layout_.domain.low[axis],
                            static_cast<std::uint8_t>(kind - layout_.phases.begin())});
   }
   return sides;

@@ -1,12 +1,14 @@
-#include "models/fluid/open_sides.hpp"
+#include "models/open_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
+#include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -26,6 +28,12 @@ const Phase* wall_behind(const Scene& scene, const Phase& fluid, const std::stri
       return wall;
   }
   return nullptr;
+}
+
+/// Whether a fluid enters or leaves through a side by a section of its own.
+bool flows_through(const Scene& scene, const Phase& fluid, const std::string& side) {
+  const auto ends = flow_ends(scene, fluid);
+  return std::any_of(ends.begin(), ends.end(), [&](const FlowEnd& end) { return word_of(end.side) == side; });
 }
 
 /// The side away from gravity, where gravity is along one axis that does not repeat; empty: there is none.
@@ -49,7 +57,9 @@ std::array<std::array<bool, 2>, 3> open_sides(const Scene& scene, std::size_t fl
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t end = 0; end < 2; ++end) {
       const std::string name = side_names[d][end];
-      if (!free_surface || std::find(sides.begin(), sides.end(), name) == sides.end()) continue;
+      if (!free_surface || flows_through(scene, scene.phases[fluid], name) ||
+          std::find(sides.begin(), sides.end(), name) == sides.end())
+        continue;
       const Phase* wall = wall_behind(scene, scene.phases[fluid], name);
       if (wall && said)
         throw SceneError(located(scene, "domain.open") + ": the wall \"" + wall->name + "\" closes \"" + name +
@@ -59,22 +69,44 @@ std::array<std::array<bool, 2>, 3> open_sides(const Scene& scene, std::size_t fl
   return open;
 }
 
-OpenSides::OpenSides(const Scene& scene, const Layout& layout, std::size_t fluid)
-    : scene_(scene), plan_(layout.phases[fluid]), fluid_(fluid) {
+std::array<std::array<bool, 2>, 3> open_sides_of_spheres(const Scene& scene, std::size_t grains) {
+  std::array<std::array<bool, 2>, 3> open{};
+  const auto& sides = scene.domain.open;
+  for (std::size_t d = 0; d < 3; ++d)
+    for (std::size_t end = 0; end < 2; ++end) {
+      const std::string name = side_names[d][end];
+      open[d][end] =
+          std::find(sides.begin(), sides.end(), name) != sides.end() && !wall_behind(scene, scene.phases[grains], name);
+    }
+  return open;
+}
+
+void add_passed(HistoryRow& row, const std::string& name_side_way, int dimensions, const PassedSide& passed) {
+  const bool flat = dimensions == 2;
+  row.add(name_side_way + (flat ? " [kg/m]" : " [kg]"), passed.mass);
+  row.add(name_side_way + "_number", static_cast<double>(passed.particles));
+  for (int d = 0; d < dimensions; ++d)
+    row.add(name_side_way + "_momentum_" + "xyz"[d] + (flat ? " [kg/s]" : " [kg m/s]"),
+            passed.momentum[static_cast<std::size_t>(d)]);
+  row.add(name_side_way + "_energy" + (flat ? " [J/m]" : " [J]"), passed.energy);
+}
+
+OpenSides::OpenSides(const Scene& scene, const Layout& layout, std::size_t phase)
+    : scene_(scene), plan_(layout.phases[phase]), phase_(phase) {
   const double margin = beyond * plan_.spacing;
   for (std::size_t d = 0; d < 3; ++d) {
-    low_[d] = plan_.open[d][0] ? layout.bounds.low[d] - margin : -1e300;
-    high_[d] = plan_.open[d][1] ? layout.bounds.high[d] + margin : 1e300;
+    low_[d] = plan_.open[d][0] ? layout.domain.low[d] - margin : -1e300;
+    high_[d] = plan_.open[d][1] ? layout.domain.high[d] + margin : 1e300;
   }
 }
 
 void OpenSides::begin(State& state, const std::vector<ParticleBlock>&) {
   place_ = state.departed.size();
   state.departed.emplace_back();
-  state.departed.back().phase = static_cast<std::int64_t>(fluid_);
-  PhaseParticles& p = state.phases[fluid_];
+  state.departed.back().phase = static_cast<std::int64_t>(phase_);
+  PhaseParticles& p = state.phases[phase_];
   p.number_may_change();
-  start_mass_ = p.mass() * static_cast<double>(p.size());
+  for (std::size_t k = 0; k < p.size(); ++k) start_mass_ += p.mass_of(k);
 }
 
 void OpenSides::attach(Workspace& w) { w_ = &w; }
@@ -107,28 +139,45 @@ bool OpenSides::any_beyond(const PhaseParticles& p) const {
   return any;
 }
 
-void OpenSides::book(const PhaseParticles& p, std::size_t k, Departed& departed) const {
-  const double m = p.mass();
+/// The first of the open sides that a particle passed.
+PassedSide& OpenSides::side_of(const PhaseParticles& p, std::size_t k) {
+  for (int d = 0; d < p.dimensions(); ++d) {
+    const auto c = static_cast<std::size_t>(d);
+    const double x = p.column(Field::position, d)[k];
+    if (x < low_[c]) return passed_[c][0];
+    if (x > high_[c]) return passed_[c][1];
+  }
+  throw std::logic_error("a particle of \"" + plan_.name + "\" left and passed no side");
+}
+
+void OpenSides::book(const PhaseParticles& p, std::size_t k, Departed& departed) {
+  const double m = p.mass_of(k);
+  PassedSide& passed = side_of(p, k);
   if (departed.particles++ == 0) departed.first = w_->state.time;
+  ++passed.particles;
   departed.mass += m;
+  passed.mass += m;
   for (int d = 0; d < p.dimensions(); ++d) {
     const auto c = static_cast<std::size_t>(d);
     const double v = p.column(Field::velocity, d)[k];
     departed.momentum[c] += m * v;
+    passed.momentum[c] += m * v;
     departed.kinetic += 0.5 * m * v * v;
-    departed.potential -= m * scene_.domain.gravity[c] * p.column(Field::position, d)[k];
+    passed.energy += 0.5 * m * v * v;
+    departed.potential -= m * plan_.weight_share * scene_.domain.gravity[c] * p.column(Field::position, d)[k];
   }
-  const double strain = p.column(Field::density)[k] / scene_.phases[fluid_].density - 1.0;
+  if (!p.has(Field::density)) return;
+  const double strain = p.column(Field::density)[k] / scene_.phases[phase_].density - 1.0;
   departed.stored += 0.5 * m * std::pow(plan_.sound_speed * strain, 2);
 }
 
 void OpenSides::leave() {
-  PhaseParticles& p = w_->particles(fluid_);
+  PhaseParticles& p = w_->particles(phase_);
   if (!any_beyond(p)) return;
   Departed& departed = w_->state.departed[place_];
   std::size_t kept = 0;
   for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;
-  if (kept == 0) {
+  if (kept == 0 && !plan_.own_steps) {
     trouble_ = "all particles of \"" + plan_.name + "\" are beyond " + sides_text() +
                ": nothing is left to compute; close a side with a wall, or enlarge domain.size";
     return;
@@ -149,18 +198,27 @@ std::string OpenSides::sides_text() const {
 }
 
 void OpenSides::history(HistoryRow& row) const {
-  if (!scene_.domain.open.empty())
-    row.add(plan_.name + "_left [" + (w_->particles(fluid_).dimensions() == 2 ? "kg/m]" : "kg]"),
-            w_->state.departed[place_].mass);
+  if (scene_.domain.open.empty()) return;
+  const int dimensions = w_->particles(phase_).dimensions();
+  row.add(plan_.name + "_left [" + (dimensions == 2 ? "kg/m]" : "kg]"), w_->state.departed[place_].mass);
+  for (std::size_t d = 0; d < 3; ++d)
+    for (std::size_t end = 0; end < 2; ++end)
+      if (plan_.open[d][end])
+        add_passed(row, plan_.name + "_" + side_names[d][end] + "_out", dimensions, passed_[d][end]);
 }
+
+void OpenSides::archive(Archive& a) { a.number(plan_.name + " passed sides", passed_); }
 
 void OpenSides::report(Warnings& warnings) const {
   const Departed& departed = w_->state.departed[place_];
   if (departed.particles == 0) return;
-  warnings.add("left " + plan_.name,
-               brief(static_cast<double>(departed.particles)) + " particles of \"" + plan_.name + "\", " +
-                   brief(100.0 * departed.mass / start_mass_) + " % of its mass, left through " + sides_text() +
-                   ", the first at t = " + brief(departed.first) + " s; domain.open says which sides are open");
+  warnings.add(
+      "left " + plan_.name,
+      brief(static_cast<double>(departed.particles)) + " particles of \"" + plan_.name + "\"" +
+          (start_mass_ > 0.0 ? ", " + brief(100.0 * departed.mass / start_mass_) + " % of its mass at the start,"
+                             : std::string()) +
+          " left through " + sides_text() + ", the first at t = " + brief(departed.first) +
+          " s; domain.open says which sides are open");
 }
 
 }  // namespace barchan

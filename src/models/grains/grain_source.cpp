@@ -1,0 +1,277 @@
+#include "models/grains/grain_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/errors.hpp"
+#include "models/workspace.hpp"
+#include "output/numbers.hpp"
+#include "output/series.hpp"
+#include "scene/couplings.hpp"
+#include "scene/flow_ends.hpp"
+#include "scene/located.hpp"
+#include "scene/random.hpp"
+#include "scene/reader.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// A normal deviate (Box & Muller 1958).
+double normal(Random& random) {
+  const double u = 1.0 - random.uniform(0.0, 1.0), v = random.uniform(0.0, 1.0);
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
+}
+
+std::size_t number_of(const Scene& scene, const std::string& phase) {
+  for (std::size_t k = 0; k < scene.phases.size(); ++k)
+    if (scene.phases[k].name == phase) return k;
+  throw std::logic_error("an influx of a phase that is not there");
+}
+
+const FrameField* field_of(const Frame& frame, const char* name, int components) {
+  for (const FrameField& field : frame.fields)
+    if (field.name == name && field.components == components) return &field;
+  return nullptr;
+}
+
+constexpr double slowest = 0.1;  // of the mean speed of a distribution
+
+}  // namespace
+
+Arrivals::Arrivals(const Scene& scene, std::size_t influx, double slab)
+    : influx_(scene.influxes[influx]),
+      size_(*find_phase(scene, influx_.phase)->diameter()),
+      density_(find_phase(scene, influx_.phase)->density),
+      slab_(slab),
+      ground_(influx_.above.value_or(scene.domain.origin[1])),
+      top_(scene.domain.origin[1] + scene.domain.size[1]),
+      axis_(axis_of(side_of(influx_.side))),
+      inwards_(is_upper(side_of(influx_.side)) ? -1.0 : 1.0) {
+  double mass = mass_of(0.5 * size_.mean) * (1.0 + size_.spread * size_.spread);  // mean of (d/mean)^3
+  if (!influx_.file.empty()) {
+    read_patterns(scene, influx);
+    double sum = 0.0, before = 0.0;
+    for (const Pattern& p : patterns_) {
+      sum += (p.weight - before) * mass_of(p.radius);
+      before = p.weight;
+      fastest_ = std::max(fastest_, norm(p.velocity));
+    }
+    mass = sum / patterns_.back().weight;
+  } else {
+    const double steep = std::min(std::abs(influx_.angle) + 4.0 * influx_.angle_spread, 80.0);
+    fastest_ = (*influx_.speed + 4.0 * influx_.speed_spread) / std::cos(steep * std::numbers::pi / 180.0);
+  }
+  const std::size_t across = axis_ == 0 ? 2 : 0;
+  const double width = scene.dimensions == 2 ? 1.0 : scene.domain.size[across];
+  mean_wait_ = mass / (influx_.flux * width);
+}
+
+double Arrivals::mass_of(double radius) const {
+  return density_ * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius / slab_;
+}
+
+void Arrivals::read_patterns(const Scene& scene, std::size_t influx) {
+  const auto refuse = [&](const std::string& what) {
+    throw SceneError(located(scene, "influx." + std::to_string(influx) + ".file") + ": \"" + influx_.file + "\" " +
+                     what);
+  };
+  Frame frame;
+  try {
+    frame = read_frame(path_of_file(scene, influx_.file));
+  } catch (const OutputError& e) {
+    refuse(std::string("cannot be read: ") + e.what() + "; expected a .vtp of Barchan");
+  }
+  const auto name = std::find(frame.phase_names.begin(), frame.phase_names.end(), influx_.phase);
+  if (name == frame.phase_names.end())
+    refuse("has no phase \"" + influx_.phase + "\"; expected a frame of a run with it");
+  const auto number = static_cast<std::int32_t>(name - frame.phase_names.begin());
+  const FrameField *radii = field_of(frame, "radius", 1), *velocity = field_of(frame, "velocity", 3);
+  if (!velocity) refuse("has no field velocity; expected a frame of a run");
+  if (size_.spread > 0.0 && !radii)
+    refuse("has no field radius, and the grains of \"" + influx_.phase +
+           "\" differ; expected a frame with output.fields = [\"radius\"]");
+  double sum = 0.0;
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    if (frame.phase[i] != number) continue;
+    const double y = frame.points[3 * i + 1], radius = radii ? radii->values[i] : 0.5 * size_.mean;
+    const Vec3 v{velocity->values[3 * i], velocity->values[3 * i + 1], velocity->values[3 * i + 2]};
+    const std::string which = "has particle " + std::to_string(frame.id[i]);
+    if (!std::isfinite(y + v[0] + v[1] + v[2])) refuse(which + " at no finite place or velocity");
+    if (!(std::abs(2.0 * radius - size_.mean) <= size_.mean * (size_.spread + 1e-6)))
+      refuse(which + " with the diameter " + brief(2.0 * radius) + " m; expected " +
+             brief(size_.mean * (1.0 - size_.spread)) + " to " + brief(size_.largest()) +
+             " m, the diameters of the phase");
+    const double through = inwards_ * v[axis_];
+    if (!(through > 0.0) || y < ground_ || y > top_) continue;
+    sum += through;
+    patterns_.push_back({y, radius, sum, v});
+  }
+  if (patterns_.empty())
+    refuse("has no grain of \"" + influx_.phase + "\" between y = " + brief(ground_) + " and " + brief(top_) +
+           " m that moves inwards through the side; expected grains in flight");
+}
+
+Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
+  Random seeds(0x1f10ull + influx_.seed);
+  Random random(seeds.next() ^ (0x9e3779b97f4a7c15ull * static_cast<std::uint64_t>(n + 1)));
+  Grain grain;
+  grain.wait = -mean_wait_ * std::log(1.0 - random.uniform(0.0, 1.0));
+  grain.across = random.uniform(0.0, 1.0);
+  if (!patterns_.empty()) {
+    const double at = random.uniform(0.0, patterns_.back().weight);
+    const auto found = std::upper_bound(patterns_.begin(), patterns_.end(), at,
+                                        [](double weight, const Pattern& p) { return weight < p.weight; });
+    const Pattern& pattern = found == patterns_.end() ? patterns_.back() : *found;
+    grain.height = pattern.height;
+    grain.radius = pattern.radius;
+    grain.velocity = pattern.velocity;
+    return grain;
+  }
+  grain.radius = 0.5 * size_.mean * random.uniform(1.0 - size_.spread, 1.0 + size_.spread);
+  // Heights are exponentially distributed between the ground and the top, where the centre has room.
+  const double low = ground_ + grain.radius, room = std::max(top_ - grain.radius - low, 0.0), h = *influx_.decay_height;
+  grain.height = low - h * std::log(1.0 - random.uniform(0.0, 1.0) * -std::expm1(-room / h));
+  const double speed = std::max(*influx_.speed + influx_.speed_spread * normal(random), slowest * *influx_.speed);
+  const double angle = std::clamp(influx_.angle + influx_.angle_spread * normal(random), -80.0, 80.0);
+  grain.velocity[axis_] = inwards_ * speed;
+  grain.velocity[1] = speed * std::tan(angle * std::numbers::pi / 180.0);
+  return grain;
+}
+
+GrainSource::GrainSource(const Scene& scene, const Layout& layout, std::size_t influx)
+    : scene_(scene),
+      layout_(layout),
+      influx_(scene.influxes[influx]),
+      phase_(number_of(scene, influx_.phase)),
+      axis_(axis_of(side_of(influx_.side))),
+      side_(is_upper(side_of(influx_.side)) ? layout.domain.high[axis_] : layout.domain.low[axis_]),
+      inwards_(is_upper(side_of(influx_.side)) ? -1.0 : 1.0),
+      arrivals_(scene, influx, layout.dimensions == 2 ? layout.slab : 1.0),
+      name_(influx_.phase + "_" + word_of(side_of(influx_.side))) {}
+
+void GrainSource::begin(State& state, const std::vector<ParticleBlock>&) {
+  place_ = state.departed.size();
+  state.departed.emplace_back();
+  state.departed.back().phase = static_cast<std::int64_t>(phase_);
+  state.phases[phase_].number_may_change();
+  next_ = arrivals_(0).wait;
+}
+
+void GrainSource::schedule(Schedule& s) {
+  Touches touches;
+  for (std::size_t k = 0; k < layout_.phases.size(); ++k) {
+    const PlanPhase& p = layout_.phases[k];
+    if (k == phase_) touches.push_back(p.all_fields());
+    else if (p.sphere_records) touches.push_back({p.name, FieldSet(p.fields), {}});
+  }
+  s.add({stage::walls, influx_.phase + ", influx through " + word_of(side_of(influx_.side)), touches,
+         [this] { enter(); }});
+}
+
+/// Whether no sphere overlaps one at a place.
+bool GrainSource::has_room(const Vec3& x, double radius) const {
+  for (std::size_t q = 0; q < layout_.phases.size(); ++q) {
+    const PlanPhase& other = layout_.phases[q];
+    if (!other.sphere_records) continue;
+    const PhaseParticles& p = w_->particles(q);
+    std::array<const double*, 3> at{};
+    for (int d = 0; d < layout_.dimensions; ++d) at[static_cast<std::size_t>(d)] = p.column(Field::position, d);
+    const double* radii = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      double squared = 0.0;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+        double apart = at[d][k] - x[d];
+        const double period = layout_.domain.high[d] - layout_.domain.low[d];
+        if (layout_.domain.periodic[d]) apart -= period * std::round(apart / period);
+        squared += apart * apart;
+      }
+      const double touching = radius + (radii ? radii[k] : 0.5 * other.largest_size);
+      if (squared < touching * touching) return false;
+    }
+  }
+  return true;
+}
+
+/// Puts a grain where it is `age` (s) after it passed the side; false: its place is taken.
+bool GrainSource::place(const Arrivals::Grain& grain, double age) {
+  Vec3 x{};
+  x[axis_] = side_ + age * grain.velocity[axis_];
+  x[1] = grain.height + age * grain.velocity[1];
+  const std::size_t across = axis_ == 0 ? 2 : 0;
+  if (layout_.dimensions == 3)
+    x[across] = layout_.domain.low[across] + grain.across * (layout_.domain.high[across] - layout_.domain.low[across]) +
+                age * grain.velocity[across];
+  if (!has_room(x, grain.radius)) return false;
+  PhaseParticles& p = w_->particles(phase_);
+  const std::size_t k = p.create(1, w_->state.ids);
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    p.column(Field::position, d)[k] = x[static_cast<std::size_t>(d)];
+    p.column(Field::velocity, d)[k] = grain.velocity[static_cast<std::size_t>(d)];
+  }
+  if (p.has(Field::radius)) p.column(Field::radius)[k] = grain.radius;
+  const double m = p.mass_of(k);
+  Departed& departed = w_->state.departed[place_];
+  if (departed.particles-- == 0) departed.first = w_->state.time;
+  departed.mass -= m;
+  ++entered_.particles;
+  entered_.mass += m;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    const double v = grain.velocity[d];
+    departed.momentum[d] -= m * v;
+    departed.kinetic -= 0.5 * m * v * v;
+    departed.potential += m * layout_.phases[phase_].weight_share * scene_.domain.gravity[d] * x[d];
+    entered_.momentum[d] += m * v;
+    entered_.energy += 0.5 * m * v * v;
+  }
+  return true;
+}
+
+void GrainSource::enter() {
+  const double now = w_->state.time;
+  while (next_ <= now) {
+    waiting_.push_back({drawn_, next_, next_});
+    next_ += arrivals_(++drawn_).wait;
+  }
+  std::size_t kept = 0;
+  for (const Waiting& one : waiting_) {
+    const Arrivals::Grain grain = arrivals_(one.number);
+    const double passage = 2.0 * grain.radius / std::abs(grain.velocity[axis_]);
+    // One that finds its place taken enters later, at the side.
+    const bool first = one.again == one.since;
+    if (one.again <= now && place(grain, first ? now - one.since : 0.0)) continue;
+    if (now > one.since + patience * passage) {
+      ++given_up_;
+      continue;
+    }
+    waiting_[kept] = one;
+    if (one.again <= now) waiting_[kept].again = now + 0.5 * passage;
+    ++kept;
+  }
+  waiting_.resize(kept);
+}
+
+void GrainSource::history(HistoryRow& row) const { add_passed(row, name_ + "_in", layout_.dimensions, entered_); }
+
+void GrainSource::report(Warnings& warnings) const {
+  if (given_up_ == 0) return;
+  warnings.add("no room " + name_, brief(static_cast<double>(given_up_)) + " of " + brief(static_cast<double>(drawn_)) +
+                                       " grains of \"" + influx_.phase + "\" found no room to enter through " +
+                                       word_of(side_of(influx_.side)) +
+                                       ": others are in their places, and the flux is so much less; raise influx.above "
+                                       "over the bed that stands at the side, or lower influx.flux");
+}
+
+void GrainSource::archive(Archive& a) {
+  a.number(name_ + " next", next_);
+  a.number(name_ + " drawn", drawn_);
+  a.number(name_ + " given up", given_up_);
+  a.number(name_ + " entered", entered_);
+  std::uint64_t count = waiting_.size();
+  a.number(name_ + " waiting", count);
+  waiting_.resize(count);
+  a.values(name_ + " those that wait", waiting_.data(), waiting_.size());
+}
+
+}  // namespace barchan

@@ -1,0 +1,169 @@
+// Grains that enter through a side and leave through others: what is booked is what is there; threads and restarts
+// change no bit.
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "physics/small_scenes.hpp"
+
+namespace barchan {
+namespace {
+
+std::string blown(const std::string& influx, const std::string& open = "[\"left\", \"right\", \"top\"]",
+                  const std::string& gravity = "[0, -9.81]") {
+  return R"toml(
+dimensions = 2
+spacing = 1e-3
+[domain]
+size = [0.1, 0.05]
+gravity = )toml" +
+         gravity + "\nopen = " + open + R"toml(
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.2 }
+friction = 0.5
+[phases.floor]
+kind = "wall"
+diameter = 1e-3
+[interactions]
+sand-sand = { law = "linear" }
+sand-floor = { law = "linear" }
+[[fill]]
+phase = "floor"
+shape = { box = { min = [0, 0], max = [0.1, 1e-3] } }
+[[fill]]
+phase = "sand"
+shape = { box = { min = [0.03, 1e-3], max = [0.07, 3e-3] } }
+[[influx]]
+phase = "sand"
+side = "left"
+)toml" + influx +
+         R"toml(
+[time]
+end = 1
+largest-speed = 3
+)toml";
+}
+const std::string storm =
+    "flux = 2\nabove = 2e-3\ndecay-height = 0.01\nspeed = 1.5\nspeed-spread = 0.3\nangle = -10\nangle-spread = 10";
+
+struct Blown {
+  explicit Blown(const std::string& text) : scene(parse_scene(text, "test.toml")), blocks(make_particles(scene)) {
+    simulation = std::make_unique<Simulation>(scene, make_plan(scene, blocks), blocks);
+  }
+  void step(int count) {
+    for (int k = 0; k < count; ++k) simulation->step(1e300);
+  }
+  void run(double until) {
+    while (simulation->time() < until) simulation->step(until - simulation->time());
+  }
+  double column(const std::string& name) const {
+    const HistoryRow row = simulation->history();
+    for (std::size_t k = 0; k < row.names.size(); ++k)
+      if (row.names[k].starts_with(name)) return row.values[k];
+    ADD_FAILURE() << "no column " << name;
+    return 0.0;
+  }
+  const PhaseParticles& sand() const { return simulation->phases()[0]; }
+  double mass() const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < sand().size(); ++k) sum += sand().mass_of(k);
+    return sum;
+  }
+  Scene scene;
+  std::vector<ParticleBlock> blocks;
+  std::unique_ptr<Simulation> simulation;
+};
+
+TEST(GrainSources, MassThatIsThereIsWhatCameLessWhatLeft) {
+  Blown run(blown(storm));
+  const double start = run.mass();
+  run.run(0.2);
+  double out = 0.0, number = 0.0;
+  for (const char* side : {"left", "right", "top"}) {
+    out += run.column(std::string("sand_") + side + "_out [kg/m]");
+    number += run.column(std::string("sand_") + side + "_out_number");
+  }
+  const double in = run.column("sand_left_in [kg/m]");
+  EXPECT_NEAR(run.mass(), start + in - out, 1e-12 * start);
+  EXPECT_NEAR(in, 2.0 * 0.2, 0.1);  // about 290 grains by chance, a sixteenth of them
+  EXPECT_GT(number, 50.0);
+  EXPECT_NEAR(run.column("sand_left [kg/m]"), out, 1e-12 * start);
+  EXPECT_EQ(static_cast<double>(run.blocks[0].position.size()) + run.column("sand_left_in_number") - number,
+            static_cast<double>(run.sand().size()));
+}
+
+/// Without gravity and collisions what enters goes straight through: as much momentum and energy leaves, and the
+/// speeds are those of what entered.
+TEST(GrainSources, WhatFliesThroughLeavesAsItCame) {
+  Blown run(blown("flux = 0.05\nabove = 0.02\ndecay-height = 0.005\nspeed = 1.5\nspeed-spread = 0.3", "[\"right\"]",
+                  "[0, 0]"));
+  while (run.column("sand_right_out_number") < 30.0) run.step(200);
+  const double mean_in = run.column("sand_left_in_momentum_x") / run.column("sand_left_in [kg/m]");
+  const double mean_out = run.column("sand_right_out_momentum_x") / run.column("sand_right_out [kg/m]");
+  EXPECT_NEAR(mean_in, 1.5, 0.2);
+  EXPECT_NEAR(mean_out, mean_in, 0.1);
+  EXPECT_NEAR(run.column("sand_right_out_momentum_y"), 0.0, 1e-15);
+}
+
+/// One that is due in the middle of a step is on its way already: no grain enters in steps.
+TEST(GrainSources, AGrainIsWhereItIsDue) {
+  Blown run(blown("flux = 5\nabove = 0.02\ndecay-height = 0.005\nspeed = 1.5", "[\"right\"]", "[0, 0]"));
+  run.step(500);
+  int between = 0;
+  for (std::size_t k = 0; k < run.sand().size(); ++k) {
+    const double x = run.sand().column(Field::position, 0)[k], steps = x / (1.5 * run.simulation->time() / 500.0);
+    if (run.sand().column(Field::velocity, 0)[k] > 0.0 && std::abs(steps - std::round(steps)) > 0.05) ++between;
+  }
+  EXPECT_GT(between, 10);
+}
+
+TEST(GrainSources, NoneEntersWhereOthersAre) {
+  // The bed reaches the side and over all heights at which grains enter.
+  std::string text = blown("flux = 5\nabove = 1e-3\ndecay-height = 2e-4\nspeed = 1", "[\"right\"]", "[0, 0]");
+  text.replace(text.find("min = [0.03, 1e-3]"), 18, "min = [0, 1e-3]");
+  text.replace(text.find("max = [0.07, 3e-3]"), 18, "max = [0.07, 8e-3]");
+  Blown blocked(text);
+  const double start = blocked.mass();
+  blocked.run(0.04);
+  EXPECT_LT(blocked.mass() - start, 0.3 * 5.0 * 0.04);
+  bool said = false;
+  for (const std::string& warning : blocked.simulation->warnings().texts())
+    said = said || warning.find("found no room to enter") != std::string::npos;
+  EXPECT_TRUE(said);
+}
+
+void expect_same_bits(const Blown& a, const Blown& b) {
+  ASSERT_EQ(a.sand().id(), b.sand().id());
+  for (const Field field : {Field::position, Field::velocity, Field::radius})
+    for (int c = 0; c < a.sand().components(field); ++c)
+      EXPECT_EQ(std::memcmp(a.sand().column(field, c), b.sand().column(field, c), a.sand().size() * sizeof(double)), 0);
+  EXPECT_EQ(a.simulation->history_row(), b.simulation->history_row());
+}
+
+TEST(GrainSources, HaveTheSameBitsOnTwoThreadsAndFromACheckpoint) {
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  Blown straight(blown(storm));
+  straight.step(4500);
+  Archive saved;
+  straight.simulation->archive(saved);
+  straight.step(4500);
+  EXPECT_GT(straight.column("sand_right_out_number"), 0.0);
+  omp_set_num_threads(2);
+  Blown two(blown(storm));
+  two.step(9000);
+  expect_same_bits(straight, two);
+  Blown again(blown(storm));
+  Archive loaded(saved.bytes());
+  again.simulation->archive(loaded);
+  again.step(4500);
+  expect_same_bits(straight, again);
+  omp_set_num_threads(threads);
+}
+
+}  // namespace
+}  // namespace barchan
