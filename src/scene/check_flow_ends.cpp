@@ -84,6 +84,16 @@ void check_flow_ends(const Scene& scene, const Report& report) {
   }
   for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
     const std::string dotted = "inflow." + std::to_string(k);
+    const std::string log = dotted + ".velocity.log-profile", profile = dotted + ".velocity.profile";
+    if (report.is_section(dotted + ".velocity") && !report.touched(dotted)) {
+      if (!report.has(log) && !report.has(profile))
+        report(dotted + ".velocity", "no velocity; expected { log-profile = ... } or { profile = ... }");
+      if (report.has(log) && report.has(profile))
+        report(profile, "a second wind beside log-profile; expected one of the two");
+      if (report.has(profile) && axis_of(scene.inflows[k].side) == 1)
+        report(profile, "a profile is by height, and \"" + word_of(scene.inflows[k].side) +
+                            "\" has one height; expected a side beside the ground, or formulas");
+    }
     if (scene.inflows[k].log_profile && scene.inflows[k].side != Side::left && !report.touched(dotted))
       report(dotted + ".velocity", "a logarithmic wind blows along x; expected side = \"left\", or formulas");
   }

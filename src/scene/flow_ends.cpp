@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "scene/couplings.hpp"
+#include "scene/located.hpp"
 #include "scene/log_wind.hpp"
+#include "scene/reader.hpp"
 
 namespace barchan {
 
@@ -99,12 +101,18 @@ GivenVelocity::GivenVelocity(const Scene& scene, const FlowEnd& end)
       log_(end.inflow->log_profile),
       ground_(scene),
       bottom_(scene.domain.origin[1]),
-      place_(end.place) {}
+      place_(end.place) {
+  if (end.inflow->profile.empty()) return;
+  const auto number = end.inflow - scene.inflows.data();
+  profile_ = read_velocity_profile(
+      path_of_file(scene, end.inflow->profile),
+      located(scene, "inflow." + std::to_string(number) + ".velocity.profile") + ": \"" + end.inflow->profile + "\" ");
+}
 
 Vec3 GivenVelocity::operator()(const Vec3& x, double t) const {
   Vec3 v{components_[0](x, t), components_[1](x, t), components_[2](x, t)};
   if (log_) v[0] += log_wind(*log_, x[1] - bottom_ - (log_->over_ground ? ground_.height(place_, x[2]) : 0.0));
-  return v;
+  return profile_ ? v + (*profile_)(x[1]) : v;
 }
 
 void leave_out_beyond_flow_ends(const Scene& scene, const Phase& phase, std::vector<Vec3>& places) {

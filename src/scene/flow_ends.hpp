@@ -11,6 +11,7 @@
 #include "scene/generate.hpp"
 #include "scene/ground.hpp"
 #include "scene/scene.hpp"
+#include "scene/velocity_profile.hpp"
 
 namespace barchan {
 
@@ -43,12 +44,14 @@ std::vector<FlowEnd> flow_ends(const Scene& scene);
 /// What an inflow gives (m/s), at a place and a time (s).
 class GivenVelocity {
  public:
+  /// Reads the file of a profile. Throws SceneError where it cannot.
   GivenVelocity(const Scene& scene, const FlowEnd& end);
   Vec3 operator()(const Vec3& x, double t) const;
 
  private:
   std::array<Formula, 3> components_;
   std::optional<LogProfile> log_;
+  std::optional<VelocityProfile> profile_;
   Ground ground_;
   double bottom_, place_;  // m
 };

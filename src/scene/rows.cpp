@@ -256,8 +256,11 @@ constexpr Key rows_of_keys[] = {
     {"inflow", "side", at<&Inflow::side>(required), "",
      "Side of the domain, all of it that no wall closes. What stands there at the start, fluid and walls, goes on beyond it."},
     {"inflow", "velocity", velocity_or_profile<&Inflow::velocity>(required), "m/s",
-     "Velocity of what enters: components, or { log-profile = ... }. Sound that comes to the side leaves through it.", {}, "x y z t"},
-    {"inflow.velocity", "log-profile", at<&Inflow::log_profile>(required), "", "Logarithmic wind along x, Halik et al. 2015 eq. (18); on the left side."},
+     "Velocity of what enters: components, { log-profile = ... } or { profile = \"FILE\" }. Sound that comes to the side leaves through it.", {}, "x y z t"},
+    {"inflow.velocity", "log-profile", at<&Inflow::log_profile>("required without profile"), "", "Logarithmic wind along x, Halik et al. 2015 eq. (18); on the left side."},
+    {"inflow.velocity", "profile", at<&Inflow::profile>("none: log-profile"), "",
+     "File with the velocity by height, as profile_NAME.csv of a [[profile]] of an earlier run: columns y [m] and velocity_mean_x (y, z) or velocity_x [m/s]; linear between its "
+     "rows, below and above them as in the first and last. On a side beside the ground. A path from the folder of the scene."},
     {"inflow.velocity.log-profile", "friction-velocity", at<&LogProfile::friction_velocity>(required), "m/s", "Friction velocity u*.", not_negative},
     {"inflow.velocity.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},
     {"inflow.velocity.log-profile", "over-ground", at<&LogProfile::over_ground>(true), "",

@@ -304,6 +304,7 @@ struct Inflow {
   Side side{};
   VectorExpression velocity;              // m/s, formulas in x, y, z, t
   std::optional<LogProfile> log_profile;  // added to `velocity`, along x
+  std::string profile;                    // file of a velocity by height, added to `velocity`; empty: none
 };
 /// A side through which it leaves, and enters again where the flow turns.
 struct Outflow {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "base/errors.hpp"
 #include "output/series.hpp"
 #include "scene/reader.hpp"
 

@@ -15,8 +15,7 @@ constexpr std::size_t kept_steps = 64;  // of an inflow's pressures: longer than
 }  // namespace
 
 FlowZone::FlowZone(const Scene& scene, const Layout& layout, std::size_t fluid, const FlowEnd& end)
-    : scene_(scene),
-      plan_(layout.phases[fluid]),
+    : plan_(layout.phases[fluid]),
       domain_(layout.domain),
       fluid_(fluid),
       end_(end),
@@ -234,6 +233,15 @@ bool FlowZone::has_room(const Vec3& x) const {
   });
 }
 
+/// m, between a row at `d` and the next one: so far apart that their mass fills the lane with the density there.
+double FlowZone::row_spacing(std::size_t lane, double d) const {
+  Vec3 at = lanes_.place(lane);
+  at[end_.axis()] = end_.at(d);
+  const double pressure =
+      end_.inflow ? lane_[lane].pressure - lane_[lane].slope * d : pressure_(at, w_->state.time) + law_.background;
+  return dx_ * rho_ / law_.density(pressure);
+}
+
 void FlowZone::remove_and_create() {
   gone_ = 0.0;
   PhaseParticles& p = w_->particles(fluid_);
@@ -251,8 +259,8 @@ void FlowZone::remove_and_create() {
     if (last < 0.0) last = end_.layer;
     const bool enters = end_.inflow || (is_upper(end_.side) ? lane_[lane].velocity[end_.axis()] < 0.0
                                                             : lane_[lane].velocity[end_.axis()] > 0.0);
-    while (enters && last + dx_ <= end_.length * (1.0 + 1e-9)) {
-      last += dx_;
+    while (enters && last + row_spacing(lane, last) <= end_.length * (1.0 + 1e-9)) {
+      last += row_spacing(lane, last);
       Vec3 at = lanes_.place(lane);
       at[end_.axis()] = end_.at(last);
       if (end_.outflow && !has_room(at)) break;

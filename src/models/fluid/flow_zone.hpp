@@ -14,9 +14,10 @@
 //   layer the last rows have the pressure of the scene and the velocity of the layer's end, by lanes: outwards, or
 //   inwards where the flow turns.
 //
-// Lanes (flow_lanes.hpp) are filled from behind: where the last particle of a lane has moved inwards by a spacing, a
-// new one stands a spacing behind it. What has passed the end of the zone is removed. Both happen each time that the
-// fastest flow has gone half a spacing, so that lists of neighbours live as long as elsewhere.
+// Lanes (flow_lanes.hpp) are filled from behind: where the last particle of a lane has moved inwards by a row, a new
+// one stands a row behind it. Rows are so far apart that the mass in the lane has the density of the zone's pressure.
+// What has passed the end of the zone is removed. Both happen each time that the fastest flow has gone half a spacing,
+// so that lists of neighbours live as long as elsewhere.
 #pragma once
 
 #include <array>
@@ -73,6 +74,7 @@ class FlowZone : public Model {
   void learn_inflow(double mean_share);
   void learn_outflow(double share);
   void remember_pressures(double dt);
+  double row_spacing(std::size_t lane, double d) const;
   void remove_and_create();
   bool has_room(const Vec3& x) const;
   void prescribe();
@@ -84,7 +86,6 @@ class FlowZone : public Model {
   std::size_t cell_of(std::size_t lane, double d) const;
   Vec3 place_of(const PhaseParticles& p, std::size_t k) const;
 
-  const Scene& scene_;
   const PlanPhase& plan_;
   const Bounds domain_;
   std::size_t fluid_;
