@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/hold_inside.hpp"
 #include "engine/means.hpp"
 #include "engine/reproducible_sum.hpp"
 
