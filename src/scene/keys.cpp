@@ -86,9 +86,9 @@ std::string kinds_text(const Key& key, std::string_view between) {
   return text;
 }
 
-std::string expected(const Key& key, int dimensions) {
+std::string expected(const Key& key, int dimensions, bool with_unit) {
   const std::string bounds = bounds_text(key.bounds);
-  const std::string unit = key.unit.empty() ? "" : " (" + std::string(key.unit) + ")";
+  const std::string unit = key.unit.empty() || !with_unit ? "" : " (" + std::string(key.unit) + ")";
   const std::string count = std::to_string(dimensions);
   std::string variables;
   for (const char c : key.variables) variables += c == ' ' ? std::string(", ") : std::string(1, c);

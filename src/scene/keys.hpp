@@ -68,6 +68,13 @@ struct Slot {
   bool always = false;                    // the inner section is there without the document: its defaults count
   bool fields = false;                    // its words are the names of base/fields.hpp
   std::span<const PhaseKind> kinds{};     // of phases: the kinds whose type has the member; empty: all
+  std::string_view example = "";          // a value in TOML, where example_of (reference.cpp) makes no good one
+
+  constexpr Slot like(std::string_view value) const {
+    Slot slot = *this;
+    slot.example = value;
+    return slot;
+  }
 };
 
 struct Key {
@@ -100,8 +107,12 @@ std::string kinds_text(const Key& key, std::string_view between);  ///< `fluid, 
 /// none.
 std::string default_text(const Key& key);
 
+/// An example of the key as a document has it, in 2D: `density = 1.225`, or a section with the keys that it requires,
+/// in lines: `[[probe]]`, `name = "one"`, ... Throws std::logic_error when neither the row nor a rule has one.
+std::string example_of(const Key& key);
+
 /// What the key takes, for messages: `a number > 0 (m)`, `"rows", "staggered" or "random"`, `an array of 2 numbers
-/// (m)`.
-std::string expected(const Key& key, int dimensions);
+/// (m)`. Without `with_unit` the unit is left out.
+std::string expected(const Key& key, int dimensions, bool with_unit = true);
 
 }  // namespace barchan

@@ -1,4 +1,4 @@
-// The JSON schema of a scene file and the tables of docs/scenes.md, both from the table of keys.
+// The JSON schema of a scene file, from the table of keys. reference.cpp makes the tables of docs/scenes.md.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -102,16 +102,6 @@ Json section_schema(const std::string& section) {
   return schema;
 }
 
-/// `number (m), > 0` and the like, for the tables of docs/scenes.md.
-std::string table_row(const Key& key) {
-  std::string value = expected(key, 2);
-  for (std::size_t at; (at = value.find("of 2 ")) != std::string::npos;) value.erase(at, 5).insert(at, "of ");
-  for (std::size_t at; (at = value.find('|')) != std::string::npos;) value[at] = '/';
-  std::string meaning(key.meaning);
-  if (!key.slot.kinds.empty()) meaning += " (" + kinds_text(key, ", ") + ")";
-  return "| `" + std::string(key.name) + "` | " + value + " | " + default_text(key) + " | " + meaning + " |\n";
-}
-
 }  // namespace
 
 std::string scene_schema() {
@@ -120,54 +110,6 @@ std::string scene_schema() {
               {"description", "A scene of the SPH simulator Barchan; SI units."}};
   schema.update(section_schema(""));
   return schema.dump(2) + "\n";
-}
-
-std::string scene_tables() {
-  const std::pair<const char*, const char*> sections[] = {
-      {"", "Top of the file"},
-      {"domain", "`[domain]`"},
-      {"phases", "`[phases.NAME]`"},
-      {"phases.log-profile", "`log-profile = { ... }` of a column"},
-      {"phases.diameter", "`diameter = { ... }` of grains and walls"},
-      {"interactions", "`[interactions]`"},
-      {"interactions.pair", "`[interactions]` `a-b = { ... }`"},
-      {"fill", "`[[fill]]`"},
-      {"fill.shape", "`shape = { ... }` of a fill"},
-      {"fill.shape.dune", "`dune = { ... }` of a bed"},
-      {"fill.shape.box", "`box = { ... }`"},
-      {"fill.shape.disc", "`disc = { ... }`"},
-      {"fill.shape.sphere", "`sphere = { ... }`"},
-      {"fill.shape.ring", "`ring = { ... }`"},
-      {"fill.shape.cube", "`cube = { ... }`"},
-      {"fill.velocity", "`velocity = { ... }` of a fill"},
-      {"fill.velocity.log-profile", "`log-profile = { ... }`"},
-      {"forcing", "`[[forcing]]`"},
-      {"forcing.box", "`forcing.box`"},
-      {"inflow", "`[[inflow]]`"},
-      {"inflow.velocity", "`velocity = { ... }` of an inflow"},
-      {"inflow.velocity.log-profile", "`log-profile = { ... }`"},
-      {"outflow", "`[[outflow]]`"},
-      {"influx", "`[[influx]]`"},
-      {"motion", "`[[motion]]`"},
-      {"motion.box", "`motion.box`"},
-      {"marker", "`[[marker]]`"},
-      {"marker.box", "`marker.box`"},
-      {"force", "`[[force]]`"},
-      {"force.box", "`force.box`"},
-      {"probe", "`[[probe]]`"},
-      {"profile", "`[[profile]]`"},
-      {"profile.box", "`box = { ... }` of a profile"},
-      {"grid", "`[[grid]]`"},
-      {"wall-shear", "`[[wall-shear]]`"},
-      {"saltation", "`[[saltation]]`"},
-      {"time", "`[time]`"},
-      {"output", "`[output]`"}};
-  std::string text;
-  for (const auto& [section, heading] : sections) {
-    text += "\n### " + std::string(heading) + "\n\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
-    for (const Key* key : keys_of(section)) text += table_row(*key);
-  }
-  return text;
 }
 
 }  // namespace barchan

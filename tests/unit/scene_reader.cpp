@@ -13,8 +13,11 @@
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "scene/document.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
+#include "scene/toml.hpp"
+#include "scene/validate.hpp"
 #include "unit/scene_texts.hpp"
 
 namespace barchan {
@@ -760,6 +763,50 @@ TEST(SceneSchema, TheDocumentationHasTheSameWords) {
   }
   EXPECT_EQ(text.substr(at), heading + scene_tables())
       << "BARCHAN_WRITE_DOCS=1 test_unit brings docs/scenes.md up to date";
+}
+
+/// The lines of a document in which the example of a key stands at its place, and the dotted name of the key there.
+std::pair<std::string, std::string> document_with_example(const Key& key) {
+  if (key.section.empty()) return {example_of(key), std::string(key.name)};
+  std::string path, dotted, text;
+  std::istringstream parts{std::string(key.section)};
+  for (std::string part; std::getline(parts, part, '.');) {
+    const bool first = path.empty();
+    path += (first ? "" : ".") + part;
+    dotted += (first ? "" : ".") + part;
+    if (path == "phases") path += ".air", dotted += ".air";
+    else if (path == "interactions.pair") path = dotted = "interactions.air-sand";
+    else if (first && (find_key("", part)->slot.accepts & as_sections)) text = "[[" + part + "]]\n", dotted += ".0";
+  }
+  if (text.empty() || path.find('.') != std::string::npos) text += "[" + path + "]\n";
+  return {text + example_of(key), dotted + "." + std::string(key.name)};
+}
+
+/// Every key has an example that its own row accepts: its type, its range, its words, the variables of a formula, and
+/// the keys of a section.
+TEST(SceneExamples, AreAcceptedByTheRowsOfTheirKeys) {
+  for (const Key& key : all_keys()) {
+    const auto [text, dotted] = document_with_example(key);
+    Problems problems("example");  // other keys are missing there; this one is not
+    const toml::table document = parse_document(text, "example", {}, problems);
+    validate(document, problems);
+    EXPECT_FALSE(problems.touch(dotted)) << text;
+  }
+}
+
+/// Each key has one row in the tables of docs/scenes.md, and none of the six cells of a row is empty.
+TEST(SceneExamples, StandInTheReferenceWithUnitRangeAndDefault) {
+  std::istringstream tables(scene_tables());
+  std::size_t rows = 0;
+  for (std::string line; std::getline(tables, line);) {
+    if (!line.starts_with("| `")) continue;
+    ++rows;
+    std::size_t cells = 0;
+    for (std::size_t at = 0, end; (end = line.find(" |", at + 1)) != std::string::npos; at = end, ++cells)
+      EXPECT_GT(end - at, 2u) << line;
+    EXPECT_EQ(cells, 6u) << line;
+  }
+  EXPECT_EQ(rows, all_keys().size());
 }
 
 TEST(Nearest, FindsWhatWasMeant) {
