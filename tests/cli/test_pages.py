@@ -3,7 +3,7 @@
     test_pages.py PROGRAM SOURCE_DIR
 
 Figures that stand on several pages come from docs/figures.json, through docs/figures.py. Links lead to files and headings that are there.
-No page has a figure that was not measured. README and the program say the same of --restart.
+No page has a figure that was not measured. Every scene is in the gallery. README and the program say the same of --restart.
 """
 import json
 import re
@@ -105,6 +105,27 @@ class Pages(unittest.TestCase):
                     self.assertIn(anchor, anchors(file.read_text()), f"{page.relative_to(SOURCE)}: {target}")
                 count += 1
         self.assertGreater(count, 10)
+
+    def test_every_scene_is_in_the_gallery(self):
+        ended = subprocess.run([sys.executable, SOURCE / "docs/gallery.py", "--check"], capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        page = (SOURCE / "docs/gallery/README.md").read_text()
+        for scene in SOURCE.glob("scenes/**/*.toml"):
+            self.assertIn(f"`{scene.relative_to(SOURCE)}`", page)
+
+    def test_a_scene_or_a_picture_that_is_missing_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for part in ("scenes", "docs/gallery"):
+                (root / part).mkdir(parents=True)
+            (root / "scenes/new.toml").write_text('title = "New"\n')
+            (root / "docs/gallery/README.md").write_text("<!-- scenes: begin -->\n<!-- scenes: end -->\n")
+            row = {"scene": "scenes/old.toml", "picture": "scenes/old.png", "state": "airflow", "settings": [], "frame": "last", "seen": ""}
+            (root / "docs/gallery/scenes.json").write_text(json.dumps([row]))
+            ended = subprocess.run([sys.executable, SOURCE / "docs/gallery.py", "--check", "--root", root], capture_output=True, text=True)
+            self.assertEqual(ended.returncode, 1)
+            for words in ("no row of scenes/new.toml", "there is no scenes/old.toml", "there is no docs/gallery/scenes/old.png", "is old"):
+                self.assertIn(words, ended.stdout)
 
     def test_every_picture_of_the_gallery_has_its_command(self):
         page = (SOURCE / "docs/gallery/README.md").read_text()

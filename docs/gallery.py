@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Writes the list of scenes in docs/gallery/README.md: each scene with its picture, what it shows and its size.
+
+    docs/gallery.py [--write | --check] [--root DIR]
+
+The scenes are those of scenes/; docs/gallery/scenes.json says for a scene its picture (in docs/gallery), the ParaView state, the settings of the
+run, the frame, and what is seen in it. --check has status 1 when the page is old, when a scene has no row, or when a row names a scene or a
+picture that is not there. Without the file the scenes are listed without pictures.
+"""
+import argparse
+import json
+import re
+import sys
+from pathlib import Path
+
+BEGIN, END = "<!-- scenes: begin -->", "<!-- scenes: end -->"
+
+
+def title(scene):
+    return re.search(r'^title *= *"(.*)"', scene.read_text(), flags=re.M)[1]
+
+
+def command(row):
+    settings = "".join(f" --set {entry}" if re.fullmatch(r"[\w.=+-]+", entry) else f" --set '{entry}'" for entry in row["settings"])
+    return f"build/barchan run {row['scene']}{settings}"
+
+
+def rows(root):
+    file = root / "docs/gallery/scenes.json"
+    return {row["scene"]: row for row in json.loads(file.read_text())} if file.exists() else {}
+
+
+def table(root):
+    pictures = rows(root)
+    scenes = sorted(root.glob("scenes/**/*.toml"), key=lambda path: (len(path.parts), str(path)))
+    lines = ["| scene | picture | what is seen, and the run |", "| --- | --- | --- |"]
+    for scene in scenes:
+        name = str(scene.relative_to(root))
+        link = f"[{title(scene)}](../../{name})<br>`{name}`"
+        row = pictures.get(name)
+        if row is None:
+            lines.append(f"| {link} | | |")
+        else:
+            frame = f", frame {row['frame']}" if row["frame"] != "last" else ""
+            lines.append(f"| {link} | ![{title(scene)}]({row['picture']}) | {row['seen']} State `{row['state']}`{frame}.<br>`{command(row)}` |")
+    return lines
+
+
+def wrong(root):
+    """What the rows name that is not there."""
+    found, named = [], rows(root)
+    scenes = [str(scene.relative_to(root)) for scene in sorted(root.glob("scenes/**/*.toml"))] if named else []
+    found += [f"docs/gallery/scenes.json: no row of {scene}" for scene in scenes if scene not in named]
+    for name, row in named.items():
+        found += [f"docs/gallery/scenes.json: there is no {path}" for path in (name, f"docs/gallery/{row['picture']}") if not (root / path).exists()]
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1])
+    options = parser.parse_args()
+    page = options.root / "docs/gallery/README.md"
+    text = page.read_text()
+    before, rest = text.split(BEGIN)
+    after = rest.split(END)[1]
+    new = before + BEGIN + "\n" + "\n".join(table(options.root)) + "\n" + END + after
+    problems = wrong(options.root)
+    if options.write:
+        page.write_text(new)
+    elif new != text:
+        problems.append("docs/gallery/README.md: the list of scenes is old; docs/gallery.py --write mends it")
+    print("\n".join(problems), end="\n" if problems else "")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,49 @@
+"""The pages build as a site: mkdocs warns of nothing, every link and anchor leads somewhere, nothing comes from the network, and it can be searched.
+
+    test_site.py PROGRAM SOURCE_DIR
+"""
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(sys.argv[2]).resolve()
+
+
+def build(root, out):
+    return subprocess.run([sys.executable, SOURCE / "docs/site.py", "--root", root, "--out", out], capture_output=True, text=True)
+
+
+class Site(unittest.TestCase):
+    def test_builds_and_can_be_searched(self):
+        with tempfile.TemporaryDirectory() as name:
+            ended = build(SOURCE, name)
+            self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+            index = json.loads((Path(name) / "search/search_index.json").read_text())["docs"]
+            found = [entry["location"] for entry in index if "roughness" in entry["text"]]
+            self.assertTrue(any(place.startswith("docs/scenes.html") for place in found), found)
+
+    def test_what_is_wrong_is_named(self):
+        with tempfile.TemporaryDirectory() as name:
+            root = Path(name) / "root"
+            (root / "docs").mkdir(parents=True)
+            shutil.copy(SOURCE / "docs/site.py", root / "docs/site.py")
+            (root / "mkdocs.yml").write_text("site_name: Test\ntheme: {name: mkdocs, highlightjs: false}\nuse_directory_urls: false\n"
+                                             "nav:\n  - One: README.md\n")
+            (root / "README.md").write_text("# One\n\n[two](docs/two.md#no-such-part)\n\n![a picture](https://example.org/a.png)\n")
+            (root / "docs/two.md").write_text("# Two\n")
+            ended = build(root, Path(name) / "site")
+            self.assertEqual(ended.returncode, 1)
+            for words in ("docs/two.html#no-such-part has no such anchor", "fetches https://example.org/a.png", "docs/two.md stands in no menu"):
+                self.assertIn(words, ended.stdout)
+            (root / "README.md").write_text("# One\n\n[three](docs/three.md)\n")
+            ended = build(root, Path(name) / "site")
+            self.assertEqual(ended.returncode, 1)
+            self.assertIn("three.md", ended.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
