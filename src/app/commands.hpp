@@ -27,6 +27,5 @@ int run(const RunOptions& options);
 int plan(const std::string& scene, const std::vector<std::string>& overrides, int threads, bool json);
 int generate(const std::string& scene, const std::string& file, const std::vector<std::string>& overrides);
 int compare(const std::string& a, const std::string& b, double tolerance, bool json);
-int schema();
 
 }  // namespace barchan
