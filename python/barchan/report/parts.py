@@ -2,6 +2,7 @@
 
 import html
 import math
+import re
 
 import numpy
 
@@ -44,9 +45,11 @@ def rows_table(head, rows, numeric=True):
     """A table; cells are HTML already."""
     if not rows:
         return ""
-    cell = lambda row: "".join(f'<td class="{"n" if numeric and k else "l"}">{value}</td>' for k, value in enumerate(row))
-    return ('<div class="wide"><table><thead><tr>' + "".join(f'<th class="{"n" if numeric and k else "l"}">{h}</th>' for k, h in enumerate(head)) + "</tr></thead><tbody>"
-            + "".join(f"<tr>{cell(row)}</tr>" for row in rows) + "</tbody></table></div>")
+    is_number = lambda value: bool(re.match(r"(<b[^>]*>)?-?(\d|nan|inf)", str(value))) and len(re.sub("<.*?>|&.*?;", "", str(value))) < 16
+    side = ["n" if numeric and k and any(is_number(row[k]) for row in rows) and all(is_number(row[k]) or not row[k] for row in rows) else "l" for k in range(len(head))]
+    line = lambda tag, row: "<tr>" + "".join(f'<{tag} class="{side[k]}">{value}</{tag}>' for k, value in enumerate(row)) + "</tr>"
+    top = f"<thead>{line('th', head)}</thead>" if any(head) else ""
+    return f'<div class="wide"><table>{top}<tbody>{"".join(line("td", row) for row in rows)}</tbody></table></div>'
 
 
 def section(heading, body, anchor):
@@ -105,10 +108,11 @@ def wind(g):
         phase = name.removesuffix(kind)
         asked = asked_friction_velocity(g, phase) if kind == "_equivalent_friction_velocity" else None
         ratio = f"{tail.mean() / asked:.2f}" if asked else ""
-        what = "what drives the wind pulls as a wind of this u*" if kind == "_equivalent_friction_velocity" else "the air at the bed's surface"
+        what = "what drives the flow pulls as a wind of this u* does" if kind == "_equivalent_friction_velocity" else "the air at the bed's surface"
         rows.append([f"<code>{esc(name)}</code>", what, number(asked) if asked else "", number(float(finite[0])), number(float(tail.mean())), number(float(finite[-1])),
                      f'<b class="{"off" if asked and not .5 < tail.mean() / asked < 2 ** .5 else ""}">{ratio}</b>' if asked else ""])
-    text = "<p>u* is the square root of stress over density. A picture of sand in the wind means little without this number.</p>"
+    grains = "grains" in {p.get("kind") for p in (g.plan or {}).get("phases", {}).values()}
+    text = ("<p>The friction velocity u* is the square root of stress over density." + " A picture of sand in the wind means little without this number." * grains + "</p>")
     return text + rows_table(("column", "what", "u* of the scene (m/s)", "at the start", "mean of the last tenth", "last", "mean / scene"), rows) if rows else ""
 
 
@@ -132,7 +136,7 @@ def show_pictures(g):
         note = '<p class="hint">Drawn from the frames. <code>barchan report DIR --render</code> has ParaView render the scene\'s own states.</p>' if shown else ""
     elif g.state == "broken":
         shown += [each for each in pictures.drawn(g) if "bad" in each[0]]
-    return note + "".join(f'<figure><img alt="{esc(c)}" src="{uri}"><figcaption>{esc(c)}</figcaption></figure>' for c, uri in shown)
+    return note + '<div class="pictures">' * bool(shown) + "".join(f'<figure><img alt="{esc(c)}" src="{uri}"><figcaption>{esc(c)}</figcaption></figure>' for c, uri in shown) + "</div>" * bool(shown)
 
 
 def show_films(g, asked):

@@ -141,7 +141,7 @@ def draw(frame, top, g):
     (x0, x1), (y0, y1), up, two = view_of(frame)
     width, height = max(x1 - x0, 1e-12), max(y1 - y0, 1e-12)
     margin = .02 * max(width, height)
-    across = 9.
+    across = 10.5
     figure, axes = plt.subplots(figsize=(across, min(max(across * .86 * (height + 2 * margin) / (width + 2 * margin) + .7, 1.9), 7.5)), dpi=110)
     axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin), xlabel="x (m)", ylabel=f"{'xyz'[up]} (m)")
     axes.set_aspect("equal")
@@ -162,7 +162,7 @@ def draw(frame, top, g):
         if not chosen.any():
             continue
         x = frame.x[chosen]
-        s = numpy.maximum(sizes(frame, kind, chosen, spacing) * points, .35) ** 2
+        s = numpy.maximum(sizes(frame, kind, chosen, spacing) * points * 1.12, .35) ** 2
         nearest_last = numpy.argsort(-x[:, 3 - up], kind="stable") if not two else slice(None)
         x, s = x[nearest_last], s[nearest_last] if numpy.ndim(s) else s
         speed = numpy.sqrt((frame["velocity"][chosen] ** 2).sum(axis=1))[nearest_last]

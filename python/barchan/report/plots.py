@@ -12,6 +12,7 @@ from ..tables import bare
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")  # blue, vermilion, green, purple, orange, sky, black
 STYLES = ("-", "--", "-.", ":")
 MOST_LINES = 7      # in one plot
+SMALLEST_SHARE = 5e-3  # of the largest line: smaller ones get a plot of their own
 MOST_POINTS = 600   # of one line; of more, the least and the largest of each piece are drawn
 
 
@@ -68,10 +69,11 @@ def lines(x, columns, xlabel, ylabel, upright=False, log=False):
                   marker="o" if short else None, markersize=3)
     (axes.set_ylabel if upright else axes.set_xlabel)(xlabel)
     (axes.set_xlabel if upright else axes.set_ylabel)(ylabel)
+    axes.locator_params(axis="x", nbins=4 if upright else 6)
     if log:
         (axes.set_xscale if upright else axes.set_yscale)("log")
-    if len(columns) > 1 or not ylabel:
-        axes.legend(loc="upper left", bbox_to_anchor=(0, -.22) if upright else (1.01, 1.02), ncol=1)
+    if len(columns) > 1:
+        axes.legend(loc="upper left", bbox_to_anchor=(-.02, -.2 if upright else -.19), ncol=1 if upright or max(map(len, columns)) > 34 else 2, handlelength=2.4)
     return svg(figure)
 
 
@@ -121,19 +123,24 @@ def history_groups(history):
 
 
 def pieces(heading, unit, columns):
-    """A plot of too many lines, as several."""
-    names = list(columns)
-    for k in range(0, len(names), MOST_LINES):
-        yield heading + (f" ({k // MOST_LINES + 1})" if len(names) > MOST_LINES else ""), unit, {name: columns[name] for name in names[k:k + MOST_LINES]}
+    """A plot of too many lines, or of lines of which some would be flat beside others, as several."""
+    top = {name: float(abs(values[numpy.isfinite(values)]).max()) for name, values in columns.items()}
+    parts, rest = [], list(columns)
+    while rest:
+        largest = max(top[name] for name in rest)
+        chosen = [name for name in rest if top[name] >= SMALLEST_SHARE * largest]
+        parts += [chosen[k:k + MOST_LINES] for k in range(0, len(chosen), MOST_LINES)]
+        rest = [name for name in rest if name not in chosen]
+    for k, names in enumerate(parts):
+        yield heading + (f" ({k + 1})" if len(parts) > 1 else ""), unit, {name: columns[name] for name in names}
 
 
 def history_plots(history):
     """(heading, <svg>) of each plot of the history, and the constant columns."""
     t = history["time [s]"]
     groups, constant = history_groups(history) if len(t) > 1 else ([], [])
-    unit_of = lambda unit: f"{unit}" if unit else "1"
-    return [(heading, lines(t, columns, "time (s)", f"{next(iter(columns))} ({unit_of(unit)})" if len(columns) == 1 else f"({unit_of(unit)})"))
-            for heading, unit, columns in groups], constant
+    name = lambda heading, columns: f"{heading}: {next(iter(columns))}" if len(columns) == 1 else heading
+    return [(name(heading, columns), lines(t, columns, "time (s)", unit)) for heading, unit, columns in groups], constant
 
 
 # ---- instruments -----------------------------------------------------------------------------------------------------------------------------------------------------------
@@ -159,7 +166,7 @@ def instrument_plots(name, table):
     for (base, unit), columns in groups.items():
         positive = name.startswith("saltation_") and base in ("flux", "concentration") and all((v[numpy.isfinite(v)] >= 0).all() and (v > 0).sum() > 2 for v in columns.values())
         shown = {n: numpy.where(v > 0, v, numpy.nan) for n, v in columns.items()} if positive else columns
-        plots.append((base.replace("_", " "), lines(table[along], shown, f"{bare(along).replace('_', ' ')} ({table.unit(along)})", f"{base} ({unit or 1})", upright, positive)))
+        plots.append((base.replace("_", " "), lines(table[along], shown, f"{bare(along).replace('_', ' ')} ({table.unit(along)})", unit, upright, positive)))
     return plots
 
 
