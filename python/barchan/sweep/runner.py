@@ -15,7 +15,6 @@ import signal
 import subprocess
 import time
 
-STOPS = (128 + signal.SIGHUP, 128 + signal.SIGINT, 128 + signal.SIGQUIT, 128 + signal.SIGTERM)
 LONGEST_WAIT = 120  # s for a run of before that still writes its checkpoint
 
 
@@ -115,10 +114,11 @@ class Runner:
             if status == 2 and restart and self.stopped is None:  # the checkpoint is of another scene, or damaged: from the beginning
                 self._launch(case, folder, [])
                 continue
-            if self.stopped is not None and status in STOPS:
+            if self.stopped is not None and status > 128:
                 continue  # not done: it goes on next time
             ended.append(Ended(case, folder, status, text, time.monotonic() - begin))
-            keep(folder / "case.json", {"settings": list(case.settings), "options": list(case.options), "scene": self.checksum, "status": status, "said": text})
+            if status <= 128:  # a run that a signal ended from outside, or that crashed, is told but not done
+                keep(folder / "case.json", {"settings": list(case.settings), "options": list(case.options), "scene": self.checksum, "status": status, "said": text})
         return ended
 
 
