@@ -222,7 +222,7 @@ def schedule(g):
 def budgets(g):
     """What the scene promises to keep, and did it."""
     kept = [(key, g.run.get("budgets", {}).get(key), bound) for key, bound in (("momentum_drift", .01), ("energy_growth", .05), ("angular_momentum_drift", .01))]
-    rows = [[esc(key.replace("_", " ")), number(value), f"{bound:g}", '<span class="chip good">kept</span>' if abs(value) <= bound else '<span class="chip warn">above</span>']
+    rows = [[esc(key.replace("_", " ")), number(value), f"{bound:g}", '<span class="chip good">kept</span>' if (value if key == "energy_growth" else abs(value)) <= bound else '<span class="chip warn">above</span>']
             for key, value, bound in kept if value is not None]
     return rows_table(("what the scene promises to keep", "relative", "a warning is given above", ""), rows)
 

@@ -100,8 +100,12 @@ def drawn(g):
             frames.append((f"the first bad state, {bad.time:.6g} s" if bad.time is not None else "the first bad state", bad))
     except BarchanError as error:
         g.remarks.append(str(error))
-    top = top_speed([frame for caption, frame in frames if "bad" not in caption])
-    return [(caption, draw(frame, top, g)) for caption, frame in frames if len(frame)]
+    frames = [(caption, frame) for caption, frame in frames if len(frame)]
+    good = [frame for caption, frame in frames if "bad" not in caption] or [frame for _, frame in frames]
+    if not good:
+        return []
+    top, view = top_speed(good), view_of(good, (g.scene or {}).get("domain", {}).get("gravity"))
+    return [(caption, draw(frame, view, top, g)) for caption, frame in frames]
 
 
 def top_speed(frames):
@@ -126,28 +130,45 @@ def sizes(frame, kind, chosen, spacing):
     return numpy.full(int(chosen.sum()), spacing or 1e-3)
 
 
-def view_of(frame):
-    """(x0, x1, y0, y1) and the axis upwards: in 3D one looks along y where gravity is likely along z."""
-    two = frame.domain is None or frame.domain[2, 0] == frame.domain[2, 1]
-    up = 1
-    finite = frame.x[numpy.isfinite(frame.x).all(axis=1)]
-    box = frame.domain if frame.domain is not None else numpy.column_stack([finite.min(axis=0), finite.max(axis=0)])
-    return box[0], box[up], up, two
+def view_of(frames, gravity=None):
+    """(x0, x1), (y0, y1), the axis upwards and whether the run is in 2D. The view is the box of what moves in all these frames, within the domain and with a margin: a tall domain of a
+    column of air with grains at its bottom is shown as far as the grains go. In 3D upwards is against `gravity`, or the shorter of y and z without it; one looks along the other."""
+    domain = frames[0].domain
+    boxes = []
+    for frame in frames:
+        moving = ~numpy.isin(frame["phase"], [k for k, kind in enumerate(frame.kinds) if kind == "wall"]) & numpy.isfinite(frame.x).all(axis=1)
+        chosen = moving if moving.any() else numpy.isfinite(frame.x).all(axis=1)
+        if chosen.any():
+            boxes.append((frame.x[chosen].min(axis=0), frame.x[chosen].max(axis=0)))
+    if not boxes:
+        return (0., 1.), (0., 1.), 1, True
+    low, high = numpy.min([b[0] for b in boxes], axis=0), numpy.max([b[1] for b in boxes], axis=0)
+    if domain is not None:
+        low, high = numpy.clip(low, *domain.T), numpy.clip(high, *domain.T)
+    two = domain is None and low[2] == high[2] or domain is not None and domain[2, 0] == domain[2, 1]
+    size = high - low
+    weighs = isinstance(gravity, list) and len(gravity) == 3 and any(gravity[1:])
+    up = 1 if two else 1 + int(abs(gravity[2]) > abs(gravity[1])) if weighs else 1 + int(size[1] > size[2])
+    margin = .08 * max(size[0], size[up], 1e-12)
+    low, high = low - margin, high + margin
+    if domain is not None:  # a small margin beyond the domain, for its walls
+        edge = .02 * (domain[:, 1] - domain[:, 0]).max()
+        low, high = numpy.maximum(low, domain[:, 0] - edge), numpy.minimum(high, domain[:, 1] + edge)
+    return (low[0], high[0]), (low[up], high[up]), up, two
 
 
-def draw(frame, top, g):
+def draw(frame, view, top, g):
     """A picture of one frame as a data URI (PNG): fluids and bodies coloured by speed, grains in the colour of sand, walls grey."""
     plt = pyplot()
-    (x0, x1), (y0, y1), up, two = view_of(frame)
+    (x0, x1), (y0, y1), up, two = view
     width, height = max(x1 - x0, 1e-12), max(y1 - y0, 1e-12)
-    margin = .02 * max(width, height)
     across = 10.5
-    figure, axes = plt.subplots(figsize=(across, min(max(across * .86 * (height + 2 * margin) / (width + 2 * margin) + .7, 1.9), 7.5)), dpi=110)
-    axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin), xlabel="x (m)", ylabel=f"{'xyz'[up]} (m)")
+    figure, axes = plt.subplots(figsize=(across, min(max(across * .86 * height / width + .7, 1.9), 7.5)), dpi=110)
+    axes.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="x (m)", ylabel=f"{'xyz'[up]} (m)")
     axes.set_aspect("equal")
     axes.grid(False)
     figure.canvas.draw()
-    points = 72 * axes.get_window_extent().width / figure.dpi / (width + 2 * margin)  # of type, in a metre
+    points = 72 * axes.get_window_extent().width / figure.dpi / width  # of type, in a metre
     spacing, coloured = g.run.get("scene", {}).get("spacing"), None
     order = sorted(range(len(frame.names)), key=lambda k: ("fluid", "column", "wall", "elastic", "rigid", "grains").index(frame.kinds[k]) if k < len(frame.kinds) and frame.kinds[k] in
                    ("fluid", "column", "wall", "elastic", "rigid", "grains") else 3)
@@ -162,7 +183,7 @@ def draw(frame, top, g):
         if not chosen.any():
             continue
         x = frame.x[chosen]
-        s = numpy.maximum(sizes(frame, kind, chosen, spacing) * points * 1.12, .35) ** 2
+        s = numpy.maximum(sizes(frame, kind, chosen, spacing) * points * 1.12, .35 if chosen.sum() > 300 else 4.) ** 2  # a few particles must be seen
         nearest_last = numpy.argsort(-x[:, 3 - up], kind="stable") if not two else slice(None)
         x, s = x[nearest_last], s[nearest_last] if numpy.ndim(s) else s
         speed = numpy.sqrt((frame["velocity"][chosen] ** 2).sum(axis=1))[nearest_last]
