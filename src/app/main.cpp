@@ -172,6 +172,10 @@ int dispatch(int argc, char** argv) {
 
   barchan::add_habits(app, status);
 
+  app.add_subcommand("report", "one HTML page of a run, from its folder (python3)");
+  app.add_subcommand("sweep", "run a scene with many values of its keys (python3)");
+  if (argc > 1 && barchan::is_python_command(argv[1])) return barchan::run_python(words);
+
   if (const std::string what = not_a_command(app, argc > 1 ? argv[1] : ""); !what.empty()) {
     std::cerr << "barchan: " << what << "`barchan COMMAND --help` says more.\n";
     return 2;
