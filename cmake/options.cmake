@@ -1,8 +1,10 @@
 # One interface target carries the flags of every target of ours.
 add_library(barchan_options INTERFACE)
-target_compile_options(barchan_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+target_compile_features(barchan_options INTERFACE cxx_std_20)
+target_compile_options(barchan_options INTERFACE
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-sign-conversion>")  # of ours, not of who uses the library
 if(BARCHAN_WERROR)
-  target_compile_options(barchan_options INTERFACE -Werror)
+  target_compile_options(barchan_options INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
 if(BARCHAN_ARCH STREQUAL "dispatch" AND NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(BARCHAN_ARCH native)

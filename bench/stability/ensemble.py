@@ -10,13 +10,12 @@ at most 2 % in every row of history.csv (a thousand rows a run); no grain leaves
 (grains as heavy by that factor) the scene is another one; then every run must end well or be stopped by the watch with its message.
 Of a scene without a logarithmic wind other things differ and are asked: ensemble_any.py.
 
-Runs are single-threaded, --jobs at a time (2). --runs-dir keeps them: a run that is there is not done again, so that an ensemble
+The runs are cases of a sweep (python/barchan/sweep): single-threaded, --jobs at a time (2). --runs-dir keeps them: a run that is there is not done again, so that an ensemble
 can be stopped and gone on with. With --write the figures go to bench/stability/results/ and docs/stability.md is written again from
 all that is there (`ensemble.py none --write` only does the latter). Exits with 1 when something that was asked is missed.
 """
 
 import argparse
-import concurrent.futures
 import json
 import math
 import pathlib
@@ -33,6 +32,7 @@ import ensemble_any as any_scene  # noqa: E402
 from barchan_bench import ROOT, page as pages, run  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 from barchan_bench.table import head  # noqa: E402
+from barchan import sweep  # noqa: E402  (barchan_bench.frame knows where the package is)
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 PAGE = ROOT / "docs/stability.md"
@@ -99,20 +99,24 @@ def near_bed(scene, first, last):
     return float(now / then) if math.isfinite(now / then) else None
 
 
-def carry_out(member, program, instructions, sets, path, out):
-    """One run, unless it is there; its figures."""
-    done = out / "member.json"
-    if done.exists():
-        return json.loads(done.read_text())
-    out.mkdir(parents=True, exist_ok=True)
-    ended = run.scene(program, path, out, sets, options=["--instructions", instructions], check=False)
-    result = dict(member, status=ended.status, message="" if ended.status == 0 else ended.stderr.strip().partition("barchan: ")[2][:300])
-    if ended.status in (0, 3):
-        result.update(figures(out, path.stem, tomllib.loads(path.read_text())))
-    elif ended.status < 0 or ended.status in (130, 143):
-        raise SystemExit(f"run {member['run']} was stopped by a signal; start again to go on")
-    done.write_text(json.dumps(result))
-    return result
+def carry_out(path, program, folder, members, jobs):
+    """All runs of a scene, as cases of a sweep: those that are there are not done again. Returns the figures of each, and prints them as they end."""
+    scene, runs = tomllib.loads(path.read_text()), {}
+    cases = [sweep.Case(member, tuple(sets), f"{member['run']:02d}", ("--instructions", instructions)) for member, instructions, sets in members]
+
+    def tell(ended):
+        if ended.status > 128:
+            return
+        result = dict(ended.case.values, status=ended.status, message="" if ended.status == 0 else ended.said.strip().partition("barchan: ")[2][:300])
+        if ended.status in (0, 3):
+            result.update(figures(ended.folder, path.stem, scene))
+        runs[ended.case.folder] = result
+        print(row(result), flush=True)
+
+    sweep.Runner(program, path, folder, jobs, tell=tell).go(cases)
+    if len(runs) < len(cases):
+        raise SystemExit(f"{len(cases) - len(runs)} runs were stopped by a signal; start again to go on")
+    return [runs[case.folder] for case in cases]
 
 
 def row(r):
@@ -171,13 +175,9 @@ def ensemble(path, program, options, folder):
     """All runs of one scene."""
     scene = tomllib.loads(path.read_text())
     variant = "".join(f"-{name}-{value:g}" for name, value in (("ustar", options.ustar_factor), ("density", options.density_factor)) if value != 1)
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        jobs = [pool.submit(carry_out, member, program, instructions, sets, path, folder / f"{label(path)[:-5].replace('/', '-')}{variant}" / f"{member['run']:02d}")
-                for member, instructions, sets in (members if any_scene.is_wind(scene) else any_scene.members)(scene, options.instructions or available(program), options)]
-        runs = []
-        for job in jobs:
-            runs.append(job.result())
-            print(row(runs[-1]), flush=True)
+    members_of = members if any_scene.is_wind(scene) else any_scene.members
+    out = folder / f"{label(path)[:-5].replace('/', '-')}{variant}"
+    runs = carry_out(path, program, out, members_of(scene, options.instructions or available(program), options), options.jobs)
     command = f"ensemble.py build/barchan {label(path)} --runs {options.runs}"
     command += f" --instructions {' '.join(options.instructions)}" if options.instructions else ""
     command += f" --ustar-factor {options.ustar_factor:g}" * (options.ustar_factor != 1)

@@ -27,6 +27,11 @@ int run(const RunOptions& options);
 int plan(const std::string& scene, const std::vector<std::string>& overrides, int threads, bool json);
 int generate(const std::string& scene, const std::string& file, const std::vector<std::string>& overrides);
 int compare(const std::string& a, const std::string& b, double tolerance, bool json);
-int schema();
+
+/// Whether the first word of a command line is one that the Python package does: report, sweep.
+bool is_python_command(const std::string& word);
+/// Becomes `python3 -m barchan` with the words behind the program's name (`words[0]`). Throws OutputError if that is
+/// not there.
+int run_python(const std::vector<std::string>& words);
 
 }  // namespace barchan

@@ -15,6 +15,9 @@
 
 #include "app/commands.hpp"
 #include "app/guard.hpp"
+#include "app/habits.hpp"
+#include "app/shipped.hpp"
+#include "app/terminal.hpp"
 #include "base/denormals.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
@@ -50,7 +53,7 @@ std::string not_a_command(const CLI::App& app, const std::string& word) {
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (command->get_name() == word) return "";
     names.push_back(command->get_name());
-    list += "  " + names.back() + std::string(10 - std::min<std::size_t>(names.back().size(), 9), ' ') +
+    list += "  " + names.back() + std::string(12 - std::min<std::size_t>(names.back().size(), 11), ' ') +
             command->get_description() + '\n';
   }
   if (word.empty()) return "no command\n" + list;
@@ -112,45 +115,53 @@ int dispatch(int argc, char** argv) {
 
   barchan::RunOptions run;
   auto* c_run = app.add_subcommand("run", "run a scene and write its ParaView series");
-  c_run->add_option("scene", run.scene, "scene file (.toml)")->required();
+  const char* const of_scene = "scene file (.toml), or the name of a scene that comes along (barchan list)";
+  c_run->add_option("scene", run.scene, of_scene)->type_name("SCENE")->required();
   c_run->add_option("--out", run.out, "output folder (default out/NAME)")->type_name("DIR");
   c_run->add_option("--threads", run.threads, "number of threads (default: as many as pay, measured as it goes)")
+      ->type_name("N")
       ->check(CLI::Range(1, 4096));
   c_run->add_option("--restart", run.restart, "go on from a checkpoint, or from the latest one")
       ->type_name("FILE|latest");
   c_run->add_option("--instructions", run.instructions, "avx2 or avx512 (default: the best that the machine has)")
-      ->type_name("NAME");
+      ->type_name("avx2|avx512");
   c_run->add_option("--retreats", run.retreats, "how often to go back after a failed step and take smaller ones (10)")
+      ->type_name("N")
       ->check(CLI::Range(0, 1000));
   c_run->add_flag("--quiet", run.quiet, "print warnings and errors only");
+  bool dry = false;
+  c_run->add_flag("--dry", dry, "run nothing: the same as barchan plan");
   add_set(c_run);
   c_run->callback([&] {
     run.overrides = overrides;
-    status = barchan::run(run);
+    run.scene = barchan::scene_file(run.scene);
+    status = dry ? barchan::plan(run.scene, overrides, run.threads, false) : barchan::run(run);
   });
 
   std::string scene, file_a, file_b;
   bool json = false;
   double tolerance = 0.0;
   auto* c_plan = app.add_subcommand("plan", "show what a scene would run and what it costs; run nothing");
-  c_plan->add_option("scene", scene, "scene file (.toml)")->required();
+  c_plan->add_option("scene", scene, of_scene)->type_name("SCENE")->required();
   int threads = 0;
   c_plan->add_option("--threads", threads, "number of threads that the estimate is for (default: those that run takes)")
+      ->type_name("N")
       ->check(CLI::Range(1, 4096));
   c_plan->add_flag("--json", json, "as JSON");
   add_set(c_plan);
-  c_plan->callback([&] { status = barchan::plan(scene, overrides, threads, json); });
+  c_plan->callback([&] { status = barchan::plan(barchan::scene_file(scene), overrides, threads, json); });
 
   auto* c_generate = app.add_subcommand("generate", "write the initial particles only");
-  c_generate->add_option("scene", scene, "scene file (.toml)")->required();
-  c_generate->add_option("-o,--output", file_a, "file to write (.vtp or .vtu)")->required();
+  c_generate->add_option("scene", scene, of_scene)->type_name("SCENE")->required();
+  c_generate->add_option("-o,--output", file_a, "file to write (.vtp or .vtu)")->type_name("FILE")->required();
   add_set(c_generate);
-  c_generate->callback([&] { status = barchan::generate(scene, file_a, overrides); });
+  c_generate->callback([&] { status = barchan::generate(barchan::scene_file(scene), file_a, overrides); });
 
   auto* c_compare = app.add_subcommand("compare", "compare two frames or two series, particle by particle");
-  c_compare->add_option("a", file_a, ".vtp, .vtu or .pvd")->required();
-  c_compare->add_option("b", file_b, ".vtp, .vtu or .pvd")->required();
+  c_compare->add_option("a", file_a, ".vtp, .vtu or .pvd")->type_name("FILE")->required();
+  c_compare->add_option("b", file_b, ".vtp, .vtu or .pvd")->type_name("FILE")->required();
   c_compare->add_option("--tolerance", tolerance, "relative difference that still counts as the same (default 0)")
+      ->type_name("NUMBER")
       ->check([](const std::string& text) {
         const auto number = barchan::parse_number(text);
         return number && *number >= 0 && std::isfinite(*number) ? ""
@@ -159,7 +170,11 @@ int dispatch(int argc, char** argv) {
   c_compare->add_flag("--json", json, "as JSON");
   c_compare->callback([&] { status = barchan::compare(file_a, file_b, tolerance, json); });
 
-  app.add_subcommand("schema", "print the JSON schema of a scene file")->callback([&] { status = barchan::schema(); });
+  barchan::add_habits(app, status);
+
+  app.add_subcommand("report", "one HTML page of a run, from its folder (python3)");
+  app.add_subcommand("sweep", "run a scene with many values of its keys (python3)");
+  if (argc > 1 && barchan::is_python_command(argv[1])) return barchan::run_python(words);
 
   if (const std::string what = not_a_command(app, argc > 1 ? argv[1] : ""); !what.empty()) {
     std::cerr << "barchan: " << what << "`barchan COMMAND --help` says more.\n";
@@ -187,5 +202,6 @@ int main(int argc, char** argv) {
   wait_politely(argc, argv);
   barchan::return_freed_arrays();
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is an error to report, not a reason to die
+  const barchan::Terminal terminal;
   return barchan::guarded(std::cerr, [&] { return dispatch(argc, argv); });
 }

@@ -1,4 +1,4 @@
-// barchan plan, generate, compare, schema.
+// barchan plan, generate, compare.
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -65,11 +65,6 @@ int compare(const std::string& a, const std::string& b, double tolerance, bool j
   std::cout << (json ? to_json(differences) : to_text(differences)) << '\n';
   for (const auto& d : differences)
     if (!d.same) return 1;
-  return 0;
-}
-
-int schema() {
-  std::cout << scene_schema() << '\n';
   return 0;
 }
 

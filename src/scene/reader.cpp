@@ -1,13 +1,16 @@
 #include "scene/reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <variant>
 
 #include "base/errors.hpp"
 #include "scene/checks.hpp"
+#include "scene/constants.hpp"
 #include "scene/identity.hpp"
 #include "scene/located.hpp"
 #include "scene/read.hpp"
@@ -26,13 +29,29 @@ std::string path_of_file(const Scene& scene, const std::string& file) {
   return path.is_absolute() ? file : (std::filesystem::path(scene.file).parent_path() / path).string();
 }
 
+std::vector<std::string> files_of(const Scene& scene) {
+  std::vector<std::string> files;
+  const auto add = [&](const std::string& file) {
+    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  for (const Fill& fill : scene.fills) {
+    if (const auto* surface = std::get_if<SurfaceShape>(&fill.shape)) add(surface->file);
+    if (const auto* grains = std::get_if<FileShape>(&fill.shape)) add(grains->file);
+  }
+  for (const Inflow& inflow : scene.inflows) add(inflow.profile);
+  for (const Influx& influx : scene.influxes) add(influx.file);
+  return files;
+}
+
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   Problems problems(file);
-  const toml::table document = parse_document(text, file, overrides, problems);
+  toml::table document = parse_document(text, file, overrides, problems);
+  const auto places = places_of_keys(document, file);
+  replace_constants(document, problems);
   validate(document, problems);
   Scene scene = read_document(document, file);
   scene.overrides = overrides;
-  scene.places = places_of_keys(document, file);
+  scene.places = places;
   read_surfaces(scene, Report(document, problems));
   scene.identity = identity_of(document, checksums_of_files(scene));
   check(document, scene, problems);

@@ -19,7 +19,11 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
 /// The path of a file that a scene names: from the folder of the scene.
 std::string path_of_file(const Scene& scene, const std::string& file);
 
-/// JSON schema (draft 2020-12) of a scene file, from the same table of keys that the reader checks against.
+/// The files that a scene names, as it names them: shapes, grains, profiles of the wind that enters; each once.
+std::vector<std::string> files_of(const Scene& scene);
+
+/// JSON schema (draft 4, which editors of TOML read) of a scene file, from the same table of keys that the reader
+/// checks against.
 std::string scene_schema();
 
 /// The keys of every section as Markdown tables: the second half of docs/scenes.md.

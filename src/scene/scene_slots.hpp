@@ -63,6 +63,9 @@ inline constexpr std::array holds{Word{"bulk-speed", static_cast<int>(Hold::bulk
 
 /// The entries of [interactions] have names that the user chooses: read.cpp reads them, one by one, by the rows of
 /// interactions.pair.
+/// Not read into the scene: numbers stand in the place of the names before (constants.hpp).
+constexpr Slot names_of_numbers() { return {.accepts = as_section, .otherwise = otherwise("none")}; }
+
 constexpr Slot pairs() { return {.accepts = as_section, .otherwise = required}; }
 
 template <auto list>

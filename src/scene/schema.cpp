@@ -12,10 +12,11 @@ using Json = nlohmann::ordered_json;
 
 Json section_schema(const std::string& section);
 
+/// In draft 4 a bound that is not allowed itself is a bound with a mark.
 void add_bounds(Json& number, const NumberBounds& bounds) {
-  if (std::isfinite(bounds.above)) number["exclusiveMinimum"] = bounds.above;
+  if (std::isfinite(bounds.above)) number.update({{"minimum", bounds.above}, {"exclusiveMinimum", true}});
   if (std::isfinite(bounds.at_least)) number["minimum"] = bounds.at_least;
-  if (std::isfinite(bounds.below)) number["exclusiveMaximum"] = bounds.below;
+  if (std::isfinite(bounds.below)) number.update({{"maximum", bounds.below}, {"exclusiveMaximum", true}});
   if (std::isfinite(bounds.at_most)) number["maximum"] = bounds.at_most;
 }
 
@@ -29,7 +30,7 @@ Json array_of(Json items, int least, int most) {
 /// One schema for each form that the key's value may have.
 std::vector<Json> forms(const Key& key) {
   const std::string path = path_of(key);
-  Json number{{"type", "number"}};
+  Json number{{"type", Json::array({"number", "string"})}};  // a string: a formula of [constants]
   add_bounds(number, key.bounds);
   Json formula{{"type", Json::array({"number", "string"})}};
   Json words{{"enum", choices(key)}};
@@ -41,7 +42,7 @@ std::vector<Json> forms(const Key& key) {
   }
   if (key.slot.accepts & as_integer) {
     all.push_back(number);
-    all.back()["type"] = "integer";
+    all.back()["type"] = Json::array({"integer", "string"});
   }
   if (key.slot.accepts & as_boolean) all.push_back({{"type", "boolean"}});
   if (key.slot.accepts & as_text) all.push_back({{"type", "string"}});
@@ -55,12 +56,14 @@ std::vector<Json> forms(const Key& key) {
   if (key.slot.accepts & as_formulas) all.push_back(array_of(formula, 2, 3));
   if (key.slot.accepts & as_points) all.push_back(array_of(array_of(number, 2, 3), 1, 0));
   if (key.slot.accepts & as_corners) all.push_back(array_of(array_of(number, 2, 2), 3, 0));
-  if (key.slot.accepts & as_section) all.push_back(section_schema(path));
+  if (path == "constants")
+    all.push_back({{"type", "object"}, {"additionalProperties", {{"type", Json::array({"number", "string"})}}}});
+  else if (key.slot.accepts & as_section) all.push_back(section_schema(path));
   if (key.slot.accepts & as_sections) all.push_back(array_of(section_schema(path), 0, 0));
   if (key.slot.accepts & as_named_sections)
     all.push_back({{"type", "object"},
-                   {"propertyNames", {{"pattern", "^[A-Za-z][A-Za-z0-9_]*$"}}},
-                   {"additionalProperties", section_schema(path)}});
+                   {"patternProperties", {{"^[A-Za-z][A-Za-z0-9_]*$", section_schema(path)}}},
+                   {"additionalProperties", false}});
   return all;
 }
 
@@ -96,7 +99,8 @@ Json section_schema(const std::string& section) {
     schema.erase("additionalProperties");
     schema["patternProperties"]["^[A-Za-z][A-Za-z0-9_]*-[A-Za-z][A-Za-z0-9_]*$"] = {
         {"description", description(radius)},
-        {"anyOf", Json::array({forms(radius).front(), section_schema("interactions.pair"), {{"const", false}}})}};
+        {"anyOf",
+         Json::array({forms(radius).front(), section_schema("interactions.pair"), {{"enum", Json::array({false})}}})}};
     schema["additionalProperties"] = false;
   }
   return schema;
@@ -105,7 +109,7 @@ Json section_schema(const std::string& section) {
 }  // namespace
 
 std::string scene_schema() {
-  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+  Json schema{{"$schema", "http://json-schema.org/draft-04/schema#"},
               {"title", "Barchan scene"},
               {"description", "A scene of the SPH simulator Barchan; SI units."}};
   schema.update(section_schema(""));

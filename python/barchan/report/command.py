@@ -1,0 +1,47 @@
+"""barchan report DIR."""
+
+import argparse
+import os
+import pathlib
+import sys
+
+from ..errors import OutputError
+
+
+def parser():
+    """Options of the command line."""
+    p = argparse.ArgumentParser(prog="barchan report", description="One self-contained HTML page of a run: warnings, pictures, plots, the matrix, times. It opens from disk without a network.")
+    p.add_argument("folder", metavar="DIR", help="folder of a run, as out/dune; the run may go on, or have broken down")
+    p.add_argument("-o", "--output", metavar="FILE", help="the page (default DIR/report.html)")
+    p.add_argument("--render", action="store_true", help="render pictures of the scene's states first (ParaView)")
+    p.add_argument("--film", action="store_true", help="put films into the page; with --render make them")
+    p.add_argument("--no-plan", action="store_true", help="do not ask barchan plan for the matrix")
+    return p
+
+
+def main(words):
+    """Writes the page of a run; returns the exit status."""
+    options = parser().parse_args(words)
+    file = make(options.folder, options.output, options.render, options.film, not options.no_plan)
+    print(f"report    {file}")
+    return 0
+
+
+def make(folder, output=None, render=False, film=False, plan=True):
+    """Writes the page of the run in `folder` to `output` (default DIR/report.html) and returns its path. Throws NoSeries, OutputError, PackageMissing."""
+    from . import gather, page, pictures
+    g = gather.gather(folder, plan)
+    if render:
+        try:
+            pictures.render(g, film)
+        except OutputError as error:
+            g.remarks.append(error.message)
+            print(f"barchan: warning: {error}", file=sys.stderr)
+    file = pathlib.Path(output) if output else g.folder / "report.html"
+    part = file.with_name(file.name + ".part")
+    try:
+        part.write_text(page.make(g, film))
+        os.replace(part, file)
+    except OSError as error:
+        raise OutputError(f"cannot write {file}: {error}") from error
+    return file

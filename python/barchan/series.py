@@ -1,0 +1,169 @@
+"""A run in its folder: its frames, and all that it wrote beside them."""
+
+import functools
+import json
+import pathlib
+import xml.etree.ElementTree as ElementTree
+
+import numpy
+
+from .errors import NoSeries, Unreadable, UnknownName, nearest
+from .tables import table
+
+KINDS = ("profile_", "probe_", "wall_shear_", "saltation_")
+
+
+def entries(pvd):
+    """(time in s, file) of each frame that a .pvd lists, in order. Throws Unreadable."""
+    pvd = pathlib.Path(pvd)
+    try:
+        found = ElementTree.parse(pvd).getroot().iter("DataSet")
+        return [(float(e.get("timestep")), pvd.parent / e.get("file")) for e in found]
+    except (ElementTree.ParseError, TypeError, ValueError) as error:
+        raise Unreadable(f"{pvd}: {error}") from error
+
+
+class Tables(dict):
+    """What a run measured, by the name of its file without its ending (profile_across); a name alone (across) finds its table if there is one of that name."""
+
+    def __missing__(self, name):
+        found = [full for full in self if any(full == kind + str(name) for kind in KINDS)]
+        if len(found) != 1:
+            raise UnknownName.of("table", name, self, "the run")
+        return self[found[0]]
+
+
+class Series:
+    """The frames of a run. `len`, an index (negative from the end), a slice and a loop give frames, each read when it is asked for.
+
+    `folder`, `name`: of the run; `times`: (frames,) in s; `files`: of the frames.
+    """
+
+    def __init__(self, pvd, listed=None):
+        """`listed`: some of the frames of the .pvd, as `entries` gives them."""
+        self.pvd = pathlib.Path(pvd)
+        self.folder, self.name = self.pvd.parent, self.pvd.stem
+        listed = entries(self.pvd) if listed is None else listed
+        self._listed = listed
+        self.times = numpy.array([time for time, _ in listed])
+        self.files = [file for _, file in listed]
+
+    def __len__(self):
+        return len(self.files)
+
+    def __repr__(self):
+        span = f", {self.times[0]:g} to {self.times[-1]:g} s" if len(self) else ""
+        return f"<barchan.Series {self.pvd}: {len(self)} frames{span}>"
+
+    def __getitem__(self, k):
+        if isinstance(k, slice):
+            return Series(self.pvd, self._listed[k])
+        if not -len(self) <= k < len(self):
+            raise IndexError(f"{self.pvd} has {len(self)} frames: there is no frame {k}")
+        from .frame import Frame
+        time, file = self._listed[k]
+        return Frame(file, time)
+
+    def __iter__(self):
+        return (self[k] for k in range(len(self)))
+
+    def frame(self, t=None, phase=None, number=None):
+        """The frame nearest to the time t (s), or with this number; of one phase only, if it is named. Throws ValueError for a time outside of the run by more
+        than half of the time between two frames."""
+        if (t is None) == (number is None):
+            raise TypeError("frame(t=SECONDS) or frame(number=K)")
+        if not len(self):
+            raise NoSeries(f"{self.pvd} lists no frame yet")
+        if t is not None:
+            slack = .5 * numpy.diff(self.times).max() if len(self) > 1 else 1e-12
+            if not self.times[0] - slack <= t <= self.times[-1] + slack:
+                raise ValueError(f"{self.pvd}: no frame near {t:g} s: the frames go from {self.times[0]:g} to {self.times[-1]:g} s")
+            number = int(abs(self.times - t).argmin())
+        found = self[number]
+        return found if phase is None else found.of(phase)
+
+    @functools.cached_property
+    def _first(self):
+        if not len(self):
+            raise NoSeries(f"{self.pvd} lists no frame yet")
+        return self[0]
+
+    @property
+    def phases(self):
+        """Names of the phases by number."""
+        return self._first.phases
+
+    @property
+    def kinds(self):
+        """Kind of each phase by its name: fluid, grains, ..."""
+        return dict(zip(self._first.names, self._first.kinds))
+
+    @property
+    def fields(self):
+        """Names of the fields of a frame."""
+        return self._first.fields
+
+    @property
+    def units(self):
+        """Units of the fields by name."""
+        return self._first.units
+
+    @functools.cached_property
+    def history(self):
+        """history.csv: columns by name (barchan.Table). Read once: open the series again to see later rows of a run that goes on."""
+        return table(self.folder / "history.csv")
+
+    @functools.cached_property
+    def profiles(self):
+        """What profiles, probes, wall shear and saltation measured: tables by name (barchan.Table)."""
+        return Tables({file.stem: table(file) for kind in KINDS for file in sorted(self.folder.glob(f"{kind}*.csv"))})
+
+    @functools.cached_property
+    def grids(self):
+        """What [[grid]] measured, by name (barchan.frame.Grid)."""
+        from .frame import Grid
+        return {file.stem.removeprefix("grid_"): Grid(file) for file in sorted(self.folder.glob("grid_*.vti"))}
+
+    @functools.cached_property
+    def saltation(self):
+        """What saltation_NAME.json says, by name."""
+        return {file.stem.removeprefix("saltation_"): _json(file) for file in sorted(self.folder.glob("saltation_*.json"))}
+
+    @functools.cached_property
+    def run(self):
+        """run.json as a dictionary: what ran, how fast, why it ended, warnings."""
+        return _json(self.folder / "run.json")
+
+    @property
+    def bad(self):
+        """The first bad state of a run that broke down (barchan.Frame), None if there is none."""
+        from .frame import Frame
+        found = [f for end in (".vtp", ".vtu") if (f := self.folder / f"{self.name}_bad{end}").exists()]
+        return Frame(found[0]) if found else None
+
+
+def _json(file):
+    try:
+        return json.loads(file.read_text())
+    except (OSError, ValueError) as error:
+        raise Unreadable(f"{file}: {error}") from error
+
+
+def open(where):
+    """The series of a run: of a folder (out/dune) or of a list of frames (out/dune/dune.pvd). Throws NoSeries, Unreadable."""
+    where = pathlib.Path(where)
+    if where.is_file():
+        if where.suffix != ".pvd":
+            more = f"; one frame is read with barchan.Frame({str(where)!r})" if where.suffix in (".vtp", ".vtu") else ""
+            raise NoSeries(f"{where}: expected the folder of a run or a .pvd{more}")
+        return Series(where)
+    if not where.is_dir():
+        beside = [p.name for p in where.parent.iterdir() if p.is_dir()] if where.parent.is_dir() else []
+        raise NoSeries(f"{where}: there is no such folder{nearest(where.name, beside)}")
+    found = sorted(where.glob("*.pvd"))
+    if not found:
+        below = sorted(p.parent.name for p in where.glob("*/*.pvd"))
+        raise NoSeries(f"{where}: no series (.pvd) in this folder" + (f"; there are some in {', '.join(below[:8])}" if below else ""))
+    if len(found) > 1:
+        raise NoSeries(f"{where}: {len(found)} series in this folder; name one: {', '.join(p.name for p in found)}")
+    return Series(found[0])

@@ -1,0 +1,55 @@
+// barchan report and sweep, which the package in python/barchan does.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "base/errors.hpp"
+
+namespace barchan {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder that holds the package `barchan`: share/barchan/python of an installation, python/ of the source tree.
+fs::path package_folder(const fs::path& program) {
+  const fs::path above = program.parent_path().parent_path();
+  const std::vector<fs::path> places = {above / "share/barchan/python", above / "python"};
+  std::error_code ignored;
+  for (const fs::path& place : places)
+    if (fs::is_regular_file(place / "barchan/__main__.py", ignored)) return place;
+  throw OutputError("the Python package of Barchan is not beside the program: neither in " + places[0].string() +
+                    " nor in " + places[1].string());
+}
+
+}  // namespace
+
+bool is_python_command(const std::string& word) { return word == "report" || word == "sweep"; }
+
+int run_python(const std::vector<std::string>& words) {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) throw OutputError("/proc/self/exe: " + failed.message());
+  const char* named = std::getenv("BARCHAN_PYTHON");
+  const std::string python = named && *named ? named : "/usr/bin/python3";
+  const char* before = std::getenv("PYTHONPATH");
+  const std::string folders = package_folder(program).string() + (before && *before ? ":" + std::string(before) : "");
+  setenv("PYTHONPATH", folders.c_str(), 1);
+  setenv("BARCHAN_PROGRAM", program.c_str(), 1);
+  std::vector<std::string> line = {python, "-P", "-m", "barchan"};  // -P: no module of the folder it stands in
+  line.insert(line.end(), words.begin() + 1, words.end());
+  std::vector<char*> arguments;
+  for (std::string& word : line) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(python.c_str(), arguments.data());  // returns only if it failed
+  throw OutputError("barchan " + words[1] + " needs " + python + ": " + std::strerror(errno) +
+                    "; apt install python3, or name another in BARCHAN_PYTHON");
+}
+
+}  // namespace barchan

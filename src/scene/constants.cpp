@@ -1,0 +1,248 @@
+#include "scene/constants.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "base/errors.hpp"
+#include "scene/formula.hpp"
+#include "scene/keys.hpp"
+#include "scene/nearest.hpp"
+
+namespace barchan {
+namespace {
+
+constexpr unsigned formulas = as_formula | as_formulas | as_axial;
+constexpr unsigned numbers = as_number | as_integer | as_vector | as_points | as_corners;
+
+bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+bool in_name(char c) { return begins_name(c) || std::isdigit(static_cast<unsigned char>(c)); }
+
+/// Fifteen digits: a product of short decimal numbers is then the decimal number that a person would write.
+double rounded(double value) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 15).ptr;
+  double result = value;
+  std::from_chars(text, end, result);
+  return result;
+}
+
+std::string exact(double value) {
+  char text[40];
+  return "(" + std::string(text, std::to_chars(text, text + sizeof text, value).ptr) + ")";
+}
+
+/// The formula with each name that `replacement` knows replaced; it returns "" for any other. Functions (a name before
+/// a bracket) and the e of 1e-3 are no names.
+std::string replaced(const std::string& formula, const std::function<std::string(const std::string&)>& replacement) {
+  std::string text;
+  for (std::size_t k = 0; k < formula.size();) {
+    std::size_t end = k + 1;
+    if (std::isdigit(static_cast<unsigned char>(formula[k])) || formula[k] == '.') {
+      while (end < formula.size() &&
+             (in_name(formula[end]) || formula[end] == '.' ||
+              ((formula[end] == '-' || formula[end] == '+') && std::tolower(formula[end - 1]) == 'e')))
+        ++end;
+      text += formula.substr(k, end - k);
+    } else if (begins_name(formula[k])) {
+      while (end < formula.size() && in_name(formula[end])) ++end;
+      const std::string name = formula.substr(k, end - k);
+      const std::size_t next = formula.find_first_not_of(' ', end);
+      const std::string value = next != std::string::npos && formula[next] == '(' ? "" : replacement(name);
+      text += value.empty() ? name : value;
+    } else {
+      text += formula[k];
+    }
+    k = end;
+  }
+  return text;
+}
+
+class Constants {
+ public:
+  explicit Constants(Problems& problems) : problems_(problems) {}
+
+  void read(const toml::table& table) {
+    std::map<std::string, const toml::node*> open;
+    for (const auto& [name, node] : table)
+      if (is_name(std::string(name.str()), name.source())) open[std::string(name.str())] = &node;
+    for (const auto& [name, node] : open) all_ += (all_.empty() ? "" : ", ") + name;
+    for (std::size_t round = open.size() + 1; round > 0 && !open.empty(); --round)
+      std::erase_if(open, [&](const auto& entry) { return define(entry.first, *entry.second, open, round == 1); });
+  }
+
+  void section(toml::table& table, const std::string& section, const std::string& dotted) {
+    for (auto&& [name, node] : table) {
+      const std::string here = dotted + std::string(name.str());
+      const Key* key = find_key(section, name.str());
+      if (!key && section == "interactions") key = find_key("interactions.pair", "radius");
+      if (!key) continue;  // who checks the document names it
+      const bool of_pair = section == "interactions" && node.is_table();
+      if (auto* inner = node.as_table()) inner_table(*key, of_pair ? "interactions.pair" : path_of(*key), *inner, here);
+      else if (auto* array = node.as_array()) entries(*key, *array, here);
+      else if (auto* text = node.as_string(); text && value(*key, *text, here))
+        put([&](auto&& number) { table.insert_or_assign(name, std::move(number)); });
+    }
+  }
+
+  /// Every constant was used; a misspelt one of --set would change nothing in silence.
+  void look_for_unused(const toml::table& table) const {
+    for (const auto& [name, node] : table) {
+      const std::string word(name.str());
+      if (!values_.contains(word) || used_.contains(word)) continue;
+      std::vector<std::string> others;
+      for (const auto& [other, _] : values_)
+        if (other != word) others.push_back(other);
+      problems_.add(
+          name.source(), "constants." + word,
+          "nothing uses it; expected a constant that a value of the scene names" + did_you_mean(nearest(word, others)));
+    }
+  }
+
+ private:
+  using Open = std::map<std::string, const toml::node*>;
+
+  bool is_name(const std::string& name, const toml::source_region& place) {
+    static const std::set<std::string> taken{"x", "y", "z", "t", "pi", "e"};
+    if (taken.contains(name)) {
+      problems_.add(place, "constants." + name, "the name stands for something else in formulas; expected another one");
+      return false;
+    }
+    const bool good = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
+                      std::all_of(name.begin(), name.end(), in_name);
+    if (!good)
+      problems_.add(place, "constants." + name,
+                    "not a name of a constant; expected a letter followed by letters, digits and underscores");
+    return good;
+  }
+
+  /// False as long as others that it needs have no value.
+  bool define(const std::string& name, const toml::node& node, const Open& open, bool last) {
+    const std::string here = "constants." + name;
+    if (node.is_number()) {
+      values_[name] = node.value_or(0.0);
+      return true;
+    }
+    const auto* text = node.as_string();
+    if (!text) {
+      problems_.add(node.source(), here, "expected a number or a formula of other constants");
+      return true;
+    }
+    std::string missing;
+    replaced(text->get(), [&](const std::string& word) {
+      if (open.contains(word)) missing = word;
+      return std::string();
+    });
+    if (!missing.empty() && !last) return false;
+    if (!missing.empty())
+      problems_.add(node.source(), here,
+                    "needs \"" + missing + "\", which needs it; expected a formula without a circle");
+    else if (const auto number = evaluate(*text, here)) values_[name] = *number;
+    return true;
+  }
+
+  std::string value_of(const std::string& name) {
+    const auto found = values_.find(name);
+    if (found == values_.end()) return "";
+    used_.insert(name);
+    return exact(found->second);
+  }
+
+  std::optional<double> evaluate(const toml::value<std::string>& text, const std::string& here) {
+    const std::string formula = replaced(text.get(), [&](const std::string& name) { return value_of(name); });
+    const std::string problem = formula_problem(formula, "");
+    double number = std::nan("");
+    if (problem.empty()) number = rounded(Formula(Expression{.formula = formula})({}));
+    if (std::isfinite(number)) return number;
+    problems_.add(text.source(), here,
+                  (problem.empty() ? "\"" + shortened(text.get()) + "\" has no finite value" : problem) +
+                      "; expected a number, or a formula of the constants " + all_);
+    return std::nullopt;
+  }
+
+  bool uses_constants(const std::string& text) const {
+    bool uses = false;
+    replaced(text, [&](const std::string& name) {
+      uses = uses || values_.contains(name);
+      return std::string();
+    });
+    return uses;
+  }
+
+  void inner_table(const Key& key, const std::string& path, toml::table& table, const std::string& here) {
+    if (!(key.slot.accepts & as_named_sections)) return section(table, path, here + ".");
+    for (auto&& [name, node] : table)
+      if (auto* inner = node.as_table()) section(*inner, path, here + "." + std::string(name.str()) + ".");
+  }
+
+  void entries(const Key& key, toml::array& array, const std::string& here) {
+    for (std::size_t k = 0; k < array.size(); ++k) {
+      toml::node& node = *array.get(k);
+      if (auto* inner = node.as_table()) section(*inner, path_of(key), here + "." + std::to_string(k) + ".");
+      else if (auto* point = node.as_array()) entries(key, *point, here);
+      else if (auto* text = node.as_string(); text && value(key, *text, here))
+        put([&](auto&& number) { array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(k), std::move(number)); });
+    }
+  }
+
+  /// True: made_ is the number that takes the place of the text. A formula in x, y, z, t is changed where it stands.
+  bool value(const Key& key, toml::value<std::string>& text, const std::string& here) {
+    const unsigned accepts = key.slot.accepts;
+    const auto words = choices(key);
+    const bool word = (accepts & as_text) || std::find(words.begin(), words.end(), text.get()) != words.end();
+    if (word || !(accepts & (formulas | numbers))) return false;
+    if (accepts & formulas) {
+      text.get() = replaced(text.get(), [&](const std::string& name) { return value_of(name); });
+      return false;
+    }
+    if ((accepts & as_word) && !uses_constants(text.get())) return false;
+    const auto number = evaluate(text, here);
+    if (!number) return false;
+    const bool whole = (accepts & as_integer) && *number == std::floor(*number) && std::abs(*number) < 1e9;
+    made_ = *number;
+    whole_ = whole;
+    place_ = text.source();
+    return true;
+  }
+
+  template <class Place>
+  void put(Place&& place) const {
+    const auto at_its_place = [&](auto number) {
+      // Nodes of toml++ have their place from the parser only. This number gets that of the formula; it is not const
+      // itself.
+      const_cast<toml::source_region&>(number.source()) = place_;
+      place(std::move(number));
+    };
+    if (whole_) at_its_place(toml::value<std::int64_t>(static_cast<std::int64_t>(made_)));
+    else at_its_place(toml::value<double>(made_));
+  }
+
+  Problems& problems_;
+  std::map<std::string, double> values_;
+  std::set<std::string> used_;
+  std::string all_;
+  double made_ = 0.0;  // what value() made, its type and its place
+  bool whole_ = false;
+  toml::source_region place_;
+};
+
+}  // namespace
+
+void replace_constants(toml::table& document, Problems& problems) {
+  const toml::node* node = document.get("constants");
+  if (!node) return;
+  if (!node->is_table()) problems.fail(node->source(), "constants", "expected a section of names and numbers");
+  const toml::table table = *node->as_table();
+  document.erase("constants");
+  Constants constants(problems);
+  constants.read(table);
+  constants.section(document, "", "");
+  problems.throw_if_any();
+  constants.look_for_unused(table);
+}
+
+}  // namespace barchan

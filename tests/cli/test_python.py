@@ -1,0 +1,332 @@
+#!/usr/bin/python3
+"""The Python package: arrays of a run, runs and their errors, scenes from dictionaries, beds and bodies from arrays, `python3 -m barchan`, the examples and the notebook.
+
+    /usr/bin/python3 tests/cli/test_python.py PROGRAM ROOT
+"""
+
+import ast
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+import warnings
+from unittest import mock
+
+import numpy
+
+PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/barchan").resolve()
+ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parents[2]).resolve()
+sys.path.insert(0, str(ROOT / "python"))
+os.environ["BARCHAN_PROGRAM"] = str(PROGRAM)
+import barchan  # noqa: E402
+
+BALLS = {  # two discs that fall on a floor
+    "title": 'Two "balls"', "spacing": 0.02, "domain": {"size": [0.4, 0.4], "gravity": [0, -9.81]},
+    "phases": {"ball": {"kind": "grains", "density": 2000, "diameter": 0.02, "stiffness": 1e5, "restitution": 0.5}, "floor": {"kind": "wall"}},
+    "interactions": {"ball-floor": {"law": "linear"}, "ball-ball": {"law": "linear"}},
+    "fill": [{"phase": "floor", "shape": {"sides": ["bottom"]}}, {"phase": "ball", "shape": {"points": [[0.1, 0.05], [0.3, 0.06]]}}],
+    "time": {"end": 0.02, "largest-speed": 2}, "output": {"every": 0.005, "history-every": 0.002},
+}
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+
+class Reading(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.shared.cleanup)
+        cls.out = pathlib.Path(cls.shared.name) / "balls"
+        cls.ran = barchan.run(BALLS, out=cls.out, name="balls", threads=1)
+
+    def test_two_lines_to_an_array(self):
+        velocity = barchan.open(self.out)[-1]["velocity"]
+        self.assertEqual(velocity.shape, (len(barchan.open(self.out)[-1]), 3))
+        ball = barchan.open(self.out)[-1]["velocity", "ball"]
+        self.assertLess(abs(ball[:, 1] + 9.81 * .02).max(), 1e-9)  # free fall
+
+    def test_times_phases_fields(self):
+        series = barchan.open(self.out / "balls.pvd")
+        self.assertLess(abs(series.times - numpy.arange(5) * .005).max(), 1e-12)
+        self.assertEqual((series.phases, series.kinds), (["ball", "floor"], {"ball": "grains", "floor": "wall"}))
+        self.assertLessEqual({"id", "phase", "velocity", "density"}, set(series.fields))
+        self.assertEqual(series.units["velocity"], "m/s")
+        self.assertEqual((len(series[1:3]), series[1:3].times[0], len(list(series))), (2, .005, 5))
+        frame = series.frame(t=.011)
+        self.assertEqual((frame.time, frame.number), (.01, 2))
+        self.assertEqual(len(series.frame(t=.01, phase="ball")), 2)
+        self.assertEqual((frame.of("ball").x.shape, frame["position"].shape), ((2, 3), frame.x.shape))
+        self.assertLess(abs(frame.domain - [[0, .4], [0, .4], [0, 0]]).max(), 1e-12)
+
+    def test_the_numbers_are_those_of_another_reader(self):
+        series = barchan.run({**BALLS, "output": {**BALLS["output"], "format": "vtu"}}, out=self.folder / "vtu", name="balls", threads=1)
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("python3-meshio is not there")
+        mesh = meshio.read(series.files[-1])
+        ours, vtp = series[-1], barchan.open(self.out)[-1]
+        self.assertTrue((mesh.points == ours.x).all() and (mesh.point_data["velocity"] == ours["velocity"]).all())
+        self.assertTrue((vtp.by_id()["velocity"] == ours.by_id()["velocity"]).all() and vtp.names == ours.names and vtp.units == ours.units)
+
+    def test_history_and_run(self):
+        series = barchan.open(self.out)
+        t, energy = series.history["time"], series.history["ball_kinetic_energy"]
+        mass = 2000 * math.pi / 6 * .02 ** 2  # of a sphere by metre of depth, in a slab one diameter thick
+        self.assertGreater(len(t), 9)
+        self.assertLess(abs(energy - 2 * .5 * mass * (9.81 * t) ** 2).max() / energy.max(), .02)
+        self.assertEqual((series.history.unit("ball_kinetic_energy"), series.run["end_reason"]), ("J", "end"))
+        self.assertEqual((dict(series.profiles), series.grids, series.bad), ({}, {}, None))
+
+    def test_a_row_that_was_cut_off_is_left_out(self):
+        shutil.copytree(self.out, self.folder / "cut")
+        file = self.folder / "cut/history.csv"
+        rows = barchan.open(self.folder / "cut").history.length
+        file.write_text(file.read_text() + "0.0123,7,")
+        self.assertEqual(barchan.open(self.folder / "cut").history.length, rows)
+        file.write_text(file.read_text() + "\n")
+        with self.assertRaisesRegex(barchan.Unreadable, "history.csv"):
+            barchan.open(self.folder / "cut").history
+
+    def test_what_is_not_there_is_said(self):
+        series = barchan.open(self.out)
+        for act, kind, words in ((lambda: series[-1]["velocty"], KeyError, 'no field "velocty"; did you mean "velocity"'),
+                                 (lambda: series[-1]["velocity", "bal"], KeyError, 'no phase "bal"; did you mean "ball"'),
+                                 (lambda: series.history["times"], KeyError, 'no column "times"; did you mean'),
+                                 (lambda: series.profiles["crest"], KeyError, 'no table "crest"'),
+                                 (lambda: series.frame(t=1), ValueError, "no frame near 1 s: the frames go from 0 to 0.02 s"),
+                                 (lambda: series[9], IndexError, "has 5 frames: there is no frame 9"),
+                                 (lambda: barchan.open(self.out.parent / "bals"), FileNotFoundError, 'no such folder; did you mean "balls"'),
+                                 (lambda: barchan.open(self.folder), barchan.NoSeries, "no series"),
+                                 (lambda: barchan.open(self.out.parent), barchan.NoSeries, "some in balls"),
+                                 (lambda: barchan.open(series.files[0]), barchan.NoSeries, "expected the folder of a run or a .pvd; one frame is read with"),
+                                 (lambda: barchan.Frame(self.folder / "a.vtp"), barchan.Unreadable, "there is no such frame")):
+            with self.assertRaisesRegex(kind, re.escape(words)):
+                act()
+
+    def test_a_damaged_frame_is_said(self):
+        whole = barchan.open(self.out).files[0].read_bytes()
+        for k, damaged in enumerate((whole[:300], whole[:len(whole) // 2], b"", b"<VTKFile")):
+            file = self.folder / f"{k}.vtp"
+            file.write_bytes(damaged)
+            with self.assertRaisesRegex(barchan.Unreadable, f"{k}.vtp"):
+                barchan.Frame(file)
+
+    def test_pandas_is_named_if_it_is_missing(self):
+        with mock.patch.dict(sys.modules, {"pandas": None}), self.assertRaisesRegex(ImportError, "needs the Python package pandas.*apt install python3-pandas"):
+            barchan.open(self.out)[0].to_pandas()
+
+    def test_pandas(self):
+        try:
+            import pandas  # noqa: F401
+        except ImportError:
+            self.skipTest("python3-pandas is not there")
+        frame = barchan.open(self.out)[-1].to_pandas()
+        self.assertEqual(set(frame["phase"]), {"ball", "floor"})
+        self.assertIn("velocity_y", frame)
+        self.assertEqual(barchan.open(self.out).history.to_pandas().index.name, "time [s]")
+
+
+class Running(Case):
+    def test_a_wrong_scene_leaves_nothing(self):
+        wrong = {**BALLS, "time": {**BALLS["time"], "ende": 1}}
+        with self.assertRaises(barchan.SceneError) as caught:
+            barchan.run(wrong, out=self.folder / "a/b", name="balls")
+        self.assertEqual(caught.exception.status, 2)
+        self.assertRegex(str(caught.exception), r'balls.toml:\d+:\d+: time.ende: .*end')
+        self.assertFalse((self.folder / "a").exists())
+        with self.assertRaisesRegex(barchan.SceneError, "time.end"):
+            barchan.run(BALLS, out=self.folder / "a", set={"time.end": -1})
+        self.assertFalse((self.folder / "a").exists())
+
+    def test_a_breakdown_keeps_its_frames(self):
+        with self.assertRaises(barchan.Breakdown) as caught, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            barchan.run(ROOT / "scenes/verification/hop.toml", out=self.folder / "hop", set={"time.end": .2}, threads=1)
+        self.assertEqual((caught.exception.status, caught.exception.series.name), (3, "hop"))
+        self.assertIn("escaped through the lower side", str(caught.exception))
+        self.assertGreater(len(caught.exception.series), 100)
+        self.assertGreater(caught.exception.series.bad.time, caught.exception.series.times[-1])
+
+    def test_a_folder_that_cannot_be(self):
+        (self.folder / "file").write_text("")
+        scene = self.folder / "balls.toml"
+        barchan.scene.dump(BALLS, scene)
+        with self.assertRaises(barchan.OutputError) as caught:
+            barchan.run(scene, out=self.folder / "file")
+        self.assertEqual(caught.exception.status, 4)
+
+    def test_a_signal(self):
+        script = self.folder / "barchan"  # stands in for a run that is stopped
+        for status, kind in ((130, barchan.Stopped), (143, barchan.Stopped), (5, barchan.Mistake), (99, barchan.Mistake)):
+            script.write_text(f"#!/bin/sh\necho 'barchan: warning: beware' >&2\necho 'barchan: what happened' >&2\nexit {status}\n")
+            script.chmod(0o755)
+            with warnings.catch_warnings(record=True) as given, self.assertRaisesRegex(kind, "^what happened$") as caught:
+                warnings.simplefilter("always")
+                barchan.run(BALLS, out=self.folder / "out", program=script)
+            self.assertEqual((caught.exception.status, [str(w.message) for w in given]), (status, ["beware"]))
+
+    def test_plan_generate_compare_schema(self):
+        plan = barchan.plan(BALLS, set={"time.end": .5})
+        self.assertEqual((plan["end"], plan["phases"]["ball"]["particles"], plan["title"]), (.5, 2, 'Two "balls"'))
+        a = barchan.generate(BALLS, self.folder / "a.vtp")
+        barchan.generate(BALLS, self.folder / "b.vtp", set={"fill.1.shape.points": [[.1, .05], [.3, .07]]})
+        self.assertEqual(len(a.of("ball")), 2)
+        self.assertTrue(barchan.compare(self.folder / "a.vtp", self.folder / "a.vtp"))
+        found = barchan.compare(self.folder / "a.vtp", self.folder / "b.vtp")
+        self.assertFalse(found)
+        self.assertGreater(len(found), 0)
+        self.assertIn("properties", barchan.schema())
+        self.assertIn("barchan", barchan.version())
+        with self.assertRaises(barchan.OutputError):
+            barchan.compare(self.folder / "none.vtp", self.folder / "a.vtp")
+
+    def test_a_program_that_is_not_there(self):
+        with mock.patch.dict(os.environ, {"BARCHAN_PROGRAM": "/nowhere/barchan"}), self.assertRaisesRegex(barchan.ProgramNotFound, "/nowhere/barchan"):
+            barchan.version()
+
+    def command(self, *words, **more):
+        return subprocess.run([*words], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(ROOT / "python"), **more}, cwd=self.folder)
+
+    def test_module_does_what_the_program_does(self):
+        for words in (["--version"], ["schema"], ["plan", "none.toml"], ["rum"], []):
+            ours, its = self.command("/usr/bin/python3", "-m", "barchan", *words), self.command(PROGRAM, *words)
+            self.assertEqual((ours.returncode, ours.stdout, ours.stderr), (its.returncode, its.stdout, its.stderr))
+
+    def test_program_starts_the_module(self):
+        ended = self.command(PROGRAM, "report", "nowhere")
+        self.assertEqual((ended.returncode, ended.stdout), (2, ""))
+        self.assertIn("barchan: nowhere: there is no such folder", ended.stderr)
+        (self.folder / "numpy.py").write_text("raise SystemExit(77)")  # a file of the folder it is started in is no module
+        self.assertEqual(self.command(PROGRAM, "sweep", "--help").returncode, 0)
+        ended = self.command(PROGRAM, "report", ".", BARCHAN_PYTHON="/nowhere/python3")
+        self.assertEqual(ended.returncode, 4)
+        self.assertRegex(ended.stderr, "^barchan: barchan report needs /nowhere/python3: .*apt install python3")
+        (self.folder / "bare").write_text("#!/bin/sh\nexec /usr/bin/python3 -S \"$@\"\n")  # without the packages of Debian
+        (self.folder / "bare").chmod(0o755)
+        ended = self.command(PROGRAM, "report", ".", BARCHAN_PYTHON=str(self.folder / "bare"))
+        self.assertEqual((ended.returncode, ended.stderr.count("\n")), (4, 1))
+        self.assertIn("numpy", ended.stderr)
+
+
+class Scenes(Case):
+    def test_every_scene_comes_back(self):
+        files = sorted((ROOT / "scenes").rglob("*.toml"))
+        self.assertGreater(len(files), 50)
+        for file in files:
+            document = tomllib.loads(file.read_text())
+            self.assertEqual(tomllib.loads(barchan.scene.dumps(document)), document, file)
+
+    def test_odd_values_come_back(self):
+        odd = {"a": 'say "\\n"', "tab": "\t\n\r\x01\x7f\u00e9\u4e2d", "": 1, "a b": 2, "a.b": {"c d": {"e": []}}, "empty": {}, "none": [], "big": 2 ** 63 - 1, "low": -2 ** 63,
+               "small": 5e-324, "third": 1 / 3, "inf": math.inf, "yes": True, "nested": [[1, 2.5], ["x", {"y": [{"z": False}]}]], "tables": [{"k": 1}, {}, {"k": {"l": {}}}],
+               "phases": {"one": {"two": {"three": 3}}, "plain": 4}, "deep": {"a": {"b": [{"c": 1}]}}}
+        self.assertEqual(tomllib.loads(barchan.scene.dumps(odd)), odd)
+        self.assertTrue(math.isnan(tomllib.loads(barchan.scene.dumps({"x": math.nan}))["x"]))
+        plain = tomllib.loads(barchan.scene.dumps({"n": numpy.float64(.1), "v": numpy.arange(3), "p": pathlib.Path("a/b"), "t": (1, 2), "b": numpy.bool_(True)}))
+        self.assertEqual(plain, {"n": .1, "v": [0, 1, 2], "p": "a/b", "t": [1, 2], "b": True})
+        for wrong in ({"a": {"b": None}}, {"x": [1, object()]}, {"big": 2 ** 63}):
+            with self.assertRaises(TypeError):
+                barchan.scene.dumps(wrong)
+        with self.assertRaisesRegex(TypeError, "a.b: TOML has no NoneType"):
+            barchan.scene.dumps({"a": {"b": None}})
+
+    def test_the_program_reads_what_is_written(self):
+        for name in ("splash.toml", "verification/poiseuille.toml"):
+            text = barchan.scene.dumps(barchan.scene.load(ROOT / "scenes" / name))
+            file = self.folder / pathlib.Path(name).name
+            file.write_text(text)
+            for each in ("splash_bed.vtp",):
+                shutil.copy(ROOT / "scenes" / each, self.folder)
+            barchan.generate(ROOT / "scenes" / name, self.folder / "a.vtp")
+            barchan.generate(file, self.folder / "b.vtp")
+            self.assertTrue(barchan.compare(self.folder / "a.vtp", self.folder / "b.vtp"), name)
+
+
+class Shapes(Case):
+    def test_grains_from_arrays(self):
+        x = numpy.array([[.05, .1], [.2, .1], [.3, .12]])
+        file = barchan.write_grains(self.folder / "bed.vtp", x, [.01, .009, .0095], phase="ball")
+        scene = {**BALLS, "fill": [BALLS["fill"][0], {"phase": "ball", "shape": {"file": file}}]}
+        scene["phases"] = {**BALLS["phases"], "ball": {**BALLS["phases"]["ball"], "diameter": {"mean": .019, "spread": .1}}}
+        scene["output"] = {**BALLS["output"], "fields": ["radius"]}
+        made = barchan.generate(scene, self.folder / "start.vtp").of("ball").by_id()
+        self.assertLess(abs(made.x[:, :2] - x).max(), 1e-15)
+        self.assertLess(abs(made["radius"] - [.01, .009, .0095]).max(), 1e-15)
+
+    def body(self, shape, dimensions=2):
+        size = [1.] * dimensions
+        scene = {"spacing": .05, "dimensions": dimensions, "domain": {"size": size}, "phases": {"body": {"kind": "elastic", "density": 1000, "young": 1e6, "poisson": .3}},
+                 "interactions": {"body-body": {"radius": 2.6}}, "fill": [{"phase": "body", "shape": {"surface": shape}, "velocity": [1.] + [0.] * (dimensions - 1)}],
+                 "time": {"end": .01}, "output": {"every": .01}}
+        return barchan.generate(scene, self.folder / "body.vtp")
+
+    def test_bodies_from_arrays(self):
+        turn = numpy.linspace(0, 2 * math.pi, 100, endpoint=False)
+        disc = barchan.write_outline(self.folder / "disc.csv", .5 + .3 * numpy.column_stack([numpy.cos(turn), numpy.sin(turn)]))
+        self.assertAlmostEqual(len(self.body(disc)) * .05 ** 2, math.pi * .3 ** 2, delta=.02)
+        corners = numpy.array([[x, y, z] for x in (.2, .6) for y in (.2, .6) for z in (.2, .6)])
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+        cube = self.body(barchan.write_surface(self.folder / "cube.obj", corners, faces), 3)
+        self.assertEqual(len(cube), 8 ** 3)
+
+    def test_wrong_arrays_are_refused(self):
+        good = numpy.zeros((3, 2))
+        for act, words in ((lambda: barchan.write_grains(self.folder / "a.vtp", [1, 2], 1), r"expected an array \(n, 2 or 3\), found \(2,\)"),
+                           (lambda: barchan.write_grains(self.folder / "a.vtp", good, [1, 2]), "expected one or 3"),
+                           (lambda: barchan.write_grains(self.folder / "a.vtp", good, -1), "above 0"),
+                           (lambda: barchan.write_grains(self.folder / "a.vtk", good, 1), "ends in .vtp"),
+                           (lambda: barchan.write_grains(self.folder / "a.vtp", [[0, 0], [0, math.nan]], 1), "row 1 is not finite"),
+                           (lambda: barchan.write_outline(self.folder / "a.csv", good[:2]), "at least 3"),
+                           (lambda: barchan.write_surface(self.folder / "a.obj", numpy.zeros((3, 3)), [[0, 1, 3]]), "indices go from 0 to 2"),
+                           (lambda: barchan.write_surface(self.folder / "a.obj", numpy.zeros((3, 3)), [[0., 1, 2]]), "of integers")):
+            with self.assertRaisesRegex(barchan.SceneError, words):
+                act()
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+class Examples(Case):
+    def run_code(self, code):
+        environment = {**os.environ, "PYTHONPATH": str(ROOT / "python"), "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+        ended = subprocess.run(["/usr/bin/python3", "-W", "error::UserWarning", "-"], input=code, capture_output=True, text=True, env=environment, cwd=self.folder)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        return ended.stdout
+
+    def test_scripts(self):
+        scripts = sorted((ROOT / "python/examples").glob("*.py"))
+        self.assertGreaterEqual(len(scripts), 2)
+        for script in scripts:
+            self.assertTrue(ast.get_docstring(ast.parse(script.read_text())), script)
+            self.assertTrue(self.run_code(script.read_text()), script)
+
+    def test_notebook(self):
+        for notebook in sorted((ROOT / "python/examples").glob("*.ipynb")):
+            document = json.loads(notebook.read_text())
+            self.assertEqual(document["nbformat"], 4)
+            cells = ["".join(cell["source"]) for cell in document["cells"] if cell["cell_type"] == "code"]
+            self.assertGreater(len(cells), 2)
+            self.assertTrue(self.run_code("\n".join(cells)), notebook)
+
+    def test_pages(self):
+        """The examples of docs/python.md, in order."""
+        page = (ROOT / "docs/python.md").read_text()
+        blocks = re.findall(r"```python\n(.*?)```", page, re.S)
+        self.assertGreater(len(blocks), 4)
+        shutil.copytree(ROOT / "scenes", self.folder / "scenes")
+        self.run_code("import warnings\nwarnings.simplefilter('ignore')\n" + "\n".join(blocks))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
