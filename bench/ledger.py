@@ -37,7 +37,9 @@ def command_of(file):
     """The command that makes a file of results (a path from bench/)."""
     folder, name = file.split("/")[0], pathlib.Path(file).stem
     if folder in ("accuracy", "saltation"):
-        return f"bench/{folder}/cases.py build/barchan {name}" + (" --write" if folder == "saltation" else "")
+        if (folder, name) == ("saltation", "storm"):
+            return "bench/saltation/storm.py"
+        return f"bench/saltation/cases.py {name}" if folder == "saltation" else f"bench/accuracy/cases.py build/barchan {name} --write"
     return {"impacts": "bench/impacts/cases.py build/barchan --write", "paper": "bench/paper/figures.py build/barchan --write",
             "grains": "bench/grains/lammps.py", "ledger_rows": "of each row in the file, by hand"}[folder]
 
@@ -119,7 +121,8 @@ def measure(program):
     """Runs what MEASURES names; their programs write their results and pages themselves."""
     for script, names, minutes in MEASURES:
         print(f"ledger: {script} {' '.join(names)} (about {minutes} minutes of one core)", flush=True)
-        run.command([sys.executable, HERE / script, program, *names, "--write"], shown=True, check=True)
+        words = [*names, "--barchan", program] if script.startswith("saltation") else [program, *names, "--write"]
+        run.command([sys.executable, HERE / script, *words], shown=True, check=True)
 
 
 def main():
