@@ -19,11 +19,11 @@ if shown:
     figure.colours(shown, "velocity", 0.0, top, series.speed_title(fluids), preset="Viridis (matplotlib)")
 for phase in series.phases("grains"):
     figure.particles(phase, colour=SAND, layer=2)
-for phase in series.phases("elastic"):
-    figure.particles(phase, colour=BODY, layer=2)
+for phase in series.phases("elastic", "rigid"):
+    figure.particles(phase, radius="body", colour=BODY, layer=2)
 if flat:
     for phase in series.phases("wall"):
-        figure.particles(phase, colour=WALL, layer=3)
+        figure.particles(phase, radius="body", colour=WALL, layer=3)
 
 # Vectors where there is fluid, its mean in cells of about a fortieth of the width.
 if flat:

@@ -5,17 +5,20 @@ import os
 
 import numpy as np
 from paraview.simple import (AnnotateTimeFilter, AssignViewToLayout, CreateLayout, CreateRenderView, GetActiveView,
-                             GetAnimationScene, SetActiveView, Show, Text)
+                             GetAnimationScene, PythonAnnotation, SetActiveView, Show, Text)
 
 from barchan_marks import INK, Marks, set_font
-from barchan_series import ticks
+from barchan_numbers import ticks
 
 
 class Figure(Marks):
     """One render view laid out as a figure: title and time above, the data with axes, the colour bar below or beside."""
 
-    def __init__(self, series, title, window=None, walls=True):
+    def __init__(self, series, title, window=None, walls=True, box=None):
+        """`window`: [x0, x1, y0, y1] in metres of a 2D scene, if the user asks for none; `walls`: whether the view holds them; `box`: what the view
+        holds, [x0, x1, y0, y1, z0, z1] in metres, instead of the particles' bounds."""
         self.series = series
+        self._wanted_box = box
         self.view = self._empty_view()
         self.size = self._size(window, walls)
         self.scale = min(max(self.size[0] / 1600.0, 0.35), 2.5)   # of letters and lines
@@ -48,7 +51,7 @@ class Figure(Marks):
 
     def _size(self, window, walls):
         series = self.series
-        self.box = series.bounds(series.phases("fluid", "grains", "elastic", "rigid", *(["wall"] if walls else [])) or [0])
+        self.box = self._wanted_box or series.bounds(series.phases("fluid", "grains", "elastic", "rigid", *(["wall"] if walls else [])) or [0])
         window = series.wanted_window(self.box) or window
         if window is not None:
             self.box[:4] = window
@@ -105,6 +108,18 @@ class Figure(Marks):
         set_font(shown, 24 * self.scale)
         shown.WindowLocation = "Any Location"
         shown.Position = [1 - (right + 14.5 * self.scale * longest) / width, 1 - 0.68 * top / height]
+
+    def clock(self, source):
+        """The time that the data say (TimeValue), in the place of the time of the view: of a live source."""
+        width, height = self.size
+        left, right, _, top = self._margins()
+        words = PythonAnnotation(registrationName="time of the frame", Input=source)
+        words.ArrayAssociation = "Field Data"
+        words.Expression = "'t = %.6g s' % TimeValue[0]"
+        shown = Show(words, self.view)
+        set_font(shown, 24 * self.scale)
+        shown.WindowLocation = "Any Location"
+        shown.Position = [1 - (right + 250 * self.scale) / width, 1 - 0.68 * top / height]
 
     # -- camera
 

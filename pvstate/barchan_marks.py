@@ -6,7 +6,7 @@ import numpy as np
 from paraview.simple import (Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
                              ProgrammableSource, Show, Text)
 
-from barchan_series import bar_ticks, round_floor
+from barchan_numbers import bar_ticks, round_floor
 
 SAND = [0.86, 0.66, 0.34]           # ochre
 WALL = [0.38, 0.38, 0.40]
@@ -83,6 +83,22 @@ output.PointData.append(np.array([{velocity!r}]), "velocity")
 """
 
 
+WAYS = """
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+ways, speeds = {ways!r}, {speeds!r}
+points, lines = vtkPoints(), vtkCellArray()
+for way in ways:
+    lines.InsertNextCell(len(way))
+    for place in way:
+        lines.InsertCellPoint(points.InsertNextPoint(place))
+output.SetPoints(points)
+output.SetLines(lines)
+output.PointData.append(np.concatenate([np.array(v) for v in speeds]), "speed")
+"""
+
+
 def set_font(owner, size, prefix="", **more):
     """Font of a text, a colour bar or an axis; the properties of ParaView differ by a prefix only."""
     if os.path.isfile(FONT):
@@ -105,7 +121,7 @@ class Marks:
 
     def particles(self, phase, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
         """One phase as discs (balls in 3D). `radius` in spacings (None: touching, or overlapping where they are a
-        few pixels only; "whole": without gaps); `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
+        few pixels only; "whole": without gaps; "body": without gaps, and hardly beyond the body's edge); `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
         return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity, self.series.size(phase))
 
     def dots(self, source, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0, size=None):
@@ -113,6 +129,8 @@ class Marks:
         flat = self.series.two_dimensional
         if radius == "whole":   # a fluid looks like the continuum that it stands for, and stays off the axes
             radius = 1.0 if self.pixels_per_spacing < 9 else 0.85
+        if radius == "body":   # half the diagonal of a square of particles is 0.707, and packings have gaps up to that
+            radius = 0.75 if flat else 0.62
         if radius is None:
             radius = 0.5 if self.pixels_per_spacing > 9 or not flat else 0.72
         shown = Show(source, self.view)
@@ -211,6 +229,21 @@ class Marks:
                                            fastest=float(fastest), least=0.5 * (side / self.series.spacing) ** 2)
         return mean, side
 
+    def paths(self, ways, speeds):
+        """Lines through places (m), with the speeds (m/s) there as their array "speed"."""
+        source = ProgrammableSource(registrationName="trajectories")
+        source.OutputDataSetType = "vtkPolyData"
+        source.Script = WAYS.format(ways=[[list(map(float, place)) for place in way] for way in ways],
+                                    speeds=[list(map(float, fast)) for fast in speeds])
+        shown = Show(source, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.LineWidth = max(1.5, 4.0 * self.scale)
+        shown.Ambient, shown.Diffuse = 1.0, 0.0
+        if self.series.two_dimensional:
+            shown.Position = [0.0, 0.0, 4 * self.series.spacing]
+        ColorBy(shown, ("POINTS", "speed"), separate=True)
+        return shown
+
     # -- kernels
 
     def reach(self, phase, place, colour=MARK, layer=6):
@@ -229,6 +262,28 @@ class Marks:
         return shown
 
     # -- colours
+
+    def by_values(self, representations, array, values, title):
+        """Colours by an array over the range of `values` (Series.range_of): blue and red about a white zero where it has both signs."""
+        low, high, signed = self.series.range_of(values)
+        if signed:
+            self.colours(representations, array, low, high, title, points=SIGNED)
+        else:
+            self.colours(representations, array, low, high, title, preset="Viridis (matplotlib)")
+
+    def others(self, drawn):
+        """The phases that carry no colour: walls dark, bodies grey, grains in the colour of sand, fluids faint. `drawn` are left out."""
+        flat = self.series.two_dimensional
+        for phase in self.series.phases("fluid"):
+            if phase not in drawn:
+                self.particles(phase, radius=0.3 if flat else 0.12, colour=FAINT_AIR)
+        for kind, colour, radius in (("grains", SAND, None), ("elastic", BODY, "body"), ("rigid", BODY, "body")):
+            for phase in self.series.phases(kind):
+                if phase not in drawn:
+                    self.particles(phase, radius=radius, colour=colour, layer=2)
+        for phase in self.series.phases("wall"):
+            if phase not in drawn:
+                self.particles(phase, radius="body" if flat else 0.12, colour=WALL, layer=3)
 
     def colours(self, representations, array, low, high, title, preset=None, points=None, bar=True):
         """One colour map for these representations, and its bar."""

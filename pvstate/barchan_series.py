@@ -10,7 +10,6 @@ Colours and view must hold for all frames of a film, and one particle that went 
 
 import glob
 import json
-import math
 import os
 import sys
 
@@ -18,6 +17,8 @@ import numpy as np
 from paraview import servermanager
 from paraview.simple import Calculator, Clip, PVDReader, Threshold, XMLPolyDataReader, XMLUnstructuredGridReader
 from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from barchan_numbers import nice_ceiling, percentile, within_reach
 
 SAMPLES = 9                         # frames from which ranges are taken
 
@@ -69,77 +70,16 @@ def kind_of(name):
     return "elastic"
 
 
-# ---- numbers -----------------------------------------------------------------------------------------------------------
-
-NICE = (1, 1.2, 1.6, 2, 2.4, 3, 3.6, 4, 5, 6, 7, 8, 9, 10, 12)
-
-
-def nice_ceiling(value):
-    """The next of 1, 1.2, 1.6, 2, 2.4, 3, 3.6, 4, 5, ... 10 times a power of ten."""
-    if not (value > 0 and math.isfinite(value)):
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(m * power for m in NICE if m * power >= value * (1 - 1e-6))
-
-
-def round_floor(value):
-    """The next of 1, 2, 5 times a power of ten below a value."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-9))
-
-
-def ticks(low, high, count=6):
-    """Round numbers from low to high, about `count` of them."""
-    step = (high - low) / max(count, 1)
-    if step <= 0:
-        return [low]
-    power = 10.0 ** math.floor(math.log10(step))
-    step = min((m * power for m in (1, 2, 2.5, 5, 10)), key=lambda s: abs(math.log(s / step)))
-    first = math.ceil(low / step - 1e-9)
-    return [k * step for k in range(first, int(math.floor(high / step + 1e-9)) + 1)]
-
-
-def bar_ticks(low, high):
-    """As ticks(), but with one at each end where a round step allows it."""
-    for count in (5, 4, 6, 3, 7, 8):
-        step = (high - low) / count
-        digits = step / 10.0 ** math.floor(math.log10(step)) if step > 0 else 0
-        if any(abs(digits - m) < 1e-6 for m in (1, 2, 2.5, 3, 4, 5)) and abs(low / step - round(low / step)) < 1e-6:
-            return [min(low + k * step, high) for k in range(count + 1)]   # ParaView drops a tick beyond the end by round-off
-    return ticks(low, high, 5)
-
-
-def percentile(values, share):
-    """The finite value that `share` per cent do not exceed. Of 20 values or more it is never the largest (or, for a
-    share below 50, the smallest) one: a single particle decides nothing."""
-    values = np.asarray(values)[np.isfinite(values)]
-    if not len(values):
-        return 0.0
-    if len(values) < 20:
-        return float(values.max() if share >= 50 else values.min())
-    return float(np.percentile(values, share, method="lower" if share >= 50 else "higher"))
-
-
-def within_reach(points, spacing):
-    """Which points belong to the scene when no file says how large it is: those not farther from the middle 99 % of them
-    than half its size and ten spacings. All, if they are fewer than 50."""
-    if len(points) < 50:
-        return np.ones(len(points), dtype=bool)
-    low, high = np.percentile(points, [0.5, 99.5], axis=0)
-    reach = 0.5 * (high - low) + 10 * spacing
-    return ((points >= low - reach) & (points <= high + reach)).all(axis=1)
-
-
 # ---- the series --------------------------------------------------------------------------------------------------------
 
-def fetch(reader, time, path):
-    """The arrays of one frame by name: points, id, phase, velocity, smoothing_length, and what its field data say."""
+def fetch(reader, time, path, arrays=()):
+    """The arrays of one frame by name: points, id, phase, velocity, smoothing_length, those of `arrays` that are there, and what its field data say."""
     reader.UpdatePipeline(time)
     data = servermanager.Fetch(reader)
     if data is None or not data.GetNumberOfPoints():
         raise Wrong(f"no particles in {path} at time {time:g} s")
     sample = {"points": vtk_to_numpy(data.GetPoints().GetData()).astype(float)}
-    for name in ("id", "phase", "velocity", "smoothing_length"):
+    for name in ("id", "phase", "velocity", "smoothing_length", *arrays):
         array = data.GetPointData().GetArray(name)
         if array is not None:
             sample[name] = vtk_to_numpy(array).copy()
@@ -153,7 +93,7 @@ def fetch(reader, time, path):
     if domain is not None and domain.GetNumberOfValues() == 6:
         sample["domain"] = np.array([domain.GetValue(k) for k in range(6)])
     sane = np.isfinite(sample["points"]).all(axis=1) & np.isfinite(sample["velocity"]).all(axis=1)
-    for name in ("points", "id", "phase", "velocity", "smoothing_length"):
+    for name in ("points", "id", "phase", "velocity", "smoothing_length", *arrays):
         if name in sample:
             sample[name] = sample[name][sane]
     return sample
@@ -169,17 +109,19 @@ def lines_of(array):
 
 
 class Series:
-    """A series opened in ParaView: its reader, times, phases, spacing (m) and bounds (m)."""
+    """A series opened in ParaView: its reader, times, phases, spacing (m) and bounds (m). `arrays`: names of point arrays that values() gives
+    beside those that every frame has; one that no frame has is left out."""
 
-    def __init__(self, path):
+    def __init__(self, path, arrays=()):
         self.path = path
+        self._arrays = tuple(arrays)
         self.name = os.path.splitext(os.path.basename(path))[0]
         self.reader = open_reader(path, self.name)
         self.times = [float(t) for t in np.atleast_1d(self.reader.TimestepValues)] or [0.0]
         self.hidden = {name.strip() for name in os.environ.get("BARCHAN_HIDE", "").split(",")} - {""}
 
         chosen = sorted({round(k) for k in np.linspace(0, len(self.times) - 1, SAMPLES)})
-        self._samples = [fetch(self.reader, self.times[k], path) for k in chosen]
+        self._samples = [fetch(self.reader, self.times[k], path, self._arrays) for k in chosen]
         first = self._samples[0]
         self.phase_names = first["phase_names"] or ["phase"]
         kinds = first["phase_kinds"]
@@ -207,7 +149,7 @@ class Series:
             keep[~wall] = ((points[~wall] >= low) & (points[~wall] <= high)).all(axis=1)
         else:
             keep[~wall] = within_reach(points[~wall], self.spacing)
-        for name in ("points", "id", "phase", "velocity", "smoothing_length"):
+        for name in ("points", "id", "phase", "velocity", "smoothing_length", *self._arrays):
             if name in sample:
                 sample[name] = sample[name][keep]
 
@@ -247,11 +189,15 @@ class Series:
         return [k for k, (name, kind) in enumerate(zip(self.phase_names, self.phase_kinds))
                 if kind in kinds and name not in self.hidden]
 
+    def names_of(self, phases):
+        """The names of phases in a title."""
+        return " and ".join(self.phase_names[k].replace("_", " ") for k in phases)
+
     def speed_title(self, phases):
-        """The title of a colour bar: whose speed it is, by name and kind."""
-        names = " and ".join(self.phase_names[k].replace("_", " ") for k in phases)
-        kinds = " and ".join(dict.fromkeys(self.phase_kinds[k] for k in phases))
-        return f"speed of {names}" + (f" ({kinds})" if kinds not in names else "") + ", m/s"
+        """The title of a colour bar: whose speed it is, by name and kind; of more than three phases without names."""
+        names = self.names_of(phases) if len(phases) <= 3 else "all that moves"
+        kinds = " and ".join(dict.fromkeys(self.phase_kinds[k] for k in phases)) if len(phases) <= 3 else ""
+        return f"speed of {names}" + (f" ({kinds})" if kinds and kinds not in names else "") + ", m/s"
 
     def source(self, phase):
         """The particles of one phase inside the window, as a filter of the pipeline."""
@@ -291,6 +237,68 @@ class Series:
         """One array of point data of these phases, of all sampled frames together."""
         parts = [s[name][np.isin(s["phase"], phases)] for s in self._samples if name in s]
         return np.concatenate(parts) if parts else np.zeros(0)
+
+    def has(self, name):
+        """Whether the frames have this point array (one of those that the state asked for)."""
+        return any(name in sample for sample in self._samples)
+
+    def need(self, *names):
+        """The first of these point arrays that the frames have. Raises Wrong, which says how a scene gets them."""
+        for name in names:
+            if self.has(name):
+                return name
+        words = " nor ".join(f"'{name}'" for name in names)
+        raise Wrong(f"{self.path} has no point array {words}: name {'one of them' if len(names) > 1 else 'it'} in the scene's output.fields, for "
+                    f"example --set 'output.fields=[\"{names[0]}\"]'")
+
+    def range_of(self, values):
+        """The range of colours of these values, and whether it is signed. With values on both sides of zero it is symmetric about zero; else it
+        begins at zero, or at the lowest value if that is above half of the highest."""
+        low, high = percentile(values, 0.5), percentile(values, 99.5)
+        if low < -0.05 * max(high, 0.0) and high > -0.05 * min(low, 0.0):
+            top = nice_ceiling(max(-low, high))
+            return -top, top, True
+        if high <= 0:
+            return (-nice_ceiling(-low), 0.0, False) if low < 0 else (0.0, 1.0, False)
+        return (low, high, False) if low > 0.5 * high else (0.0, nice_ceiling(high), False)
+
+    def file_of(self, kind, ending):
+        """The files KIND_NAME.ENDING beside the series that an instrument of the scene wrote, in the order of their names. Raises Wrong if there is none."""
+        files = sorted(glob.glob(os.path.join(os.path.dirname(self.path), f"{kind}_*.{ending}")))
+        if not files:
+            raise Wrong(f"{os.path.dirname(self.path)} has no {kind}_*.{ending}: the scene needs [[{kind.replace('_', '-')}]]")
+        return files
+
+    def ways(self, phases, number, frames=240):
+        """Ways of the `number` particles of these phases that go farthest, from up to `frames` frames: for each a list of places (m), and the speeds
+        (m/s) there. A way parts where a particle jumps by more than half of the domain: a periodic side. Particles that are not there from the
+        first frame on, or leave, have the part that the frames show."""
+        chosen = sorted({round(k) for k in np.linspace(0, len(self.times) - 1, frames)})
+        tracks = {}
+        for k in chosen:
+            frame = fetch(self.reader, self.times[k], self.path)
+            here = np.isin(frame["phase"], phases)
+            for name, place, speed in zip(frame["id"][here], frame["points"][here], np.linalg.norm(frame["velocity"][here], axis=1)):
+                tracks.setdefault(int(name), []).append((k, place, speed))
+        size = self.domain[1::2] - self.domain[0::2] if self.domain is not None else np.full(3, np.inf)
+        size = np.where(size > 0, size, np.inf)
+        parts = []
+        for track in tracks.values():
+            places = np.array([place for _, place, _ in track])
+            steps = np.diff(places, axis=0)
+            jumps = (np.abs(steps) > 0.5 * size).any(axis=1)
+            far = np.linalg.norm(steps[~jumps], axis=1).sum() if len(steps) else 0.0
+            parts.append((far, places, [speed for *_, speed in track], np.flatnonzero(jumps) + 1))
+        parts.sort(key=lambda part: -part[0])
+        ways, speeds = [], []
+        for _, places, fast, cuts in parts[:number]:
+            for begin, end in zip([0, *cuts], [*cuts, len(places)]):
+                if end - begin > 1:
+                    ways.append(places[begin:end])
+                    speeds.append(fast[begin:end])
+        if not ways:
+            raise Wrong(f"{self.path}: no particle of {self.names_of(phases)} is in two frames")
+        return ways, speeds
 
     def speeds(self, phases):
         """Speeds (m/s) of the particles of these phases, of all sampled frames together."""

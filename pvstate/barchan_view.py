@@ -11,7 +11,8 @@ A state opens in ParaView (File > Load State) and runs in pvpython alike. It tak
 Of a frame it reads the point arrays phase, velocity and smoothing_length and the field data phase_names and, where there is
 one, phase_kinds (fluid, grains, elastic, rigid, wall for each phase) and domain (bounds, m).
 
-barchan_series.py holds the series and its ranges, barchan_figure.py the layout, barchan_marks.py what is drawn.
+barchan_series.py holds the series and its ranges, barchan_figure.py the layout, barchan_marks.py what is drawn, barchan_chart.py lines
+over axes.
 """
 
 import math  # noqa: F401  (the states use these names)
@@ -21,11 +22,13 @@ import sys  # noqa: F401
 import numpy as np  # noqa: F401
 from paraview.simple import *  # noqa: F401,F403
 
+from barchan_chart import Chart  # noqa: F401
 from barchan_figure import Figure  # noqa: F401
 from barchan_marks import BODY, FAINT_AIR, INK, MARK, SAND, SAND_SPEED, SIGNED, WALL  # noqa: F401
-from barchan_series import Series, Wrong, find_series, nice_ceiling, percentile  # noqa: F401
+from barchan_numbers import nice_ceiling, percentile, stress_unit  # noqa: F401
+from barchan_series import Series, Wrong, find_series  # noqa: F401
 
 
-def start(state_file):
-    """The series that the state shows."""
-    return Series(find_series(state_file))
+def start(state_file, *arrays):
+    """The series that the state shows; `arrays`: point arrays whose values the state reads beside those that every frame has."""
+    return Series(find_series(state_file), arrays)

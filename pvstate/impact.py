@@ -59,5 +59,5 @@ for phase in series.phases("fluid", "grains"):
     if phase not in bodies:
         figure.particles(phase, radius=0.2, colour=FAINT_AIR if series.phase_kinds[phase] == "fluid" else SAND)
 for phase in series.phases("wall"):   # in 3D small dots, through which the bodies are seen
-    figure.particles(phase, radius=None if flat else 0.12, colour=WALL, layer=2)
+    figure.particles(phase, radius="body" if flat else 0.12, colour=WALL, layer=2)
 figure.finish()

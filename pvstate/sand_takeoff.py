@@ -28,9 +28,9 @@ if flat:
     for phase in series.phases("fluid"):
         figure.particles(phase, radius=0.22, colour=FAINT_AIR)
     for phase in series.phases("wall"):
-        figure.particles(phase, colour=WALL, layer=1)
-for phase in series.phases("elastic"):
-    figure.particles(phase, colour=BODY, layer=2)
+        figure.particles(phase, radius="body", colour=WALL, layer=1)
+for phase in series.phases("elastic", "rigid"):
+    figure.particles(phase, radius="body", colour=BODY, layer=2)
 
 # Arrows of hundreds of grains much finer than the air hide the grains: then the colour alone tells the speed.
 few = series.moving_at_once(grains, 0.2 * top) <= 100 or all(series.size(phase) == series.spacing for phase in grains)

@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+"""The bias ledger, docs/ledger.md: every quantity that is compared with an exact solution, a measurement, the paper or another program, misses first.
+
+    /usr/bin/python3 bench/ledger.py --write                          from the results that are kept in bench/
+    /usr/bin/python3 bench/ledger.py --measure build/barchan --write  measures what is cheap anew before that (see MEASURES; under 90 minutes on two cores)
+    /usr/bin/python3 bench/ledger.py --check                          says whether the page is what --write would make; exit status 1 if not
+
+bench/ledger_rows/ says which rows there are and where each comes from. bench/ledger_rows/measured.json holds for each file of results its checksum, the
+command that makes it, and the day on which the ledger found it changed.
+"""
+
+import argparse
+import datetime
+import hashlib
+import json
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+from barchan_bench import ROOT, run, table  # noqa: E402
+from ledger_rows import accuracy, bodies, sand, told  # noqa: E402
+
+PAGE, MEASURED = ROOT / "docs/ledger.md", HERE / "ledger_rows/measured.json"
+FIELDS = ("quantity", "case", "reference", "measured", "bias", "scatter", "bound", "met", "source", "file")
+LEAST = 100
+
+# What --measure runs, and about how many minutes of one core it takes. The rest needs hours: its rows are those of the stored results.
+MEASURES = (
+    ("accuracy/cases.py", ("taylor-green", "poiseuille", "couette", "waves", "abc", "two-phase-column", "low-hill", "still-tank", "square-patch",
+                           "standing-wave", "dam-break-3d", "logarithmic-layer"), 12),
+    ("saltation/cases.py", ("settling", "hop"), 1),
+)
+
+
+def command_of(file):
+    """The command that makes a file of results (a path from bench/)."""
+    folder, name = file.split("/")[0], pathlib.Path(file).stem
+    if folder in ("accuracy", "saltation"):
+        if (folder, name) == ("saltation", "storm"):
+            return "bench/saltation/storm.py"
+        return f"bench/saltation/cases.py {name}" if folder == "saltation" else f"bench/accuracy/cases.py build/barchan {name} --write"
+    return {"impacts": "bench/impacts/cases.py build/barchan --write", "paper": "bench/paper/figures.py build/barchan --write",
+            "grains": "bench/grains/lammps.py", "ledger_rows": "of each row in the file, by hand"}[folder]
+
+
+def days(rows, known, today):
+    """measured.json for these rows: a file whose checksum is new has the day `today`."""
+    found = {}
+    for file in sorted({r["file"] for r in rows}):
+        checksum = hashlib.sha256((HERE / file).read_bytes()).hexdigest()[:16]
+        old = known.get(file, {})
+        found[file] = {"command": command_of(file), "checksum": checksum, "day": old["day"] if old.get("checksum") == checksum else today}
+    return found
+
+
+def number(value, digits=4):
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else f"{value:.{digits}g}"
+
+
+def percent(bias):
+    """A bias as per cent: two figures, at most two places behind the point unless it is tiny."""
+    if bias is None:
+        return ""
+    return "0" if bias == 0 else f"{bias:+.1e}" if abs(bias) < .01 else f"{bias:+.2f}" if abs(bias) < 10 else f"{bias:+.0f}"
+
+
+def order(row):
+    """Misses first, then what has no bound, then what is met; within them the largest bias first."""
+    rank = {"MISSED": 0, "": 1, "met": 2}[verdict(row)]
+    return rank, -abs(row["bias"] or 0), row["case"], row["quantity"]
+
+
+def verdict(row):
+    return "" if row["met"] is None else "met" if row["met"] else "MISSED"
+
+
+def text_of(rows, known):
+    """The page."""
+    missed = sum(verdict(r) == "MISSED" for r in rows)
+    free = sum(verdict(r) == "" for r in rows)
+    lines = ["# The bias ledger", "",
+             "Every quantity of Barchan that is compared with an exact solution, a measurement, the paper (Halik et al. 2015) or another program. Made by", "",
+             "    /usr/bin/python3 bench/ledger.py --write", "",
+             "from the results in `bench/*/results`; with `--measure build/barchan` the cheap ones are measured anew first. A test compares this page with what",
+             "the command makes.", "",
+             f"{len(rows)} rows: {missed} miss their bound, {len(rows) - missed - free} meet it, {free} have none and are told for comparison.", "",
+             "- *Bias* is 100 (measured - reference)/reference. Where the reference is 0 the measured value is an error over the scale that its name tells, and",
+             "  the bias is 100 times it. It has a sign where the sign is known.",
+             "- *Scatter* is what the measured value moves by: the standard error of a mean, or the range over the beds or seeds that were run; one run has none.",
+             "- *Bound* is what was asked before the measurement, of the value or of the bias. Bounds are in the programs that measure; none is set here.",
+             "- The last column numbers the results' files below: by which command and when each was measured.", "",
+             table.head("quantity", "case", "reference", "measured", "bias, %", "scatter", "bound", "", "source of the reference", "file")]
+    numbers = {file: k + 1 for k, file in enumerate(sorted(known))}
+    for r in sorted(rows, key=order):
+        lines.append(table.row(r["quantity"], r["case"], number(r["reference"]), number(r["measured"]), percent(r["bias"]), number(r["scatter"], 2),
+                               number(r["bound"]), verdict(r), r["source"], numbers[r["file"]]))
+    lines += ["", "## When and how they were measured", "",
+              "The day is that on which the ledger first found the file as it is; the measurement was on that day or before.", "",
+              table.head("", "results", "command", "day")]
+    for file, k in sorted(numbers.items(), key=lambda item: item[1]):
+        about = known[file]
+        command = f"`/usr/bin/python3 {about['command']}`" if about["command"].startswith("bench/") else about["command"]
+        lines.append(table.row(k, f"`bench/{file}`", command, about["day"]))
+    return "\n".join(lines) + "\n"
+
+
+def rows_now():
+    """All rows, from the stored results. Throws when one is not complete."""
+    rows = [*accuracy.rows(HERE), *bodies.rows(HERE), *sand.rows(HERE), *told.rows(HERE)]
+    for r in rows:
+        lacking = [f for f in FIELDS if f not in r] + [f for f in ("quantity", "case", "source", "file") if not r.get(f)]
+        if lacking:
+            raise SystemExit(f"ledger: a row lacks {', '.join(lacking)}: {r}")
+    return rows
+
+
+def measure(program):
+    """Runs what MEASURES names; their programs write their results and pages themselves."""
+    for script, names, minutes in MEASURES:
+        print(f"ledger: {script} {' '.join(names)} (about {minutes} minutes of one core)", flush=True)
+        words = [*names, "--barchan", program] if script.startswith("saltation") else [program, *names, "--write"]
+        run.command([sys.executable, HERE / script, *words], shown=True, check=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--measure", metavar="PROGRAM")
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    given = parser.parse_args()
+    if given.measure:
+        measure(given.measure)
+    rows, known = rows_now(), json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
+    known = days(rows, known, str(datetime.date.today()))
+    text = text_of(rows, known)
+    if given.check:
+        if PAGE.read_text() != text:
+            sys.exit("ledger: docs/ledger.md is not what the stored results make: run /usr/bin/python3 bench/ledger.py --write")
+        if len(rows) < LEAST:
+            sys.exit(f"ledger: {len(rows)} rows, expected {LEAST} or more")
+    elif given.write:
+        MEASURED.write_text(json.dumps(known, indent=1) + "\n")
+        PAGE.write_text(text)
+    if not given.check:
+        print(f"{len(rows)} rows, {sum(verdict(r) == 'MISSED' for r in rows)} missed")
+
+
+if __name__ == "__main__":
+    main()

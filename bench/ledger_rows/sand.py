@@ -1,0 +1,138 @@
+"""Rows of wind and sand: from bench/saltation/results, bench/paper/results and bench/grains/results."""
+
+from ledger_rows import load, row, within
+
+CREYSSELS = "Creyssels et al. 2009, J. Fluid Mech. 625, 47 (wind tunnel, +- 5 %)"
+RICE = "Rice, Willetts & McEwan 1995, Sedimentology 42, 695: medium sand, means"
+SHAO_LU = "Shao & Lu 2000, J. Geophys. Res. 105, 22437"
+HEAPS = "Lube et al. 2005, Phys. Rev. E 72, 041301; Lajeunesse, Monnier & Homsy 2005, Phys. Fluids 17, 103302"
+LAWS = {"schiller-naumann": "Schiller & Naumann 1933", "cheng": "Cheng 1997", "duran": "Duran, Andreotti & Claudin 2012", "di-felice": "Di Felice 1994"}
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def half_range(values):
+    return (max(values) - min(values)) / 2 if len(values) > 1 else None
+
+
+def grains_in_air(bench):
+    file = "saltation/results/settling.json"
+    r = load(bench, file)
+    for t in r["terminal"]:
+        if t["d"] in (.1, .25, 1.):
+            yield row("speed of fall, m/s", f"{t['d']:g} mm, drag {t['law']}", t["exact"], t["measured"],
+                      f"m g = drag, by bisection (exact); drag of {LAWS[t['law']]}", file)
+    for t in r["transient"]:
+        yield row(f"speed after {t['t']:g} s, m/s", "0.25 mm from rest, drag schiller-naumann", t["reference"], t["measured"],
+                  "integration with a fine step; drag of Schiller & Naumann 1933", file)
+    file = "saltation/results/hop.json"
+    for t in load(bench, file)["hops"]:
+        case = f"hop, u* = {t['u']:g} m/s, start {t['v']:g} m/s at {t['degrees']} degrees"
+        for name, key in (("length, m", "length"), ("height, m", "apex"), ("time, s", "time"), ("speed at the end, m/s", "speed")):
+            yield row(name, case, t["reference"][key], t["measured"][key], "integration with a fine step in a logarithmic wind; drag of Schiller & Naumann 1933",
+                      file)
+
+
+def splash(bench):
+    file = "saltation/results/splash.json"
+    r = load(bench, file)
+    rice = r["rice"]
+    for bed in r["beds"]:
+        for t in bed["levels"]:
+            case = f"{'3D bed' if bed['dimensions'] == 3 else 'slab'}, counted above {t['level']:g} d, {t['impacts']} impacts"
+            ratio = t["ejecta"] / rice["ejecta"]
+            yield row("grains ejected an impact", case, rice["ejecta"], t["ejecta"], RICE, file, scatter=t["ejecta_error"], bound="factor 1.5",
+                      met=1 / 1.5 <= ratio <= 1.5)
+            share = t["ejection_speed"] / rice["speed"]
+            yield row("speed of the ejected, m/s", case, rice["ejection_speed"], t["ejection_speed"], RICE, file, scatter=t.get("ejection_speed_error"),
+                      bound="5 to 12 % of the impact's", met=.05 <= share <= .12)
+            yield row("speed of the rebound over the impact's", case, rice["rebound"], t["rebound"], RICE, file, scatter=t["rebound_error"],
+                      bound="within 0.1", met=abs(t["rebound"] - rice["rebound"]) <= .1)
+            yield row("angle of the rebound, degrees", case, rice["rebound_angle"], t["rebound_angle"], RICE, file)
+
+
+def threshold(bench):
+    file = "saltation/results/threshold.json"
+    rows = load(bench, file)["rows"]
+    for d in sorted({t["d"] for t in rows}):
+        beds = [(t["low"] + t["high"]) / 2 for t in rows if t["d"] == d]
+        reference = next(t["shao_lu"] for t in rows if t["d"] == d)
+        bound, met = within(100 * (mean(beds) / reference - 1), 25)
+        yield row("fluid threshold u*, m/s", f"{d:g} mm, mean of {len(beds)} beds", reference, mean(beds), SHAO_LU, file, scatter=half_range(beds),
+                  bound=bound, met=met)
+    file = "saltation/results/impact.json"
+    runs = load(bench, file)["runs"]
+    alive = {u: [t["flux"] > .1 for t in runs if t["u"] == u] for u in sorted({t["u"] for t in runs})}
+    dies, goes = max(u for u, beds in alive.items() if not any(beds)), min(u for u, beds in alive.items() if all(beds))
+    middle, fluid = (dies + goes) / 2, .267
+    yield row("impact threshold over the fluid threshold", "0.242 mm, column, two beds", "0.75 to 0.9", middle / fluid,
+              "Bagnold 1941: about 0.8; " + SHAO_LU, file, scatter=(goes - dies) / 2 / fluid, bound="0.75 to 0.9", met=.75 <= middle / fluid <= .9,
+              bias=100 * (middle / fluid / .8 - 1))
+
+
+def flux(bench):
+    file = "saltation/results/flux.json"
+    runs = load(bench, file)["runs"]
+    for u, most in ((.24, 35), (.40, 15), (.56, 15)):
+        beds = [t for t in runs if t["u"] == u]
+        measured = mean([t["flux"] for t in beds])
+        bound, met = within(100 * (measured / beds[0]["creyssels"] - 1), most)
+        scatter = max(half_range([t["flux"] for t in beds]), max(t["error"] for t in beds) / len(beds) ** .5)
+        yield row("saturated flux, g/m/s", f"column, u* = {u:g} m/s, mean of {len(beds)} beds", beds[0]["creyssels"], measured, CREYSSELS, file,
+                  scatter=scatter, bound=bound, met=met)
+    file = "saltation/results/resolved.json"
+    runs = load(bench, file)["runs"]
+    for u in sorted({t["u"] for t in runs}):
+        beds = [t for t in runs if t["u"] == u]
+        measured, wanted = mean([t["flux"] for t in beds]), beds[0]["creyssels"]
+        bound, met = within(100 * (measured / wanted - 1), 30)
+        inside = max(t["error"] for t in beds) / len(beds) ** .5
+        yield row("saturated flux, g/m/s", f"resolved air, u* = {u:g} m/s, {len(beds)} bed{'s' if len(beds) > 1 else ''}", wanted, measured,
+                  CREYSSELS + (", the line through its points" if u == .5 else ""), file,
+                  scatter=max(half_range([t["flux"] for t in beds]) or 0, inside), bound=bound, met=met)
+
+
+def heaps(bench):
+    file = "saltation/results/heaps.json"
+    r = load(bench, file)
+    angles = [t["angle"] for t in r["repose"]]
+    yield row("angle of repose above the slot, degrees", f"hopper, {len(angles)} beds", "30 to 34", mean(angles), "dry sand: Carrigy 1970, Sedimentology 14, 147",
+              file, scatter=half_range(angles), bound="30 to 34", met=30 <= mean(angles) <= 34, bias=100 * (mean(angles) / 32 - 1))
+    for name, key, low, high in (("run-out of 99 % of the grains over L0", "front", 2.4, 3.6), ("run-out before the first gap over L0", "gap", 2.4, 3.6),
+                                 ("height over L0", "height", .83, 1.32)):
+        values = [t[key] for t in r["collapse"]]
+        yield row(name, f"column of sand, a = 2, {len(values)} beds", f"{low:g} to {high:g}", mean(values), HEAPS, file, scatter=half_range(values),
+                  bound=f"{low:g} to {high:g}", met=low <= mean(values) <= high, bias=100 * (2 * mean(values) / (low + high) - 1))
+
+
+def storm(bench):
+    file = "saltation/results/storm.json"
+    r = load(bench, file)
+    yield row("momentum, rest over what is put in", "dune in air of held speed, 0.5 s", 0, r["share"], "conservation of momentum (exact)", file,
+              bound="within 1 %", met=abs(r["share"]) <= .01)
+    yield row("momentum, largest rest over what is put in", "dune in air of held speed, 0.5 s", 0, r["largest"], "conservation of momentum (exact)", file,
+              bound="within 1 %", met=abs(r["largest"]) <= .01)
+
+
+def paper(bench):
+    file = "paper/results/figures.json"
+    r = load(bench, file)
+    for k in r["kernels"]:
+        yield row("integral of the cubic kernel", f"h = {k['h']:g}", 1, k["area"], "Monaghan & Lattanzio 1985; Halik et al. 2015, figure 3", file)
+    for a in r["airflow"]:
+        slope = a["crest"] / a["upstream"] - 1
+        yield row("speed-up 1 mm over the crest", f"the paper's dune at {a['ms']:.1f} ms", 4 / 9, slope,
+                  "rule 2 H/L of Jackson & Hunt 1975, Q. J. R. Meteorol. Soc. 101, 929, for a low hill without blockage; H = 2 mm, L = 9 mm", file)
+
+
+def peers(bench):
+    file = "grains/results/lammps.json"
+    for r in load(bench, file):
+        yield row("particle-steps a second over LAMMPS'", f"grains in {r['dimensions']}D, {r['grains']} grains", 1, r["ratio"],
+                  "LAMMPS of Debian 12, granular pair style, same grains and step, one core", file, scatter=half_range(r["ratios"]))
+
+
+def rows(bench):
+    return [r for part in (grains_in_air, splash, threshold, flux, heaps, storm, paper, peers) for r in part(bench)]

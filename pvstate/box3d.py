@@ -1,0 +1,65 @@
+"""A scene in three dimensions with the box of its domain, axes and a cut: particles in front of the plane through the middle are left out.
+
+Colours tell the speed of what moves; walls are left out, the box stands for them. BARCHAN_CUT chooses the plane: x, y, z, or none; with a number the place in
+metres, "z=0.01".
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from barchan_view import *  # noqa: E402,F403
+
+series = start(__file__)
+if series.two_dimensional:
+    raise Wrong(f"{series.path} is a 2D scene; the state box3d shows 3D scenes")
+moving = series.phases("fluid", "grains", "elastic", "rigid")
+held = series.bounds(moving or [0])
+box = [float(x) for x in series.domain] if series.domain is not None else held
+room = 0.08 * max(box[1] - box[0], box[3] - box[2], box[5] - box[4])   # for the numbers at the axes
+figure = Figure(series, series.title, box=[x + (room if side % 2 else -room) for side, x in enumerate(box)])
+axis, _, place = os.environ.get("BARCHAN_CUT", "z").partition("=")
+if axis not in ("x", "y", "z", "none"):
+    raise Wrong(f"BARCHAN_CUT={axis}: expected x, y, z or none, or a place such as z=0.01")
+k = "xyz".find(axis)
+try:
+    where = float(place) if place else (held[2 * k] + held[2 * k + 1]) / 2 if k >= 0 else 0.0
+except ValueError:
+    raise Wrong(f"BARCHAN_CUT: '{place}' is no place in metres") from None
+
+
+def behind(source, name):
+    """What lies behind the plane, seen from the eye (which is at positive x, y and z): whole particles by their centres."""
+    if k < 0:
+        return source
+    cut = Calculator(registrationName=name + ": place", Input=source)
+    cut.ResultArrayName, cut.Function = "place", f"coords{'XYZ'[k]}"
+    part = Threshold(registrationName=name + " behind the cut", Input=cut)
+    part.Scalars = ["POINTS", "place"]
+    part.LowerThreshold, part.UpperThreshold = -1e30, where
+    return part
+
+
+shown = [figure.dots(behind(series.source(phase), series.phase_names[phase]), radius=0.5, array="velocity", size=series.size(phase)) for phase in moving]
+if shown:
+    figure.colours(shown, "velocity", 0.0, series.top_speed(moving), series.speed_title(moving), preset="Viridis (matplotlib)")
+
+outline = Box(registrationName="domain")
+outline.XLength, outline.YLength, outline.ZLength = (box[2 * a + 1] - box[2 * a] for a in range(3))
+outline.Center = [(box[2 * a] + box[2 * a + 1]) / 2 for a in range(3)]
+edges = Show(outline, figure.view)
+edges.SetRepresentationType("Outline")
+edges.AmbientColor = edges.DiffuseColor = INK
+axes = figure.view.AxesGrid
+axes.Visibility = 1
+milli = max(box[2 * a + 1] - box[2 * a] for a in range(3)) < 1.0
+axes.UseCustomBounds, axes.CustomBounds = 1, box
+axes.DataScale = [1e-3] * 3 if milli else [1.0] * 3
+axes.XTitle, axes.YTitle, axes.ZTitle = (f"{a} ({'mm' if milli else 'm'})" for a in "xyz")
+axes.ShowGrid = 0
+for name in "XYZ":
+    for part, size in (("Label", 17), ("Title", 19)):
+        setattr(axes, f"{name}{part}FontSize", max(6, int(size * figure.scale)))
+        setattr(axes, f"{name}{part}Color", INK)
+figure.view.OrientationAxesVisibility = 1
+figure.view.OrientationAxesLabelColor = INK
+figure.finish()

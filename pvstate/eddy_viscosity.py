@@ -1,0 +1,19 @@
+"""Viscosity of the eddies of fluids with turbulence = "mixing-length". Needs output.fields with "eddy_viscosity"."""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from barchan_view import *  # noqa: E402,F403
+
+series = start(__file__, "eddy_viscosity")
+series.need("eddy_viscosity")
+figure = Figure(series, series.title + ": viscosity of the eddies")
+fluids = series.phases("fluid")
+values = 1e6 * series.values("eddy_viscosity", fluids)
+shown = []
+for phase in fluids:   # mm2/s: short numbers at the colour bar
+    source = series.calculated(series.source(phase), "eddies", "1e6*eddy_viscosity")
+    shown.append(figure.dots(source, radius="whole" if series.two_dimensional else 0.5, array="eddies", component=None, size=series.size(phase)))
+figure.by_values(shown, "eddies", values, "viscosity of the eddies, mm²/s")
+figure.others(fluids)
+figure.finish()

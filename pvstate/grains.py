@@ -1,0 +1,18 @@
+"""All grains of a scene, from the colour of sand at rest to dark when fast; fluids faint, bodies grey, walls dark."""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from barchan_view import *  # noqa: E402,F403
+
+series = start(__file__)
+figure = Figure(series, series.title)
+grains = series.phases("grains")
+if not grains:
+    raise Wrong(f"{series.path} has no grains")
+speeds = series.speeds(grains)
+top = nice_ceiling(percentile(speeds[speeds > 0], 99)) if (speeds > 0).any() else 1.0
+figure.others(grains)
+shown = [figure.particles(phase, array="velocity", layer=4) for phase in grains]
+figure.colours(shown, "velocity", 0.0, top, series.speed_title(grains), points=SAND_SPEED)
+figure.finish()

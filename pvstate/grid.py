@@ -1,0 +1,38 @@
+"""Mean velocity on the first [[grid]] of the scene, from the file grid_NAME.vti beside the series: speed as colour, arrows over it; walls and bodies of the
+last frame.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from barchan_view import *  # noqa: E402,F403
+
+series = start(__file__)
+figure = Figure(series, series.title + ": mean on a grid")
+file = series.file_of("grid", "vti")[0]
+grid = XMLImageDataReader(registrationName=os.path.splitext(os.path.basename(file))[0], FileName=[file])
+grid.UpdatePipeline()
+if "velocity_mean" not in grid.PointData.keys():
+    raise Wrong(f"{file} has no array 'velocity_mean'")
+box = grid.GetDataInformation().GetBounds()
+source = grid if series.two_dimensional else Slice(registrationName="slice", Input=grid)
+if not series.two_dimensional:
+    source.SliceType.Origin = [(box[2 * k] + box[2 * k + 1]) / 2 for k in range(3)]
+    source.SliceType.Normal = [0.0, 0.0, 1.0]
+shown = Show(source, figure.view)
+shown.SetRepresentationType("Surface" if not series.two_dimensional else "Slice")
+ColorBy(shown, ("POINTS", "velocity_mean", "Magnitude"), separate=True)
+low, high = grid.PointData["velocity_mean"].GetRange(-1)
+figure.colours([shown], "velocity_mean", 0.0, nice_ceiling(high), "mean speed on the grid, m/s", preset="Viridis (matplotlib)")
+if series.two_dimensional:
+    sample = Calculator(registrationName="velocity", Input=grid)
+    sample.ResultArrayName, sample.Function = "velocity", "velocity_mean"
+    cells = [max(int(round(b - a)), 1) for a, b in grid.GetDataInformation().GetExtent() and [(grid.GetDataInformation().GetExtent()[2 * k],
+             grid.GetDataInformation().GetExtent()[2 * k + 1]) for k in range(2)]]
+    every = ExtractSubset(registrationName="every", Input=sample)
+    every.VOI = list(grid.GetDataInformation().GetExtent())
+    every.SampleRateI, every.SampleRateJ = max(1, cells[0] // 32), max(1, cells[1] // 24)
+    step = min((box[1] - box[0]) / min(cells[0], 32), (box[3] - box[2]) / min(cells[1], 24))
+    figure.arrows(every, 0.95 * step / nice_ceiling(high), scale_of=nice_ceiling(high), colour=[1.0, 1.0, 1.0], name="arrow", thickness=1.7, centred=True)
+figure.others(series.phases("fluid", "grains"))
+figure.finish()
