@@ -2,8 +2,11 @@
 
 import os
 
+import numpy as np
+from paraview import servermanager
 from paraview.simple import (AssignViewToLayout, CreateLayout, CreateView, GetActiveView, PlotData, SetActiveView, Show,
                              XMLPolyDataReader)
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from barchan_marks import FONT, INK
 
@@ -35,13 +38,27 @@ class Chart:
                     setattr(view, f"{axis}Axis{part}FontFamily", "File")
                     setattr(view, f"{axis}Axis{part}FontFile", FONT)
         view.LegendFontSize = int(20 * self.scale)
-        view.LegendLocation = "TopLeft"
+        view.LegendLocation = "TopRight"
         self._number = 0
 
     @staticmethod
     def read(file):
         """The line of points that an instrument wrote (.vtp)."""
         return XMLPolyDataReader(registrationName=os.path.splitext(os.path.basename(file))[0], FileName=[file])
+
+    @staticmethod
+    def values(source, name):
+        """A point array of a source, of vectors the component along x; finite values."""
+        source.UpdatePipeline()
+        array = vtk_to_numpy(servermanager.Fetch(source).GetPointData().GetArray(name))
+        array = array[:, 0] if array.ndim > 1 else array
+        return array[np.isfinite(array)]
+
+    def span(self, axis, low, high):
+        """From where to where an axis ("Left" or "Bottom") goes, instead of the range of the data."""
+        setattr(self.view, axis + "AxisUseCustomRange", 1)
+        setattr(self.view, axis + "AxisRangeMinimum", float(low))
+        setattr(self.view, axis + "AxisRangeMaximum", float(high))
 
     def line(self, source, x, arrays):
         """One line for each of `arrays` {name of the array: what the legend says} over the array x. Vectors have names such as velocity_mean_X, the

@@ -252,14 +252,14 @@ class Series:
                     f"example --set 'output.fields=[\"{names[0]}\"]'")
 
     def range_of(self, values):
-        """The range of colours of these values, and whether it is signed. With values on both sides of zero it is symmetric about zero; else it
-        begins at zero, or at the lowest value if that is above half of the highest."""
+        """The range of colours of these values, and whether it is signed. With values below zero it is symmetric about zero; else it begins at zero,
+        or at the lowest value if that is above half of the highest."""
         low, high = percentile(values, 0.5), percentile(values, 99.5)
-        if low < -0.05 * max(high, 0.0) and high > -0.05 * min(low, 0.0):
+        if low < -0.05 * max(high, 0.0):
             top = nice_ceiling(max(-low, high))
             return -top, top, True
         if high <= 0:
-            return (-nice_ceiling(-low), 0.0, False) if low < 0 else (0.0, 1.0, False)
+            return 0.0, 1.0, False
         return (low, high, False) if low > 0.5 * high else (0.0, nice_ceiling(high), False)
 
     def file_of(self, kind, ending):
