@@ -17,6 +17,7 @@
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/fluid/flow_zone.hpp"
 #include "models/fluid/fluid_phase.hpp"
+#include "models/fluid/spacing_border.hpp"
 #include "models/force_meter.hpp"
 #include "models/grains/contact_entry.hpp"
 #include "models/grains/grain_flux.hpp"
@@ -80,12 +81,12 @@ EntryKind kind_of_entry(const Interaction& pair, const Phase& a, const Phase& b)
   if (touch_as_bodies(pair, a, b))
     return touch_by_surfaces(a, b) ? EntryKind{describe_rigid_contact, make_entry<RigidContact>}
                                    : EntryKind{describe_body_contact, make_entry<BodyContact>};
-  if (is(fluid, fluid)) return {describe_fluids};
+  if (is(fluid, fluid)) return {describe_fluids, make_spacing_border};
   if (is(fluid, wall))
     return (a.kind() == wall ? a : b).wall().law == WallLaw::adami ? EntryKind{describe_boundary}
                                                                    : EntryKind{describe_ghosts, make_ghosts};
   if (is(column, grains)) return {describe_grains_in_column};
-  if (is(fluid, grains) && pair.drag_law != DragLaw::none) return {describe_sand_layer, make_entry<SandLayer>};
+  if (is(fluid, grains) && pair.drag_law != DragLaw::none) return {describe_sand_layer, make_sand_layer};
   if (is(fluid, grains) || is(fluid, elastic) || is(fluid, rigid)) return {describe_coupling, make_drag_entry};
   if (is(elastic, elastic)) return {is_total(a) ? describe_total_body : describe_elastic_pairs};
   const auto touches = [](const Phase& p) {

@@ -1,5 +1,6 @@
 // Of sides through which fluids flow: what cannot enter or leave, and sides that are no such sides.
 #include <algorithm>
+#include <cmath>
 
 #include "scene/checks.hpp"
 #include "scene/flow_ends.hpp"
@@ -74,6 +75,32 @@ void check_side(const Scene& scene, const Section& section, const std::vector<Se
   }
 }
 
+/// Beside the layer of one phase of a fluid the other phase needs its own: neither has a surface there.
+void check_joined_layers(const Scene& scene, const Report& report) {
+  if (report.touched("phases") || report.touched("interactions")) return;
+  for (std::size_t k = 0; k < scene.outflows.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j) {
+      const Outflow &one = scene.outflows[j], &other = scene.outflows[k];
+      const std::string at = "outflow." + std::to_string(k);
+      const Phase *a = find_phase(scene, one.phase), *b = find_phase(scene, other.phase);
+      if (one.side != other.side || !a || !b || a == b || report.touched(at)) continue;
+      if (a->kind() != PhaseKind::fluid || b->kind() != PhaseKind::fluid || a->spacing == b->spacing ||
+          !entry_between(scene, *a, *b))
+        continue;
+      const auto layer_of = [&](const Phase& fluid) {
+        for (const FlowEnd& end : flow_ends(scene, fluid))
+          if (end.outflow && end.side == one.side) return end.layer;
+        return 0.0;
+      };
+      if (std::abs(layer_of(*a) - layer_of(*b)) < std::max(a->spacing, b->spacing)) continue;
+      report(report.has(at + ".layer") ? at + ".layer" : at + ".phase",
+             "\"" + a->name + "\" and \"" + b->name +
+                 "\" are joined and need layers of one length, beside each other; "
+                 "expected the same layer (m) in outflow." +
+                 std::to_string(j));
+    }
+}
+
 }  // namespace
 
 void check_flow_ends(const Scene& scene, const Report& report) {
@@ -82,6 +109,7 @@ void check_flow_ends(const Scene& scene, const Report& report) {
     check_fluid(scene, section, report);
     check_side(scene, section, sections, report);
   }
+  check_joined_layers(scene, report);
   for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
     const std::string dotted = "inflow." + std::to_string(k);
     const std::string log = dotted + ".velocity.log-profile", profile = dotted + ".velocity.profile";

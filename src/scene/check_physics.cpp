@@ -1,5 +1,6 @@
 // Physics that no law can do, and keys that nothing reads where they stand.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <set>
 
@@ -172,9 +173,39 @@ class PhysicsChecker {
       return wall && wall->if_wall() && wall->wall().roughness && fill.packing == Packing::fitted &&
              std::holds_alternative<BedShape>(fill.shape) && entry_between(scene_, fluid, *wall);
     });
+    several_airs(pair, fluid, grains, dotted);
     if (!ground)
       needs("ground under the wind; expected a wall that \"" + fluid.name +
             "\" feels, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
+  }
+
+  /// Grains that fly from one phase of an air into another feel both by one law (models/coupling/airs.hpp).
+  void several_airs(const Interaction& pair, const Phase& fluid, const Phase& grains, const std::string& dotted) {
+    for (const Phase& other : scene_.phases) {
+      if (other.kind() != PhaseKind::fluid || other.name == fluid.name) continue;
+      const Interaction *joint = entry_between(scene_, fluid, other), *its = entry_between(scene_, grains, other);
+      const bool drags = its && its->drag_law != DragLaw::none;
+      if (joint && !drags) {
+        tell(dotted + ".drag", "grains that fly from \"" + fluid.name + "\" into \"" + other.name +
+                                   "\", which is joined to it, would feel no air; expected an entry " + other.name +
+                                   "-" + grains.name + " with the same drag");
+        continue;
+      }
+      if (!drags) continue;
+      if (other.spacing == fluid.spacing || fluid.density != other.density ||
+          fluid.fluid().viscosity != other.fluid().viscosity)
+        tell(dotted + ".drag", "\"" + grains.name + "\" feels two airs, \"" + fluid.name + "\" and \"" + other.name +
+                                   "\"; expected phases of one air, with the same density and viscosity and spacings "
+                                   "that differ");
+      if (its->drag_law != pair.drag_law)
+        tell(dotted + ".drag",
+             "another law than that of \"" + other.name + "\", which is the same air; expected one law");
+      if (other.spacing < fluid.spacing)
+        for (const char* key : {".lift", ".gusts"})
+          if (report_.has(dotted + key))
+            tell(dotted + key, "only near the ground, in the layers of the finest air, \"" + other.name +
+                                   "\", it acts; expected no such key here");
+    }
   }
 
   /// Grains that feel a fluid through a kernel are sources of no volume: in a fluid nearly as heavy as they are, what
@@ -209,6 +240,38 @@ class PhysicsChecker {
                       "\"; expected a density of the grains above that of the fluid");
   }
 
+  /// What models/fluid/spacing_border.hpp needs: two phases that differ in nothing but their spacing.
+  void border(const Interaction& pair, const Phase& a, const Phase& b, const std::string& at) {
+    if (!report_.has(at)) return;
+    if (a.kind() != PhaseKind::fluid || b.kind() != PhaseKind::fluid || a.name == b.name)
+      return tell(at, "only two phases of one fluid pass it on to each other; expected no such key here");
+    if (!pair.border.is_formula())
+      return tell(at,
+                  "a number has one sign everywhere; expected a formula that is below zero where the finer particles "
+                  "are, as \"y - 0.05\"");
+    const FluidKeys &p = a.fluid(), &q = b.fluid();
+    const auto alike = [&](const char* key, bool same) {
+      if (!same && !report_.touched(place(a) + "." + key) && !report_.touched(place(b) + "." + key))
+        tell(at, std::string("a particle that is passed on keeps all it has, and \"") + a.name + "\" and \"" + b.name +
+                     "\" differ in " + key + "; expected the same in both, or no border");
+    };
+    for (const Phase* fluid : {&a, &b})
+      if (fluid->fluid().scheme == FluidScheme::plain)
+        tell(at, "plain sums know no two spacings; expected scheme = \"consistent\" of \"" + fluid->name + "\"");
+    alike("density", a.density == b.density);
+    alike("viscosity", p.viscosity == q.viscosity);
+    alike("sound-speed", p.sound_speed == q.sound_speed);
+    alike("equation-of-state", p.equation_of_state == q.equation_of_state);
+    alike("tait-exponent", p.tait_exponent == q.tait_exponent);
+    alike("background-pressure", p.background_pressure == q.background_pressure);
+    alike("turbulence", p.turbulence == q.turbulence);
+    const double ratio = std::max(a.spacing, b.spacing) / std::min(a.spacing, b.spacing);
+    if (!(std::abs(ratio - 2.0) < 1e-6) && !report_.touched(place(a) + ".spacing") &&
+        !report_.touched(place(b) + ".spacing"))
+      tell(at, "a coarse particle becomes " + std::string(scene_.dimensions == 2 ? "4" : "8") +
+                   " fine ones; expected spacings 1 to 2, and they are 1 to " + number_text(ratio));
+  }
+
   void pair(const Interaction& pair, const Phase& a, const Phase& b) {
     const std::string dotted = "interactions." + pair.a + "-" + pair.b;
     const auto is = [&](PhaseKind k, PhaseKind l) {
@@ -220,6 +283,7 @@ class PhysicsChecker {
         tell(dotted + key,
              "only the entry of a fluid of particles and grains with a law of drag by name, as drag = \"duran\", has "
              "it; expected no such key");
+    border(pair, a, b, dotted + ".border");
     buoyancy(pair, a, b, dotted);
     contact(pair, a, b, dotted);
     if (of_spheres(pair) || touch_as_bodies(pair, a, b)) return;

@@ -35,10 +35,28 @@ namespace {
 
 constexpr double layer_in_spacings = 20.0;  // of an outflow that does not say it; docs/method.md, Open sides
 
-/// Rows of given values: as wide as the kernel of the fluid, and one more, since the last row enters as a whole.
+/// Whether an entry joins a fluid to a coarser one, whose particles then see those of the zone.
+const Interaction* joint_with_coarser(const Scene& scene, const Phase& fluid, const Phase& other) {
+  const bool coarser = other.kind() == PhaseKind::fluid && other.spacing > fluid.spacing;
+  return coarser ? entry_between(scene, fluid, other) : nullptr;
+}
+
+/// Rows of given values: as wide as the kernels of the fluid, and one more, since the last row enters as a whole.
 double rows_beyond(const Scene& scene, const Phase& fluid) {
   const Interaction* own = entry_between(scene, fluid, fluid);
-  return std::ceil(own ? own->radius : 3.0) + 1.0;
+  double widest = own ? own->radius : 3.0;
+  for (const Phase& other : scene.phases)
+    if (const Interaction* joint = joint_with_coarser(scene, fluid, other))
+      widest = std::max(widest, joint->radius * other.spacing / fluid.spacing);
+  return std::ceil(widest) + 1.0;
+}
+
+/// m, of a layer whose length the scene does not say: phases of a fluid that are joined have one of the same length.
+double usual_layer(const Scene& scene, const Phase& fluid) {
+  double longest = layer_in_spacings * fluid.spacing;
+  for (const Phase& other : scene.phases)
+    if (joint_with_coarser(scene, fluid, other)) longest = std::max(longest, usual_layer(scene, other));
+  return longest;
 }
 
 FlowEnd make_end(const Scene& scene, const Phase& fluid, Side side, double layer) {
@@ -59,7 +77,7 @@ void add_ends(const Scene& scene, const Phase& fluid, std::vector<FlowEnd>& ends
   }
   for (const Outflow& outflow : scene.outflows) {
     if (outflow.phase != fluid.name) continue;
-    ends.push_back(make_end(scene, fluid, outflow.side, outflow.layer.value_or(layer_in_spacings * fluid.spacing)));
+    ends.push_back(make_end(scene, fluid, outflow.side, outflow.layer.value_or(usual_layer(scene, fluid))));
     ends.back().outflow = &outflow;
   }
 }

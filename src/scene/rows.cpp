@@ -163,6 +163,9 @@ constexpr Key rows_of_keys[] = {
      "Only with a law of drag by name, in a fluid: standard deviation of the wind near the bed over its mean, in patterns that the wind carries (docs/method.md); 0.38 at a wall.", {.at_least = 0.0, .at_most = 0.6}},
     {"interactions.pair", "buoyancy", at<&Interaction::buoyancy>(false), "",
      "Only with a law of drag by name: grains weigh less by the fluid that they displace, g (1 - rho_fluid/rho_grain) (docs/method.md). In air 0.05 % for quartz; in water it matters."},
+    {"interactions.pair", "border", at<&Interaction::border>("none: fluid stays in its phase").like("\"y - 0.05\""), "m",
+     "Only of two phases of one fluid, spacings 1 to 2: below zero the fluid has the finer particles, above zero the coarser ones, as in \"y - 0.05\". "
+     "A coarse particle that crosses it becomes 4 fine ones (3D: 8), and so many fine ones become a coarse one; mass and momentum are kept (docs/method.md).", {}, "x y z"},
     {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it").like("0.9"), "",
      "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
      "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},

@@ -178,6 +178,7 @@ struct Interaction {
   double lift{};                      // with drag_law and a fluid: lift of a grain on the bed over its drag
   double gusts{};                     // the same: standard deviation of the wind at the bed over its mean
   bool buoyancy{};                    // with drag_law: grains weigh less by the fluid that they displace
+  Expression border{};                // fluid-fluid: above zero the coarser particles; a number: none is given
   ContactLaw law{};                   // of grains with grains, walls and bodies
   std::optional<double> restitution;  // contact of bodies: of two particles that meet
   std::optional<double> friction;     // contact of bodies: Coulomb's coefficient

@@ -66,6 +66,19 @@ AirGrid::Flat AirGrid::velocity(const Flat& x) const {
   return all > 0.0 ? Flat{sum[0] / all, sum[1] / all} : Flat{};
 }
 
+/// A node on a side of the domain stands for half a cell, one in its corner for a quarter.
+double AirGrid::density(const Flat& x) const {
+  double sum = 0.0;
+  for (const auto& [node, weight] : corners(x)) {
+    const std::array<std::size_t, 2> at{node % nodes_[0], node / nodes_[0]};
+    double area = width_[0] * width_[1];
+    for (std::size_t d = 0; d < 2; ++d)
+      if (!bounds_.periodic[d] && (at[d] == 0 || at[d] == cells_[d])) area *= 0.5;
+    sum += weight * mass_[node] / area;
+  }
+  return sum;
+}
+
 void AirGrid::push(const Flat& x, const Flat& force) {
   const auto about = corners(x);
   double all = 0.0;

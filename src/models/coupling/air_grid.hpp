@@ -23,6 +23,8 @@ class AirGrid {
   void gather(const PhaseParticles& air);
   /// Mean velocity (m/s) about a place; zero where no air is.
   Flat velocity(const Flat& x) const;
+  /// kg/m3 (2D: kg/m2 a metre of depth), of the particles about a place.
+  double density(const Flat& x) const;
   /// A force (N per metre of depth) on the air about a place. What finds no air is lost: lost().
   void push(const Flat& x, const Flat& force);
   const Flat& lost() const { return lost_; }

@@ -17,6 +17,11 @@ void describe_sand_layer(const Scene&, const Interaction&, const Layout&, PlanEn
   e.blows = true;
 }
 
+std::unique_ptr<Model> make_sand_layer(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
+  if (airs_about(layout, entry.other).front() != entry.fluid) return nullptr;
+  return std::make_unique<SandLayer>(scene, layout, entry);
+}
+
 SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& entry)
     : scene_(scene),
       layout_(layout),
@@ -30,7 +35,7 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       top_(reach * layout.phases[fluid_].spacing),
       lift_(entry.lift),
       interval_(interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
-      grid_(layout.bounds, layout.phases[fluid_].spacing) {
+      grid_(layout, airs_about(layout, grains_)) {
   if (!(entry.gusts > 0.0)) return;
   const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
   const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
@@ -70,7 +75,7 @@ void SandLayer::attach(Workspace& w) {
   near_.reserve(grains);
   flying_.reserve(grains);
   rate_.assign(grains, 0.0);
-  w.ground_stress[fluid_].assign(w.particles(fluid_).size(), 0.0);
+  for (const std::size_t fluid : grid_.phases()) w.ground_stress[fluid].assign(w.particles(fluid).size(), 0.0);
 }
 
 /// Beyond an open side the ground goes on as it is at the side, and the last layer does.
@@ -102,24 +107,26 @@ SandLayer::Between SandLayer::between(double x) const {
 
 void SandLayer::schedule(Schedule& s) {
   using enum Field;
-  const std::string &fluid = layout_.phases[fluid_].name, &grains = layout_.phases[grains_].name;
-  s.add({stage::eddies, name_, {{fluid, {position}, {}}}, [this] { give_stress(); }});
-  s.add({stage::drag,
-         name_,
-         {{fluid, {position, velocity}, {drag_acceleration}},
-          {grains, {position, velocity, radius}, {drag_acceleration}}},
-         [this] { exchange(); },
+  const std::string& grains = layout_.phases[grains_].name;
+  Touches exchanged{{grains, {position, velocity, radius}, {drag_acceleration}}};
+  Touches acting{{grains, {drag_acceleration}, {acceleration}}};
+  for (const std::size_t k : grid_.phases()) {
+    const std::string& fluid = layout_.phases[k].name;
+    s.add({stage::eddies, k == fluid_ ? name_ : fluid + "-" + grains, {{fluid, {position}, {}}}, [this, k] {
+             give_stress(k);
+           }});
+    exchanged.push_back({fluid, {position, velocity}, {drag_acceleration}});
+    acting.push_back({fluid, {drag_acceleration}, {acceleration}});
+  }
+  s.add({stage::drag, name_, exchanged, [this] { exchange(); },
          Repeat{wind_exchanges, interval_, [this] { return exchange_is_due() ? 1L : 0L; }}});
-  s.add({stage::drag,
-         name_,
-         {{fluid, {drag_acceleration}, {acceleration}}, {grains, {drag_acceleration}, {acceleration}}},
-         [this] { act(); }});
+  s.add({stage::drag, name_, acting, [this] { act(); }});
 }
 
 /// The stress on the top of the layers, for each particle of the air that may rub on the ground.
-void SandLayer::give_stress() {
-  auto& stress = w_->ground_stress[fluid_];
-  const PhaseParticles& air = w_->particles(fluid_);
+void SandLayer::give_stress(std::size_t fluid) {
+  auto& stress = w_->ground_stress[fluid];
+  const PhaseParticles& air = w_->particles(fluid);
   stress.resize(air.size());
   const double* x = air.column(Field::position, 0);
   const auto n = static_cast<std::int64_t>(air.size());
@@ -147,7 +154,7 @@ void SandLayer::exchange() {
   AirProfile& clock = profile(0);
   const double dt = w_->state.dt;
   hold_ = dt > 0.0 ? time_to_next_exchange(interval_, dt) : interval_;
-  grid_.gather(w_->particles(fluid_));
+  grid_.gather(w_->state);
   if (finds_steady_wind_) find_steady_wind();
   exchange(clock.elapsed, clock.last);
   clock.elapsed = 0.0;
@@ -156,7 +163,8 @@ void SandLayer::exchange() {
 
 /// The drag of the last exchange.
 void SandLayer::act() {
-  for (const std::size_t phase : {fluid_, grains_}) add_kept_drag(w_->particles(phase));
+  for (const std::size_t phase : grid_.phases()) add_kept_drag(w_->particles(phase));
+  add_kept_drag(w_->particles(grains_));
 }
 
 /// The speed of the air's particles along the ground, where the layer ends: by the weights by which places feel it.
@@ -241,7 +249,7 @@ void SandLayer::exchange(double kept, double meant) {
     const double across = -p.mass_of(k) * (ay[k] * q.ground.along_x - ax[k] * q.ground.along_y);
     grid_.push({x[k], y[k]}, {-across * q.ground.along_y, across * q.ground.along_x});
   }
-  grid_.give(w_->particles(fluid_));
+  grid_.give(w_->state);
 }
 
 /// Which grains are in the layers and which over them.

@@ -1,7 +1,7 @@
 // Grains finer than the air's particles in a turbulent wind over sand: the entry of a fluid and of spheres with a law
 // of drag by name, in two dimensions.
 //
-// A grain feels the mean wind about its place (air_grid.hpp). Nearer than `reach` spacings to the ground the particles
+// A grain feels the mean wind about its place (airs.hpp). Nearer than `reach` spacings to the ground the particles
 // of the air do not resolve the wind. There, along each spacing of the ground, the wind is one-dimensional
 // (models/column/air_column.hpp): it has the speed of the air's particles on its top, passes between the grains of the
 // bed, and loses what the grains take. The stress on its top is what the ground takes from the air's particles, in
@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "models/column/air_column.hpp"
-#include "models/coupling/air_grid.hpp"
+#include "models/coupling/airs.hpp"
 #include "models/coupling/gusts.hpp"
 #include "models/workspace.hpp"
 
@@ -32,6 +32,10 @@ namespace barchan {
 
 /// An entry of a fluid and of spheres with a law of drag by name.
 void describe_sand_layer(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
+
+/// The model of such an entry: of several phases of one air, that of the finest does the work of all; the others have
+/// none (null).
+std::unique_ptr<Model> make_sand_layer(const Scene& scene, const Layout& layout, const PlanEntry& entry);
 
 class SandLayer : public Model {
  public:
@@ -82,7 +86,7 @@ class SandLayer : public Model {
   void feel();
   void spread();
   void blow(double dt);
-  void give_stress();
+  void give_stress(std::size_t fluid);
   double top_speed(std::size_t column) const;
   double felt(double x, double wind) const;
   double lift(const Near& q, double blows, double along, double rate) const;
@@ -98,7 +102,7 @@ class SandLayer : public Model {
   double interval_, hold_ = 0.0;    // s
   bool finds_steady_wind_ = false;  // the exchange that comes is the first one
   Workspace* w_ = nullptr;
-  AirGrid grid_;
+  Airs grid_;                   // of all phases of the air; `fluid_` is the finest, at the ground
   std::optional<Gusts> gusts_;  // where the entry has some
   std::vector<double> ground_;  // m, over the bottom of the domain
   std::vector<AirColumn> layers_;

@@ -1,0 +1,58 @@
+#include "models/coupling/airs.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace barchan {
+
+std::vector<std::size_t> airs_about(const Layout& layout, std::size_t grains) {
+  std::vector<std::size_t> airs;
+  for (const PlanEntry& e : layout.entries)
+    if (e.blows && !e.wind_by_height && e.drag_law != DragLaw::none && e.other == grains) airs.push_back(e.fluid);
+  std::sort(airs.begin(), airs.end(),
+            [&](std::size_t a, std::size_t b) { return layout.phases[a].spacing < layout.phases[b].spacing; });
+  return airs;
+}
+
+Airs::Airs(const Layout& layout, std::vector<std::size_t> phases) : phases_(std::move(phases)) {
+  for (const std::size_t k : phases_) {
+    const PlanPhase& p = layout.phases[k];
+    density_.push_back(p.mass / (p.spacing * p.spacing));
+    grids_.emplace_back(layout.bounds, p.spacing);
+  }
+}
+
+void Airs::gather(const State& state) {
+  for (std::size_t k = 0; k < grids_.size(); ++k) grids_[k].gather(state.phases[phases_[k]]);
+}
+
+Airs::Flat Airs::velocity(const Flat& x) const {
+  if (grids_.size() == 1) return grids_.front().velocity(x);
+  Flat sum{};
+  double all = 0.0;
+  for (std::size_t k = 0; k < grids_.size(); ++k) {
+    const double share = grids_[k].density(x) / density_[k];
+    if (!(share > 0.0)) continue;
+    const Flat u = grids_[k].velocity(x);
+    all += share;
+    for (std::size_t d = 0; d < 2; ++d) sum[d] += share * u[d];
+  }
+  return all > 0.0 ? Flat{sum[0] / all, sum[1] / all} : Flat{};
+}
+
+void Airs::push(const Flat& x, const Flat& force) {
+  if (grids_.size() == 1) return grids_.front().push(x, force);
+  double all = 0.0;
+  for (std::size_t k = 0; k < grids_.size(); ++k) all += grids_[k].density(x) / density_[k];
+  if (!(all > 0.0)) return grids_.front().push(x, force);
+  for (std::size_t k = 0; k < grids_.size(); ++k) {
+    const double share = grids_[k].density(x) / density_[k] / all;
+    if (share > 0.0) grids_[k].push(x, {share * force[0], share * force[1]});
+  }
+}
+
+void Airs::give(State& state) const {
+  for (std::size_t k = 0; k < grids_.size(); ++k) grids_[k].give(state.phases[phases_[k]]);
+}
+
+}  // namespace barchan
