@@ -39,12 +39,6 @@ void check_partner(const Interaction& pair, const Phase& a, const Phase& b, cons
     report(dotted,
            "a rigid body feels no column of air; expected an entry with fluids, bodies, walls or grains without a "
            "diameter");
-  if (other.kind() == PhaseKind::fluid && other.fluid().scheme != FluidScheme::plain &&
-      !report.touched("phases." + other.name + ".scheme"))
-    report("phases." + other.name + ".scheme",
-           "a rigid body gets what the fluid loses, pair by pair, and the sums of the consistent scheme are not of "
-           "pairs; expected \"plain\", or no entry " +
-               pair.a + "-" + pair.b);
   if (other.if_grains() && other.diameter())
     report(dotted, "spheres do not touch rigid bodies yet; expected grains without a diameter, or no such entry");
 }

@@ -92,7 +92,7 @@ void RigidInFluid::find_surface(const RigidBody& body, const std::vector<Vec3>& 
 void RigidInFluid::attach(Workspace& w) {
   w_ = &w;
   for (const auto& e : layout_.entries)
-    if (e.extends && e.other == solid_)
+    if (e.extends && e.other == solid_ && !e.corrected)
       felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                        pair_viscosity(scene_, layout_, solid_, e.fluid), false});
   const std::size_t n = w.particles(solid_).size();
@@ -141,6 +141,7 @@ void RigidInFluid::move_surface() {
 
 /// Adds to the torques on the bodies.
 void RigidInFluid::turn() {
+  if (felt_.empty()) return;
   turning_friction(w_->records(solid_, Record::extended), felt_, rates_, areas_, couples_, layout_.dimensions);
   const PhaseParticles& p = w_->particles(solid_);
   for (std::size_t b = 0; b < bodies_; ++b) {
