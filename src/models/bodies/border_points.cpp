@@ -93,8 +93,8 @@ void add_box(const Vec3& low, const Vec3& high, int dimensions, double width, Po
 void add_facets(const std::vector<Facet>& facets, int dimensions, double width, Points& points) {
   const Outline outline(facets, dimensions);
   for (const Facet& f : outline.facets()) {
-    const Vec3 across = dimensions == 2 ? Vec3{f[1][1] - f[0][1], f[0][0] - f[1][0], 0.0}
-                                        : cross(f[1] - f[0], f[2] - f[0]);
+    const Vec3 across =
+        dimensions == 2 ? Vec3{f[1][1] - f[0][1], f[0][0] - f[1][0], 0.0} : cross(f[1] - f[0], f[2] - f[0]);
     Vec3 normal = 1.0 / norm(across) * across;
     const Vec3 middle = dimensions == 2 ? 0.5 * (f[0] + f[1]) : 1.0 / 3.0 * (f[0] + f[1] + f[2]);
     const double size = dimensions == 2 ? norm(f[1] - f[0]) : std::sqrt(area_of(f[0], f[1], f[2]));

@@ -20,8 +20,11 @@ constexpr double light = 1.5;  // m_s/m that an acoustic step bears
 
 RigidInFluid::RigidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
     : scene_(scene), layout_(layout), solid_(solid) {
-  for (const auto& e : layout.entries)
-    if (e.extends && e.other == solid) reach_ = std::max(reach_, e.radius);
+  for (const auto& e : layout.entries) {
+    if (!e.extends || e.other != solid) continue;
+    reach_ = std::max(reach_, e.radius);
+    of_pairs_ = of_pairs_ || !e.corrected;
+  }
 }
 
 void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks) {
@@ -33,7 +36,7 @@ void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks)
   for (std::size_t k = 0; k < bodies_; ++k) {
     const RigidBody& body = state.bodies[first_body_ + k];
     find_surface(body, blocks[solid_].position, state.phases[solid_]);
-    following_.push_back(1.0 / (1.0 + 2.0 * answering_share(body, scene_, layout_)));
+    following_.push_back(of_pairs_ ? 1.0 / (1.0 + 2.0 * answering_share(body, scene_, layout_)) : 1.0);
   }
 }
 
