@@ -12,6 +12,7 @@
 #include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
 #include "models/coupling/drag_entry.hpp"
+#include "models/coupling/border_load.hpp"
 #include "models/coupling/rigid_in_fluid.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
@@ -184,9 +185,12 @@ Models make_models(const Scene& scene, const Layout& layout) {
     models.push_back(std::make_unique<GrainSource>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     if (!layout.phases[k].moves || !layout.is_extended(k)) continue;
-    if (scene.phases[k].kind() == PhaseKind::rigid)  // its surface moves before the fluid is extended into it
+    const bool rigid = scene.phases[k].kind() == PhaseKind::rigid;
+    if (rigid)  // its surface moves before the fluid is extended into it
       models.push_back(std::make_unique<RigidInFluid>(scene, layout, k));
-    models.push_back(std::make_unique<SolidInFluid>(scene, layout, k));
+    models.push_back(std::make_unique<SolidInFluid>(scene, layout, k, rigid));
+    for (const PlanEntry& e : layout.entries)
+      if (rigid && e.extends && e.other == k && e.corrected) models.push_back(make_entry<BorderLoad>(scene, layout, e));
   }
   if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.own_steps; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));

@@ -30,8 +30,36 @@ void check_turning(const Motion& motion, const std::string& dotted, const Scene&
         "key");
 }
 
+/// A fluid of the consistent scheme acts on the surfaces of bodies.
+void check_fluid(const Scene& scene, const Interaction& pair, const Phase& body, const Phase& fluid,
+                 const Report& report) {
+  const std::string scheme = "phases." + fluid.name + ".scheme", entry = "interactions." + pair.a + "-" + pair.b;
+  if (report.touched(scheme)) return;
+  if (has_eddies(scene, fluid) && !report.touched("phases." + fluid.name + ".turbulence"))
+    report(entry,
+           "the friction of a turbulent fluid on a rigid body is not there yet; expected a laminar fluid (no "
+           "turbulence, no wall with roughness or shear-stress), or no such entry");
+  for (const Phase& other : scene.phases)
+    if (other.name != fluid.name && other.kind() == PhaseKind::fluid && entry_between(scene, body, other))
+      return report(entry,
+                    "a body in two fluids, of which one has the consistent scheme, is not there yet; expected one "
+                    "fluid about \"" +
+                        body.name + "\", or the scheme \"plain\" for all");
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const std::string shape = "fill." + std::to_string(k) + ".shape";
+    if (scene.fills[k].phase != body.name || report.touched(shape)) continue;
+    if (!has_surface(scene.fills[k].shape, scene.dimensions) ||
+        std::holds_alternative<SidesShape>(scene.fills[k].shape))
+      report(
+          shape,
+          "a fluid of the consistent scheme acts on the surface of a body, and this shape has none; expected " +
+              std::string(scene.dimensions == 2 ? "box, cube, disc, ring, polygon or surface" : "box, cube or sphere") +
+              ", or phases." + fluid.name + ".scheme = \"plain\"");
+  }
+}
+
 /// The entries that a rigid phase cannot have.
-void check_partner(const Interaction& pair, const Phase& a, const Phase& b, const Report& report) {
+void check_partner(const Scene& scene, const Interaction& pair, const Phase& a, const Phase& b, const Report& report) {
   const std::string dotted = "interactions." + pair.a + "-" + pair.b;
   if (report.touched(dotted)) return;
   const Phase& other = rigid(a) ? b : a;
@@ -39,12 +67,8 @@ void check_partner(const Interaction& pair, const Phase& a, const Phase& b, cons
     report(dotted,
            "a rigid body feels no column of air; expected an entry with fluids, bodies, walls or grains without a "
            "diameter");
-  if (other.kind() == PhaseKind::fluid && other.fluid().scheme != FluidScheme::plain &&
-      !report.touched("phases." + other.name + ".scheme"))
-    report("phases." + other.name + ".scheme",
-           "a rigid body gets what the fluid loses, pair by pair, and the sums of the consistent scheme are not of "
-           "pairs; expected \"plain\", or no entry " +
-               pair.a + "-" + pair.b);
+  if (other.kind() == PhaseKind::fluid && other.fluid().scheme == FluidScheme::consistent)
+    check_fluid(scene, pair, rigid(a) ? a : b, other, report);
   if (other.if_grains() && other.diameter())
     report(dotted, "spheres do not touch rigid bodies yet; expected grains without a diameter, or no such entry");
 }
@@ -96,7 +120,7 @@ void check_rigid(const Scene& scene, const Report& report) {
   for (const Interaction& pair : scene.interactions) {
     const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
     if (!a || !b || !known(*a) || !known(*b) || (!rigid(*a) && !rigid(*b))) continue;
-    check_partner(pair, *a, *b, report);
+    check_partner(scene, pair, *a, *b, report);
     if (touch_by_surfaces(*a, *b)) check_surfaces(scene, pair, report);
   }
   for (const Phase& phase : scene.phases)

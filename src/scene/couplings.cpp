@@ -67,7 +67,7 @@ double weight_share(const Scene& scene, const Phase& grains) {
 bool solids_move_in(const Scene& scene, const Phase& fluid) {
   for (const Phase& other : scene.phases) {
     const PhaseKind kind = other.kind();
-    if (kind != PhaseKind::grains && kind != PhaseKind::elastic && kind != PhaseKind::rigid) continue;
+    if (kind != PhaseKind::grains && kind != PhaseKind::elastic) continue;
     const Interaction* pair = entry_between(scene, fluid, other);
     if (pair && pair->drag_law == DragLaw::none) return true;
   }

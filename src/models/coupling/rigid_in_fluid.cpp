@@ -20,8 +20,11 @@ constexpr double light = 1.5;  // m_s/m that an acoustic step bears
 
 RigidInFluid::RigidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
     : scene_(scene), layout_(layout), solid_(solid) {
-  for (const auto& e : layout.entries)
-    if (e.extends && e.other == solid) reach_ = std::max(reach_, e.radius);
+  for (const auto& e : layout.entries) {
+    if (!e.extends || e.other != solid) continue;
+    reach_ = std::max(reach_, e.radius);
+    of_pairs_ = of_pairs_ || !e.corrected;
+  }
 }
 
 void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks) {
@@ -33,7 +36,7 @@ void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks)
   for (std::size_t k = 0; k < bodies_; ++k) {
     const RigidBody& body = state.bodies[first_body_ + k];
     find_surface(body, blocks[solid_].position, state.phases[solid_]);
-    following_.push_back(1.0 / (1.0 + 2.0 * answering_share(body, scene_, layout_)));
+    following_.push_back(of_pairs_ ? 1.0 / (1.0 + 2.0 * answering_share(body, scene_, layout_)) : 1.0);
   }
 }
 
@@ -92,7 +95,7 @@ void RigidInFluid::find_surface(const RigidBody& body, const std::vector<Vec3>& 
 void RigidInFluid::attach(Workspace& w) {
   w_ = &w;
   for (const auto& e : layout_.entries)
-    if (e.extends && e.other == solid_)
+    if (e.extends && e.other == solid_ && !e.corrected)
       felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                        pair_viscosity(scene_, layout_, solid_, e.fluid), false});
   const std::size_t n = w.particles(solid_).size();
@@ -141,6 +144,7 @@ void RigidInFluid::move_surface() {
 
 /// Adds to the torques on the bodies.
 void RigidInFluid::turn() {
+  if (felt_.empty()) return;
   turning_friction(w_->records(solid_, Record::extended), felt_, rates_, areas_, couples_, layout_.dimensions);
   const PhaseParticles& p = w_->particles(solid_);
   for (std::size_t b = 0; b < bodies_; ++b) {

@@ -28,6 +28,8 @@ class RigidInFluid : public Model {
   const Layout& layout_;
   std::size_t solid_, first_body_ = 0, bodies_ = 0;
   double reach_ = 0.0;  // m, of its entries with fluids
+  bool of_pairs_ =
+      false;  // a fluid of the plain scheme feels it: forces of pairs, which answer its acceleration at once
   /// A particle of a body, along the body's own axes.
   struct OfBody {
     Vec3 arm;      // m, from the body's place

@@ -10,14 +10,14 @@ void describe_coupling(const Scene& scene, const Interaction& pair, const Layout
   describe_extension(scene, pair, e);
 }
 
-SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
-    : scene_(scene), layout_(layout), solid_(solid), separate_(layout.phases[solid].separate) {}
+SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid, bool by_borders)
+    : scene_(scene), layout_(layout), solid_(solid), by_borders_(by_borders), separate_(layout.phases[solid].separate) {}
 
 void SolidInFluid::attach(Workspace& w) {
   w_ = &w;
   sources_ = extension_sources(w, solid_);
   for (const auto& e : layout_.entries) {
-    if (!e.extends || e.other != solid_) continue;
+    if (!e.extends || e.other != solid_ || (by_borders_ && e.corrected)) continue;
     fluids_.push_back(e.fluid);
     felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
                      pair_viscosity(scene_, layout_, solid_, e.fluid), false});

@@ -13,8 +13,9 @@ void describe_coupling(const Scene& scene, const Interaction& pair, const Layout
 
 class SolidInFluid : public Model {
  public:
-  /// For the phase `solid` and all fluids that are extended into it.
-  SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid);
+  /// For the phase `solid` and all fluids that are extended into it. `by_borders`: what fluids of the consistent scheme
+  /// do to it is BorderLoad's work.
+  SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid, bool by_borders);
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
 
@@ -25,6 +26,7 @@ class SolidInFluid : public Model {
   const Scene& scene_;
   const Layout& layout_;
   std::size_t solid_;
+  bool by_borders_;
   bool separate_;  // its particles move one by one (PlanPhase::separate)
   Workspace* w_ = nullptr;
   std::vector<ExtensionSource> sources_;

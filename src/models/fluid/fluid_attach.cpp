@@ -233,9 +233,7 @@ void FluidPhase::attach(Workspace& w) {
   q.shift_limit = 0.2 * pace;
   q.gravity = scene_.domain.gravity;
   q.acceleration = forces_.uniform();
-  for (const auto& e : layout_.entries)
-    if (e.extends && e.fluid == number_ && layout_.phases[e.other].moves)  // what moves may leave holes
-      q.pores = 0.5 * q.sound_speed / q.smoothing_length;
+  if (solids_move_in(scene_, phase_)) q.pores = 0.5 * q.sound_speed / q.smoothing_length;  // they may leave holes
   q.lattice_moment = lattice_moment(layout_, number_);
   if (plan_.free_surface) {
     surface_ = std::make_unique<SurfaceFinder>();

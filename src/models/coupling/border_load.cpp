@@ -1,0 +1,237 @@
+#include "models/coupling/border_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/hold_inside.hpp"
+#include "models/coupling/border_fit.hpp"
+#include "models/fluid/fluid_phase.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr double fit_radius = 3.0;                       // spacings
+constexpr double flat_pieces = 0.5, solid_pieces = 0.7;  // spacings, in 2D and in 3D
+constexpr double margin = 0.02, margin_of_off = 0.2;     // spacings: as at the sides of the domain (Sides)
+
+/// Two unit vectors across a normal; in 2D the first one.
+std::array<Vec3, 2> along_border(const Vec3& normal, int dimensions) {
+  if (dimensions == 2) return {Vec3{-normal[1], normal[0], 0.0}, Vec3{}};
+  const Vec3 other = std::abs(normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, first = cross(normal, other);
+  const Vec3 along = 1.0 / norm(first) * first;
+  return {along, cross(normal, along)};
+}
+
+}  // namespace
+
+BorderLoad::BorderLoad(const Scene& scene, const Layout& layout, const PlanEntry& entry)
+    : scene_(scene),
+      layout_(layout),
+      fluid_(entry.fluid),
+      solid_(entry.other),
+      spacing_(layout.phases[fluid_].spacing),
+      radius_(fit_radius * spacing_),
+      viscosity_(pair_viscosity(scene, layout, solid_, fluid_)) {
+  for (const PlanEntry& e : layout.entries)
+    if (e.searched) slack_ = std::max(slack_, layout.skin * e.radius);
+}
+
+void BorderLoad::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  const std::vector<Vec3>& x = blocks[solid_].position;
+  const double width = (layout_.dimensions == 2 ? flat_pieces : solid_pieces) * spacing_;
+  const auto first = std::find_if(state.bodies.begin(), state.bodies.end(),
+                                  [&](const RigidBody& body) { return body.phase == solid_; });
+  first_body_ = static_cast<std::size_t>(first - state.bodies.begin());
+  std::size_t most = 0;
+  for (const RigidBody& body : layout_.phases[solid_].rigid_bodies) {
+    Border border{BodyBorder(body, scene_, layout_.phases[solid_].spacing, width, radius_ + spacing_), {}};
+    const OwnAxes axes(body);
+    for (const BodyBorder::Piece& piece : border.body.pieces()) {
+      const Vec3 at = body.first_place + axes.to_space(piece.arm);
+      std::size_t nearest = body.first;
+      for (std::size_t k = body.first; k < body.first + body.count; ++k)
+        if (norm(x[k] - at) < norm(x[nearest] - at)) nearest = k;
+      border.anchors.push_back({nearest, axes.to_own(at - x[nearest])});
+    }
+    most = std::max(most, border.anchors.size());
+    borders_.push_back(std::move(border));
+  }
+  stress_.resize(most);
+}
+
+void BorderLoad::attach(Workspace& w) {
+  w_ = &w;
+  w.particles(solid_).keep_places();
+}
+
+void BorderLoad::schedule(Schedule& s) {
+  using enum Field;
+  const std::string &name = layout_.phases[solid_].name, &fluid = layout_.phases[fluid_].name;
+  s.add({stage::walls, name + ", border", {{fluid, {position, velocity, density}, {position, velocity}}}, [this] {
+           hold();
+         }});
+  s.add({stage::reaction,
+         name + ", border",
+         {{name, {position}, {}}, {fluid, {position, velocity, pressure}, {}}},
+         [this] { load(); }});
+}
+
+/// Puts particles back that came too near to a body, and stops their motion towards it.
+void BorderLoad::hold() {
+  PhaseParticles& fluid = w_->particles(fluid_);
+  const double rest = scene_.phases[fluid_].density;
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  std::array<double*, 3> x{}, v{};
+  Vec3 period{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    x[d] = fluid.column(Field::position, static_cast<int>(d));
+    v[d] = fluid.column(Field::velocity, static_cast<int>(d));
+    if (layout_.bounds.periodic[d]) period[d] = layout_.bounds.high[d] - layout_.bounds.low[d];
+  }
+  const double* rho = fluid.column(Field::density);
+  const auto n = static_cast<std::int64_t>(fluid.size());
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    const RigidBody& body = w_->state.bodies[first_body_ + b];
+    const BodyBorder& border = borders_[b].body;
+    const OwnAxes axes(body);
+    const Vec3 rate = axes.to_space(own_angular_velocity(body));
+    const double farthest = border.reach() + margin_of_off * spacing_;
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      Vec3 arm{};
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        arm[d] = x[d][k] - body.now.place[d];
+        if (period[d] > 0.0) arm[d] -= period[d] * std::round(arm[d] / period[d]);
+      }
+      if (!(dot(arm, arm) < farthest * farthest)) continue;
+      const auto gap = border.gap(axes, arm);
+      const double room = (std::abs(rho[k] - rest) > Sides::off * rest ? margin_of_off : margin) * spacing_;
+      if (!gap || gap->distance >= room || !std::isfinite(gap->distance)) continue;
+      const Vec3 carried = body.now.velocity + cross(rate, arm);
+      double into = 0.0;
+      for (std::size_t d = 0; d < dimensions; ++d) into += (v[d][k] - carried[d]) * gap->normal[d];
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        x[d][k] += (room - gap->distance) * gap->normal[d];
+        v[d][k] -= std::min(into, 0.0) * gap->normal[d];
+      }
+    }
+  }
+}
+
+void BorderLoad::load() {
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    RigidBody& body = w_->state.bodies[first_body_ + b];
+    if (layout_.dimensions == 2) find_stress<2>(body, borders_[b]);
+    else find_stress<3>(body, borders_[b]);
+    sum(body, borders_[b]);
+  }
+}
+
+template <int Dim>
+void BorderLoad::find_stress(const RigidBody& body, const Border& border) {
+  const OwnAxes axes(body);
+  const auto count = static_cast<std::int64_t>(border.anchors.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t q = 0; q < count; ++q)
+    stress_[static_cast<std::size_t>(q)] = stress_at<Dim>(body, axes, border, static_cast<std::size_t>(q));
+}
+
+/// Calls f(particle of the fluid, place of the piece in its image) for all that may be within the radius of a piece.
+/// Only particles are looked at, not the images of the grid: these reach no farther than the lists.
+template <int Dim, class F>
+void BorderLoad::each_near(const Anchor& anchor, const OwnAxes& axes, F&& f) const {
+  const PhaseParticles& solid = w_->particles(solid_);
+  const CellGrid &grid = w_->neighbours.grid(fluid_), &own = w_->neighbours.grid(solid_);
+  const std::size_t place = solid.places()[anchor.particle], n = w_->particles(fluid_).size();
+  const Vec3 beside = axes.to_space(anchor.to_piece);
+  const double reach = radius_ + slack_;
+  const auto periodic = [&](std::size_t d) { return d < Dim && layout_.bounds.periodic[d]; };
+  const auto search = [&](const std::array<int, 3>& turns) {
+    Vec3 at{};
+    std::array<float, 3> sorted{};  // where it was when the particles were sorted, less the domain's lower corner
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double period = layout_.bounds.high[d] - layout_.bounds.low[d], turned = turns[d] * period + beside[d];
+      at[d] = solid.column(Field::position, static_cast<int>(d))[place] + turned;
+      sorted[d] = own.search_position(static_cast<int>(d))[place] + static_cast<float>(turned);
+      if (periodic(d) && !(sorted[d] > -reach && sorted[d] < period + reach)) return;
+    }
+    grid.candidates(sorted, sorted, static_cast<float>(reach), [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::size_t b = begin; b < std::min<std::size_t>(end, n); ++b) f(b, at);
+    });
+  };
+  std::array<int, 3> ways{};
+  for (std::size_t d = 0; d < 3; ++d) ways[d] = periodic(d) ? 1 : 0;
+  for (int k = -ways[2]; k <= ways[2]; ++k)
+    for (int j = -ways[1]; j <= ways[1]; ++j)
+      for (int i = -ways[0]; i <= ways[0]; ++i) search({i, j, k});
+}
+
+template <int Dim>
+BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& axes, const Border& border,
+                                         std::size_t number) const {
+  using Vector = typename BorderSample<Dim>::Vector;
+  const PhaseParticles& fluid = w_->particles(fluid_);
+  const BodyBorder::Piece& piece = border.body.pieces()[number];
+  const Vec3 arm = axes.to_space(piece.arm), normal = axes.to_space(piece.normal),
+             rate = axes.to_space(own_angular_velocity(body));
+  const auto along = along_border(normal, Dim);
+  const double* pressure = fluid.column(Field::pressure);
+  BorderSample<Dim> sample;
+  const auto look = [&](std::size_t b, const Vec3& at) {
+    Vec3 r{};
+    for (std::size_t d = 0; d < Dim; ++d) r[d] = fluid.column(Field::position, static_cast<int>(d))[b] - at[d];
+    const double share = 1.0 - dot(r, r) / (radius_ * radius_);
+    if (!(share > 0.0)) return;
+    const auto gap = border.body.gap(axes, arm + r);
+    if (!gap) return;
+    Vector scaled, u;
+    const Vec3 carried = body.now.velocity + cross(rate, arm + r);
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const auto c = static_cast<Eigen::Index>(d);
+      scaled[c] = r[d] / spacing_;
+      u[c] = fluid.column(Field::velocity, static_cast<int>(d))[b] - carried[d];
+    }
+    const double w = share * share;
+    sample.press(scaled, w, pressure[b] - scene_.phases[fluid_].density * dot(scene_.domain.gravity, r));
+    if (!(gap->distance > 0.0) || !(dot(normal, r) > 0.0)) return;
+    Eigen::Matrix<double, Dim - 1, 1> beside;
+    for (std::size_t d = 0; d + 1 < Dim; ++d) beside[static_cast<Eigen::Index>(d)] = dot(along[d], r) / spacing_;
+    sample.rub(gap->distance / spacing_, beside, w, u);
+  };
+  each_near<Dim>(border.anchors[number], axes, look);
+  if (!sample.any()) return {};
+  Stress s{true, sample.pressure(), {}};
+  const Vector rise = sample.rise();
+  for (std::size_t d = 0; d < Dim; ++d) s.friction[d] = viscosity_ / spacing_ * rise[static_cast<Eigen::Index>(d)];
+  s.friction = s.friction - dot(s.friction, normal) * normal;
+  return s;
+}
+
+/// Where no fluid is near, as between bodies that touch, the pressure is the mean of the others; beside a free surface
+/// it is zero.
+void BorderLoad::sum(RigidBody& body, const Border& border) const {
+  const auto& pieces = border.body.pieces();
+  double wet = 0.0, mean = 0.0;
+  for (std::size_t q = 0; q < pieces.size(); ++q) {
+    if (!stress_[q].wet) continue;
+    wet += pieces[q].content;
+    mean += pieces[q].content * stress_[q].pressure;
+  }
+  if (!(wet > 0.0)) return;
+  mean = layout_.phases[fluid_].free_surface ? 0.0 : mean / wet;
+  const OwnAxes axes(body);
+  Vec3 force{}, torque{};
+  for (std::size_t q = 0; q < pieces.size(); ++q) {
+    if (!stress_[q].wet) continue;
+    const Vec3 normal = axes.to_space(pieces[q].normal),
+               push = pieces[q].content * (stress_[q].friction - (stress_[q].pressure - mean) * normal);
+    force = force + push;
+    torque = torque + cross(axes.to_space(pieces[q].arm), push);
+  }
+  body.now.touch_force = body.now.touch_force + force;
+  body.now.touch_torque = body.now.touch_torque + torque;
+}
+
+}  // namespace barchan
