@@ -1,5 +1,6 @@
 // Of sides through which fluids flow: what cannot enter or leave, and sides that are no such sides.
 #include <algorithm>
+#include <cmath>
 
 #include "scene/checks.hpp"
 #include "scene/flow_ends.hpp"
@@ -74,6 +75,31 @@ void check_side(const Scene& scene, const Section& section, const std::vector<Se
   }
 }
 
+/// Synthetic turbulence that cannot be, or that the spacing cannot carry.
+void check_fluctuations(const Scene& scene, std::size_t number, const Report& report) {
+  const std::string at = "inflow." + std::to_string(number) + ".fluctuations";
+  const Inflow& inflow = scene.inflows[number];
+  if (!inflow.fluctuations || report.touched("inflow") || report.touched("phases") || report.touched("dimensions"))
+    return;
+  const Phase* fluid = find_phase(scene, inflow.phase);
+  if (!fluid || fluid->kind() != PhaseKind::fluid) return;
+  const Fluctuations& given = *inflow.fluctuations;
+  if (fluid->fluid().turbulence == Turbulence::mixing_length)
+    return report(at, "the mixing length of \"" + fluid->name +
+                          "\" stands for all fluctuations; expected turbulence = \"smagorinsky\", or no turbulence");
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+    if (!(given.rms[d] > 0.0)) return report(at + ".rms", "a component is not positive; expected m/s of each");
+  const double limit = fluid->density * given.rms[0] * given.rms[1];
+  if (!(std::abs(given.shear_stress) < limit))
+    return report(at + ".shear-stress",
+                  "more than fluctuations of this rms can give; expected less than density "
+                  "times rms x times rms y, " +
+                      number_text(limit) + " Pa");
+  if (given.length < 4.0 * fluid->spacing)
+    report(at + ".length", "shorter than four spacings of \"" + fluid->name + "\", " +
+                               number_text(4.0 * fluid->spacing) + " m, which the fluid cannot carry");
+}
+
 }  // namespace
 
 void check_flow_ends(const Scene& scene, const Report& report) {
@@ -84,6 +110,7 @@ void check_flow_ends(const Scene& scene, const Report& report) {
   }
   for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
     const std::string dotted = "inflow." + std::to_string(k);
+    check_fluctuations(scene, k, report);
     const std::string log = dotted + ".velocity.log-profile", profile = dotted + ".velocity.profile";
     if (report.is_section(dotted + ".velocity") && !report.touched(dotted)) {
       if (!report.has(log) && !report.has(profile))
