@@ -40,7 +40,10 @@ ForceOn::ForceOn(const Scene& scene, const Layout& layout, std::size_t number)
   phase_ = set_.phase();
 }
 
-void ForceOn::begin(State&, const std::vector<ParticleBlock>& blocks) { set_.find(blocks); }
+void ForceOn::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  set_.find(blocks);
+  make_volume(state);
+}
 
 void ForceOn::attach(Workspace& w) {
   w_ = &w;
@@ -63,6 +66,40 @@ void ForceOn::attach(Workspace& w) {
   balance_ = !meter_.box && !fluids_.empty() && std::all_of(fluids_.begin(), fluids_.end(), [&](const Felt& felt) {
     return touches_nothing_else(felt.phase);
   });
+  by_volume_ = !balance_ && volume_.there() && fluids_.size() == 1 && stands_alone(fluids_.front());
+  if (!by_volume_) volume_ = {};
+}
+
+/// A control volume about a wall that stays, if it lies inside the domain and reaches no other wall.
+void ForceOn::make_volume(const State& state) {
+  if (!stays_ || layout_.phases[phase_].travels || scene_.force_meters[number_].box || !pushes_.empty()) return;
+  volume_ = ControlVolume(state.phases[phase_], layout_.phases[phase_].spacing, layout_);
+  for (std::size_t other = 0; other < state.phases.size() && volume_.there(); ++other) {
+    const PhaseParticles& p = state.phases[other];
+    if (other == phase_ || layout_.phases[other].flows) continue;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      Vec3 x{};
+      for (int d = 0; d < layout_.dimensions; ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
+      if (layout_.phases[other].moves || volume_.near(x)) {
+        volume_ = {};
+        break;
+      }
+    }
+  }
+}
+
+/// The fluid is laminar, consistent, without a free surface, free of a [[forcing]], and touches nothing that could come
+/// into the volume.
+bool ForceOn::stands_alone(const Felt& felt) const {
+  const PlanPhase& fluid = layout_.phases[felt.phase];
+  const bool forced = std::any_of(scene_.forcings.begin(), scene_.forcings.end(),
+                                  [&](const Forcing& f) { return f.phase == fluid.name; });
+  return scene_.phases[felt.phase].fluid().scheme == FluidScheme::consistent && !fluid.eddies && !fluid.free_surface &&
+         !forced && std::all_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+           if (!e.has(felt.phase) || e.partner(felt.phase) == felt.phase) return true;
+           const PlanPhase& other = layout_.phases[e.partner(felt.phase)];
+           return !other.flows && !other.moves && !other.travels;
+         });
 }
 
 /// A fluid of the consistent scheme whose entries are those with itself and with this wall.
@@ -76,12 +113,13 @@ bool ForceOn::touches_nothing_else(std::size_t fluid) const {
 void ForceOn::schedule(Schedule& s) {
   using enum Field;
   const FieldSet reads = FieldSet{position, velocity, acceleration};
+  const FieldSet of_fluid = by_volume_ ? FieldSet{position, velocity, acceleration, density, pressure} : reads;
   const FieldSet writes = stays_ ? FieldSet{acceleration} : FieldSet{};
   const std::string& name = layout_.phases[phase_].name;
   Touches touches{{name, reads, writes, {stays_ ? RecordSet{Record::extended} : RecordSet{}, {}, {}}}};
   for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
     if (stays_ && e.extends && e.other == phase_)
-      touches.push_back({layout_.phases[e.fluid].name, reads, {}, {{}, {Record::motion}, {}}});
+      touches.push_back({layout_.phases[e.fluid].name, of_fluid, {}, {{}, {Record::motion}, {}}});
   s.add({stays_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 
@@ -118,6 +156,7 @@ void ForceOn::measure_wall() {
     fluid_reaction(wall, w_->records(phase_, Record::extended), felt.fluid, false);
     add_sums(felt.share, {0, 0, 0});
   }
+  if (by_volume_) return measure_volume();
   if (!balance_) return;
   force_ = {};
   for (const Felt& felt : fluids_) {
@@ -130,6 +169,27 @@ void ForceOn::measure_wall() {
           fluid.mass() * (reproducible_sum(fluid.size(), [&](std::size_t k) { return a[k] - weight; }) - given[d]);
     }
   }
+}
+
+/// By what the fluid in the control volume loses.
+void ForceOn::measure_volume() {
+  const Felt& felt = fluids_.front();
+  const PhaseParticles& fluid = w_->particles(felt.phase);
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  shares_.clear();
+  for (std::size_t k = 0; k < fluid.size(); ++k) {
+    const auto at = [&](Field field) {
+      Vec3 value{};
+      for (std::size_t d = 0; d < dimensions; ++d) value[d] = fluid.column(field, static_cast<int>(d))[k];
+      return value;
+    };
+    const Vec3 x = at(Field::position);
+    if (!volume_.near(x)) continue;
+    shares_.push_back(volume_.share(x, at(Field::velocity), at(Field::acceleration) - scene_.domain.gravity,
+                                    fluid.mass(), fluid.column(Field::density)[k], fluid.column(Field::pressure)[k],
+                                    felt.fluid.viscosity));
+  }
+  force_ = ControlVolume::force(shares_);
 }
 
 /// Adds `share` of mass times (acceleration - less), and its moment.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "models/bodies/sets.hpp"
+#include "models/fluid/control_volume.hpp"
 #include "models/fluid/fluid_rates.hpp"
 #include "models/row_mean.hpp"
 
@@ -13,10 +14,11 @@ namespace barchan {
 /// velocity that are continued into the wall (Adami et al. 2012); of a fluid of the consistent scheme over the sum of
 /// the gradient on a lattice, which that scheme divides by too. Such pairs miss what a curved wall does by about dx/(2
 /// R) (docs/method.md). So of a whole wall that is all that its fluids of that scheme touch, the force is what the
-/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of spheres: the impulse of their contacts over the
-/// steps within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its
-/// particles, less gravity. The torque counts periodic images nearest to its point.
-/// history.csv has the means since its last row.
+/// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of a wall that stays inside the domain, alone in a
+/// laminar fluid of that scheme without a free surface or a [[forcing]], it is what a control volume about it loses
+/// (models/fluid/control_volume.hpp). Torques are always those of the pairs. Of spheres: the impulse of their contacts
+/// over the steps within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its particles, less
+/// gravity. The torque counts periodic images nearest to its point. history.csv has the means since its last row.
 class ForceOn : public Model {
  public:
   ForceOn(const Scene& scene, const Layout& layout, std::size_t number);
@@ -28,30 +30,36 @@ class ForceOn : public Model {
   void archive(Archive& a) override;
 
  private:
-  void measure();
-  void measure_wall();
-  void sum_up();
-  void add_sums(double share, const Vec3& less);
-  bool touches_nothing_else(std::size_t fluid) const;
-
-  const Scene& scene_;
-  const Layout& layout_;
-  const ForceMeter meter_;
-  std::size_t number_, phase_;
-  SetOfBody set_;
-  bool stays_;  // a wall: its fluids and spheres tell what acts on it, not its acceleration
   struct Felt {
     FluidNeighbour fluid;
     double share;  // of the sums
     std::size_t phase;
     Forces forces;
   };
+  void measure();
+  void measure_wall();
+  void sum_up();
+  void add_sums(double share, const Vec3& less);
+  bool touches_nothing_else(std::size_t fluid) const;
+  bool stands_alone(const Felt& felt) const;
+  void make_volume(const State& state);
+  void measure_volume();
+
+  const Scene& scene_;
+  const Layout& layout_;
+  const ForceMeter meter_;
+  std::size_t number_, phase_;
+  SetOfBody set_;
+  bool stays_;                       // a wall: its fluids and spheres tell what acts on it, not its acceleration
   std::vector<Felt> fluids_;         // of a wall
   std::vector<std::size_t> pushes_;  // of a wall, by spheres: in Workspace::sphere_pushes
   bool balance_ = false;             // the force is what the fluids lose
-  Vec3 force_{}, torque_{};          // N, N m (per metre of depth in 2D): of all but spheres, at the end of the step
-  Vec3 impulse_{};  // N s: so far, of spheres that of their contacts, else by the trapezoids of the kicks
-  Vec3 smooth_{};   // N: of all but spheres, at the end of the last step
+  bool by_volume_ = false;           // ... what a control volume loses
+  ControlVolume volume_;
+  std::vector<ControlVolume::Share> shares_;
+  Vec3 force_{}, torque_{};  // N, N m (per metre of depth in 2D): of all but spheres, at the end of the step
+  Vec3 impulse_{};           // N s: so far, of spheres that of their contacts, else by the trapezoids of the kicks
+  Vec3 smooth_{};            // N: of all but spheres, at the end of the last step
   RowMean mean_force_, mean_torque_;
   Workspace* w_ = nullptr;
 };

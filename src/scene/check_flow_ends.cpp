@@ -75,30 +75,57 @@ void check_side(const Scene& scene, const Section& section, const std::vector<Se
   }
 }
 
+/// m, of a section's layer: what the scene says, or the usual one.
+double layer_of(const Scene& scene, const Phase& fluid, Side side) {
+  for (const FlowEnd& end : flow_ends(scene, fluid))
+    if (end.side == side) return end.layer;
+  return 0.0;
+}
+
 /// Beside the layer of one phase of a fluid the other phase needs its own: neither has a surface there.
-void check_joined_layers(const Scene& scene, const Report& report) {
+void check_joined_layers(const Scene& scene, const std::vector<Section>& sections, const Report& report) {
   if (report.touched("phases") || report.touched("interactions")) return;
-  for (std::size_t k = 0; k < scene.outflows.size(); ++k)
+  for (std::size_t k = 0; k < sections.size(); ++k)
     for (std::size_t j = 0; j < k; ++j) {
-      const Outflow &one = scene.outflows[j], &other = scene.outflows[k];
-      const std::string at = "outflow." + std::to_string(k);
+      const Section &one = sections[j], &other = sections[k];
+      const std::string& at = other.dotted;
       const Phase *a = find_phase(scene, one.phase), *b = find_phase(scene, other.phase);
       if (one.side != other.side || !a || !b || a == b || report.touched(at)) continue;
       if (a->kind() != PhaseKind::fluid || b->kind() != PhaseKind::fluid || a->spacing == b->spacing ||
           !entry_between(scene, *a, *b))
         continue;
-      const auto layer_of = [&](const Phase& fluid) {
-        for (const FlowEnd& end : flow_ends(scene, fluid))
-          if (end.outflow && end.side == one.side) return end.layer;
-        return 0.0;
-      };
-      if (std::abs(layer_of(*a) - layer_of(*b)) < std::max(a->spacing, b->spacing)) continue;
+      const double difference = layer_of(scene, *a, one.side) - layer_of(scene, *b, one.side);
+      if (std::abs(difference) < std::max(a->spacing, b->spacing)) continue;
       report(report.has(at + ".layer") ? at + ".layer" : at + ".phase",
              "\"" + a->name + "\" and \"" + b->name +
-                 "\" are joined and need layers of one length, beside each other; "
-                 "expected the same layer (m) in outflow." +
-                 std::to_string(j));
+                 "\" are joined and need layers of one length, beside each other; expected the same layer (m) in " +
+                 one.dotted);
     }
+}
+
+/// Synthetic turbulence that cannot be, or that the spacing cannot carry.
+void check_fluctuations(const Scene& scene, std::size_t number, const Report& report) {
+  const std::string at = "inflow." + std::to_string(number) + ".fluctuations";
+  const Inflow& inflow = scene.inflows[number];
+  if (!inflow.fluctuations || report.touched("inflow") || report.touched("phases") || report.touched("dimensions"))
+    return;
+  const Phase* fluid = find_phase(scene, inflow.phase);
+  if (!fluid || fluid->kind() != PhaseKind::fluid) return;
+  const Fluctuations& given = *inflow.fluctuations;
+  if (fluid->fluid().turbulence == Turbulence::mixing_length)
+    return report(at, "the mixing length of \"" + fluid->name +
+                          "\" stands for all fluctuations; expected turbulence = \"smagorinsky\", or no turbulence");
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+    if (!(given.rms[d] > 0.0)) return report(at + ".rms", "a component is not positive; expected m/s of each");
+  const double limit = fluid->density * given.rms[0] * given.rms[1];
+  if (!(std::abs(given.shear_stress) < limit))
+    return report(at + ".shear-stress",
+                  "more than fluctuations of this rms can give; expected less than density "
+                  "times rms x times rms y, " +
+                      number_text(limit) + " Pa");
+  if (given.length < 4.0 * fluid->spacing)
+    report(at + ".length", "shorter than four spacings of \"" + fluid->name + "\", " +
+                               number_text(4.0 * fluid->spacing) + " m, which the fluid cannot carry");
 }
 
 }  // namespace
@@ -109,9 +136,10 @@ void check_flow_ends(const Scene& scene, const Report& report) {
     check_fluid(scene, section, report);
     check_side(scene, section, sections, report);
   }
-  check_joined_layers(scene, report);
+  check_joined_layers(scene, sections, report);
   for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
     const std::string dotted = "inflow." + std::to_string(k);
+    check_fluctuations(scene, k, report);
     const std::string log = dotted + ".velocity.log-profile", profile = dotted + ".velocity.profile";
     if (report.is_section(dotted + ".velocity") && !report.touched(dotted)) {
       if (!report.has(log) && !report.has(profile))

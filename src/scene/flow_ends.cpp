@@ -72,7 +72,7 @@ FlowEnd make_end(const Scene& scene, const Phase& fluid, Side side, double layer
 void add_ends(const Scene& scene, const Phase& fluid, std::vector<FlowEnd>& ends) {
   for (const Inflow& inflow : scene.inflows) {
     if (inflow.phase != fluid.name) continue;
-    ends.push_back(make_end(scene, fluid, inflow.side, 0.0));
+    ends.push_back(make_end(scene, fluid, inflow.side, inflow.layer));
     ends.back().inflow = &inflow;
   }
   for (const Outflow& outflow : scene.outflows) {

@@ -300,12 +300,21 @@ struct Forcing {
 };
 
 /// A side of the domain through which a fluid enters (scene/flow_ends.hpp).
+/// Synthetic turbulence on top of the velocity of an inflow (models/fluid/inflow_fluctuations.hpp).
+struct Fluctuations {
+  double length{};        // m, longitudinal integral length
+  Vec3 rms{};             // m/s, of the components
+  double shear_stress{};  // Pa, - density <u'v'>
+  unsigned seed = 1;
+};
 struct Inflow {
   std::string phase;
   Side side{};
   VectorExpression velocity;              // m/s, formulas in x, y, z, t
   std::optional<LogProfile> log_profile;  // added to `velocity`, along x
   std::string profile;                    // file of a velocity by height, added to `velocity`; empty: none
+  double layer{};                         // m, in which sound is absorbed beyond the side
+  std::optional<Fluctuations> fluctuations;
 };
 /// A side through which it leaves, and enters again where the flow turns.
 struct Outflow {

@@ -105,6 +105,48 @@ TEST(FlowZones, SoundLeaves) {
   EXPECT_LT(open.worst(pressure) / amplitude, 0.0125);
 }
 
+/// Sound of 20 spacings that comes obliquely to an inflow, 45 degrees: what is left of its amplitude when it would have
+/// gone. Without a layer about 6 %.
+TEST(FlowZones, ObliqueSoundLeavesThroughTheLayerOfAnInflow) {
+  const auto left_over = [](const std::string& layer) {
+    const std::string wave = "0.01*exp(-((x - 0.9)/0.25)^2)*cos(2*pi*(x + y)/0.2828427)";
+    OpenRun open(
+        open_box("[1.6, 0.2828427]", "0.01", "",
+                 "pressure = \"" + wave + "\"\nvelocity = [\"-0.0707107*" + wave + "\", \"-0.0707107*" + wave + "\"]",
+                 "velocity = [0, 0]\n" + layer, periodic_y));
+    const auto pressure = [](const Vec3&, const Vec3&, double p) { return p; };
+    open.run(0.02);
+    const double amplitude = open.worst(pressure);
+    open.run(0.22);  // 1.56 m along x with c cos 45
+    return open.worst(pressure) / amplitude;
+  };
+  const double without = left_over(""), with = left_over("layer = 0.4\n");
+  testing::report("oblique sound sent back by an inflow without a layer", without, 1.0);
+  testing::report("with a layer of two waves", with, 0.015);
+  EXPECT_LT(with, 0.015);
+  EXPECT_GT(without, 2.0 * with);
+}
+
+/// Fluctuations that enter a stream arrive inside it: their size behind the side.
+TEST(FlowZones, FluctuationsEnter) {
+  OpenRun open(open_box("[1, 1]", "0.05", "", "velocity = [1, 0]",
+                        "velocity = [1, 0]\nfluctuations = { length = 0.3, rms = [0.1, 0.1], seed = 3 }", periodic_y));
+  double sum = 0.0, count = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    open.run(0.5 + 0.05 * k);
+    const PhaseParticles& p = open.simulation->phases()[0];
+    for (std::size_t q = 0; q < p.size(); ++q) {
+      const double x = p.column(Field::position, 0)[q];
+      if (x < 0.0 || x > 0.3) continue;
+      sum += std::pow(p.column(Field::velocity, 1)[q], 2);
+      count += 1.0;
+    }
+  }
+  const double rms = std::sqrt(sum / count);
+  testing::report("rms of the velocity across, behind the side, over what enters", rms / 0.1, 1.2);
+  EXPECT_NEAR(rms / 0.1, 1.0, 0.25);
+}
+
 /// The water drags the walls of the domain by dp/dx H L = 12 rho nu U L/H. They go on beyond both sides, 1.7 times as
 /// long in all: what happens there is no force on the walls of the scene.
 TEST(FlowZones, TheForceOnWallsIsThatOfTheDomain) {
@@ -133,7 +175,9 @@ void expect_same_bits(const OpenRun& a, const OpenRun& b) {
 
 TEST(FlowZones, HaveTheSameBitsOnTwoThreadsAndFromACheckpoint) {
   const std::string text = open_box("[1, 0.4]", "0.05", "", "perturb = 0.2\nvelocity = [\"1 + 0.2*sin(5*pi*y)\", 0]",
-                                    "velocity = [\"1 + 0.2*sin(5*pi*y)\", 0]", periodic_y);
+                                    "velocity = [\"1 + 0.2*sin(5*pi*y)\", 0]\nlayer = 0.2\n"
+                                    "fluctuations = { length = 0.2, rms = [0.1, 0.1] }",
+                                    periodic_y);
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
   OpenRun straight(text);

@@ -24,9 +24,12 @@ FlowZone::FlowZone(const Scene& scene, const Layout& layout, std::size_t fluid, 
       c_(plan_.sound_speed),
       rho_(law_.reference_density),
       dx_(plan_.spacing),
-      reach_(dx_ * (end.inflow ? seen : std::max(end_seen - end.layer / plan_.spacing, 0.0))),
+      reach_(dx_ * std::max((end.inflow ? seen : end_seen) - end.layer / plan_.spacing, 0.0)),
       pressure_(end.outflow ? end.outflow->pressure : Expression{}) {
-  if (end.inflow) velocity_.emplace(scene, end);
+  if (!end.inflow) return;
+  velocity_.emplace(scene, end);
+  if (end.inflow->fluctuations)
+    fluctuations_.emplace(end, InflowFluctuations(*end.inflow->fluctuations, rho_, scene.dimensions, periods()));
 }
 
 void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
@@ -40,16 +43,14 @@ void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
     p.own(where_)[k] = d > 0.0 ? beyond : d > -reach_ ? near : away;
     if (d > end_.length - (1.0 + 1e-6) * dx_ && d <= end_.length) outermost.push_back(x);
   }
-  Vec3 periods{};
-  for (std::size_t d = 0; d < 3; ++d)
-    if (domain_.periodic[d]) periods[d] = domain_.high[d] - domain_.low[d];
-  lanes_ = FlowLanes(std::move(outermost), end_.axis(), dx_, periods);
+  lanes_ = FlowLanes(std::move(outermost), end_.axis(), dx_, periods());
   lane_.assign(lanes_.size(), {});
   sums_.resize(lanes_.size());
   if (end_.inflow) {
     past_.assign(kept_steps * lanes_.size(), 0.0);
     past_times_.assign(kept_steps, 0.0);
-  } else {
+  }
+  if (end_.outflow || end_.layer > 0.0) {
     const auto cells = lanes_.size() * static_cast<std::size_t>(std::max(1.0, std::round(end_.layer / dx_)));
     means_.assign(cells, {});
     layer_sums_.resize(cells);
@@ -68,6 +69,13 @@ Vec3 FlowZone::place_of(const PhaseParticles& p, std::size_t k) const {
   Vec3 x{};
   for (int d = 0; d < p.dimensions(); ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
   return x;
+}
+
+Vec3 FlowZone::periods() const {
+  Vec3 periods{};
+  for (std::size_t d = 0; d < 3; ++d)
+    if (domain_.periodic[d]) periods[d] = domain_.high[d] - domain_.low[d];
+  return periods;
 }
 
 /// The cell of the layer that a place of a lane is in.
@@ -90,9 +98,11 @@ void FlowZone::renew() {
   if (end_.inflow) {
     learn_inflow(mean_share);
     remember_pressures(dt);
+    if (fluctuations_) fluctuations_->carry(lanes_, *velocity_, w_->state.time, started_ > 0.0 ? dt : 0.0);
   } else {
     learn_outflow(share);
   }
+  learn_layer();
   started_ = 1.0;
   if (gone_ >= 0.5) remove_and_create();
   prescribe();
@@ -134,13 +144,13 @@ void FlowZone::gather() {
   std::fill(layer_counts_.begin(), layer_counts_.end(), 0);
   for (Lane& lane : lane_) lane.outermost = -1e300;
   const double* pressure = p.column(Field::pressure);
-  const double from = end_.inflow ? -reach_ : end_.layer - end_seen * dx_, to = end_.inflow ? 0.0 : end_.layer;
+  const double from = end_.layer - (end_.inflow ? seen : end_seen) * dx_, to = end_.layer;
   for (const std::uint32_t k : members_) {
     const Vec3 x = place_of(p, k);
     const double d = end_.beyond(x[end_.axis()]), level = pressure[k] / (rho_ * c_ * c_);
     const std::size_t lane = lanes_.nearest(x);
     if (d > 0.0) lane_[lane].outermost = std::max(lane_[lane].outermost, d);
-    if (end_.outflow && d > 0.0 && d <= end_.layer) {
+    if (d > 0.0 && d <= end_.layer) {
       const std::size_t cell = cell_of(lane, d);
       layer_sums_[cell][0].add(level);
       layer_sums_[cell][1].add(p.column(Field::velocity, static_cast<int>(end_.axis()))[k] / c_);
@@ -148,7 +158,7 @@ void FlowZone::gather() {
     }
     if (d <= from || d > to) continue;
     Gathered& sum = sums_[lane];
-    const double depth = -d / dx_;
+    const double depth = (end_.layer - d) / dx_;
     ++sum.count;
     for (int c = 0; c < p.dimensions(); ++c)
       sum.velocity[static_cast<std::size_t>(c)].add(p.column(Field::velocity, c)[k] / c_);
@@ -159,7 +169,7 @@ void FlowZone::gather() {
   }
 }
 
-/// The pressure at the side and its slope, by lane.
+/// The pressure where the velocity of the scene begins, and its slope, by lane.
 void FlowZone::learn_inflow(double mean_share) {
   const double scale = rho_ * c_ * c_;
   for (std::size_t k = 0; k < lane_.size(); ++k) {
@@ -200,7 +210,7 @@ double FlowZone::earlier(std::size_t lane, double ago) const {
   return value(row);
 }
 
-/// The velocity at the end of the layer, and the mean pressures in it.
+/// The velocity at the end of the layer.
 void FlowZone::learn_outflow(double share) {
   for (std::size_t k = 0; k < lane_.size(); ++k) {
     const Gathered& sum = sums_[k];
@@ -210,6 +220,10 @@ void FlowZone::learn_outflow(double share) {
       lane_[k].velocity[c] += share * (mean - lane_[k].velocity[c]);
     }
   }
+}
+
+/// The mean pressures and velocities in the layer.
+void FlowZone::learn_layer() {
   const double slow =
       started_ > 0.0 ? std::min(1.0, w_->state.dt * c_ / (memory_in_layers * std::max(end_.layer, dx_))) : 1.0;
   for (std::size_t k = 0; k < means_.size(); ++k)
@@ -237,8 +251,8 @@ bool FlowZone::has_room(const Vec3& x) const {
 double FlowZone::row_spacing(std::size_t lane, double d) const {
   Vec3 at = lanes_.place(lane);
   at[end_.axis()] = end_.at(d);
-  const double pressure =
-      end_.inflow ? lane_[lane].pressure - lane_[lane].slope * d : pressure_(at, w_->state.time) + law_.background;
+  const double pressure = end_.inflow ? lane_[lane].pressure - lane_[lane].slope * (d - end_.layer)
+                                      : pressure_(at, w_->state.time) + law_.background;
   return dx_ * rho_ / law_.density(pressure);
 }
 
@@ -281,11 +295,12 @@ void FlowZone::set_pressure(PhaseParticles& p, std::size_t k, double pressure) {
 }
 
 void FlowZone::prescribe_inflow(PhaseParticles& p, std::size_t k, const Vec3& x, std::size_t lane, double d) {
-  const double sound = earlier(lane, (d + lane_[lane].depth) / c_);
+  const double behind = d - end_.layer, sound = earlier(lane, (behind + lane_[lane].depth) / c_);
   Vec3 v = (*velocity_)(x, w_->state.time);
+  if (fluctuations_) v = v + (*fluctuations_)(x, v);
   v[end_.axis()] += (is_upper(end_.side) ? 1.0 : -1.0) * sound / (rho_ * c_);
   for (int c = 0; c < p.dimensions(); ++c) p.column(Field::velocity, c)[k] = v[static_cast<std::size_t>(c)];
-  set_pressure(p, k, lane_[lane].pressure - lane_[lane].slope * d + sound);
+  set_pressure(p, k, lane_[lane].pressure - lane_[lane].slope * behind + sound);
 }
 
 void FlowZone::prescribe_outflow(PhaseParticles& p, std::size_t k, const Vec3& x, std::size_t lane) {
@@ -371,6 +386,7 @@ void FlowZone::archive(Archive& a) {
   a.number(name_ + ": left", left_);
   a.number(name_ + ": gone", gone_);
   a.number(name_ + ": started", started_);
+  if (fluctuations_) fluctuations_->archive(a, name_);
 }
 
 }  // namespace barchan

@@ -6,6 +6,8 @@
 //   outwards, p' less its mean over `memory_in_lengths` passages of sound through the domain. So the incoming
 //   characteristic p - rho c u_n is at rest (Poinsot & Lele 1992; Negi, Ramachandran & Haftu 2020), and the mean
 //   pressure is that of the flow.
+//   With a layer the side has first an absorbing layer as that of an outflow, and all this lies behind it. With
+//   fluctuations synthetic turbulence is added to the velocity (inflow_fluctuations.hpp).
 // Outflow: an absorbing layer, in which the fluid moves by its own forces and sound fades away: with p' = p - <p>,
 //     drho/dt -= s p'/c^2,   du_n/dt -= s w,   s = 3 A c d^2/L^3
 //   d from the side, L the layer, A = 6, w = p'/(rho c) bounded by twice u_n' = u_n - <u_n> and by zero. Of sound that
@@ -27,6 +29,7 @@
 
 #include "engine/pressure_law.hpp"
 #include "models/fluid/flow_lanes.hpp"
+#include "models/fluid/inflow_fluctuations.hpp"
 #include "models/model.hpp"
 #include "scene/formula.hpp"
 
@@ -73,6 +76,8 @@ class FlowZone : public Model {
   void gather();
   void learn_inflow(double mean_share);
   void learn_outflow(double share);
+  void learn_layer();
+  Vec3 periods() const;
   void remember_pressures(double dt);
   double row_spacing(std::size_t lane, double d) const;
   void remove_and_create();
@@ -94,7 +99,8 @@ class FlowZone : public Model {
   std::string name_;                       // "air_left"
   double c_, rho_, dx_, reach_;            // m/s, kg/m3, m, m: how far inside it looks
   std::optional<GivenVelocity> velocity_;  // of an inflow
-  Formula pressure_;                       // of an outflow
+  std::optional<EnteringFluctuations> fluctuations_;
+  Formula pressure_;  // of an outflow
   OwnColumn<std::uint8_t> where_;
   Workspace* w_ = nullptr;
 
