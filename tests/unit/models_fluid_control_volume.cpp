@@ -122,7 +122,7 @@ TEST(ControlVolume, IsNotThereWhereItWouldLeaveTheDomain) {
 TEST(ControlVolume, HasTheSlopesOfItsWeight) {
   const ControlVolume volume(body(3), dx, room(3, 2.6));
   EXPECT_NEAR(volume.at({radius, 0.0, 0.0}).w, 1.0, 1e-3);
-  EXPECT_EQ(volume.at({1.9, 0.0, 0.0}).w, 0.0);
+  EXPECT_NEAR(volume.at({1.9, 0.0, 0.0}).w, 0.0, 1e-5);
   const double h = 1e-4;
   for (const Vec3& x : {Vec3{0.9, 0.31, 0.42}, Vec3{-0.7, 0.9, 0.1}, Vec3{0.33, -0.5, -1.1}}) {
     const ControlVolume::Weight at = volume.at(x);

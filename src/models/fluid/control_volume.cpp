@@ -42,7 +42,8 @@ Vec3 place_of(const PhaseParticles& p, std::size_t k) {
 }  // namespace
 
 ControlVolume::ControlVolume(const PhaseParticles& wall, double spacing, const Layout& layout)
-    : dimensions_(static_cast<std::size_t>(layout.dimensions)), step_(0.5 * spacing) {
+    : dimensions_(static_cast<std::size_t>(layout.dimensions)),
+      step_(layout.dimensions == 2 ? 0.5 * spacing : spacing) {
   const double reach = (end + 2.0) * spacing;
   low_ = {1e300, 1e300, 1e300};
   high_ = {-1e300, -1e300, -1e300};
@@ -116,20 +117,32 @@ ControlVolume::Share ControlVolume::share(const Vec3& x, const Vec3& v, const Ve
                                           double pressure, double viscosity) const {
   const Weight here = at(x);
   const double volume = mass / density, lap = here.bend[0][0] + here.bend[1][1] + here.bend[2][2];
-  const Vec3 bent{dot(here.bend[0], v), dot(here.bend[1], v), dot(here.bend[2], v)};
-  return {(-mass * here.w) * a, volume * viscosity * (lap * v + bent), volume * here.slope, pressure};
+  Share share{(-mass * here.w) * a, volume * here.slope, pressure, {}, v};
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    share.rubbed[d] = (viscosity * volume) * here.bend[d];
+    share.rubbed[d][d] += viscosity * volume * lap;
+  }
+  return share;
 }
 
-/// The sum of V grad w is zero but for the error of the sum; less a mean, the pressure does not feel it.
+/// The sums of V grad w and of V grad grad w are zero but for the error of a sum: less a mean, a uniform pressure and a
+/// uniform velocity give nothing.
 Vec3 ControlVolume::force(const std::vector<Share>& shares) {
   const auto sum = [&](const auto& term) {
     return reproducible_sum(shares.size(), [&](std::size_t k) { return term(shares[k]); });
   };
-  const double border = sum([](const Share& s) { return norm(s.slope); });
+  const auto size = [](const Share& s) {
+    return std::sqrt(dot(s.rubbed[0], s.rubbed[0]) + dot(s.rubbed[1], s.rubbed[1]) + dot(s.rubbed[2], s.rubbed[2]));
+  };
+  const double border = sum([](const Share&s) { return norm(s.slope); }), rubbed = sum(size);
   const double mean = border > 0.0 ? sum([](const Share& s) { return norm(s.slope) * s.pressure; }) / border : 0.0;
-  Vec3 force{};
+  Vec3 velocity{}, force{};
+  for (std::size_t d = 0; d < 3 && rubbed > 0.0; ++d)
+    velocity[d] = sum([&](const Share& s) { return size(s) * s.velocity[d]; }) / rubbed;
   for (std::size_t d = 0; d < 3; ++d)
-    force[d] = sum([&](const Share& s) { return s.inertia[d] + s.friction[d] + (s.pressure - mean) * s.slope[d]; });
+    force[d] = sum([&](const Share& s) {
+      return s.inertia[d] + (s.pressure - mean) * s.slope[d] + dot(s.rubbed[d], s.velocity - velocity);
+    });
   return force;
 }
 

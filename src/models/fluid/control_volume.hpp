@@ -48,9 +48,11 @@ class ControlVolume {
 
   /// What a particle gives to the force (N; per metre of depth in 2D).
   struct Share {
-    Vec3 inertia, friction;  // N
-    Vec3 slope;              // V grad w: m, in 3D m2
-    double pressure;         // Pa
+    Vec3 inertia;                // N
+    Vec3 slope;                  // V grad w: m, in 3D m2
+    double pressure;             // Pa
+    std::array<Vec3, 3> rubbed;  // rows of mu V (lap w + grad grad w): N s/m
+    Vec3 velocity;               // m/s
   };
   /// `a`: less gravity (m/s2); mass in kg, density in kg/m3, pressure in Pa, viscosity in Pa s.
   Share share(const Vec3& x, const Vec3& v, const Vec3& a, double mass, double density, double pressure,
