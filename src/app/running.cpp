@@ -216,6 +216,7 @@ std::string Run::break_down(const std::string& what) {
     series_->finish();
     series_->write(simulation_.good_frame(static_cast<int>(clock().frames++)));
     if (measurements_) measurements_->write(directory_, simulation_.good_time());
+    simulation_.write_results(directory_.string(), simulation_.good_time());
     clock().last_frame_step = good;
     clock().last_frame_time = simulation_.good_time();
   }
@@ -235,6 +236,7 @@ void Run::write_frame() {
   series_->finish();  // one frame at a time is in memory
   series_->write(simulation_.frame(static_cast<int>(clock().frames++)));
   if (measurements_) measurements_->write(directory_, simulation_.time());
+  simulation_.write_results(directory_.string(), simulation_.time());
   clock().last_frame_step = simulation_.steps();
   clock().last_frame_time = simulation_.time();
 }

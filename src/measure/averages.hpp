@@ -13,6 +13,7 @@ struct Accumulators {
   std::vector<std::int64_t> moments;  // by instrument: samples taken into the averages
   std::vector<std::int64_t> count;    // by row: values taken into mean and comoment
   std::vector<double> fraction;       // by row: sum of the volume fractions of all moments
+  std::vector<double> flux;           // kg/m2/s, by row with a flux and axis: sum of the mass fluxes of all moments
   std::vector<double> mean;           // by row, quantity
   std::vector<double> comoment;       // by row, pair of quantities j <= i at i (i + 1)/2 + j: sum of dq_i dq_j
 };

@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "laws/eddies.hpp"
+
 namespace barchan {
 namespace {
 
@@ -56,6 +58,7 @@ FluidView::FluidView(const PhaseParticles& particles)
       values(static_cast<std::size_t>(particles.dimensions()) + 1) {
   for (int d = 0; d < dimensions; ++d) value[static_cast<std::size_t>(d)] = particles.column(Field::velocity, d);
   value[values - 1] = particles.column(Field::pressure);
+  if (particles.has(Field::ground_distance)) ground_distance = particles.column(Field::ground_distance);
 }
 
 Reading interpolate(const Vec3& x, const FluidView& fluid, const Lookup& lookup, const ReadyKernel& kernel,
@@ -75,26 +78,60 @@ Reading interpolate(const Vec3& x, const FluidView& fluid, const Lookup& lookup,
   return reading;
 }
 
-Reading wall_slope(const Vec3& x, double inward, const Vec3& wall_velocity, const FluidView& fluid,
-                   const Lookup& lookup, const ReadyKernel& kernel, double radius) {
-  Reading reading = interpolate(x, fluid, lookup, kernel, radius);
+namespace {
+
+/// v less its part along the normal.
+Vec3 along_wall(const Vec3& v, const Vec3& normal) { return v - dot(v, normal) * normal; }
+
+Vec3 velocity_of(const FluidView& fluid, std::size_t i) {
+  Vec3 v{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(fluid.dimensions); ++d) v[d] = fluid.value[d][i];
+  return v;
+}
+
+}  // namespace
+
+Reading wall_slope(const WallPoint& at, const FluidView& fluid, const Lookup& lookup, const ReadyKernel& kernel,
+                   double radius) {
+  Reading reading = interpolate(at.x, fluid, lookup, kernel, radius);
   if (!reading.found) return reading;
   const auto dimensions = static_cast<std::size_t>(fluid.dimensions);
+  const Vec3 along_x = along_wall({1.0, 0.0, 0.0}, at.normal), along_z = along_wall({0.0, 0.0, 1.0}, at.normal);
   Normal normal;
   kernel([&](const auto& w) {
-    lookup.neighbours(x, [&](std::size_t i, const Vec3& r, double r2) {
-      const double n = inward * r[1] / radius;
+    lookup.neighbours(at.x, [&](std::size_t i, const Vec3& r, double r2) {
+      const double n = dot(at.normal, r) / radius;
       Values v = values_of(fluid, i);
-      for (std::size_t d = 0; d < dimensions; ++d) v[static_cast<int>(d)] -= wall_velocity[d];
-      normal.add(fluid.volume(i) * w.value(std::sqrt(r2)), Basis{n, 1.0, n * n, n * r[0] / radius, n * r[2] / radius},
-                 v);
+      for (std::size_t d = 0; d < dimensions; ++d) v[static_cast<int>(d)] -= at.velocity[d];
+      normal.add(fluid.volume(i) * w.value(std::sqrt(r2)),
+                 Basis{n, 1.0, n * n, n * dot(along_x, r) / radius, n * dot(along_z, r) / radius}, v);
     });
   });
   const double pressure = reading.value[dimensions];
   reading.found = normal.first(fluid.dimensions + 2, reading.value) || normal.first(2, reading.value) ||
                   normal.first(1, reading.value);
-  for (std::size_t d = 0; d < dimensions; ++d) reading.value[d] /= radius;
+  Vec3 slope{};
+  for (std::size_t d = 0; d < dimensions; ++d) slope[d] = reading.value[d] / radius;
+  slope = along_wall(slope, at.normal);
+  for (std::size_t d = 0; d < dimensions; ++d) reading.value[d] = slope[d];
   reading.value[dimensions] = pressure;
+  return reading;
+}
+
+Reading rough_stress(const WallPoint& at, const RoughWall& wall, const FluidView& fluid, const Lookup& lookup,
+                     const ReadyKernel& kernel, double radius) {
+  Reading reading = interpolate(at.x, fluid, lookup, kernel, radius);
+  if (!reading.found) return reading;
+  const auto dimensions = static_cast<std::size_t>(fluid.dimensions);
+  Vec3 stress{};
+  kernel([&](const auto& w) {
+    lookup.neighbours(at.x, [&](std::size_t i, const Vec3&, double r2) {
+      const Vec3 u = along_wall(velocity_of(fluid, i) - at.velocity, at.normal);
+      const double law = log_law_friction(fluid.ground_distance[i], wall.roughness, wall.spacing);
+      stress = stress + fluid.volume(i) * w.value(std::sqrt(r2)) * wall.density * law * norm(u) * u;
+    });
+  });
+  for (std::size_t d = 0; d < dimensions; ++d) reading.value[d] = stress[d] / reading.fraction;
   return reading;
 }
 

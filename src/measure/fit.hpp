@@ -5,8 +5,9 @@
 //   interpolate   1, x, y, z             linear fields; where too few particles lie about the point, the mean (Shepard)
 //   wall_slope    n, 1, n^2, n x, n z    a velocity whose slope at the wall varies along it, and which is quadratic
 //   away
-//                                        from it; 1 takes up the slip that a wall of particles leaves, which is no
-//                                        shear. Where particles are too few: n, 1; at the least n alone.
+//                                        from it (x, z along the wall); 1 takes up the slip that a wall of particles
+//                                        leaves, which is no shear. Where particles are too few: n, 1; at the least n
+//                                        alone.
 #pragma once
 
 #include <array>
@@ -24,8 +25,9 @@ struct FluidView {
   double mass;
   int dimensions;
   const double* density;
-  std::array<const double*, 4> value{};  // velocity by component, then pressure
-  std::size_t values;                    // dimensions + 1
+  std::array<const double*, 4> value{};     // velocity by component, then pressure
+  std::size_t values;                       // dimensions + 1
+  const double* ground_distance = nullptr;  // m, of a turbulent fluid
 };
 
 /// What a fit finds at a point.
@@ -42,9 +44,27 @@ inline constexpr double least_fraction = 0.2;
 Reading interpolate(const Vec3& x, const FluidView& fluid, const Lookup& lookup, const ReadyKernel& kernel,
                     double radius);
 
-/// dv/dn at x on a wall that moves with `wall_velocity` (m/s); n = inward * y - x_y points into the fluid. The pressure
-/// is interpolated.
-Reading wall_slope(const Vec3& x, double inward, const Vec3& wall_velocity, const FluidView& fluid,
-                   const Lookup& lookup, const ReadyKernel& kernel, double radius);
+/// A piece of a wall's surface.
+struct WallPoint {
+  Vec3 x;         // m
+  Vec3 normal;    // into the fluid, of length 1
+  Vec3 velocity;  // m/s, of the wall
+};
+
+/// dv/dn at a wall less its part along the normal, in the domain's axes (1/s). The pressure is interpolated.
+Reading wall_slope(const WallPoint& at, const FluidView& fluid, const Lookup& lookup, const ReadyKernel& kernel,
+                   double radius);
+
+/// The traction along the wall (Pa, in the domain's axes) of rough ground: the mean of
+///   tau = rho (kappa/ln(d/z0))^2 |u| u                                              (laws/eddies.hpp)
+/// over the particles within the kernel, with u their velocity along the wall against it and d their distance to the
+/// ground. Weights are V W(|x_b - x|): summed over the wall's surface, a particle at the height h has the weight
+/// integral W dS of a plane in the distance h, by which the fluid's own pass spreads the wall's stress over its
+/// particles. So the integral of tau over the surface is the force of the pass. The pressure is interpolated.
+struct RoughWall {
+  double density, roughness, spacing;  // kg/m3, m, m of the fluid
+};
+Reading rough_stress(const WallPoint& at, const RoughWall& wall, const FluidView& fluid, const Lookup& lookup,
+                     const ReadyKernel& kernel, double radius);
 
 }  // namespace barchan

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "models/fluid/relief.hpp"
 #include "scene/couplings.hpp"
+#include "scene/generate.hpp"
 
 namespace barchan {
 namespace {
@@ -86,30 +88,35 @@ class Maker {
   /// Columns along x; in each, points no more than a spacing apart along x and, in three dimensions, along z.
   Instrument wall_shear(const WallShear& w) const {
     Instrument i = common(w, InstrumentKind::wall_shear, "wall_shear");
-    const Phase& fluid = scene_.phases[i.phase];
     i.wall = number(w.wall);
-    i.inward = w.top ? -1.0 : 1.0;
-    i.density = fluid.density;
-    // Monaghan's viscosity as a kinematic one, as the fluid's passes have it.
-    const double artificial = fluid.fluid().artificial_viscosity * 0.5 * i.radius *
-                              layout_.phases[i.phase].sound_speed / (2.0 * (scene_.dimensions + 2));
-    i.viscosity = fluid.density * (fluid.fluid().viscosity + artificial);
-    i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
+    i.spacing = layout_.phases[i.phase].spacing;
+    i.density = scene_.phases[i.phase].density;
+    say_what_shears(i);
+    const Relief ground = w.top ? Relief() : ground_of(w.wall, i.spacing);
     const Vec3 size = bounds_.high - bounds_.low;
     const std::size_t columns = whole(w.count, size[0], i);
     const double width = size[0] / static_cast<double>(columns);
     const std::size_t across = whole(0, width * (1.0 - 1e-9), i), deep = dimensions() == 3 ? whole(0, size[2], i) : 1;
     i.points_per_row = across * deep;
+    const auto on_surface = [&](Vec3& x) {
+      x[1] = w.top ? bounds_.high[1] : bounds_.low[1];
+      if (!ground.exists()) return Vec3{0.0, w.top ? -1.0 : 1.0, 0.0};
+      const auto [height, along_x, along_z] = ground.at(x[0], x[2]);
+      x[1] = height;
+      return 1.0 / std::sqrt(1.0 + along_x * along_x + along_z * along_z) * Vec3{-along_x, 1.0, -along_z};
+    };
     for (std::size_t c = 0; c < columns; ++c) {
       Vec3 x = 0.5 * (bounds_.low + bounds_.high);
-      x[1] = w.top ? bounds_.high[1] : bounds_.low[1];
       const double left = bounds_.low[0] + static_cast<double>(c) * width;
       x[0] = left + 0.5 * width;
+      on_surface(x);
       i.rows.push_back(x);
+      if (i.over_sand()) continue;
       for (std::size_t a = 0; a < across; ++a)
         for (std::size_t b = 0; b < deep; ++b) {
           x[0] = left + (static_cast<double>(a) + 0.5) * width / static_cast<double>(across);
           if (deep > 1) x[2] = bounds_.low[2] + (static_cast<double>(b) + 0.5) * size[2] / static_cast<double>(deep);
+          i.normals.push_back(on_surface(x));
           i.points.push_back(x);
         }
     }
@@ -123,6 +130,7 @@ class Maker {
     i.high = bounds_.high;
     i.diameter = layout_.phases[i.phase].size;
     i.flight = s.flight * i.diameter;
+    i.hops = layout_.phases[i.phase].own_steps;
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)
       if (e.wind_by_height && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
@@ -143,6 +151,39 @@ class Maker {
     while (k + 1 < scene_.phases.size() && scene_.phases[k].name != name) ++k;
     return k;
   }
+  /// How the fluid of a wall's shear rubs on the wall, with what is read for it.
+  void say_what_shears(Instrument& i) const {
+    const Phase& fluid = scene_.phases[i.phase];
+    const PlanPhase& wall = layout_.phases[i.wall];
+    i.roughness = wall.roughness;
+    i.domain = layout_.domain;
+    if (wall.friction == Friction::rough) {
+      i.shear = drags_by_law(scene_, fluid) ? ShearOf::layers : ShearOf::rough;
+      for (const PlanEntry& e : layout_.entries) {
+        if (e.has(i.phase) && e.has(i.wall)) {  // the particles that feel the wall, by the weights by which they do
+          i.kernel = e.kernel;
+          i.radius = e.radius;
+        }
+        if (e.blows && e.fluid == i.phase) i.bed = 0.5 * layout_.phases[e.other].diameter;
+      }
+      return;
+    }
+    // Monaghan's viscosity as a kinematic one, as the fluid's passes have it.
+    const double artificial = fluid.fluid().artificial_viscosity * 0.5 * i.radius *
+                              layout_.phases[i.phase].sound_speed / (2.0 * (scene_.dimensions + 2));
+    i.viscosity = fluid.density * (fluid.fluid().viscosity + artificial);
+    i.radius *= 1.5;  // half of the neighbourhood lies behind the wall
+  }
+  /// The surface of a wall that fitted rows follow; none: the wall's surface is a side of the domain.
+  Relief ground_of(const std::string& wall, double spacing) const {
+    if (std::none_of(scene_.fills.begin(), scene_.fills.end(),
+                     [&](const Fill& fill) { return fill.phase == wall && fill.packing == Packing::fitted; }))
+      return {};
+    std::array<int, 2> counts{};
+    for (std::size_t c = 0; c < (dimensions() == 3 ? 2 : 1); ++c)
+      counts[c] = static_cast<int>(std::ceil(8.0 * scene_.domain.size[2 * c] / spacing));
+    return {layout_.domain, counts, fitted_heights(scene_, counts)};
+  }
   /// `count`, or as many as there are spacings of the measured phase in the length.
   std::size_t whole(int count, double length, const Instrument& i) const {
     if (count > 0) return static_cast<std::size_t>(count);
@@ -160,7 +201,11 @@ std::vector<std::string> Instrument::files() const {
   switch (kind) {
     case InstrumentKind::probe: return {stem + ".csv"};
     case InstrumentKind::grid: return {stem + ".vti"};
-    case InstrumentKind::saltation: return {stem + ".csv", stem + ".vtp", stem + ".json"};
+    case InstrumentKind::saltation: {
+      std::vector<std::string> all{stem + ".csv", stem + ".vtp", stem + ".json"};
+      if (hops) all.push_back("hops_" + name + ".csv");
+      return all;
+    }
     default: return {stem + ".csv", stem + ".vtp"};
   }
 }

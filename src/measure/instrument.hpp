@@ -12,6 +12,13 @@ namespace barchan {
 
 enum class InstrumentKind { probe, line, slices, grid, wall_shear, saltation };
 
+/// What says the shear stress of a wall.
+enum class ShearOf {
+  slope,   // the slope of the velocity at the wall
+  rough,   // the logarithmic law of the wall's roughness, as the fluid's own pass applies it
+  layers,  // the layers of the wind over sand (models/coupling/sand_layer.hpp)
+};
+
 /// One instrument. It has rows: places for which it keeps averages, one line each in its files.
 ///
 /// Fluids are interpolated at `points`, `points_per_row` consecutive ones a row, whose mean is the row's sample. Slices
@@ -42,13 +49,19 @@ struct Instrument {
   Vec3 step{};  // m
 
   // wall shear
-  std::size_t wall = 0;  // number of the wall's phase
-  double inward = 1;     // y of the normal into the fluid
-  double viscosity = 0;  // Pa s, dynamic; with what artificial viscosity adds
-  double density = 0;    // kg/m3, at rest
+  ShearOf shear = ShearOf::slope;
+  std::size_t wall = 0;       // number of the wall's phase
+  std::vector<Vec3> normals;  // by point: of the surface, into the fluid
+  double viscosity = 0;       // Pa s, dynamic; with what artificial viscosity adds
+  double density = 0;         // kg/m3, at rest
+  double roughness = 0;       // m, z0 of the wall
+  double spacing = 0;         // m, of the fluid
+  Bounds domain{};            // along which the layers of a wind over sand stand
+  double bed = 0;             // m over the ground, where the wind's layers have the stress that reaches the bed
 
   // saltation: slices of the domain's height
   double diameter = 0, flight = 0;  // m, mean; what is higher over the bed is in flight
+  bool hops = false;                // a model counts the hops of its grains (models/grains/hops.hpp)
   double area = 0;                  // m2, of the ground (2D: of a metre of depth)
   int air = -1;                     // number of the phase of air without particles around the grains; -1: none
 
@@ -56,8 +69,13 @@ struct Instrument {
   /// from the row's place before them.
   std::size_t quantities() const {
     if (kind == InstrumentKind::saltation) return 5;  // measurements_saltation.cpp
+    if (over_sand()) return 2;                        // measurements_ground.cpp
     return static_cast<std::size_t>(dimensions) + (kind == InstrumentKind::slices ? 2 : 1);
   }
+  /// Wall shear that the layers of a wind over sand say.
+  bool over_sand() const { return kind == InstrumentKind::wall_shear && shear == ShearOf::layers; }
+  /// Slices of grains: their flux is summed by row.
+  bool has_flux() const { return kind == InstrumentKind::slices && !has_pressure; }
   std::vector<std::string> files() const;
 };
 

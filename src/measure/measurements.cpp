@@ -76,7 +76,8 @@ Measurements::Measurements(std::vector<Instrument> instruments, const Bounds& bo
     place.mean += i.rows.size() * q;
     place.comoment += i.rows.size() * q * (q + 1) / 2;
     const auto same = [&](const Searched& s) { return s.phase == i.phase && s.radius == i.radius; };
-    const bool interpolates = i.kind != InstrumentKind::slices && i.kind != InstrumentKind::saltation;
+    if (i.has_flux()) place.flux += 3 * i.rows.size();
+    const bool interpolates = i.kind != InstrumentKind::slices && i.kind != InstrumentKind::saltation && !i.over_sand();
     if (interpolates && std::none_of(lookups_.begin(), lookups_.end(), same))
       lookups_.push_back({i.phase, i.radius, Lookup(bounds, i.radius), -1});
   }
@@ -84,6 +85,7 @@ Measurements::Measurements(std::vector<Instrument> instruments, const Bounds& bo
   memory_.moments.assign(instruments_.size(), 0);
   memory_.count.assign(place.row, 0);
   memory_.fraction.assign(place.row, 0.0);
+  memory_.flux.assign(place.flux, 0.0);
   memory_.mean.assign(place.mean, 0.0);
   memory_.comoment.assign(place.comoment, 0.0);
 }
@@ -107,6 +109,7 @@ void Measurements::archive(Archive& a) {
   a.array("measured: moments", memory_.moments);
   a.array("measured: count", memory_.count);
   a.array("measured: fraction", memory_.fraction);
+  if (!memory_.flux.empty()) a.array("measured: flux", memory_.flux);
   a.array("measured: mean", memory_.mean);
   a.array("measured: comoment", memory_.comoment);
 }
@@ -118,8 +121,9 @@ void Measurements::sample(const State& state) {
     const Instrument& i = instruments_[k];
     const bool averaged = state.time >= i.start * (1.0 - 1e-12);
     if (averaged) ++memory_.moments[k];
-    if (i.kind == InstrumentKind::slices || i.kind == InstrumentKind::saltation) {
-      i.kind == InstrumentKind::slices ? take_slices(k, state) : take_layers(k, state);
+    if (i.points.empty()) {
+      if (i.over_sand()) take_ground(k, state);
+      else i.kind == InstrumentKind::slices ? take_slices(k, state) : take_layers(k, state);
       continue;
     }
     read_points(k, state);
@@ -163,11 +167,17 @@ void Measurements::read_points(std::size_t k, const State& state) {
   const Vec3 velocity = wall ? wall_velocity(state.phases[i.wall]) : Vec3{};
   readings_.resize(i.points.size());
   const auto n = static_cast<std::int64_t>(i.points.size());
+  const RoughWall rough{i.density, i.roughness, i.spacing};
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::int64_t p = 0; p < n; ++p) {
     const auto at = static_cast<std::size_t>(p);
-    readings_[at] = wall ? wall_slope(i.points[at], i.inward, velocity, fluid, near, kernel, i.radius)
-                         : interpolate(i.points[at], fluid, near, kernel, i.radius);
+    if (!wall) {
+      readings_[at] = interpolate(i.points[at], fluid, near, kernel, i.radius);
+      continue;
+    }
+    const WallPoint point{i.points[at], i.normals[at], velocity};
+    readings_[at] = i.shear == ShearOf::rough ? rough_stress(point, rough, fluid, near, kernel, i.radius)
+                                              : wall_slope(point, fluid, near, kernel, i.radius);
   }
 }
 
@@ -187,10 +197,8 @@ void Measurements::take_points(std::size_t k) {
     memory_.fraction[places_[k].row + row] += fraction / static_cast<double>(i.points_per_row);
     if (found == 0) continue;
     for (std::size_t c = 0; c < q; ++c) sample[c] /= found;
-    if (i.kind == InstrumentKind::wall_shear) {
+    if (i.kind == InstrumentKind::wall_shear && i.shear == ShearOf::slope)
       for (std::size_t c = 0; c + 1 < q; ++c) sample[c] *= i.viscosity;
-      sample[1] = 0.0;  // of the traction, what is along the wall
-    }
     average(k, row).add({sample.data(), q});
   }
 }
@@ -228,6 +236,8 @@ void Measurements::take_slices(std::size_t k, const State& state) {
     sample[1 + dimensions] = pressure ? pressure[a] : 0.0;
     average(k, row).add({sample.data(), i.quantities()});
     memory_.fraction[places_[k].row + row] += p.mass_of(a) / (density ? density[a] : reference) / volume;
+    for (std::size_t d = 0; i.has_flux() && d < dimensions; ++d)
+      memory_.flux[places_[k].flux + 3 * row + d] += p.mass_of(a) * v[d][a] / volume;
   }
 }
 
@@ -246,6 +256,7 @@ void Measurements::write_probe(std::size_t k, double time) {
 Table Measurements::table(std::size_t k) {
   const Instrument& i = instruments_[k];
   if (i.kind == InstrumentKind::saltation) return layers(k);
+  if (i.over_sand()) return ground(k);
   const bool wall = i.kind == InstrumentKind::wall_shear, slices = i.kind == InstrumentKind::slices;
   const auto dimensions = static_cast<std::size_t>(i.dimensions);
   const std::string vector = wall ? "shear_stress" : "velocity", unit = wall ? "Pa" : "m/s";
@@ -262,8 +273,8 @@ Table Measurements::table(std::size_t k) {
       rms.values.push_back(s.any() && d < dimensions ? s.rms(d) : absent);
     }
     stress.values.push_back(s.any() ? -s.covariance(0, 1) : nan);
-    friction.values.push_back(s.any() ? std::sqrt(std::hypot(s.mean(0), dimensions == 3 ? s.mean(2) : 0.0) / i.density)
-                                      : nan);
+    friction.values.push_back(
+        s.any() ? std::sqrt(std::hypot(s.mean(0), s.mean(1), dimensions == 3 ? s.mean(2) : 0.0) / i.density) : nan);
     pressure.values.push_back(s.any() ? s.mean(dimensions) : nan);
     pressure_rms.values.push_back(s.any() ? s.rms(dimensions) : nan);
     const auto moments = static_cast<double>(memory_.moments[k]);
@@ -283,6 +294,7 @@ Table Measurements::table(std::size_t k) {
     t.fields.push_back(std::move(pressure_rms));
   }
   if (!wall) t.fields.push_back(std::move(fraction));
+  if (i.has_flux()) add_flux(k, t);
   t.fields.push_back(std::move(samples));
   return t;
 }

@@ -41,7 +41,7 @@ class Measurements {
 
  private:
   struct Place {  // of an instrument's first row in the accumulators
-    std::size_t row = 0, mean = 0, comoment = 0;
+    std::size_t row = 0, flux = 0, mean = 0, comoment = 0;
   };
   using Sample = std::array<double, 5>;
 
@@ -52,7 +52,10 @@ class Measurements {
   void take_points(std::size_t instrument);
   void take_slices(std::size_t instrument, const State& state);
   void take_layers(std::size_t instrument, const State& state);
+  void take_ground(std::size_t instrument, const State& state);
   Table layers(std::size_t instrument);
+  Table ground(std::size_t instrument);
+  void add_flux(std::size_t instrument, Table& table) const;
   double bed_of(std::size_t instrument);
   void write_decay(std::size_t instrument, const std::filesystem::path& file, double time);
   void write_probe(std::size_t instrument, double time);

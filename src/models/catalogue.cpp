@@ -24,6 +24,7 @@
 #include "models/grains/grain_flux.hpp"
 #include "models/grains/grain_phase.hpp"
 #include "models/grains/grain_source.hpp"
+#include "models/grains/hops.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "models/grains/spheres.hpp"
 #include "models/open_sides.hpp"
@@ -198,6 +199,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
   add_grain_fluxes(scene, layout, models);
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));
+  add_hop_statistics(scene, layout, models);
   for (std::size_t k = 0; k < scene.markers.size(); ++k)
     models.push_back(std::make_unique<MarkedSet>(scene, layout, k));
   return models;

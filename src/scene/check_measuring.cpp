@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "scene/checks.hpp"
+#include "scene/couplings.hpp"
 #include "scene/keys.hpp"
 
 namespace barchan {
@@ -97,8 +98,9 @@ class Checker {
   }
 
   void wall_shear(const WallShear& w, const std::string& dotted) {
-    const Phase* fluid = find_phase(scene_, w.phase);
-    if (fluid && fluid->kind() == PhaseKind::fluid && fine(dotted + ".phase") &&
+    const Phase *fluid = find_phase(scene_, w.phase), *rough = find_phase(scene_, w.wall);
+    if (rough && (rough->kind() != PhaseKind::wall || !rough->wall().roughness)) rough = nullptr;
+    if (!rough && fluid && fluid->kind() == PhaseKind::fluid && fine(dotted + ".phase") &&
         !report_.touched("phases." + fluid->name) && fluid->fluid().viscosity <= 0.0 &&
         fluid->fluid().artificial_viscosity <= 0.0)
       report_(dotted + ".phase", "\"" + fluid->name +
@@ -113,21 +115,23 @@ class Checker {
       return wrong(std::string("is of kind ") + wall->kind_word() + "; expected a phase of kind wall");
     if (wall->wall().slip != Slip::no_slip || wall->wall().law != WallLaw::adami)
       return wrong("lets the fluid slip; expected a wall with slip = \"no-slip\" and law = \"adami\"");
-    const std::string side = w.top ? "top" : "bottom";
-    const bool stands = std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
-      const auto* sides = std::get_if<SidesShape>(&fill.shape);
-      return fill.phase == wall->name && sides &&
-             std::find(sides->sides.begin(), sides->sides.end(), side) != sides->sides.end();
+    if (wall->wall().shear_stress)
+      return wrong("has a given stress (shear-stress): there is nothing to measure; expected another wall");
+    const bool fitted = !w.top && std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
+      return fill.phase == wall->name && fill.packing == Packing::fitted;
     });
-    if (!stands && !report_.touched("fill"))
-      return wrong("has no fill on this side; expected shape = { sides = [\"" + side +
-                   "\"] } in one of its fills (of other walls the surface is not known)");
+    if (!fitted && !stands_on_side(*wall, w) && !report_.touched("fill"))
+      return wrong("has no fill on this side; expected shape = { sides = [\"" + std::string(w.top ? "top" : "bottom") +
+                   "\"] } in one of its fills" + (w.top ? "" : ", or a bed with packing = \"fitted\"") +
+                   " (of other walls the surface is not known)");
     const bool joined = std::any_of(scene_.interactions.begin(), scene_.interactions.end(), [&](const Interaction& i) {
       return (i.a == w.phase && i.b == w.wall) || (i.a == w.wall && i.b == w.phase);
     });
     if (!joined && fluid && !report_.touched("interactions"))
       wrong("does not interact with \"" + w.phase + "\"; expected an entry " + w.phase + "-" + w.wall +
             " in [interactions]");
+    else if (fluid && fluid->kind() == PhaseKind::fluid && !report_.touched("phases"))
+      rubs(*fluid, *wall, fitted, wrong);
   }
 
   void saltation(const SaltationLayer& s, const std::string& dotted) {
@@ -139,6 +143,34 @@ class Checker {
   }
 
  private:
+  bool stands_on_side(const Phase& wall, const WallShear& w) const {
+    return std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
+      const auto* sides = std::get_if<SidesShape>(&fill.shape);
+      return fill.phase == wall.name && sides &&
+             std::find(sides->sides.begin(), sides->sides.end(), w.top ? "top" : "bottom") != sides->sides.end();
+    });
+  }
+
+  /// Whether the stress of a fluid on a wall is known.
+  template <class Wrong>
+  void rubs(const Phase& fluid, const Phase& wall, bool fitted, const Wrong& wrong) {
+    if (!wall.wall().roughness && fluid.fluid().turbulence != Turbulence::none)
+      return wrong("is smooth, and \"" + fluid.name +
+                   "\" is turbulent: the layer in which its viscosity acts is not resolved; expected phases." +
+                   wall.name + ".roughness, or turbulence = \"none\"");
+    if (!wall.wall().roughness || !drags_by_law(scene_, fluid)) return;
+    if (!fitted)
+      return wrong(
+          "is not the ground of the wind over sand, whose layers say the stress; expected the bed with packing = "
+          "\"fitted\" under the grains");
+    const auto drags = std::count_if(scene_.interactions.begin(), scene_.interactions.end(), [&](const Interaction& i) {
+      return (i.a == fluid.name || i.b == fluid.name) && i.drag_law != DragLaw::none;
+    });
+    if (drags > 1)
+      wrong("lies under the layers of several phases of grains in \"" + fluid.name +
+            "\"; expected one phase of grains with a law of drag by name");
+  }
+
   bool fine(const std::string& dotted) const { return report_.has(dotted) && !report_.touched(dotted); }
   std::size_t dimensions() const { return static_cast<std::size_t>(scene_.dimensions); }
 

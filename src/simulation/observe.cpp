@@ -182,6 +182,10 @@ Frame Simulation::good_frame(int index) {
   return f;
 }
 
+void Simulation::write_results(const std::string& folder, double time) const {
+  for (const auto& model : models_) model->write(folder, time);
+}
+
 double Simulation::held_energy() const {
   double held = 0.0;
   for (const auto& model : models_) held += model->budget_energy();

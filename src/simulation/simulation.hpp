@@ -82,6 +82,8 @@ class Simulation {
   Frame good_frame(int index);
   /// Momentum and energy, which the run should conserve, against the beginning.
   const Budget& budget() const { return *budget_; }
+  /// Replaces the files of results that models write beside frames and history (Model::write). Throws OutputError.
+  void write_results(const std::string& folder, double time) const;
   /// The models' terms of the budget of energy, J.
   double held_energy() const;
   /// The warnings of the run so far.

@@ -136,12 +136,65 @@ TEST_P(Dimensions, SlopeAtAWallIsExactForAParabolaThatChangesAlongTheWall) {
   set(p, dimensions, [](const Vec3& x) { return 5.0 * x[0] + x[1]; });
   Lookup lookup(b, 1.5 * radius);
   lookup.build(p);
-  const Reading r = wall_slope(at, -1.0, wall, FluidView(p), lookup,
+  const Reading r = wall_slope({at, {0.0, -1.0, 0.0}, wall}, FluidView(p), lookup,
                                ReadyKernel(KernelKind::wendland_c2, 1.5 * radius, dimensions), 1.5 * radius);
   ASSERT_TRUE(r.found);
   EXPECT_NEAR(r.value[0], 4.0, 1e-10) << "a slip of 0.01 is no shear";
   EXPECT_NEAR(r.value[1], 0.0, 1e-10);
   EXPECT_NEAR(r.value[static_cast<std::size_t>(dimensions)], 3.5, 1e-11) << "pressure";
+}
+
+/// On ground that leans, the slope is that along the normal, and what is across the wall is no shear.
+TEST_P(Dimensions, SlopeAtALeaningWallIsExactForAParabola) {
+  const int dimensions = GetParam();
+  sets::Uniform random(5);
+  const Bounds b = sets::box(dimensions, {1, 1, 1}, {false, false, false});
+  auto p = fluid_at(sets::lattice(b, spacing, 0.2, random), dimensions);
+  const Vec3 at{0.5, 0.4, dimensions == 3 ? 0.5 : 0.0};
+  const Vec3 normal = dimensions == 3 ? Vec3{-0.36, 0.8, 0.48} : Vec3{-0.6, 0.8, 0.0};
+  const Vec3 along = dimensions == 3 ? (1.0 / std::hypot(0.8, 0.36)) * Vec3{0.8, 0.36, 0.0} : Vec3{0.8, 0.6, 0.0};
+  const auto speed = [&](const Vec3& x) {
+    const double n = dot(normal, x - at), s = dot(along, x - at);
+    return 0.01 + n * (4.0 + 2.0 * s) - 3.0 * n * n;
+  };
+  for (int c = 0; c < dimensions; ++c)
+    set(p, c, [&](const Vec3& x) {
+      const auto d = static_cast<std::size_t>(c);
+      return speed(x) * along[d] + 2.5 * dot(normal, x - at) * normal[d];
+    });
+  Lookup lookup(b, 1.5 * radius);
+  lookup.build(p);
+  const Reading r = wall_slope({at, normal, {}}, FluidView(p), lookup,
+                               ReadyKernel(KernelKind::wendland_c2, 1.5 * radius, dimensions), 1.5 * radius);
+  ASSERT_TRUE(r.found);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d)
+    EXPECT_NEAR(r.value[d], 4.0 * along[d], 1e-9) << d;
+}
+
+/// A row of particles at one height: the stress is that of the law at this height, against the wall's own motion, along
+/// the wall; of rows at several heights the sum over the wall is that of the particles with their weights.
+TEST_P(Dimensions, StressOfRoughGroundIsThatOfTheLaw) {
+  const int dimensions = GetParam();
+  sets::Uniform random(6);
+  const Bounds b = sets::box(dimensions, {1, 1, 1}, {true, false, true});
+  std::vector<Vec3> row;
+  for (const Vec3& x : sets::lattice(b, spacing, 0.0, random))
+    if (x[1] < spacing) row.push_back(x);
+  auto p = fluid_at(row, dimensions);
+  p.add(Field::ground_distance);
+  set(p, 0, [](const Vec3&) { return 3.0; });
+  set(p, 1, [](const Vec3&) { return 7.0; });
+  std::fill_n(p.column(Field::ground_distance), p.size(), 0.5 * spacing);
+  Lookup lookup(b, radius);
+  lookup.build(p);
+  const RoughWall wall{1.2, 1e-3, spacing};
+  const WallPoint at{{0.5, 0.0, dimensions == 3 ? 0.5 : 0.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}};
+  const Reading r =
+      rough_stress(at, wall, FluidView(p), lookup, ReadyKernel(KernelKind::wendland_c2, radius, dimensions), radius);
+  ASSERT_TRUE(r.found);
+  const double law = 0.4 / std::log(0.05 / 1e-3);
+  EXPECT_NEAR(r.value[0], 1.2 * law * law * 4.0, 1e-12);
+  EXPECT_EQ(r.value[1], 0.0);
 }
 
 TEST(Averages, OfThreeSamplesByHand) {
@@ -215,6 +268,69 @@ TEST(Slices, MeansAndFluctuationsByHand) {
   EXPECT_NEAR(at("volume_fraction", 0), 14 * 0.01 / (0.24 * 0.7), 1e-6);
   EXPECT_NEAR(at("volume_fraction", 1), 21 * 0.01 / (0.24 * 0.7), 1e-6);
   EXPECT_EQ(at("velocity_mean", 2), 0.0);
+}
+
+/// Grains of known masses and speeds: the flux of each column of x, and their mean that of all grains.
+TEST_P(Dimensions, FluxOfGrainsAlongTheGroundByHand) {
+  const bool solid = GetParam() == 3;
+  const std::string text = std::string("dimensions = ") + (solid ? "3" : "2") + R"toml(
+spacing = 0.1
+[domain]
+size = )toml" + (solid ? "[1, 1, 0.5]" : "[1, 1]") +
+                           R"toml(
+periodic = ["x"]
+[phases.sand]
+kind = "grains"
+density = 1000
+diameter = 0.01
+stiffness = 1000
+[interactions]
+sand-sand = { law = "linear" }
+[[fill]]
+phase = "sand"
+shape = { points = )toml" +
+                           (solid ? "[[0.05, 0.2, 0.1], [0.3, 0.9, 0.2], [0.45, 0.1, 0.3]]"
+                                  : "[[0.05, 0.2], [0.3, 0.9], [0.45, 0.1]]") +
+                           R"toml( }
+[[profile]]
+name = "q"
+phase = "sand"
+box = { min = )toml" + (solid ? "[0, 0, 0], max = [1, 1, 0.5]" : "[0, 0], max = [1, 1]") +
+                           R"toml( }
+along = "x"
+count = 4
+every = 1e-9
+[time]
+end = 1
+step = 1e-9
+)toml";
+  const auto run = small::simulation(text);
+  Measurements m = measurements(*run);
+  auto& p = run->phases()[0];
+  const double mass = p.mass_of(0), deep = solid ? 0.5 : 1.0;
+  const auto speeds = [&](double first, double second, double third) {
+    double* v = p.column(Field::velocity, 0);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double x = p.column(Field::position, 0)[k];
+      v[k] = x < 0.2 ? first : x < 0.4 ? second : third;
+    }
+  };
+  speeds(1.0, 2.0, 4.0);
+  m.sample(run->state());
+  speeds(3.0, 2.0, -1.0);
+  run->step(1e-9);
+  speeds(3.0, 2.0, -1.0);
+  m.sample(run->state());
+  const Table t = m.table(0);
+  ASSERT_EQ(t.moments, 2);
+  const auto q = [&](std::size_t k) { return field(t, "flux").values[k]; };
+  const double of_one = mass / (0.25 * deep);
+  EXPECT_NEAR(q(0), of_one * 2.0, 1e-12 * of_one);
+  EXPECT_NEAR(q(1), of_one * (2.0 + 1.5), 1e-12 * of_one) << "two grains, of which one turned back";
+  EXPECT_EQ(q(2), 0.0) << "an empty column has no flux, not an unknown one";
+  EXPECT_EQ(q(3), 0.0);
+  EXPECT_NEAR((q(0) + q(1) + q(2) + q(3)) / 4.0, mass * 5.5 / deep, 1e-12 * mass);
+  EXPECT_NEAR(field(t, "mass_flux").values[3], q(1), 1e-12 * of_one) << "a box of one metre";
 }
 
 /// The channel with one of each.
