@@ -86,6 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
                     small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
                     small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
                     small::Named{"Spheres", &small::spheres}, small::Named{"Drowned", &small::drowned},
+                    small::Named{"DrownedConsistent", &small::drowned_consistent},
+                    small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
                     small::Named{"Rigid", &small::rigid}, small::Named{"Paddle", &small::paddle},
                     small::Named{"Drum", &small::drum}, small::Named{"HertzianSpheres", &small::hertzian_spheres}),
     [](const auto& s) { return std::string(s.param.name); });

@@ -104,6 +104,16 @@ end = 1
 largest-speed = 2
 )toml";
 
+/// A scene with some words of it changed.
+inline std::string changed(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("no \"" + from + "\" in the scene");
+  return text.replace(at, from.size(), to);
+}
+/// The same in a fluid of the consistent scheme.
+inline const std::string drowned_consistent =
+    changed(drowned, "scheme = \"plain\"\nenergy = true", "scheme = \"consistent\"");
+
 /// A ball in a periodic fluid, in three dimensions.
 inline const std::string drowned_ball = R"toml(
 precision = "double"
@@ -137,6 +147,10 @@ shape = "the-rest"
 end = 1
 largest-speed = 2
 )toml";
+
+/// The same in a fluid of the consistent scheme.
+inline const std::string drowned_ball_consistent =
+    changed(drowned_ball, "scheme = \"plain\"\nenergy = true", "scheme = \"consistent\"");
 
 /// A fluid with a wall below, in wind; nothing else.
 inline const std::string channel = R"toml(

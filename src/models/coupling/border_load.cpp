@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "engine/hold_inside.hpp"
 #include "models/coupling/border_fit.hpp"
 #include "models/fluid/fluid_phase.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -33,6 +35,12 @@ BorderLoad::BorderLoad(const Scene& scene, const Layout& layout, const PlanEntry
       spacing_(layout.phases[fluid_].spacing),
       radius_(fit_radius * spacing_),
       viscosity_(pair_viscosity(scene, layout, solid_, fluid_)) {
+  if (layout.phases[fluid_].free_surface)
+    throw SceneError(
+        located(scene, "interactions." + entry.name) + ": \"" + layout.phases[fluid_].name +
+        "\" has the consistent scheme and a free surface, where a rigid body would float too low; expected "
+        "a fluid that is shut in, or phases." +
+        layout.phases[fluid_].name + ".scheme = \"plain\"");
   for (const PlanEntry& e : layout.entries)
     if (e.searched) slack_ = std::max(slack_, layout.skin * e.radius);
 }
@@ -220,7 +228,7 @@ void BorderLoad::sum(RigidBody& body, const Border& border) const {
     mean += pieces[q].content * stress_[q].pressure;
   }
   if (!(wet > 0.0)) return;
-  mean = layout_.phases[fluid_].free_surface ? 0.0 : mean / wet;
+  mean /= wet;
   const OwnAxes axes(body);
   Vec3 force{}, torque{};
   for (std::size_t q = 0; q < pieces.size(); ++q) {

@@ -1,0 +1,179 @@
+// Rigid bodies in fluids of the consistent scheme: buoyancy, added mass, friction, settling, rotation in a shear flow,
+// light bodies, and what of the momentum is lost.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "models/bodies/border_points.hpp"
+#include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
+
+namespace barchan {
+namespace {
+
+using std::numbers::pi;
+using testing::Drive;
+using testing::report;
+
+double value(const Simulation& s, const std::string& column) {
+  const auto columns = s.history_columns();
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
+  if (found == columns.end()) throw std::logic_error("no column " + column);
+  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
+}
+
+void go(Simulation& run, double time) {
+  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
+}
+
+/// Mean of a column over a time (s), every step.
+double mean(Simulation& run, const std::string& column, double from, double to) {
+  go(run, from);
+  double sum = 0.0, before = run.time();
+  while (run.time() < to * (1.0 - 1e-12)) {
+    run.begin_row();
+    run.step(to - run.time());
+    sum += value(run, column) * (run.time() - before);
+    before = run.time();
+  }
+  return sum / (to - from);
+}
+
+/// A force of pressure that is linear in the place, p = g.x, on a body is -g times what it holds.
+void expect_exact(const Shape& shape, int dimensions, double content, const char* what) {
+  const auto points = border_points(shape, dimensions, 0.1, 0.05);
+  ASSERT_FALSE(points.empty()) << what;
+  double border = 0.0, worst = 0.0;
+  Vec3 closed{};
+  std::array<Vec3, 3> moment{};
+  for (const BorderPoint& p : points) {
+    border += p.content;
+    closed = closed + p.content * p.normal;
+    for (std::size_t d = 0; d < 3; ++d) moment[d] = moment[d] + p.content * p.at[d] * p.normal;
+  }
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d)
+    for (std::size_t e = 0; e < static_cast<std::size_t>(dimensions); ++e)
+      worst = std::max(worst, std::abs(moment[d][e] - (d == e ? content : 0.0)));
+  report(std::string("buoyancy of the pieces of a border, ") + what, worst / content, 1e-12);
+  EXPECT_LT(worst, 1e-12 * content) << what;
+  EXPECT_LT(norm(closed), 1e-12 * border) << what;
+}
+
+TEST(RigidInConsistentFluid, ThePiecesOfABorderCarryALinearPressure) {
+  expect_exact(DiscShape{{0.3, 0.2, 0}, 0.4}, 2, pi * 0.16, "disc");
+  expect_exact(RingShape{{0.3, 0.2, 0}, 0.2, 0.4}, 2, pi * 0.12, "ring");
+  expect_exact(BoxShape{{0.1, 0.2, 0}, {0.53, 0.4, 0}}, 2, 0.43 * 0.2, "box");
+  expect_exact(PolygonShape{{{0, 0}, {1, 0}, {0.2, 0.7}}, {1.0, 30.0, {}}}, 2, 0.35, "triangle");
+  expect_exact(BoxShape{{0.1, 0.2, 0.3}, {0.53, 0.4, 0.5}}, 3, 0.43 * 0.04, "box in 3D");
+  const auto ball = border_points(SphereShape{{0.3, 0.2, 0.1}, 0.4}, 3, 0.1, 0.05);
+  double volume = 0.0;
+  for (const BorderPoint& p : ball) volume += p.content * p.at[1] * p.normal[1];
+  EXPECT_NEAR(volume / (4.0 / 3.0 * pi * 0.064), 1.0, 1e-12) << "sphere";
+}
+
+constexpr double displaced = pi * 0.4 * 0.4;  // kg/m, of the liquid
+
+TEST(RigidInConsistentFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
+  std::ifstream file(testing::scene_file("verification/sinking_disc"));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto run = small::simulation(text + "\n[[motion]]\nphase = \"disc\"\n", {"phases.water.scheme=consistent"});
+  const double lift = mean(*run, "disc_force_y", 0.05, 0.2);
+  const double error = std::abs(lift / displaced - 1.0);
+  report("lift over the weight of the liquid displaced", error, 0.01);
+  EXPECT_LT(error, 0.01);
+  EXPECT_LT(std::abs(value(*run, "disc_torque")), 1e-3 * displaced * 0.4);
+}
+
+TEST(RigidInConsistentFluid, ABodyOfTheFluidsDensityStays) {
+  Drive drive("verification/sinking_disc",
+              {"phases.water.scheme=consistent", "phases.disc.density=1", "phases.water.viscosity=1e-3"});
+  const double start = value(drive.simulation(), "disc_y");
+  drive.to(0.3);
+  const double way = std::abs(value(drive.simulation(), "disc_y") - start), falls = 0.5 * 0.3 * 0.3;
+  report("way over that of a free fall", way / falls, 0.01);
+  EXPECT_LT(way / falls, 0.01);
+  EXPECT_GT(way, 0.0) << "it is not held";
+}
+
+/// Of a density ratio: the acceleration of the potential flow (sinking_disc.toml) over that found.
+double start_of_fall(double density, double gravity, double time) {
+  Drive drive("verification/sinking_disc",
+              {"phases.water.scheme=consistent", "phases.disc.density=" + std::to_string(density),
+               "domain.gravity=[0, -" + std::to_string(gravity) + "]"});
+  drive.to(time);
+  const double added = (1.0 + 0.16) / (1.0 - 0.16), exact = gravity * (1.0 - density) / (density + added);
+  return value(drive.simulation(), "disc_velocity_y") / (exact * time);
+}
+
+TEST(RigidInConsistentFluid, AHeavyBodyStartsWithItsAddedMass) {
+  const double found = start_of_fall(2.0, 1.0, 0.4);
+  report("velocity over that with the added mass", std::abs(found - 1.0), 0.04);
+  EXPECT_NEAR(found, 1.0, 0.04);
+}
+
+/// A body of a hundredth of the fluid's density: the load of the fluid answers its acceleration with the pace of sound.
+TEST(RigidInConsistentFluid, ALightBodyRises) {
+  const double found = start_of_fall(0.03, 0.3, 0.4);
+  report("velocity over that with the added mass, 0.03 of the density", std::abs(found - 1.0), 0.12);
+  EXPECT_NEAR(found, 1.0, 0.12);
+}
+
+TEST(RigidInConsistentFluid, ATurningCylinderFeelsTheTorqueOfCouetteFlow) {
+  Drive drive("verification/taylor_couette", {"phases.oil.scheme=consistent", "spacing=0.0666666666666667"});
+  const double exact = 4.0 * pi * 4.0 / 3.0;
+  const double inner = std::abs(mean(drive.simulation(), "cylinder_torque", 0.9, 1.0) / -exact - 1.0);
+  const double outer = std::abs(value(drive.simulation(), "shell_torque") / exact - 1.0);
+  report("torque on the cylinder", inner, 0.02);
+  report("torque on the shell", outer, 0.02);
+  EXPECT_LT(inner, 0.02);
+  EXPECT_LT(outer, 0.02);
+}
+
+/// What its scene says of it.
+TEST(RigidInConsistentFluid, ACylinderTurnsInAShearFlow) {
+  Drive drive("verification/sheared_cylinder", {});
+  drive.to(3.0);
+  const double found = value(drive.simulation(), "cylinder_angular_velocity") / -0.1, exact = 0.48222;
+  report("rate of rotation over the exact one", std::abs(found / exact - 1.0), 0.02);
+  EXPECT_NEAR(found, exact, 0.02 * exact);
+  EXPECT_LT(std::abs(value(drive.simulation(), "cylinder_y")), 0.02) << "it stays in the middle";
+}
+
+TEST(RigidInConsistentFluid, ADiscBetweenPlatesSinksAsFaxenSays) {
+  Drive drive("verification/settling_disc", {"spacing=0.07142857", "domain.size=[4, 8]", "domain.origin=[-2, -4]"});
+  drive.to(2.0);
+  const double found = -value(drive.simulation(), "disc_velocity_y") / 0.2;
+  report("speed over Faxen's", std::abs(found - 1.0), 0.05);
+  EXPECT_NEAR(found, 1.0, 0.05);
+}
+
+/// The sums of the consistent scheme keep no momentum to rounding; docs/method.md says what is lost.
+TEST(RigidInConsistentFluid, KeepsMomentumToTheOrderOfTheScheme) {
+  const auto run = small::simulation(small::drowned_consistent);
+  const auto momentum = [&] {
+    std::pair<Vec3, double> sum{};
+    for (const PhaseParticles& p : run->phases())
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        const Vec3 v{p.column(Field::velocity, 0)[k], p.column(Field::velocity, 1)[k], 0.0};
+        sum.first = sum.first + p.mass() * v;
+        sum.second += p.mass() * norm(v);
+      }
+    return sum;
+  };
+  const Vec3 start = momentum().first;
+  double worst = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    run->step(1.0);
+    const auto [now, size] = momentum();
+    worst = std::max(worst, norm(now - start) / size);
+  }
+  report("momentum over mass times speed", worst, 0.03);
+  EXPECT_LT(worst, 0.03);
+  EXPECT_GT(worst, 0.0);
+}
+
+}  // namespace
+}  // namespace barchan
