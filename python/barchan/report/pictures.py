@@ -24,10 +24,9 @@ def data_uri(kind, content):
 
 def render(g, film=False):
     """Renders pictures of the run into its folder with pvstate/render (ParaView): frames over the series, of the states that the scene names. Throws OutputError."""
-    places = [HERE.parents[3] / "pvstate/render", HERE.parents[3] / "share/barchan/pvstate/render", HERE.parents[2].parent / "pvstate/render"]
-    tool = next((place for place in places if place.is_file()), None)
-    if tool is None:
-        raise OutputError("--render needs pvstate/render, which is not beside this package")
+    tool = HERE.parents[3] / "pvstate/render"  # of the source tree; of an installation PREFIX/share/barchan/pvstate/render
+    if not tool.is_file():
+        raise OutputError(f"--render needs {tool}, which is not there")
     if g.series is None or not len(g.series):
         raise OutputError(f"--render: {g.folder} has no frame")
     said = g.run.get("scene", {}).get("state") or "airflow"
