@@ -8,7 +8,9 @@ namespace {
 /// "N" of "N:INT in [1 - 4096]": what is allowed follows from a check, and its message says it.
 std::string without_range(const std::string& takes) { return takes.substr(0, takes.find(':')); }
 
-CommandTable table_of(const CLI::App& app) {
+}  // namespace
+
+CommandTable command_table(const CLI::App& app) {
   CommandTable table{app.get_name(), app.get_description(), {}};
   for (const CLI::Option* option : app.get_options()) {
     CommandWord word;
@@ -17,12 +19,11 @@ CommandTable table_of(const CLI::App& app) {
     if (option->get_items_expected_max() > 0) word.takes = without_range(option->get_type_name());
     word.meaning = option->get_description();
     word.required = option->get_required();
+    word.option = option->get_name();
     table.words.push_back(word);
   }
   return table;
 }
-
-}  // namespace
 
 std::vector<std::string> CommandWord::choices() const {
   std::vector<std::string> words(1);
@@ -36,10 +37,10 @@ std::vector<std::string> CommandWord::choices() const {
 }
 
 std::vector<CommandTable> command_tables(const CLI::App& app) {
-  std::vector<CommandTable> tables{table_of(app)};
+  std::vector<CommandTable> tables{command_table(app)};
   tables.front().name = "";
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    tables.push_back(table_of(*command));
+    tables.push_back(command_table(*command));
   return tables;
 }
 

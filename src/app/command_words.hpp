@@ -9,6 +9,7 @@ namespace barchan {
 
 struct CommandWord {
   std::vector<std::string> names;  // of an option "-o", "--output"; empty: a word by its place
+  std::string option{};            // what CLI11 calls it
   std::string takes;  // what stands for its value: DIR, FILE, SCENE, KEY=VALUE, "bash|zsh|fish"; empty: none
   std::string meaning;
   bool required = false;
@@ -17,6 +18,7 @@ struct CommandWord {
   bool takes_a(const std::string& what) const {
     return ("|" + takes + "|").find("|" + what + "|") != std::string::npos;
   }
+  bool takes_a_key() const { return takes.starts_with("KEY="); }
   std::vector<std::string> choices() const;  // the small words of "FILE|latest"
 };
 
@@ -24,6 +26,9 @@ struct CommandTable {
   std::string name, meaning;
   std::vector<CommandWord> words;
 };
+
+/// The words of one command.
+CommandTable command_table(const CLI::App& command);
 
 /// The options of the program itself (name ""), then its commands in their order.
 std::vector<CommandTable> command_tables(const CLI::App& app);

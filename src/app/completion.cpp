@@ -31,7 +31,7 @@ std::string bash_of(const CommandWord& word) {
   std::string calls;
   const auto call = [&](const std::string& what) { calls += (calls.empty() ? "" : "; ") + what; };
   if (word.takes_a("SCENE")) call("_barchan_scenes");
-  if (word.takes_a("KEY=VALUE")) call("_barchan_keys");
+  if (word.takes_a_key()) call("_barchan_keys");
   if (word.takes_a("DIR")) call("_barchan_files -d");
   if (word.takes_a("FILE")) call("_barchan_files -f");
   if (const auto choices = word.choices(); !choices.empty()) call("_barchan_words \"" + joined(choices, " ") + "\"");
@@ -113,7 +113,7 @@ std::string zsh_of(const CommandWord& word) {
   if (word.takes.empty()) return "";
   std::string action = " ";
   if (word.takes_a("SCENE")) action = "_barchan_scenes";
-  else if (word.takes_a("KEY=VALUE")) action = "_barchan_keys";
+  else if (word.takes_a_key()) action = "_barchan_keys";
   else if (word.takes_a("DIR")) action = "_files -/";
   else if (word.takes_a("FILE")) {
     const auto choices = word.choices();
@@ -134,8 +134,8 @@ std::string zsh_script(const std::vector<CommandTable>& tables) {
     for (const CommandWord& word : table.words) {
       if (word.by_place()) arguments += " \\\n        " + quoted(zsh_of(word));
       for (const std::string& name : word.names)
-        arguments += " \\\n        " + quoted((word.takes_a("KEY=VALUE") ? "*" : "") + name + "[" +
-                                              plain(word.meaning) + "]" + zsh_of(word));
+        arguments += " \\\n        " +
+                     quoted((word.takes_a_key() ? "*" : "") + name + "[" + plain(word.meaning) + "]" + zsh_of(word));
     }
     if (table.name.empty()) continue;
     commands += "    " + quoted(table.name + ":" + plain(table.meaning)) + "\n";
@@ -165,7 +165,7 @@ std::string fish_of(const CommandWord& word) {
   std::string text;
   const auto offer = [&](const std::string& what) { text += " -a " + quoted(what); };
   if (word.takes_a("SCENE")) offer("(barchan list scenes --names)");
-  if (word.takes_a("KEY=VALUE")) offer("(__barchan_keys)");
+  if (word.takes_a_key()) offer("(__barchan_keys)");
   if (word.takes_a("DIR")) offer("(__fish_complete_directories (commandline -ct))");
   if (const auto choices = word.choices(); !choices.empty()) offer(joined(choices, " "));
   const bool files = word.takes_a("FILE") || word.takes_a("SCENE");

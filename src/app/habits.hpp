@@ -9,6 +9,10 @@ namespace barchan {
 /// Adds them to the program. `status` gets what the chosen one returns.
 void add_habits(CLI::App& app, int& status);
 
+/// Names report and sweep, which the Python package does, and their options, for the lists of commands, the manual page
+/// and the completion of shells.
+void add_python_commands(CLI::App& app);
+
 /// What `barchan list` shows. `what`: scenes, states, keys, or "" for scenes and states. `scene`: of keys, whose
 /// phases, pairs and entries they name; "" for none. `names`: the names alone, one a line.
 int list(const std::string& what, const std::string& scene, bool names, bool json);

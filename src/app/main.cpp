@@ -16,6 +16,7 @@
 #include "app/commands.hpp"
 #include "app/guard.hpp"
 #include "app/habits.hpp"
+#include "app/mistakes.hpp"
 #include "app/shipped.hpp"
 #include "app/terminal.hpp"
 #include "base/denormals.hpp"
@@ -23,7 +24,6 @@
 #include "base/memory.hpp"
 #include "base/version.hpp"
 #include "output/numbers.hpp"
-#include "scene/nearest.hpp"
 
 namespace {
 
@@ -45,38 +45,6 @@ void wait_politely(int argc, char** argv) {
   execv("/proc/self/exe", argv);  // returns only if it failed; then the run goes on as it is
 }
 
-/// For a first word that is no command: what was probably meant, and the commands. Empty: it is one, or an option.
-std::string not_a_command(const CLI::App& app, const std::string& word) {
-  if (word.starts_with('-')) return "";
-  std::vector<std::string> names;
-  std::string list = "commands:\n";
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == word) return "";
-    names.push_back(command->get_name());
-    list += "  " + names.back() + std::string(12 - std::min<std::size_t>(names.back().size(), 11), ' ') +
-            command->get_description() + '\n';
-  }
-  if (word.empty()) return "no command\n" + list;
-  const bool scene = word.ends_with(".toml");
-  const std::string meant = scene ? "barchan run " + word : barchan::nearest(word, names);
-  return "\"" + word + "\" is " + (scene ? "a scene, not a command" : "not a command") + barchan::did_you_mean(meant) +
-         '\n' + list;
-}
-
-/// What is said of an option that does not exist, as --thread; empty: there is none.
-std::string unknown_option(const CLI::App& command, const std::vector<std::string>& words) {
-  std::vector<std::string> known;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-  for (const std::string& word : words) {
-    const std::string name = word.substr(0, word.find('='));
-    if (!name.starts_with("--") || std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string meant = barchan::nearest(name, known);
-    return "unknown option " + barchan::shortened(name) + (meant.empty() ? "" : "; did you mean " + meant + "?") + '\n';
-  }
-  return "";
-}
-
 /// The status of a command whose answer is what it prints: it has failed when that could not be written.
 int all_was_said(int status) {
   errno = 0;
@@ -95,7 +63,7 @@ std::string version_text(bool verbose) {
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"Barchan: wind-blown sand, multiphase flow and impact with smoothed particles"};
-  const std::vector<std::string> words(argv, argv + argc);  // --version answers before the options behind it are read
+  std::vector<std::string> words(argv, argv + argc);  // --version answers before the options behind it are read
   bool verbose = std::find(words.begin(), words.end(), "--verbose") != words.end();
   app.set_version_flag(
       "--version", [&] { return version_text(verbose); }, "version, compiler and instruction set");
@@ -110,7 +78,9 @@ int dispatch(int argc, char** argv) {
   int status = 0;
   std::vector<std::string> overrides;
   const auto add_set = [&](CLI::App* c) {
-    c->add_option("--set", overrides, "override a key of the scene, e.g. --set time.end=0.01")->type_name("KEY=VALUE");
+    c->add_option("--set", overrides, "override a key of the scene, e.g. --set time.end=0.01")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);  // one value each: what follows is the scene
   };
 
   barchan::RunOptions run;
@@ -172,25 +142,22 @@ int dispatch(int argc, char** argv) {
 
   barchan::add_habits(app, status);
 
-  app.add_subcommand("report", "one HTML page of a run, from its folder (python3)");
-  app.add_subcommand("sweep", "run a scene with many values of its keys (python3)");
-  if (argc > 1 && barchan::is_python_command(argv[1])) return barchan::run_python(words);
+  barchan::add_python_commands(app);
+  if (argc > 1 && barchan::is_python_command(argv[1])) {
+    if (words[1] == "sweep" && argc > 2 && !words[2].starts_with('-')) words[2] = barchan::scene_file(words[2]);
+    return barchan::run_python(words);
+  }
 
-  if (const std::string what = not_a_command(app, argc > 1 ? argv[1] : ""); !what.empty()) {
+  if (const std::string what = barchan::not_a_command(app, argc > 1 ? argv[1] : ""); !what.empty()) {
     std::cerr << "barchan: " << what << "`barchan COMMAND --help` says more.\n";
     return 2;
   }
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ExtrasError& e) {
-    const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
-    const std::string what = unknown_option(*command, words);
-    if (what.empty()) return app.exit(e), 2;
-    std::cerr << "barchan: " << what << "`barchan " << command->get_name() << " --help` says more.\n";
-    return 2;
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? all_was_said(0) : 2;
+    if (e.get_exit_code() == 0) return app.exit(e), all_was_said(0);  // --help, --version
+    std::cerr << "barchan: " << barchan::wrong_command(app, e, words);
+    return 2;
   }
   return c_run->parsed() ? status : all_was_said(status);
 }

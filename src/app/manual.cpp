@@ -37,8 +37,8 @@ std::string synopsis(const CommandTable& table) {
     if (word.by_place()) text += word.required ? italic(word.takes) : " [" + italic(word.takes).substr(1) + "]";
   for (const CommandWord& word : table.words)
     if (!word.by_place() && word.names.back() != "--help")
-      text += " [\\fB" + roff(word.names.back()) + "\\fR" + italic(word.takes) + "]" +
-              (word.takes_a("KEY=VALUE") ? " ..." : "");
+      text +=
+          " [\\fB" + roff(word.names.back()) + "\\fR" + italic(word.takes) + "]" + (word.takes_a_key() ? " ..." : "");
   return text;
 }
 

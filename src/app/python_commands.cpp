@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/habits.hpp"
 #include "base/errors.hpp"
 
 namespace barchan {
@@ -31,6 +32,28 @@ fs::path package_folder(const fs::path& program) {
 }  // namespace
 
 bool is_python_command(const std::string& word) { return word == "report" || word == "sweep"; }
+
+void add_python_commands(CLI::App& app) {
+  const auto option = [](CLI::App* command, const char* names, const char* takes, const char* meaning) {
+    return command->add_option(names)->type_name(takes)->description(meaning);
+  };
+  auto* report = app.add_subcommand("report", "one HTML page of a run, from its folder (python3)");
+  option(report, "folder", "DIR", "folder of a run, as out/dune")->required();
+  option(report, "-o,--output", "FILE", "the page (default DIR/report.html)");
+  report->add_flag("--render")->description("render pictures of the scene's states first (ParaView)");
+  report->add_flag("--film")->description("put films into the page; with --render make them");
+  report->add_flag("--no-plan")->description("do not ask barchan plan for the matrix");
+  auto* sweep = app.add_subcommand("sweep", "run a scene with many values of its keys (python3)");
+  option(sweep, "scene", "SCENE", "scene file (.toml), or the name of a scene that comes along")->required();
+  option(sweep, "--vary", "KEY=VALUES", "FROM:TO:NUMBER, FROM:TO:NUMBER:log or VALUE,VALUE,...; again for another key");
+  option(sweep, "--set", "KEY=VALUE", "override a key of the scene in all runs");
+  option(sweep, "-j,--jobs", "N", "runs at a time (default: processors over --threads)");
+  option(sweep, "--threads", "N", "threads of each run (default 1)");
+  option(sweep, "--out", "DIR", "folder of the sweep (default out/NAME_sweep)");
+  option(sweep, "--measure", "COLUMN[:WAY]",
+         "a column of history.csv; WAY is last, first, mean, max or min of its rows");
+  option(sweep, "--from", "TIME", "s; measures take the rows of the history from this time on");
+}
 
 int run_python(const std::vector<std::string>& words) {
   std::error_code failed;

@@ -75,12 +75,14 @@ std::string wrapped(const std::string& line, std::size_t columns) {
   return text + current;
 }
 
-/// Keeps a line until it is whole. What stands in it when the stream is flushed is written as it is.
+/// Keeps a line until it is whole. What stands in a line of std::cout when it is flushed is written as it is.
 class Terminal::Buffer : public std::streambuf {
  public:
-  Buffer(std::ostream& stream, int descriptor)
-      : stream_(stream), under_(stream.rdbuf(this)), descriptor_(descriptor), colours_(coloured()) {}
+  /// `whole`: a line that is not whole waits. std::cerr is flushed after every piece of one.
+  Buffer(std::ostream& stream, int descriptor, bool whole)
+      : stream_(stream), under_(stream.rdbuf(this)), descriptor_(descriptor), colours_(coloured()), whole_(whole) {}
   ~Buffer() override {
+    whole_ = false;
     Buffer::sync();
     stream_.rdbuf(under_);
   }
@@ -108,7 +110,7 @@ class Terminal::Buffer : public std::streambuf {
   }
   int sync() override {
     const std::lock_guard lock(mutex_);
-    if (!line_.empty()) {
+    if (!line_.empty() && !whole_) {
       put(line_);
       line_.clear();
       begun_ = true;  // the rest of the line stays as it is, too
@@ -130,15 +132,14 @@ class Terminal::Buffer : public std::streambuf {
   std::ostream& stream_;
   std::streambuf* under_;
   int descriptor_;
-  bool colours_, begun_ = false;
+  bool colours_, whole_, begun_ = false;
   std::string line_;
   std::mutex mutex_;
 };
 
 Terminal::Terminal() {
-  if (isatty(STDOUT_FILENO)) out_ = std::make_unique<Buffer>(std::cout, STDOUT_FILENO);
-  if (!isatty(STDERR_FILENO)) return;
-  error_ = std::make_unique<Buffer>(std::cerr, STDERR_FILENO);
+  if (isatty(STDOUT_FILENO)) out_ = std::make_unique<Buffer>(std::cout, STDOUT_FILENO, false);
+  if (isatty(STDERR_FILENO)) error_ = std::make_unique<Buffer>(std::cerr, STDERR_FILENO, true);
 }
 
 Terminal::~Terminal() = default;

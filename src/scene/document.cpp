@@ -201,13 +201,35 @@ unsigned line_of_endless_key(std::string_view text) {
   return 0;
 }
 
-/// The word without quotes that a line gives to its key, as in kind = fluid; else nothing.
-std::string bare_word(std::string_view text, unsigned line) {
+/// The value that a line gives to its key, without blanks before it; nothing: it gives none.
+std::string_view value_in_line(std::string_view text, unsigned line) {
   for (; line > 1 && !text.empty(); --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));
   const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return "";
+  if (equals == std::string_view::npos) return {};
   text.remove_prefix(equals + 1);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text;
+}
+
+/// What else to write where the reader of TOML only says what it cannot read; empty: nothing that we know.
+std::string remedy(std::string_view text, unsigned line, std::string_view said) {
+  constexpr std::string_view array = "' as array-of-tables", mark = "existing table '";
+  if (const std::size_t end = said.find(array), begin = said.find(mark); end != said.npos && begin != said.npos) {
+    const std::string name(said.substr(begin + mark.size(), end - begin - mark.size()));
+    return "; expected [[" + name + "]] in place of [" + name + "]";
+  }
+  const std::string_view value = value_in_line(text, line);
+  const std::size_t end = std::min(value.find_first_not_of("+-.0123456789eE"), value.size());
+  const std::size_t unit = std::min(value.find_first_not_of(' ', end), value.size());
+  if (end > 0 && unit < value.size() && std::isalpha(static_cast<unsigned char>(value[unit])))
+    return "; expected a number in units of SI, its unit in a comment, as in 9.81  # m/s2";
+  return "";
+}
+
+/// The word without quotes that a line gives to its key, as in kind = fluid; else nothing.
+std::string bare_word(std::string_view text, unsigned line) {
+  text = value_in_line(text, line);
   const std::size_t begin = text.find_first_not_of(" \t");
   if (begin == std::string_view::npos || !std::isalpha(static_cast<unsigned char>(text[begin]))) return "";
   std::size_t end = begin;
@@ -230,9 +252,10 @@ toml::table parse_document(const std::string& text, const std::string& file, con
   try {
     document = toml::parse(std::string_view(text), std::string_view(file));
   } catch (const toml::parse_error& error) {
-    const std::string word = bare_word(text, error.source().begin.line);
+    const unsigned line = error.source().begin.line;
+    const std::string word = bare_word(text, line), said(error.description());
     problems.fail(error.source(), "",
-                  "not TOML: " + (word.empty() ? std::string(error.description())
+                  "not TOML: " + (word.empty() ? said + remedy(text, line, said)
                                                : word + " stands without quotes; expected \"" + word + "\""));
   }
   for (const std::string& assignment : overrides) apply(document, assignment, problems);

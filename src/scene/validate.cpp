@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "scene/formula.hpp"
@@ -21,6 +23,25 @@ std::string shown(const toml::node& node) {
   if (const auto* array = node.as_array()) return "an array of " + std::to_string(array->size());
   if (node.is_table()) return "a section";
   return "a date or time";
+}
+
+/// For a text in the place of a number: "0.1" in quotes, a decimal comma, a unit of SI. Empty: it is none of these.
+std::string meant_number(const std::string& text) {
+  static const std::pair<std::string_view, double> units[] = {
+      {"", 1.0},    {"m", 1.0},          {"mm", 1e-3},   {"cm", 1e-2},   {"km", 1e3},   {"um", 1e-6},
+      {"nm", 1e-9}, {"s", 1.0},          {"ms", 1e-3},   {"us", 1e-6},   {"min", 60.0}, {"h", 3600.0},
+      {"m/s", 1.0}, {"km/h", 1.0 / 3.6}, {"kg/m3", 1.0}, {"g/cm3", 1e3}, {"Pa", 1.0},   {"kPa", 1e3},
+      {"MPa", 1e6}, {"GPa", 1e9},        {"m2/s", 1.0},  {"mm2/s", 1e-6}};
+  std::string plain = text;
+  if (const std::size_t comma = plain.find(','); comma != std::string::npos) plain[comma] = '.';
+  double number = 0.0;
+  const auto [rest, error] = std::from_chars(plain.data(), plain.data() + plain.size(), number);
+  if (error != std::errc()) return "";
+  std::string_view unit(rest, static_cast<std::size_t>(plain.data() + plain.size() - rest));
+  unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
+  for (const auto& [name, factor] : units)
+    if (name == unit) return number_text(number * factor);
+  return "";
 }
 
 class Validator {
@@ -108,7 +129,11 @@ class Validator {
     } else if (node.is_boolean() && (a & as_boolean)) {
       return;
     }
-    problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_));
+    std::string hint;
+    if (const auto* text = node.as_string(); text && (a & (as_number | as_integer)))
+      if (const std::string number = meant_number(text->get()); !number.empty())
+        hint = "; did you mean " + number + ", without quotes or a unit?";
+    problems_.add(node.source(), here, "found " + shown(node) + "; expected " + expected(key, dimensions_) + hint);
   }
 
   void named_sections(const toml::table& table, const std::string& path, const std::string& here) {
@@ -121,9 +146,22 @@ class Validator {
       if (!good)
         problems_.add(name.source(), inner,
                       "not a name of a phase; expected a letter followed by letters, digits and underscores");
-      if (const auto* entry = node.as_table()) section(*entry, path, inner);
+      const auto* entry = node.as_table();
+      const bool from_override = name.source().path && name.source().path->starts_with("--set ");
+      if (entry && from_override && !entry->contains("kind") && table.size() > 1) no_such_name(table, name, inner);
+      else if (entry) section(*entry, path, inner);
       else problems_.add(node.source(), inner, "found " + shown(node) + "; expected a section");
     }
+  }
+
+  /// An override of a phase that the scene does not have, and that it does not make either.
+  void no_such_name(const toml::table& table, const toml::key& name, const std::string& here) {
+    std::vector<std::string> others;
+    for (const auto& [other, _] : table)
+      if (other.str() != name.str()) others.emplace_back(other.str());
+    problems_.add(
+        name.source(), here,
+        "there is no such phase in the file; expected " + one_of(others) + did_you_mean(nearest(name.str(), others)));
   }
 
   void sections(const Key& key, const toml::array& array, const std::string& path, const std::string& here) {
