@@ -736,7 +736,8 @@ TEST(SceneReader, FileThatIsNotThere) {
 TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
   const auto schema = nlohmann::json::parse(scene_schema());
   EXPECT_EQ(schema["$schema"], "http://json-schema.org/draft-04/schema#");
-  EXPECT_EQ(schema["properties"]["spacing"]["exclusiveMinimum"], 0.0);
+  EXPECT_EQ(schema["properties"]["spacing"]["minimum"], 0.0);
+  EXPECT_EQ(schema["properties"]["spacing"]["exclusiveMinimum"], true);
   EXPECT_NE(schema["properties"]["spacing"]["description"].get<std::string>().find("Unit: m."), std::string::npos);
   EXPECT_EQ(schema["required"], (nlohmann::json{"spacing", "domain", "phases", "interactions", "fill", "time"}));
   const auto& phase = schema["properties"]["phases"]["additionalProperties"];

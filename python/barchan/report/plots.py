@@ -20,9 +20,9 @@ def pyplot():
     """matplotlib's pyplot, which draws without a display. Throws PackageMissing."""
     matplotlib = package("matplotlib", "python3-matplotlib", "a report")
     matplotlib.use("Agg")
-    matplotlib.rcParams.update({"svg.fonttype": "path", "svg.hashsalt": "barchan", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    matplotlib.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "svg.hashsalt": "barchan", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
                                 "grid.color": "#e4e4e4", "grid.linewidth": .6, "lines.linewidth": 1.4, "path.simplify": True, "path.simplify_threshold": .3,
-                                "axes.formatter.limits": (-3, 4), "axes.formatter.use_mathtext": True, "legend.frameon": False, "legend.fontsize": 8})
+                                "axes.formatter.limits": (-3, 4), "legend.frameon": False, "legend.fontsize": 8})
     import matplotlib.pyplot
     return matplotlib.pyplot
 
@@ -32,7 +32,7 @@ def svg(figure):
     out = io.StringIO()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a plot of nothing but nan
-        figure.savefig(out, format="svg", bbox_inches="tight", pad_inches=.05, metadata={"Date": None, "Creator": None})
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     pyplot().close(figure)
     text = out.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg"):], flags=re.S)
@@ -58,10 +58,19 @@ def thinned(x, y):
     return x[kept], y[kept]
 
 
+def panel(labels, width, height):
+    """A figure of this width (inches) and its axes of this height, with room below for a legend of the `labels`: nothing has to be measured, which would take as long as drawing."""
+    across = 2 if width > 5 and max(map(len, labels), default=0) < 36 else 1
+    below = .48 + .17 * -(-len(labels) // across) + (.16 if labels else 0)
+    figure, axes = pyplot().subplots(figsize=(width, height + below))
+    figure.subplots_adjust(left=.62 / width, right=1 - .1 / width, top=1 - .2 / (height + below), bottom=below / (height + below))
+    axes.legend_below = lambda: axes.legend(loc="upper left", bbox_to_anchor=(-.04, -.47 / (height - .2)), ncol=across, handlelength=2.4, borderaxespad=0, labelspacing=.25) if labels else None
+    return figure, axes
+
+
 def lines(x, columns, xlabel, ylabel, upright=False, log=False):
     """One plot of `columns` (label: values) over x; `upright`: x is a height and stands upwards. An <svg>."""
-    plt = pyplot()
-    figure, axes = plt.subplots(figsize=(3.3, 3.1) if upright else (5.6, 2.5))
+    figure, axes = panel(list(columns) if len(columns) > 1 else [], 3.1 if upright else 5.6, 2.9 if upright else 2.4)
     for k, (label, y) in enumerate(columns.items()):
         a, b = thinned(x, y)
         short = len(x) < 25
@@ -72,8 +81,7 @@ def lines(x, columns, xlabel, ylabel, upright=False, log=False):
     axes.locator_params(axis="x", nbins=4 if upright else 6)
     if log:
         (axes.set_xscale if upright else axes.set_yscale)("log")
-    if len(columns) > 1:
-        axes.legend(loc="upper left", bbox_to_anchor=(-.02, -.2 if upright else -.19), ncol=1 if upright or max(map(len, columns)) > 34 else 2, handlelength=2.4)
+    axes.legend_below()
     return svg(figure)
 
 
@@ -183,7 +191,7 @@ def grid_plots(grid):
         if not numpy.isfinite(values).any():
             continue
         x, y = grid.axes[:2]
-        figure, axes = plt.subplots(figsize=(5.6, 5.6 * min(max((y[-1] - y[0]) / (x[-1] - x[0]), .25), .9)))
+        figure, axes = plt.subplots(figsize=(5.6, 4.6 * min(max((y[-1] - y[0]) / (x[-1] - x[0]), .25), .9) + .6), layout="constrained")
         image = axes.imshow(values, origin="lower", extent=(x[0], x[-1], y[0], y[-1]), cmap="viridis" if name == "velocity_mean" else "cividis", aspect="equal")
         axes.grid(False)
         axes.set_xlabel("x (m)")

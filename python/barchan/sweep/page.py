@@ -5,6 +5,9 @@ import math
 from ..report import page as report_page, parts, plots
 
 
+MOST_LABELS = 14  # in a legend
+
+
 def as_number(text):
     try:
         return float(text)
@@ -22,17 +25,16 @@ def axis_of(lines, keys):
 
 def plot(lines, keys, measure):
     """An <svg> of one measure over the key along x, a line for each combination of the others; crosses on the lower edge: runs that did not end well."""
-    plt = plots.pyplot()
     along, place, numeric = axis_of(lines, keys)
     groups = {}
     for line in lines:
         groups.setdefault(", ".join(f"{k} = {line[k]}" for k in keys if k != along), []).append(line)
-    figure, axes = plt.subplots(figsize=(5.6, 2.9))
+    bad = [place[line[along]] for line in lines if line["status"] != 0]
+    figure, axes = plots.panel([*list(groups)[:MOST_LABELS], *["did not end well"] * bool(bad)] if len(groups) > 1 or bad else [], 5.6, 2.6)
     for k, (label, members) in enumerate(groups.items()):
         good = sorted((place[m[along]], m[measure]) for m in members if m["status"] == 0 and math.isfinite(m[measure]))
         if k < 4 * len(plots.COLOURS) and good:
-            axes.plot(*zip(*good), plots.STYLES[k // len(plots.COLOURS) % 4], color=plots.COLOURS[k % len(plots.COLOURS)], marker="os^Dv"[k % 5], markersize=4, label=label if k < 14 else None)
-    bad = [place[line[along]] for line in lines if line["status"] != 0]
+            axes.plot(*zip(*good), plots.STYLES[k // len(plots.COLOURS) % 4], color=plots.COLOURS[k % len(plots.COLOURS)], marker="os^Dv"[k % 5], markersize=4, label=label if k < MOST_LABELS else None)
     if bad:
         axes.plot(bad, [0] * len(bad), "x", color="#D55E00", transform=axes.get_xaxis_transform(), clip_on=False, label="did not end well")
     axes.set(xlabel=along)
@@ -40,8 +42,7 @@ def plot(lines, keys, measure):
         axes.set_xticks(list(place.values()), [str(v)[:24] for v in place])
     elif len(place) > 2 and min(place.values()) > 0 and max(place.values()) > 30 * min(place.values()):
         axes.set_xscale("log")
-    if len(groups) > 1 or bad:
-        axes.legend(loc="upper left", bbox_to_anchor=(-.02, -.19), ncol=2 if max(map(len, groups)) < 34 else 1)
+    axes.legend_below()
     return plots.svg(figure)
 
 
