@@ -740,7 +740,7 @@ TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
   EXPECT_EQ(schema["properties"]["spacing"]["exclusiveMinimum"], true);
   EXPECT_NE(schema["properties"]["spacing"]["description"].get<std::string>().find("Unit: m."), std::string::npos);
   EXPECT_EQ(schema["required"], (nlohmann::json{"spacing", "domain", "phases", "interactions", "fill", "time"}));
-  const auto& phase = schema["properties"]["phases"]["additionalProperties"];
+  const auto& phase = schema["properties"]["phases"]["patternProperties"]["^[A-Za-z][A-Za-z0-9_]*$"];
   EXPECT_EQ(phase["properties"]["kind"]["enum"], nlohmann::json(choices(*find_key("phases", "kind"))));
   EXPECT_EQ(phase["additionalProperties"], false);
   for (const Key& key : all_keys()) {
@@ -768,7 +768,8 @@ TEST(SceneSchema, TheDocumentationHasTheSameWords) {
 
 /// The lines of a document in which the example of a key stands at its place, and the dotted name of the key there.
 std::pair<std::string, std::string> document_with_example(const Key& key) {
-  if (key.section.empty()) return {example_of(key), std::string(key.name)};
+  const std::string user = key.name == "constants" ? "spacing = \"d\"\n" : "";  // a constant must be used
+  if (key.section.empty()) return {user + example_of(key), std::string(key.name)};
   std::string path, dotted, text;
   std::istringstream parts{std::string(key.section)};
   for (std::string part; std::getline(parts, part, '.');) {
