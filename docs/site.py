@@ -16,8 +16,7 @@ import urllib.parse
 from html.parser import HTMLParser
 from pathlib import Path
 
-COPIED = ("scenes/**/*.toml", "pvstate/*.py", "docs/**/*.png", "docs/**/*.svg", "docs/**/*.json", "LICENSE", "bench/**/*.py", "src/**/*.hpp", "cmake/*")
-IN_PLACE_OF = {"scenes": "docs/gallery/README.md", "docs/gallery": "docs/gallery/README.md"}  # folders have no page
+IN_PLACE_OF = {"scenes": "docs/gallery/README.md", "docs/gallery": "docs/gallery/README.md"}  # of a folder, which has no page
 
 
 def pages(root):
@@ -27,25 +26,24 @@ def pages(root):
 def gather(root, to):
     for page in pages(root):
         def link(match, page=page):
-            target, anchor = re.match(r"([^#]*)(#.*)?", match[1]).groups()
+            target = match[1].partition("#")[0]
             file = (page.parent / target).resolve()
-            if not target or re.match(r"[a-z]+:", target) or not file.is_dir():
+            if not target or re.match(r"[a-z]+:", target) or not file.exists():
                 return match[0]
-            folder = str(file.relative_to(root))
-            other = IN_PLACE_OF.get(folder if folder in IN_PLACE_OF else folder.split("/")[0])
-            up = "../" * (len(page.relative_to(root).parts) - 1)
-            return f"]({up}{other}{anchor or ''})" if other else match[0]
+            if file.is_dir():
+                folder = str(file.relative_to(root))
+                other = IN_PLACE_OF.get(folder if folder in IN_PLACE_OF else folder.split("/")[0], "README.md")
+                return f"]({'../' * (len(page.relative_to(root).parts) - 1)}{other})"
+            if file.suffix != ".md":
+                place = to / file.relative_to(root)
+                place.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(file, place)
+            return match[0]
 
         place = to / page.relative_to(root)
         place.parent.mkdir(parents=True, exist_ok=True)
         text = re.sub(r"^( *)```[\w-]+$", r"\1```", page.read_text(), flags=re.M)  # no language: nothing highlights it
         place.write_text(re.sub(r"\]\(([^)\s]+)\)", link, text))
-    for pattern in COPIED:
-        for file in root.glob(pattern):
-            if file.is_file():
-                place = to / file.relative_to(root)
-                place.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(file, place)
 
 
 class Links(HTMLParser):

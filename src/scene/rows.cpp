@@ -23,7 +23,7 @@ constexpr Key rows_of_keys[] = {
     {"", "dimensions", at<&Scene::dimensions>(2).like("3"), "", "Dimensions of space, 2 or 3; vectors have as many components.", {.at_least = 2, .at_most = 3}},
     {"", "spacing", at<&Scene::spacing>(required).like("1e-3"), "m", "Distance between neighbouring particles, dx.", positive},
     {"", "precision", at<&Scene::precision>(Precision::mixed), "", "Arithmetic of the pair loops; the state is always kept in double precision."},
-    {"", "constants", names_of_numbers(), "",
+    {"", "constants", names_of_numbers().like("d = 2.5e-4"), "",
      "Names for numbers, as d = 2.5e-4: a number of the scene may then be a formula of them, as \"25*d\"."},
     {"", "domain", at<&Scene::domain>(required), "", "The box of the computation."},
     {"", "phases", at<&Scene::phases>(required), "", "One section a phase; a name is a letter followed by letters, digits and underscores."},

@@ -28,7 +28,7 @@ def folder(at, program, source):
     """A folder that looks like the root of the repository after the build."""
     (at / "build").mkdir()
     (at / "build/barchan").symlink_to(program)
-    for name in ("scenes", "pvstate", "bench", "docs"):
+    for name in ("scenes", "pvstate", "bench", "docs", "python"):
         (at / name).symlink_to(source / name)
     tools = at / "tools"
     tools.mkdir()

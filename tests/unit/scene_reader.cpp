@@ -768,7 +768,8 @@ TEST(SceneSchema, TheDocumentationHasTheSameWords) {
 
 /// The lines of a document in which the example of a key stands at its place, and the dotted name of the key there.
 std::pair<std::string, std::string> document_with_example(const Key& key) {
-  if (key.section.empty()) return {example_of(key), std::string(key.name)};
+  const std::string user = key.name == "constants" ? "spacing = \"d\"\n" : "";  // a constant must be used
+  if (key.section.empty()) return {user + example_of(key), std::string(key.name)};
   std::string path, dotted, text;
   std::istringstream parts{std::string(key.section)};
   for (std::string part; std::getline(parts, part, '.');) {
