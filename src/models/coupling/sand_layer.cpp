@@ -30,13 +30,18 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       top_(reach * layout.phases[fluid_].spacing),
       lift_(entry.lift),
       interval_(interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
-      grid_(layout.bounds, layout.phases[fluid_].spacing) {
+      grid_(layout.bounds, layout.phases[fluid_].spacing),
+      may_rest_(scene.phases[grains_].grains().sleep) {
   if (!(entry.gusts > 0.0)) return;
   const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
   const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
   const double low = layout.domain.low[0], size = layout.domain.high[0] - low;
   gusts_.emplace(entry.gusts, viscosity_, bagnold, low, size,
                  static_cast<std::size_t>(std::max(1.0, std::round(size / layout.phases[fluid_].spacing))));
+}
+
+void SandLayer::begin(State& state, const std::vector<ParticleBlock>&) {
+  if (may_rest_) keeps_ = state.phases[grains_].add_own<std::uint8_t>(name_ + ".keeps", Kept::state);
 }
 
 void SandLayer::attach(Workspace& w) {
@@ -65,6 +70,9 @@ void SandLayer::attach(Workspace& w) {
     layers_.emplace_back(air, profile(k));
     spreads_.emplace_back(one.cells());
     loads_.emplace_back(one.cells());
+    if (!may_rest_) continue;
+    rest_loads_.emplace_back(one.cells());
+    speed_before_.emplace_back(one.cells());
   }
   const std::size_t grains = w.particles(grains_).size();
   near_.reserve(grains);
@@ -147,11 +155,23 @@ void SandLayer::exchange() {
   AirProfile& clock = profile(0);
   const double dt = w_->state.dt;
   hold_ = dt > 0.0 ? time_to_next_exchange(interval_, dt) : interval_;
+  all_due_ = all_are_due();
+  if (all_due_) grid_.forget();
   grid_.gather(w_->particles(fluid_));
   if (finds_steady_wind_) find_steady_wind();
   exchange(clock.elapsed, clock.last);
   clock.elapsed = 0.0;
   clock.last = hold_;
+}
+
+/// Whether this exchange is one of all grains, of those that rest too: now and then, and when grains came or left.
+bool SandLayer::all_are_due() {
+  if (!may_rest_) return true;
+  const long changes = w_->particles(grains_).changes();
+  const bool due = --to_all_ <= 0 || changes != seen_changes_;
+  if (due) to_all_ = rest_keeps;
+  seen_changes_ = changes;
+  return due;
 }
 
 /// The drag of the last exchange.
@@ -210,7 +230,9 @@ void SandLayer::exchange(double kept, double meant) {
       loads_[c].owed[k] = profile(c).given[k] * (meant > 0.0 ? kept / meant - 1.0 : 0.0);
   feel();
   spread();
+  for (std::size_t c = 0; c < speed_before_.size(); ++c) speed_before_[c] = profile(c).speed;
   blow(hold_);
+  if (may_rest_ && all_due_) keep_rest();
   PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
@@ -220,14 +242,29 @@ void SandLayer::exchange(double kept, double meant) {
     Near& q = near_[static_cast<std::size_t>(i)];
     q.more = rate_[q.grain] * (wind_about(q.place, q.height - q.radius, q.height + q.radius) - q.wind);
   }
-  for (const Near& q : near_) {
-    if (gusts_) {
-      const double gust = ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y - q.pull;
-      const double force = -p.mass_of(q.grain) * gust;
-      grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
-    }
+  const auto gust_of = [&](const Near& q) {
+    return ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y - q.pull;
+  };
+  const auto add_more = [&](const Near& q) {
     ax[q.grain] += q.more * q.ground.along_x;
     ay[q.grain] += q.more * q.ground.along_y;
+  };
+  const auto push_gust = [&](const Near& q) {
+    const double force = -p.mass_of(q.grain) * gust_of(q);
+    grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
+  };
+  // What those give that rest is kept on the grid: they come first.
+  for (const Near& q : near_) {
+    if (!q.rests) continue;
+    if (gusts_) push_gust(q);
+    add_more(q);
+    push_across(p, q);
+  }
+  if (may_rest_ && all_due_) grid_.keep_forces();
+  for (const Near& q : near_) {
+    if (q.rests) continue;
+    if (gusts_) push_gust(q);
+    add_more(q);
   }
   // What the layers do not take, the particles of the air do (of gusts before); from the bed the ground takes what is
   // across it.
@@ -235,13 +272,18 @@ void SandLayer::exchange(double kept, double meant) {
     const double m = p.mass_of(k);
     grid_.push({x[k], y[k]}, {-m * ax[k], -m * ay[k]});
   }
-  for (const Near& q : near_) {
-    if (q.height < diameter_) continue;
-    const std::size_t k = q.grain;
-    const double across = -p.mass_of(k) * (ay[k] * q.ground.along_x - ax[k] * q.ground.along_y);
-    grid_.push({x[k], y[k]}, {-across * q.ground.along_y, across * q.ground.along_x});
-  }
+  for (const Near& q : near_)
+    if (!q.rests) push_across(p, q);
   grid_.give(w_->particles(fluid_));
+}
+
+void SandLayer::push_across(const PhaseParticles& p, const Near& q) {
+  if (q.height < diameter_) return;
+  const std::size_t k = q.grain;
+  const double ax = p.column(Field::drag_acceleration, 0)[k], ay = p.column(Field::drag_acceleration, 1)[k];
+  const double across = -p.mass_of(k) * (ay * q.ground.along_x - ax * q.ground.along_y);
+  grid_.push({p.column(Field::position, 0)[k], p.column(Field::position, 1)[k]},
+             {-across * q.ground.along_y, across * q.ground.along_x});
 }
 
 /// Which grains are in the layers and which over them.
@@ -254,13 +296,18 @@ void SandLayer::find_near() {
   near_.clear();
   flying_.clear();
   rate_.resize(p.size());
+  std::uint8_t* keeps = may_rest_ ? p.own(keeps_) : nullptr;
   for (std::size_t k = 0; k < p.size(); ++k) {
+    if (may_rest_ && !all_due_ && keeps[k]) continue;
+    const bool rests = may_rest_ && all_due_ && u[k] == 0.0 && v[k] == 0.0;
+    if (may_rest_) keeps[k] = rests;
     const Ground g = ground(x[k]);
     const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
     if (height >= top_) {
+      if (may_rest_) keeps[k] = 0;
       flying_.push_back(k);
     } else if (height > -deep * diameter_) {
-      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, g});
+      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, g, rests});
     } else {
       p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
     }
@@ -330,25 +377,55 @@ void SandLayer::feel() {
 
 /// The drag of the grains in a layer's cells by area, and its derivative by the speed of the air.
 void SandLayer::spread() {
+  if (!may_rest_) return spread(false, loads_);
+  if (all_due_) spread(true, rest_loads_);
+  spread(false, loads_);
+  for (std::size_t c = 0; c < layers_.size(); ++c)
+    for (std::size_t k = 0; k < loads_[c].pull.size(); ++k) {
+      loads_[c].pull[k] += rest_loads_[c].pull[k];
+      if (all_due_) loads_[c].rate[k] += rest_loads_[c].rate[k];
+      else rest_loads_[c].rate[k] = 0.0;
+    }
+}
+
+/// That of the grains that rest, or of the others.
+void SandLayer::spread(bool resting, std::vector<AirColumn::Load>& loads) {
   const PhaseParticles& p = w_->particles(grains_);
   const auto each = [&](auto&& amount_of, auto&& sums_of) {
     for (auto& s : spreads_) s.clear();
     for (const Near& q : near_) {
+      if (q.rests != resting) continue;
       const double amount = p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_;
       const double low = q.height - q.radius, high = q.height + q.radius;
       const Between& b = q.place;
       spreads_[b.left].add(layers_[b.left], low, high, (1.0 - b.share) * amount);
       spreads_[b.right].add(layers_[b.right], low, high, b.share * amount);
     }
-    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads_[c]));
+    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads[c]));
   };
   each([](const Near& q) { return q.pull; }, [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
   each([&](const Near& q) { return rate_[q.grain]; },
        [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
 }
 
+/// After the layers went on: what those that rest took is what they take until the next exchange of all.
+void SandLayer::keep_rest() {
+  for (std::size_t c = 0; c < layers_.size(); ++c)
+    for (std::size_t k = 0; k < rest_loads_[c].pull.size(); ++k)
+      rest_loads_[c].pull[k] += rest_loads_[c].rate[k] * (profile(c).speed[k] - speed_before_[c][k]);
+}
+
 /// The profiles are in the state; their integrals are made again.
 void SandLayer::archive(Archive& a) {
+  if (may_rest_) {
+    a.number(name_ + " exchanges to that of all", to_all_);
+    const long changes = w_->particles(grains_).changes();
+    long late = changes - seen_changes_;
+    a.number(name_ + " changes to take over", late);
+    seen_changes_ = changes - late;
+    for (auto& load : rest_loads_) a.array(name_ + " kept drag", load.pull);
+    grid_.archive(a);
+  }
   if (!a.loads()) return;
   for (auto& layer : layers_) layer.integrate_speed();
 }
