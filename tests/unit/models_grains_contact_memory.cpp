@@ -78,7 +78,7 @@ TEST(ContactMemories, GoWithTheirPairs) {
   side.memory[1] = 8.0;
   side.touches = true;
   chunks[1].sides.push_back(side);
-  memory.keep(moving, all, chunks, before, nullptr);
+  memory.keep(moving, all, chunks, before);
   EXPECT_EQ(memory.kept().size(), 4u) << "the pair of two chunks once";
   const auto first_of = [&](std::uint32_t number, std::uint32_t with) {
     const double* values = memory.find(number, with);
@@ -115,7 +115,7 @@ TEST(ContactMemories, FollowTheirPairsToOtherNumbers) {
   side.memory[0] = 7.0;
   side.touches = true;
   chunks[0].sides.push_back(side);
-  memory.keep(moving, all, chunks, before, nullptr);
+  memory.keep(moving, all, chunks, before);
   // 1 goes, three come behind 4; the fixed one is the last as before.
   constexpr std::uint32_t gone = ContactMemory::gone;
   std::vector<std::uint32_t> left_alone;
@@ -130,21 +130,6 @@ TEST(ContactMemories, FollowTheirPairsToOtherNumbers) {
   ASSERT_NE(memory.find(3, ContactMemory::side(0, 1)), nullptr);
   EXPECT_EQ(memory.find(3, ContactMemory::side(0, 1))[0], 7.0);
   for (std::uint32_t n = 0; n < 8; ++n) EXPECT_EQ(memory.find(0, n), nullptr) << "its partner has gone";
-}
-
-// Pairs of spheres that sleep stand in a list of their own, with all of their pairs.
-TEST(ContactMemories, KeepThoseOfSleepers) {
-  ContactMemory memory;
-  memory.prepare(1);
-  const std::uint32_t before[] = {0, 1, 2};
-  std::vector<SphereChunk> chunks{list_of(0, 3, {{0, 1}}, 1, 3)};
-  SphereChunk sleeping = list_of(0, 0, {{1, 2}}, 1, 3);
-  remember(chunks[0], 0, 1, 1.0);
-  remember(sleeping, 0, 1, 2.0);
-  memory.keep(3, 3, chunks, before, &sleeping);
-  ASSERT_NE(memory.find(1, 2), nullptr);
-  EXPECT_EQ(memory.find(1, 2)[0], 2.0);
-  EXPECT_EQ(memory.find(0, 1)[0], 1.0);
 }
 
 }  // namespace

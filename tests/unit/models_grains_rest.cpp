@@ -32,8 +32,8 @@ struct Bed {
     SphereSearch search;
     constexpr std::uint16_t up = Dim - 1;
     search.prepare(bounds, cast.reach, 1, cast.laws, {{up, 1, bounds.low[up], 0}}, numbers);
-    search.keep(cast.set(), cast.chunks, cast.numbers.data(), nullptr);
-    search.find(cast.set(), 0.05 * radius, cast.chunks, nullptr);
+    search.keep(cast.set(), cast.chunks, cast.numbers.data());
+    search.find(cast.set(), 0.05 * radius, cast.chunks);
     step.dimensions = Dim;
     step.records = cast.records.data();
     step.laws = laws.data();

@@ -21,8 +21,8 @@ template <int Dim>
 void search(SphereCast<Dim>& cast, const std::vector<SphereSearch::Side>& sides = {}) {
   SphereSearch of;
   of.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
-  of.keep(cast.set(), cast.chunks, cast.numbers.data(), nullptr);
-  of.find(cast.set(), slack, cast.chunks, nullptr);
+  of.keep(cast.set(), cast.chunks, cast.numbers.data());
+  of.find(cast.set(), slack, cast.chunks);
 }
 
 /// Compares the lists of all chunks with the naive ones and returns the number of pairs.
@@ -84,38 +84,6 @@ TEST(SphereSearch, FindsTheSidesThatASphereMayTouch) {
   EXPECT_GT(found, 12u);
 }
 
-/// Two spheres that both sleep have no pair in a chunk; one that is awake has all of its pairs.
-TEST(SphereSearch, LeavesOutPairsOfTwoThatSleep) {
-  Uniform random(5);
-  const Bounds bounds = sets::box(2, {8.0, 8.0, 0.0}, {true, false, false});
-  SphereCast<2> cast(bounds, sets::lattice(bounds, 1.0, 0.3, random), 8, 0.45, 0.55, 1, 16, random);
-  std::vector<std::uint8_t> asleep(cast.all, 1);
-  for (std::size_t k = 0; k < cast.moving; ++k) asleep[k] = random(0, 1) < 0.7;
-  SphereSearch of;
-  of.prepare(bounds, cast.reach, 1, cast.laws, {}, 1);
-  SphereSet set = cast.set();
-  set.asleep = asleep.data();
-  SphereChunk sleeping;
-  of.keep(set, cast.chunks, cast.numbers.data(), &sleeping);
-  of.find(set, slack, cast.chunks, &sleeping);
-  for (std::size_t c = 0; c < cast.chunks.size(); ++c) {
-    const SphereChunk& chunk = cast.chunks[c];
-    const auto naive = cast.expected(c, [&](std::size_t i, std::size_t j) {
-      return !(asleep[i] && asleep[j]) && cast.distance(i, j) < cast.radius(i) + cast.radius(j) + slack;
-    });
-    EXPECT_EQ(cast.listed(chunk), naive);
-    std::vector<std::uint32_t> awake, border;
-    for (auto k = static_cast<std::uint32_t>(chunk.begin); k < chunk.end; ++k) {
-      if (!asleep[k]) awake.push_back(k);
-      else if (std::any_of(naive.begin(), naive.end(),
-                           [&](const auto& p) { return p.first.first == k || p.first.second == k; }))
-        border.push_back(k);
-    }
-    EXPECT_EQ(chunk.awake, awake);
-    EXPECT_EQ(chunk.border, border) << "those that sleep beside somebody who does not";
-  }
-}
-
 /// The memory of a contact follows the two numbers, wherever the spheres stand in memory at the next search.
 TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
   Uniform random(11);
@@ -123,8 +91,8 @@ TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
   SphereCast<3> cast(bounds, sets::lattice(bounds, 1.0, 0.2, random), 10, 0.45, 0.55, 1, 32, random);
   SphereSearch of;
   of.prepare(bounds, cast.reach, 1, cast.laws, {}, 3);
-  of.keep(cast.set(), cast.chunks, cast.numbers.data(), nullptr);
-  of.find(cast.set(), slack, cast.chunks, nullptr);
+  of.keep(cast.set(), cast.chunks, cast.numbers.data());
+  of.find(cast.set(), slack, cast.chunks);
   constexpr std::size_t batch = SphereChunk::batch;
   // Numbers of a pair that say who the two are; pairs with an odd sum of numbers touch.
   const auto each_pair = [&](auto&& call) {
@@ -149,8 +117,8 @@ TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
     std::swap_ranges(&cast.records[(k - 1) * 12], &cast.records[k * 12], &cast.records[other * 12]);
   }
   cast.take_places();
-  of.keep(cast.set(), cast.chunks, before.data(), nullptr);
-  of.find(cast.set(), slack, cast.chunks, nullptr);
+  of.keep(cast.set(), cast.chunks, before.data());
+  of.find(cast.set(), slack, cast.chunks);
   std::size_t touching = 0, parted = 0;
   each_pair([&](SphereChunk& chunk, std::size_t at, std::uint32_t a, std::uint32_t b, double tag) {
     const bool touches = (chunk.touches[at / batch] >> at % batch & 1u) != 0;

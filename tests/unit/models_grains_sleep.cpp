@@ -1,4 +1,4 @@
-// When spheres fall asleep and when they wake, by hand: looks are sqrt(d/g) apart, two calm ones in turn are needed.
+// When spheres fall asleep and when they wake, by hand: looks are sqrt(d/g)/4 apart, two calm ones in turn are needed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,16 +6,18 @@
 #include <memory>
 #include <numbers>
 
+#include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_sleep.hpp"
 #include "plan/plan.hpp"
 #include "scene/reader.hpp"
 #include "unit/particle_sets.hpp"
+#include "unit/sphere_sets.hpp"
 
 namespace barchan::sphere_sleep_test {
 namespace {
 
 constexpr double diameter = 1e-3, gravity = 9.81, wide = 0.05;  // m, m/s2, m
-const double interval = std::sqrt(diameter / gravity);          // s
+const double interval = 0.25 * std::sqrt(diameter / gravity);   // s
 const double bound = std::sqrt(gravity * diameter);             // m/s; slower than a hundredth of it is calm
 
 /// Six grains in a periodic box, whose fields a test sets. Their lasting numbers are 5 4 3 2 1 0.
@@ -32,7 +34,7 @@ class SixGrains {
     state_.phases.push_back(std::move(p));
     for (std::size_t k = 0; k < count; ++k) set(Field::position, k, place(k));
     work_ = std::make_unique<Workspace>(scene_, plan_, state_);
-    sleep.prepare({{0, 0, count, diameter}}, count + 2, plan_, gravity);
+    sleep.prepare({{0, 0, count, diameter}}, plan_, gravity);
     sleep.make_room({{0, 0, count, diameter}}, count, count + 2);
   }
   void set(Field f, std::size_t k, const Vec3& value) {
@@ -77,7 +79,6 @@ TEST(SphereSleep, TwoCalmLooksAfterTheFirstPutToSleep) {
   EXPECT_FALSE(grains.look());
   EXPECT_FALSE(grains.look(0.5)) << "too early for a look";
   EXPECT_EQ(grains.sleep.sleeping(), 0u);
-  EXPECT_EQ(grains.sleep.by_sphere(grains.numbers.data()), nullptr);
   EXPECT_TRUE(grains.look(0.6));
   EXPECT_EQ(grains.sleep.sleeping(), 6u);
   EXPECT_FALSE(grains.look()) << "nobody is left";
@@ -90,10 +91,10 @@ TEST(SphereSleep, WhoMovesTurnsOrIsPulledStaysAwake) {
   grains.set(Field::velocity, 2, {0.99e-2 * bound, 0.0, 0.0});
   grains.sand().column(Field::angular_velocity)[3] = 1.01e-2 * bound / (0.5 * diameter);
   for (int k = 0; k < 3; ++k) {
-    const double way = 1.01e-3 * diameter * k, change = 0.101 * gravity * k;
+    const double way = 0.2525e-3 * diameter * k, change = 0.101 * gravity * k;
     grains.set(Field::position, 0, {0.005, 0.01 + way, 0.0});
     grains.set(Field::acceleration, 4, {change, -gravity, 0.0});
-    grains.set(Field::position, 5, {0.03 + 0.99e-3 * diameter * k, 0.01, 0.0});
+    grains.set(Field::position, 5, {0.03 + 0.2475e-3 * diameter * k, 0.01, 0.0});
     grains.set(Field::acceleration, 5, {0.099 * gravity * k, 0.0, 0.0});
     grains.look();
   }
@@ -147,32 +148,107 @@ TEST(SphereSleep, APushOfATenthOfGravityWakesAtOnce) {
 /// What a step of the contacts marks is awake after it; numbers are those that last, not places in memory.
 TEST(SphereSleep, WakesWhomTheContactsDisturbed) {
   SixGrains grains;
-  EXPECT_EQ(grains.sleep.step(grains.numbers.data(), true), nullptr) << "nobody sleeps: a step has nothing to look for";
+  EXPECT_EQ(grains.sleep.step(grains.numbers.data()), nullptr) << "nobody sleeps: a step has nothing to look for";
   for (int k = 0; k < 3; ++k) grains.look();
-  const std::uint8_t* rest = grains.sleep.by_sphere(grains.numbers.data());
+  grains.sleep.mark(grains.numbers.data());
+  grains.sleep.settled();
+  const std::uint8_t* rest = grains.sleep.flags();
   ASSERT_NE(rest, nullptr);
   EXPECT_EQ(std::vector<int>(rest, rest + 8), std::vector<int>(8, 1)) << "fixed ones too";
-  const SleepStep* step = grains.sleep.step(grains.numbers.data(), true);
+  const SleepStep* step = grains.sleep.step(grains.numbers.data());
   ASSERT_NE(step, nullptr);
   EXPECT_NEAR(step->tolerance, 0.3 * gravity, 1e-15);
   step->wakes[grains.numbers[1]] = 1;
   grains.sleep.wake();
   EXPECT_EQ(grains.asleep(), (Who{true, false, true, true, true, true}));
   EXPECT_EQ(grains.sleep.sleeping(), 5u);
-  EXPECT_EQ(grains.sleep.by_sphere(grains.numbers.data())[1], 0);
+  grains.sleep.mark(grains.numbers.data());
+  EXPECT_EQ(grains.sleep.flags()[1], 0);
+  EXPECT_TRUE(grains.sleep.changed(1));
+  EXPECT_FALSE(grains.sleep.changed(2));
   EXPECT_EQ(step->wakes[grains.numbers[1]], 0) << "told once";
 }
 
-/// What is out of balance when others fall asleep or wake is carried on, of those that sleep.
+/// Six grains in a row, each near the next one, in two chunks of three, with the lists of a search.
+struct SixInARow : SixGrains {
+  sets::Uniform random{1};
+  sets::SphereCast<2> cast;
+  SixInARow()
+      : SixGrains(),
+        cast(sets::box(2, {wide, wide, 0.0}, {true, false, false}), row(), 0, 0.5e-3, 0.5e-3, 1, 3, random) {
+    cast.numbers.assign(numbers.begin(), numbers.end());
+    SphereSearch search;
+    search.prepare(cast.bounds, cast.reach, 1, cast.laws, {}, 1);
+    search.keep(cast.set(), cast.chunks, cast.numbers.data());
+    search.find(cast.set(), 1.1e-3, cast.chunks);
+  }
+  static std::vector<Vec3> row() {
+    std::vector<Vec3> x;
+    for (std::size_t k = 0; k < count; ++k) x.push_back({0.005 + 0.002 * static_cast<double>(k), 0.01, 0.0});
+    return x;
+  }
+  /// Every chunk; who is in a pair of another chunk's with one that changed.
+  std::vector<std::uint32_t> sort_out() {
+    std::vector<std::uint32_t> beside;
+    sleep.mark(numbers.data());
+    for (SphereChunk& chunk : cast.chunks)
+      sleep.sort_out(cast.set(), chunk, [&](std::uint32_t k) { beside.push_back(k); });
+    sleep.settled();
+    return beside;
+  }
+};
+
+/// The bits, who moves and the border against their definitions, for each choice of three sleepers among six.
+TEST(SphereSleep, PairsWithOneThatIsAwakeAreEvaluated) {
+  for (unsigned choice = 0; choice < 64; ++choice) {
+    SixInARow grains;
+    for (int k = 0; k < 3; ++k) grains.look();
+    std::vector<std::uint32_t> up;
+    for (std::uint32_t k = 0; k < 6; ++k)
+      if ((choice >> k & 1u) != 0) up.push_back(grains.numbers[k]);
+    grains.sleep.wake(up);
+    grains.sort_out();
+    const auto awake = [&](std::size_t k) { return (choice >> k & 1u) != 0; };
+    std::size_t pairs = 0;
+    for (const SphereChunk& chunk : grains.cast.chunks) {
+      std::vector<std::uint32_t> moves, border;
+      for (auto k = static_cast<std::uint32_t>(chunk.begin); k < chunk.end; ++k) {
+        const bool beside = (k > 0 && awake(k - 1)) || (k < 5 && awake(k + 1));
+        if (awake(k)) moves.push_back(k);
+        else if (beside) border.push_back(k);
+      }
+      EXPECT_EQ(chunk.awake, moves) << choice;
+      EXPECT_EQ(chunk.border, border) << choice;
+      for (std::size_t at = 0; at < chunk.a.size(); ++at) {
+        if (chunk.a[at] >= 6) continue;
+        ++pairs;
+        EXPECT_EQ((chunk.live_of(at / 8) >> at % 8 & 1u) != 0, awake(chunk.a[at]) || awake(chunk.b[at])) << choice;
+      }
+    }
+    EXPECT_EQ(pairs, 6u) << "five, one of them in two chunks";
+  }
+}
+
+/// Who sleeps beside one that wakes begins a new balance with what was out of it; others do not.
 TEST(SphereSleep, KeepsWhatIsOutOfBalance) {
-  SixGrains grains;
+  SixInARow grains;
   for (int k = 0; k < 3; ++k) grains.look();
-  const SleepStep* step = grains.sleep.step(grains.numbers.data(), false);
+  grains.sort_out();
+  const SleepStep* step = grains.sleep.step(grains.numbers.data());
   ASSERT_NE(step, nullptr);
-  const std::size_t n = grains.numbers[1];
-  for (std::size_t d = 0; d < 3; ++d) step->unrest[3 * n + d] = 0.1 * static_cast<double>(d + 1);
-  grains.sleep.begin_again();
-  for (std::size_t d = 0; d < 3; ++d) EXPECT_EQ(step->offset[3 * n + d], 0.1 * static_cast<double>(d + 1));
+  for (std::size_t n = 0; n < 6; ++n) {
+    step->fresh[n] = 0;
+    for (std::size_t d = 0; d < 3; ++d) step->unrest[3 * n + d] = 0.1 * static_cast<double>(n + d + 1);
+  }
+  grains.sleep.wake({grains.numbers[2]});
+  EXPECT_EQ(grains.sort_out(), (std::vector<std::uint32_t>{3})) << "of the other chunk";
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::size_t n = grains.numbers[k];
+    const bool beside = k == 1 || k == 3;
+    EXPECT_EQ(step->fresh[n] != 0, beside) << k;
+    for (std::size_t d = 0; d < 3 && k != 2; ++d)
+      EXPECT_EQ(step->offset[3 * n + d], beside ? step->unrest[3 * n + d] : 0.0) << k;
+  }
 }
 
 TEST(SphereSleep, GoesOnFromWhatIsSaved) {

@@ -31,8 +31,8 @@ struct Strayed {
     search.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
     strays.prepare(cast.set(), cast.reach, cast.chunks, cast.numbers_of_a_pair);
     strays.begin(cast.set(), stray_slack);
-    search.keep(set(), cast.chunks, cast.numbers.data(), nullptr);
-    search.find(set(), stray_slack, cast.chunks, nullptr);
+    search.keep(set(), cast.chunks, cast.numbers.data());
+    search.find(set(), stray_slack, cast.chunks);
     strays.take_cells(search.cells());
     allowance.assign(cast.all, 0.5 * stray_slack);
     renewed.assign(cast.all, false);

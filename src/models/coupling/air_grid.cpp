@@ -40,7 +40,8 @@ std::array<AirGrid::Corner, 4> AirGrid::corners(const Flat& x) const {
 void AirGrid::gather(const PhaseParticles& air) {
   std::fill(mass_.begin(), mass_.end(), 0.0);
   std::fill(velocity_.begin(), velocity_.end(), Flat{});
-  std::fill(force_.begin(), force_.end(), Flat{});
+  if (kept_.empty()) std::fill(force_.begin(), force_.end(), Flat{});
+  else force_ = kept_;
   lost_ = {};
   const double *x = air.column(Field::position, 0), *y = air.column(Field::position, 1);
   const double *u = air.column(Field::velocity, 0), *v = air.column(Field::velocity, 1);

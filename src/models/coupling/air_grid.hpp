@@ -19,8 +19,12 @@ class AirGrid {
   /// Cells of about `spacing` (m) over the domain.
   AirGrid(const Bounds& bounds, double spacing);
 
-  /// Takes masses and velocities of the particles; forces are zero again.
+  /// Takes masses and velocities of the particles; forces are zero again, or those that are kept.
   void gather(const PhaseParticles& air);
+  /// The forces that were pushed since gather() are kept: each gather() begins with them, until forget() was called.
+  void keep_forces() { kept_ = force_; }
+  void forget() { kept_.clear(); }
+  void archive(Archive& a) { a.array("kept forces on the air", kept_); }
   /// Mean velocity (m/s) about a place; zero where no air is.
   Flat velocity(const Flat& x) const;
   /// kg/m3 (2D: kg/m2 a metre of depth), of the particles about a place.
@@ -42,7 +46,7 @@ class AirGrid {
   std::array<std::size_t, 2> cells_{}, nodes_{};
   Flat width_{};
   std::vector<double> mass_;
-  std::vector<Flat> velocity_, force_;
+  std::vector<Flat> velocity_, force_, kept_;  // kept_: empty, or by node
   Flat lost_{};
 };
 

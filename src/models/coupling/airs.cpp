@@ -26,6 +26,18 @@ void Airs::gather(const State& state) {
   for (std::size_t k = 0; k < grids_.size(); ++k) grids_[k].gather(state.phases[phases_[k]]);
 }
 
+void Airs::keep_forces() {
+  for (AirGrid& grid : grids_) grid.keep_forces();
+}
+
+void Airs::forget() {
+  for (AirGrid& grid : grids_) grid.forget();
+}
+
+void Airs::archive(Archive& a) {
+  for (AirGrid& grid : grids_) grid.archive(a);
+}
+
 Airs::Flat Airs::velocity(const Flat& x) const {
   if (grids_.size() == 1) return grids_.front().velocity(x);
   Flat sum{};

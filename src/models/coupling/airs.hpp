@@ -22,8 +22,12 @@ class Airs {
   Airs(const Layout& layout, std::vector<std::size_t> phases);
   const std::vector<std::size_t>& phases() const { return phases_; }
 
-  /// Takes masses and velocities of the particles; forces are zero again.
+  /// Takes masses and velocities of the particles; forces are zero again, or those that are kept.
   void gather(const State& state);
+  /// As those of AirGrid.
+  void keep_forces();
+  void forget();
+  void archive(Archive& a);
   /// Mean velocity (m/s) about a place; zero where no air is.
   Flat velocity(const Flat& x) const;
   /// A force (N per metre of depth) on the air about a place.

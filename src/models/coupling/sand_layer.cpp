@@ -35,13 +35,18 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       top_(reach * layout.phases[fluid_].spacing),
       lift_(entry.lift),
       interval_(interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
-      grid_(layout, airs_about(layout, grains_)) {
+      grid_(layout, airs_about(layout, grains_)),
+      may_rest_(scene.phases[grains_].grains().sleep) {
   if (!(entry.gusts > 0.0)) return;
   const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
   const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
   const double low = layout.domain.low[0], size = layout.domain.high[0] - low;
   gusts_.emplace(entry.gusts, viscosity_, bagnold, low, size,
                  static_cast<std::size_t>(std::max(1.0, std::round(size / layout.phases[fluid_].spacing))));
+}
+
+void SandLayer::begin(State& state, const std::vector<ParticleBlock>&) {
+  if (may_rest_) keeps_ = state.phases[grains_].add_own<std::uint8_t>(name_ + ".keeps", Kept::state);
 }
 
 void SandLayer::attach(Workspace& w) {
@@ -70,6 +75,9 @@ void SandLayer::attach(Workspace& w) {
     layers_.emplace_back(air, profile(k));
     spreads_.emplace_back(one.cells());
     loads_.emplace_back(one.cells());
+    if (!may_rest_) continue;
+    rest_loads_.emplace_back(one.cells());
+    speed_before_.emplace_back(one.cells());
   }
   const std::size_t grains = w.particles(grains_).size();
   near_.reserve(grains);
@@ -154,11 +162,23 @@ void SandLayer::exchange() {
   AirProfile& clock = profile(0);
   const double dt = w_->state.dt;
   hold_ = dt > 0.0 ? time_to_next_exchange(interval_, dt) : interval_;
+  all_due_ = all_are_due();
+  if (all_due_) grid_.forget();
   grid_.gather(w_->state);
   if (finds_steady_wind_) find_steady_wind();
   exchange(clock.elapsed, clock.last);
   clock.elapsed = 0.0;
   clock.last = hold_;
+}
+
+/// Whether this exchange is one of all grains, of those that rest too: now and then, and when grains came or left.
+bool SandLayer::all_are_due() {
+  if (!may_rest_) return true;
+  const long changes = w_->particles(grains_).changes();
+  const bool due = --to_all_ <= 0 || changes != seen_changes_;
+  if (due) to_all_ = rest_keeps;
+  seen_changes_ = changes;
+  return due;
 }
 
 /// The drag of the last exchange.
@@ -218,7 +238,9 @@ void SandLayer::exchange(double kept, double meant) {
       loads_[c].owed[k] = profile(c).given[k] * (meant > 0.0 ? kept / meant - 1.0 : 0.0);
   feel();
   spread();
+  for (std::size_t c = 0; c < speed_before_.size(); ++c) speed_before_[c] = profile(c).speed;
   blow(hold_);
+  if (may_rest_ && all_due_) keep_rest();
   PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
@@ -228,14 +250,29 @@ void SandLayer::exchange(double kept, double meant) {
     Near& q = near_[static_cast<std::size_t>(i)];
     q.more = rate_[q.grain] * (wind_about(q.place, q.height - q.radius, q.height + q.radius) - q.wind);
   }
-  for (const Near& q : near_) {
-    if (gusts_) {
-      const double gust = ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y - q.pull;
-      const double force = -p.mass_of(q.grain) * gust;
-      grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
-    }
+  const auto gust_of = [&](const Near& q) {
+    return ax[q.grain] * q.ground.along_x + ay[q.grain] * q.ground.along_y - q.pull;
+  };
+  const auto add_more = [&](const Near& q) {
     ax[q.grain] += q.more * q.ground.along_x;
     ay[q.grain] += q.more * q.ground.along_y;
+  };
+  const auto push_gust = [&](const Near& q) {
+    const double force = -p.mass_of(q.grain) * gust_of(q);
+    grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
+  };
+  // What those give that rest is kept on the grid: they come first.
+  for (const Near& q : near_) {
+    if (!q.rests) continue;
+    if (gusts_) push_gust(q);
+    add_more(q);
+    push_across(p, q);
+  }
+  if (may_rest_ && all_due_) grid_.keep_forces();
+  for (const Near& q : near_) {
+    if (q.rests) continue;
+    if (gusts_) push_gust(q);
+    add_more(q);
   }
   // What the layers do not take, the particles of the air do (of gusts before); from the bed the ground takes what is
   // across it.
@@ -243,120 +280,31 @@ void SandLayer::exchange(double kept, double meant) {
     const double m = p.mass_of(k);
     grid_.push({x[k], y[k]}, {-m * ax[k], -m * ay[k]});
   }
-  for (const Near& q : near_) {
-    if (q.height < diameter_) continue;
-    const std::size_t k = q.grain;
-    const double across = -p.mass_of(k) * (ay[k] * q.ground.along_x - ax[k] * q.ground.along_y);
-    grid_.push({x[k], y[k]}, {-across * q.ground.along_y, across * q.ground.along_x});
-  }
+  for (const Near& q : near_)
+    if (!q.rests) push_across(p, q);
   grid_.give(w_->state);
 }
 
-/// Which grains are in the layers and which over them.
-void SandLayer::find_near() {
-  PhaseParticles& p = w_->particles(grains_);
-  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
-  const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
-  const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-  const double half = 0.5 * hold_;
-  near_.clear();
-  flying_.clear();
-  rate_.resize(p.size());
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    const Ground g = ground(x[k]);
-    const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
-    if (height >= top_) {
-      flying_.push_back(k);
-    } else if (height > -deep * diameter_) {
-      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, g});
-    } else {
-      p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
-    }
-  }
-}
-
-/// The wind (m/s) that a grain at x feels where its mean is `wind`.
-double SandLayer::felt(double x, double wind) const {
-  if (!gusts_) return wind;
-  const double most = gusts_->largest_gusty_speed();
-  return wind + gusts_->at(x) * std::clamp(wind, -most, most);
-}
-
-/// Lift (m/s2) across the ground on a grain of speed `along` the ground that feels the wind `blows`, whose drag by
-/// difference of speed is `rate`.
-double SandLayer::lift(const Near& q, double blows, double along, double rate) const {
-  const double shear =
-      wind_about(q.place, q.height, q.height + q.radius) - wind_about(q.place, q.height - q.radius, q.height);
-  const double gain = q.wind != 0.0 ? blows / q.wind : 1.0, difference = blows - along;
-  return lift_ * rate * gain * shear * difference / std::max({std::abs(difference), std::abs(blows), 1e-300});
-}
-
-void SandLayer::feel() {
-  find_near();
-  if (gusts_) gusts_->blow(w_->state.time + 0.5 * hold_);
-  PhaseParticles& p = w_->particles(grains_);
-  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
-  const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
-  const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-  double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
-  const double solid = scene_.phases[grains_].density, half = 0.5 * hold_;
-  const double weight = layout_.phases[grains_].weight_share;
-  const std::array<double, 2> gravity{weight * scene_.domain.gravity[0], weight * scene_.domain.gravity[1]};
-  with_drag_law(law_, [&](auto law) {
-    const auto excess = [](double re) { return decltype(law)::excess(re); };
-    const auto of = [&](std::size_t k, const std::array<double, 2>& wind) {
-      const double d = own ? 2.0 * own[k] : diameter_, stokes = 18.0 * density_ * viscosity_ / (solid * d * d);
-      const auto kept = kept_drag<2>(wind, {u[k], v[k]}, gravity, stokes, d / viscosity_, excess, hold_);
-      ax[k] = kept.drag[0];
-      ay[k] = kept.drag[1];
-      rate_[k] = kept.rate;
-    };
-    const auto flying = static_cast<std::int64_t>(flying_.size()), near = static_cast<std::int64_t>(near_.size());
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < flying; ++i) {
-      const std::size_t k = flying_[static_cast<std::size_t>(i)];
-      of(k, grid_.velocity({x[k] + half * u[k], y[k] + half * v[k]}));
-    }
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < near; ++i) {
-      Near& q = near_[static_cast<std::size_t>(i)];
-      q.wind = wind_about(q.place, q.height - q.radius, q.height + q.radius);
-      const Ground& g = q.ground;
-      of(q.grain, {q.wind * g.along_x, q.wind * g.along_y});
-      q.pull = ax[q.grain] * g.along_x + ay[q.grain] * g.along_y;
-      const double blows = felt(x[q.grain], q.wind), mean_rate = rate_[q.grain];
-      if (gusts_) of(q.grain, {blows * g.along_x, blows * g.along_y});
-      const double rate = rate_[q.grain];
-      rate_[q.grain] = mean_rate;  // of the layer
-      if (!(lift_ > 0.0)) continue;
-      const double up = lift(q, blows, u[q.grain] * g.along_x + v[q.grain] * g.along_y, rate);
-      ax[q.grain] -= up * g.along_y;
-      ay[q.grain] += up * g.along_x;
-    }
-  });
-}
-
-/// The drag of the grains in a layer's cells by area, and its derivative by the speed of the air.
-void SandLayer::spread() {
-  const PhaseParticles& p = w_->particles(grains_);
-  const auto each = [&](auto&& amount_of, auto&& sums_of) {
-    for (auto& s : spreads_) s.clear();
-    for (const Near& q : near_) {
-      const double amount = p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_;
-      const double low = q.height - q.radius, high = q.height + q.radius;
-      const Between& b = q.place;
-      spreads_[b.left].add(layers_[b.left], low, high, (1.0 - b.share) * amount);
-      spreads_[b.right].add(layers_[b.right], low, high, b.share * amount);
-    }
-    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads_[c]));
-  };
-  each([](const Near& q) { return q.pull; }, [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
-  each([&](const Near& q) { return rate_[q.grain]; },
-       [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
+void SandLayer::push_across(const PhaseParticles& p, const Near& q) {
+  if (q.height < diameter_) return;
+  const std::size_t k = q.grain;
+  const double ax = p.column(Field::drag_acceleration, 0)[k], ay = p.column(Field::drag_acceleration, 1)[k];
+  const double across = -p.mass_of(k) * (ay * q.ground.along_x - ax * q.ground.along_y);
+  grid_.push({p.column(Field::position, 0)[k], p.column(Field::position, 1)[k]},
+             {-across * q.ground.along_y, across * q.ground.along_x});
 }
 
 /// The profiles are in the state; their integrals are made again.
 void SandLayer::archive(Archive& a) {
+  if (may_rest_) {
+    a.number(name_ + " exchanges to that of all", to_all_);
+    const long changes = w_->particles(grains_).changes();
+    long late = changes - seen_changes_;
+    a.number(name_ + " changes to take over", late);
+    seen_changes_ = changes - late;
+    for (auto& load : rest_loads_) a.array(name_ + " kept drag", load.pull);
+    grid_.archive(a);
+  }
   if (!a.loads()) return;
   for (auto& layer : layers_) layer.integrate_speed();
 }

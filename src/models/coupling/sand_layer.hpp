@@ -17,6 +17,9 @@
 //   a = C k (U+ - U-) (u - v)/max(|u - v|, |u|),
 // Anderson & Hallet's (1986) difference of the squares of the winds on top and at the bottom of the grain. It is C
 // times the drag where a grain rests and the wind is linear from zero at its bottom: C = 0.85 (Chepil 1958).
+//
+// Grains that may sleep (`sleep = true`) and rest keep their drag, and the air what it lost by it, for 16 exchanges:
+// 0.064 sqrt(d/g), in which a grain at rest goes nowhere. So most exchanges are those of the grains that move.
 #pragma once
 
 #include <memory>
@@ -40,6 +43,7 @@ std::unique_ptr<Model> make_sand_layer(const Scene& scene, const Layout& layout,
 class SandLayer : public Model {
  public:
   SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& entry);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   void history(HistoryRow& row) const override;
@@ -52,6 +56,7 @@ class SandLayer : public Model {
   static constexpr double fine = 10.0;       // diameters over the ground with such cells
   static constexpr double interval = 0.004;  // of sqrt(d/g), between two exchanges: 20 us for 0.25 mm
   static constexpr double long_as = 40.0;    // diameters, of a layer, at least one spacing of the air
+  static constexpr long rest_keeps = 16;     // exchanges, of the drag of a grain that rests
   static constexpr std::size_t heights = 8;  // of the ground, known a spacing of the air
 
   /// The ground under a place: its height (m, as a coordinate), and the direction along it.
@@ -72,6 +77,7 @@ class SandLayer : public Model {
     double pull;            // m/s2 along the ground, its drag in that wind
     double more;            // m/s2, what the wind adds to it that the layer has after the exchange
     Ground ground;
+    bool rests;  // and keeps its drag for some exchanges
   };
   Ground ground(double x) const;
   Between between(double x) const;
@@ -85,6 +91,10 @@ class SandLayer : public Model {
   void find_near();
   void feel();
   void spread();
+  void spread(bool resting, std::vector<AirColumn::Load>& loads);
+  bool all_are_due();
+  void keep_rest();
+  void push_across(const PhaseParticles& p, const Near& q);
   void blow(double dt);
   void give_stress(std::size_t fluid);
   double top_speed(std::size_t column) const;
@@ -108,9 +118,15 @@ class SandLayer : public Model {
   std::vector<AirColumn> layers_;
   std::vector<AirColumn::Spread> spreads_;
   std::vector<AirColumn::Load> loads_;
-  std::vector<Near> near_;           // grains in the layers
-  std::vector<std::size_t> flying_;  // grains over them
-  std::vector<double> rate_;         // 1/s, of each grain, by the difference of speed
+  bool may_rest_;                                  // grains that rest keep their drag
+  bool all_due_ = true;                            // of all grains in this exchange
+  long to_all_ = 0, seen_changes_ = 0;             // exchanges until then; of the grains (PhaseParticles::changes)
+  OwnColumn<std::uint8_t> keeps_;                  // by grain: it rested in the last exchange of all
+  std::vector<AirColumn::Load> rest_loads_;        // pull: what those take from the layers
+  std::vector<std::vector<double>> speed_before_;  // m/s, of the layers, in an exchange of all
+  std::vector<Near> near_;                         // grains in the layers
+  std::vector<std::size_t> flying_;                // grains over them
+  std::vector<double> rate_;                       // 1/s, of each grain, by the difference of speed
 };
 
 }  // namespace barchan

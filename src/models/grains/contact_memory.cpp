@@ -24,28 +24,27 @@ void ContactBatches::grow(std::size_t batches, std::size_t numbers) {
 }
 
 void ContactMemory::keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks,
-                         const std::uint32_t* before, const SphereChunk* sleeping) {
+                         const std::uint32_t* before) {
   constexpr std::size_t batch = ContactBatches::batch;
   const std::size_t numbers = column_.numbers;
   fit(begin_, all + 1);
   std::fill(begin_.begin(), begin_.end(), 0u);
   // Both chunks of a pair have the same bits: that of the first counts, or the only one.
-  const auto pairs_of = [&](const SphereChunk& chunk, bool every, auto&& call) {
+  const auto pairs_of = [&](const SphereChunk& chunk, auto&& call) {
     for (std::size_t q = 0; q < chunk.touches.size(); ++q)
       for (unsigned bits = chunk.touches[q]; bits != 0; bits &= bits - 1) {
         const std::size_t at = q * batch + static_cast<std::size_t>(__builtin_ctz(bits));
         const std::uint32_t a = chunk.a[at];
-        if (!every && a < moving && (a < chunk.begin || a >= chunk.end)) continue;
+        if (a < moving && (a < chunk.begin || a >= chunk.end)) continue;
         call(before[a], before[chunk.b[at]], chunk.of_pair(at, numbers), batch);
       }
   };
   const auto each = [&](auto&& call) {
     for (const SphereChunk& chunk : chunks) {
-      pairs_of(chunk, false, call);
+      pairs_of(chunk, call);
       for (const auto& at : chunk.sides)
         if (at.touches) call(before[at.sphere], side(at.axis, at.sign), at.memory, std::size_t{1});
     }
-    if (sleeping) pairs_of(*sleeping, true, call);
   };
   each([&](std::uint32_t number, std::uint32_t, const double*, std::size_t) { ++begin_[number + 1]; });
   for (std::size_t k = 0; k < all; ++k) begin_[k + 1] += begin_[k];

@@ -82,9 +82,8 @@ class ContactMemory {
   std::size_t numbers() const { return column_.numbers; }
 
   /// Takes the values of all pairs that touch out of the lists. `before`: lasting numbers of the `all` spheres, the
-  /// `moving` ones first, by their places when the lists were made; `sleeping`: null, or the list of those that sleep.
-  void keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks, const std::uint32_t* before,
-            const SphereChunk* sleeping);
+  /// `moving` ones first, by their places when the lists were made.
+  void keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks, const std::uint32_t* before);
   /// Gives the spheres of what is kept other numbers: `to` by the number before, `gone` of those that are no longer
   /// there; of two that stay the order is the same. `all`: how many there are now. Adds those whose partner has gone to
   /// `left_alone`, by their new numbers.

@@ -40,6 +40,42 @@ struct Tally {
   double contacts = 0.0;
 };
 
+/// Pairs of a vector whose spheres both sleep: the two far away take their places, and they keep their memory.
+class Resting {
+ public:
+  BARCHAN_SIMD_INLINE Resting(const std::uint32_t*& a, const std::uint32_t*& b, std::uint32_t live, double* memory,
+                              std::size_t numbers, std::uint32_t far)
+      : live_(live), numbers_(numbers), memory_(memory) {
+    if (live == lanes) return;
+    for (std::size_t k = 0; k < width; ++k) {
+      const bool evaluated = (live >> k & 1u) != 0;
+      a_[k] = evaluated ? a[k] : far;
+      b_[k] = evaluated ? b[k] : far + 1;
+      for (std::size_t m = 0; m < numbers && !evaluated; ++m) {
+        kept_[m][k] = memory[m * batch + k];
+        memory[m * batch + k] = 0.0;
+      }
+    }
+    a = a_;
+    b = b_;
+  }
+  Resting(const Resting&) = delete;
+  Resting& operator=(const Resting&) = delete;
+  BARCHAN_SIMD_INLINE ~Resting() {
+    if (live_ == lanes) return;
+    for (std::size_t k = 0; k < width; ++k)
+      for (std::size_t m = 0; m < numbers_ && (live_ >> k & 1u) == 0; ++m) memory_[m * batch + k] = kept_[m][k];
+  }
+
+ private:
+  static constexpr std::uint32_t lanes = (1u << width) - 1u;
+  std::uint32_t live_;
+  std::size_t numbers_;
+  double* memory_;
+  std::uint32_t a_[width], b_[width];
+  double kept_[ContactMemory::most_numbers][width];
+};
+
 /// The pairs of one law, a SphereContact (laws/sphere_contact.hpp).
 template <int Dim, class Law>
 void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const SphereChunk::Group& group,
@@ -64,11 +100,15 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
   const std::size_t stride = R::size, of_a_batch = step.numbers * batch;
   double* of_batch = chunk.of_pair(group.first * batch, step.numbers);
   constexpr double magic = 6755399441055744.0;  // 1.5 2^52: added and taken off it rounds to the nearest whole number
+  constexpr std::uint32_t lanes = (1u << width) - 1u;
   for (std::size_t q = group.first; q < group.end; ++q, of_batch += of_a_batch)
     for (std::size_t half = 0; half < batch; half += width) {
+      const std::uint32_t live = chunk.live_of(q) >> half & lanes;
+      if (live == 0) continue;
       const std::uint32_t *a = chunk.a.data() + q * batch + half, *b = chunk.b.data() + q * batch + half;
-      const std::uint32_t had = chunk.touches[q] >> half & ((1u << width) - 1u);
+      const std::uint32_t had = chunk.touches[q] >> half & live;
       if (q + 1 < group.end) fetch<Dim>(records, a + batch, b + batch);
+      const Resting resting(a, b, live, of_batch + half, numbers, step.far);
       V x_a[4], x_b[4];
       simd::load_transposed<4>(records, stride, a, x_a);
       simd::load_transposed<4>(records, stride, b, x_b);
@@ -91,7 +131,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
           tally.lost = fma(drop * V(group.weight), slip * slip, tally.lost);
         }
         for (std::size_t k = 0; k < numbers; ++k) V(0.0).store(memory + k * batch);
-        chunk.touches[q] = static_cast<std::uint8_t>(chunk.touches[q] & ~(((1u << width) - 1u) << half));
+        chunk.touches[q] = static_cast<std::uint8_t>(chunk.touches[q] & ~(live << half));
         continue;
       }
       V v_a[4], v_b[4], w_a[4], w_b[4];
@@ -145,7 +185,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
       tally.lost = fma(V(group.weight), mask_zero(touching, f.lost), tally.lost);
       tally.stored = fma(V(group.weight), mask_zero(touching, f.stored), tally.stored);
       tally.deepest = simd::max(mask_zero(touching, s.overlap * inverse_reach), tally.deepest);
-      chunk.touches[q] = static_cast<std::uint8_t>((chunk.touches[q] & ~(((1u << width) - 1u) << half)) | has << half);
+      chunk.touches[q] = static_cast<std::uint8_t>((chunk.touches[q] & ~(live << half)) | has << half);
       tally.contacts += group.weight * std::popcount(has);
       add_up<Dim, Rubs>(sums, f, a, b, chunk.begin, count);
       if (!watched) continue;
@@ -277,10 +317,12 @@ void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& c
   for (const std::uint32_t k : chunk.border) {
     const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
     double *offset = sleep.offset + sleep.numbers[k] * numbers, *unrest = sleep.unrest + sleep.numbers[k] * numbers;
+    const bool fresh = sleep.fresh[sleep.numbers[k]] != 0;
+    sleep.fresh[sleep.numbers[k]] = 0;
     double push2 = 0.0, turn2 = 0.0;
     for (std::size_t d = 0; d < numbers; ++d) {
       const double now = force[d < Dim ? d : torque + d - Dim];
-      if (sleep.fresh) offset[d] -= now;
+      if (fresh) offset[d] -= now;
       unrest[d] = now + offset[d];
       (d < Dim ? push2 : turn2) += unrest[d] * unrest[d];
     }
@@ -295,6 +337,53 @@ void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& c
 template <class F>
 void with_law(const SphereStep& step, std::size_t number, F&& f) {
   with_parts(step.laws[number], step.rubs, step.rolls, f);
+}
+
+/// What a contact of two that rest stores, a pair of the list.
+template <int Dim, class Law>
+double stored_at_rest(const Law& law, const SphereStep& step, const SphereChunk& chunk, std::uint32_t number,
+                      std::size_t pair) {
+  using R = SphereRecord<Dim>;
+  constexpr std::size_t numbers = Law::template numbers<Dim>;
+  const double *a = step.records + chunk.a[pair] * R::size, *b = step.records + chunk.b[pair] * R::size;
+  const double of_a = step.inverse_densities[2 * number] / std::pow(a[R::radius], 3),
+               of_b = step.inverse_densities[2 * number + 1] / std::pow(b[R::radius], 3);
+  TouchingSpheres<One, Dim> s;
+  double r2 = least_square;
+  std::array<double, Dim> r{};
+  for (std::size_t d = 0; d < Dim; ++d) {
+    r[d] = a[d] - b[d];
+    if (step.period[d] > 0.0) r[d] -= step.period[d] * std::round(r[d] / step.period[d]);
+    r2 += r[d] * r[d];
+  }
+  const double distance = std::sqrt(r2), reach = a[R::radius] + b[R::radius];
+  for (std::size_t d = 0; d < Dim; ++d) {
+    s.normal[d] = One(r[d] / distance);
+    s.velocity[d] = One(0.0);
+  }
+  for (std::size_t d = 0; d < R::spins; ++d) s.spin_a[d] = s.spin_b[d] = One(0.0);
+  s.overlap = One(reach - distance);
+  s.lever_a = One(a[R::radius] / reach * distance);
+  s.lever_b = One(b[R::radius] / reach * distance);
+  s.reduced_radius = One(a[R::radius] * b[R::radius] / reach);
+  s.inverse_mass = One(of_a + of_b);
+  s.reduced_mass = One(1.0 / (of_a + of_b));
+  std::array<One, numbers> slip;
+  const double* memory = chunk.of_pair(pair, step.numbers);
+  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(memory[k * batch]);
+  return Law::touch(typename Law::template Constants<One>(law, step.dt), s, slip).stored.v;
+}
+
+template <int Dim>
+double rest_of_chunk(const SphereStep& step, const SphereChunk& chunk) {
+  double sum = 0.0;
+  for (const auto& group : chunk.groups)
+    with_law(step, group.law, [&](const auto& law) {
+      for (std::size_t pair = group.first * batch; pair < group.end * batch; ++pair)
+        if (chunk.touching(pair) && (chunk.live_of(pair / batch) >> pair % batch & 1u) == 0)
+          sum += group.weight * stored_at_rest<Dim>(law, step, chunk, group.law, pair);
+    });
+  return sum;
 }
 
 template <int Dim>
@@ -326,6 +415,10 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
 void step_spheres(const SphereStep& step, SphereChunk& chunk) {
   if (step.dimensions == 2) step_chunk<2>(step, chunk);
   else step_chunk<3>(step, chunk);
+}
+
+double energy_at_rest(const SphereStep& step, const SphereChunk& chunk) {
+  return step.dimensions == 2 ? rest_of_chunk<2>(step, chunk) : rest_of_chunk<3>(step, chunk);
 }
 
 }  // namespace barchan::BARCHAN_TARGET

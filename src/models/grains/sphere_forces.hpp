@@ -12,4 +12,9 @@ BARCHAN_PER_INSTRUCTION_SET(
     /// or, in the last step of a bundle, into the columns. Chunks may be done in any order.
     void step_spheres(const SphereStep& step, SphereChunk& chunk);)
 
+BARCHAN_PER_INSTRUCTION_SET(energy_at_rest,
+                            /// J, stored by the contacts of a chunk that no step evaluates: of two that sleep. Of pairs
+                            /// that another chunk has too, half.
+                            double energy_at_rest(const SphereStep& step, const SphereChunk& chunk);)
+
 }  // namespace barchan

@@ -23,16 +23,6 @@ Span about(const SphereCells& cells, double x, std::size_t axis) {
   return {low, std::min(c + 2, n) - low};
 }
 
-bool any_awake(const SphereCells& cells, const Span& sx, const Span& sy, const Span& sz) {
-  for (std::size_t dz = 0; dz < sz.many; ++dz)
-    for (std::size_t dy = 0; dy < sy.many; ++dy) {
-      const std::size_t row = (sz.low + dz) % cells.count[2] * cells.count[1] + (sy.low + dy) % cells.count[1];
-      for (std::size_t dx = 0; dx < sx.many; ++dx)
-        if (cells.lively[row * cells.count[0] + (sx.low + dx) % cells.count[0]]) return true;
-    }
-  return false;
-}
-
 template <int Dim>
 void pairs(const SphereCells& cells, const SphereSet& s, double slack, const SphereChunk& chunk,
            std::vector<FoundPair>& found) {
@@ -54,7 +44,6 @@ void pairs(const SphereCells& cells, const SphereSet& s, double slack, const Sph
     const auto add = [&](std::uint32_t j, bool near) {
       const std::uint32_t law = laws[s.kinds[j]];
       const bool inside = j >= chunk.begin && j < chunk.end;
-      if (s.asleep && s.asleep[k] && s.asleep[j]) return;
       if (law == SphereCells::none || j == k || (inside && s.numbers[j] < number)) return;
       const bool first = number < s.numbers[j], fixed = j >= s.moving;
       const auto own_place = static_cast<std::uint32_t>(k);
@@ -79,7 +68,6 @@ void pairs(const SphereCells& cells, const SphereSet& s, double slack, const Sph
       }
     };
     const Span sx = about(cells, r[0], 0), sy = about(cells, r[1], 1), sz = Dim == 3 ? about(cells, r[2], 2) : Span{};
-    if (s.asleep && s.asleep[k] && !any_awake(cells, sx, sy, sz)) continue;
     for (std::size_t dz = 0; dz < sz.many; ++dz)
       for (std::size_t dy = 0; dy < sy.many; ++dy) {
         const std::size_t row =

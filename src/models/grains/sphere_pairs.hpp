@@ -18,7 +18,7 @@ struct SphereSet {
   std::size_t moving = 0, all = 0;         // the moving come first; two far away follow after all
   const std::uint32_t* numbers = nullptr;  // lasting, in the order of ids
   const std::uint8_t* kinds = nullptr;     // row and column in the table of laws
-  const std::uint8_t* asleep = nullptr;    // 1: sleeps or is fixed; null: nobody sleeps
+  const std::uint8_t* asleep = nullptr;    // 1: sleeps or is fixed; null: no sphere may sleep
   const double* places = nullptr;          // by sphere, of all axes; m, where the last search of it found it
 };
 
@@ -33,7 +33,6 @@ struct SphereCells {
   const double* sorted[4] = {};         // x y z r in the order of cells
   const std::uint32_t* laws = nullptr;  // by kind and kind, none where two do not touch
   std::size_t kinds = 0;
-  const std::uint8_t* lively = nullptr;  // whether somebody in a cell is awake
 
   std::size_t coordinate(double x, std::size_t axis) const {
     x -= low[axis];

@@ -40,28 +40,20 @@ void SphereSearch::make_room_for_threads() {
   while (found_.size() < threads) found_.emplace_back().reserve(pairs * SphereChunk::most + 64);
 }
 
-void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, SphereChunk* sleeping) {
+void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, bool sleep) {
   constexpr std::size_t batch = SphereChunk::batch;
   const std::size_t pairs = bounds_.dimensions == 2 ? 6 : 11;  // of a sphere, of two in different chunks both
-  const auto reserve_pairs = [&](SphereChunk& chunk, std::size_t room) {
+  for (SphereChunk& chunk : chunks) {
+    const std::size_t spheres = chunk.end - chunk.begin, room = pairs * spheres + 64;
     chunk.a.reserve(room);
     chunk.b.reserve(room);
     chunk.reserve(room / batch + 1, memory_.numbers());
     chunk.groups.reserve(2 * kinds_ * kinds_ + 2);
-  };
-  for (SphereChunk& chunk : chunks) {
-    const std::size_t spheres = chunk.end - chunk.begin, room = pairs * spheres + 64;
-    reserve_pairs(chunk, room);
     if (!sides_.empty()) chunk.sides.reserve(spheres);
-    if (!sleeping) continue;
+    if (!sleep) continue;
+    chunk.live.reserve(room / batch + 1);
     chunk.awake.reserve(spheres);
-    chunk.border.reserve(2 * room);
-  }
-  if (sleeping) {
-    reserve_pairs(*sleeping, pairs * all / 2 + 64);
-    lively_.reserve(8 * all + 65536);
-    sphere_of_.reserve(all);
-    found_[0].reserve(pairs * all / 2 + 64);
+    chunk.border.reserve(spheres);
   }
   for (auto& sorted : sorted_) sorted.reserve(all + SphereCells::padding);
   memory_.reserve(pairs * all / 2 + 64);
@@ -110,10 +102,6 @@ void SphereSearch::sort(const SphereSet& s, double slack) {
   }
   for (std::size_t c = cells; c > 0; --c) begin_[c] = begin_[c - 1];
   begin_[0] = 0;
-  lively_.assign(s.asleep ? cells : 0, 0);
-  for (std::size_t k = 0; s.asleep && k < s.all; ++k)
-    if (!s.asleep[k]) lively_[cell_of_[k]] = 1;
-  cells_.lively = lively_.data();
   cells_.begin = begin_.data();
   cells_.order = order_.data();
   for (std::size_t d = 0; d < 4; ++d) cells_.sorted[d] = sorted_[d].data();
@@ -175,8 +163,7 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
     }
 }
 
-void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks, SphereChunk* sleeping) {
-  if (sleeping) place_sleeping(s, *sleeping);
+void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks) {
   sort(s, slack);
   make_room_for_threads();
   const auto n = static_cast<std::int64_t>(chunks.size());
@@ -187,39 +174,7 @@ void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChun
     find_sphere_pairs(cells_, s, slack, chunk, found);
     place(s, chunk, found);
     place_sides(s, slack, chunk);
-    list_sleepers(s, chunk, found);
   }
-}
-
-/// The pairs that were kept of spheres that both sleep, in the order of their numbers.
-void SphereSearch::place_sleeping(const SphereSet& s, SphereChunk& sleeping) {
-  fit(sphere_of_, s.all);
-  for (std::size_t k = 0; k < s.all; ++k) sphere_of_[s.numbers[k]] = static_cast<std::uint32_t>(k);
-  auto& found = found_[0];
-  found.clear();
-  for (const auto& kept : memory_.kept()) {
-    if (kept.with >= s.all) continue;  // a side
-    const std::uint32_t a = sphere_of_[kept.number], b = sphere_of_[kept.with];
-    if (s.asleep && s.asleep[a] && s.asleep[b]) found.push_back({a, b, laws_[s.kinds[a] * kinds_ + s.kinds[b]] * 4});
-  }
-  place(s, sleeping, found);
-}
-
-/// Who of the chunk moves, and who sleeps beside somebody who does not.
-void SphereSearch::list_sleepers(const SphereSet& s, SphereChunk& chunk, const std::vector<FoundPair>& found) const {
-  chunk.all_awake = true;
-  chunk.awake.clear();
-  chunk.border.clear();
-  if (!s.asleep) return;
-  for (std::size_t k = chunk.begin; k < chunk.end; ++k)
-    if (!s.asleep[k]) chunk.awake.push_back(static_cast<std::uint32_t>(k));
-  chunk.all_awake = chunk.awake.size() == chunk.end - chunk.begin;
-  if (chunk.all_awake) return chunk.awake.clear();
-  for (const FoundPair& f : found)
-    for (const std::uint32_t k : {f.a, f.b})
-      if (k >= chunk.begin && k < chunk.end && s.asleep[k]) chunk.border.push_back(k);
-  std::sort(chunk.border.begin(), chunk.border.end());
-  chunk.border.erase(std::unique(chunk.border.begin(), chunk.border.end()), chunk.border.end());
 }
 
 void SphereSearch::order(const std::array<const double*, 3>& x, const std::vector<std::int64_t>& id,

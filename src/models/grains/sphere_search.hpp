@@ -24,24 +24,21 @@ class SphereSearch {
   /// `reach` (m): the largest sum of radii; `laws`: by kind and kind, `none` where two do not touch.
   void prepare(const Bounds& bounds, double reach, std::size_t kinds, std::vector<std::uint32_t> laws,
                std::vector<Side> sides, std::size_t numbers_of_a_pair);
-  /// Room for what packings of `all` spheres need, so that later searches seldom allocate.
-  /// `sleeping`: the pairs of those that sleep; null where nobody may.
-  void reserve(std::size_t all, std::vector<SphereChunk>& chunks, SphereChunk* sleeping);
+  /// Room for what packings of `all` spheres need, so that later searches seldom allocate. `sleep`: some may.
+  void reserve(std::size_t all, std::vector<SphereChunk>& chunks, bool sleep);
 
   /// Before find(): takes the memory out of the pairs. `before`: numbers of the spheres when the chunks were filled
-  /// last. `sleeping`: as in find().
-  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before,
-            const SphereChunk* sleeping) {
-    memory_.keep(spheres.moving, spheres.all, chunks, before, sleeping);
+  /// last.
+  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before) {
+    memory_.keep(spheres.moving, spheres.all, chunks, before);
   }
   /// Between the two: spheres have other numbers, or are gone (ContactMemory::renumber).
   void renumber(const std::vector<std::uint32_t>& to, std::size_t all, std::vector<std::uint32_t>& left_alone) {
     memory_.renumber(to, all, left_alone);
   }
-  /// Fills the chunks with the pairs nearer than `slack` (m), with the memory that was kept. Allocates only to grow.
-  /// `sleeping`: all pairs of spheres that touch and sleep, which no chunk has; null: they are as they were, and so are
-  /// the spheres' places in memory.
-  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks, SphereChunk* sleeping);
+  /// Fills the chunks with the pairs nearer than `slack` (m), of those that sleep too, with the memory that was kept.
+  /// Allocates only to grow.
+  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks);
 
   /// Sorts all spheres by their places into cells as wide as a search with `slack` (m): find() does, and loading must.
   void sort(const SphereSet& spheres, double slack);
@@ -56,8 +53,6 @@ class SphereSearch {
 
  private:
   void make_room_for_threads();
-  void place_sleeping(const SphereSet& spheres, SphereChunk& sleeping);
-  void list_sleepers(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place(const SphereSet& spheres, SphereChunk& chunk, const std::vector<FoundPair>& found) const;
   void place_sides(const SphereSet& spheres, double slack, SphereChunk& chunk) const;
 
@@ -69,9 +64,7 @@ class SphereSearch {
 
   SphereCells cells_;
   std::vector<std::uint32_t> cell_of_, begin_, order_;
-  std::vector<std::uint8_t> lively_;      // by cell
-  std::vector<std::uint32_t> sphere_of_;  // by number
-  AlignedVector<double> sorted_[4];       // x y z r, in the order of cells
+  AlignedVector<double> sorted_[4];  // x y z r, in the order of cells
   ContactMemory memory_;
   std::vector<std::vector<FoundPair>> found_;  // by thread
 };

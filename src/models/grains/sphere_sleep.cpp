@@ -11,7 +11,7 @@ constexpr double nowhere = 1e300;  // m: of a sphere that nobody has looked at; 
 
 }  // namespace
 
-void SphereSleep::prepare(std::vector<Part> parts, std::size_t all, const Layout& layout, double gravity) {
+void SphereSleep::prepare(std::vector<Part> parts, const Layout& layout, double gravity) {
   parts_ = std::move(parts);
   if (parts_.empty()) return;
   layout_ = &layout;
@@ -20,20 +20,20 @@ void SphereSleep::prepare(std::vector<Part> parts, std::size_t all, const Layout
   numbers_ = dimensions_ == 2 ? 3 : 6;
   double least = 1e300;
   for (const Part& part : parts_) least = std::min(least, part.diameter);
-  interval_ = std::sqrt(least / gravity);
+  interval_ = apart * std::sqrt(least / gravity);
   for (std::size_t d = 0; d < 3; ++d)
     period_[d] = layout.bounds.periodic[d] ? layout.bounds.high[d] - layout.bounds.low[d] : 0.0;
-  at_.assign(all, 1);
 }
 
 void SphereSleep::make_room(std::vector<Part> parts, std::size_t moving, std::size_t all) {
   if (!on()) return;
   parts_ = std::move(parts);
   moving_ = moving;
-  for (auto* bytes : {&asleep_, &calm_, &wakes_}) bytes->resize(moving, 0);
+  for (auto* bytes : {&asleep_, &calm_, &wakes_, &changed_, &fresh_}) bytes->resize(moving, 0);
   for (auto* vectors : {&place_, &pull_}) vectors->resize(moving * dimensions_, nowhere);
   for (auto* forces : {&offset_, &unrest_}) forces->resize(moving * numbers_, 0.0);
-  at_.assign(all, 1);
+  at_.assign(all + 2, 1);
+  changed_at_.assign(all + 2, 0);
 }
 
 void SphereSleep::keep_awake(std::size_t first, std::size_t count) {
@@ -49,7 +49,7 @@ void SphereSleep::renumber(const std::vector<std::uint32_t>& to, std::size_t mov
       for (std::size_t q = 0; to[n] != ContactMemory::gone && q < each; ++q)
         values[to[n] * each + q] = before[n * each + q];
   };
-  for (auto* bytes : {&asleep_, &calm_, &wakes_}) move(*bytes, 1, std::uint8_t{0});
+  for (auto* bytes : {&asleep_, &calm_, &wakes_, &changed_, &fresh_}) move(*bytes, 1, std::uint8_t{0});
   for (auto* vectors : {&place_, &pull_}) move(*vectors, dimensions_, nowhere);
   for (auto* forces : {&offset_, &unrest_}) move(*forces, numbers_, 0.0);
   moving_ = moving;
@@ -58,16 +58,20 @@ void SphereSleep::renumber(const std::vector<std::uint32_t>& to, std::size_t mov
 
 void SphereSleep::wake(const std::vector<std::uint32_t>& numbers) {
   for (const std::uint32_t n : numbers) {
-    if (!on() || n >= moving_) continue;
-    sleeping_ -= asleep_[n];
-    asleep_[n] = calm_[n] = 0;
+    if (on() && n < moving_) rouse(n);
   }
+}
+
+void SphereSleep::rouse(std::uint32_t n) {
+  changed_[n] = changed_[n] | asleep_[n];
+  sleeping_ -= asleep_[n];
+  asleep_[n] = calm_[n] = 0;
 }
 
 /// Wakes those whose acceleration by all but contacts is another than when they fell asleep.
 bool SphereSleep::pushed(Workspace& w, const std::uint32_t* numbers) {
   const double most2 = std::pow(push * gravity_, 2);
-  std::size_t woken = 0;
+  const std::size_t slept = sleeping_;
   for (const Part& part : parts_) {
     const PhaseParticles& p = w.particles(part.phase);
     for (std::size_t k = 0; k < part.count; ++k) {
@@ -78,16 +82,15 @@ bool SphereSleep::pushed(Workspace& w, const std::uint32_t* numbers) {
         change2 += std::pow(p.column(Field::acceleration, static_cast<int>(d))[k] - pull_[n * dimensions_ + d], 2);
       });
       if (change2 <= most2) continue;
-      asleep_[n] = calm_[n] = 0;
-      ++woken;
+      rouse(n);
     }
   }
-  sleeping_ -= woken;
-  return woken > 0;
+  return sleeping_ != slept;
 }
 
 bool SphereSleep::look(Workspace& w, const std::uint32_t* numbers, double& lost) {
   bool changed = sleeping_ > 0 && pushed(w, numbers);
+  fell_ = false;
   if (w.state.time < next_) return changed;
   const bool first = next_ == 0.0;
   next_ = w.state.time + interval_;
@@ -118,8 +121,8 @@ bool SphereSleep::look(Workspace& w, const std::uint32_t* numbers, double& lost)
       const bool calm = !first && gone2 < way2 && v2 < speed2 && spin2 < speed2 && change2 < pull2;
       calm_[n] = calm ? static_cast<std::uint8_t>(calm_[n] + 1) : std::uint8_t{0};
       if (calm_[n] < looks) continue;
-      asleep_[n] = 1;
-      changed = true;
+      asleep_[n] = changed_[n] = 1;
+      changed = fell_ = true;
       ++sleeping_;
       lost += 0.5 * p.mass_of(k) * layout_->slab * (v2 + 0.4 * spin2);
       each_axis([&](std::size_t d) {
@@ -138,25 +141,28 @@ void SphereSleep::wake() {
   for (std::size_t n = 0; n < moving_; ++n) {
     if (!wakes_[n]) continue;
     wakes_[n] = 0;
-    sleeping_ -= asleep_[n];
-    asleep_[n] = calm_[n] = 0;
+    rouse(static_cast<std::uint32_t>(n));
   }
 }
 
-void SphereSleep::begin_again() {
-  for (std::size_t n = 0; n < moving_; ++n)
-    for (std::size_t d = 0; asleep_[n] && d < numbers_; ++d) offset_[n * numbers_ + d] = unrest_[n * numbers_ + d];
+void SphereSleep::mark(const std::uint32_t* numbers) {
+  for (std::size_t k = 0; k < moving_; ++k) {
+    at_[k] = asleep_[numbers[k]];
+    changed_at_[k] = changed_[numbers[k]];
+  }
 }
 
-const std::uint8_t* SphereSleep::by_sphere(const std::uint32_t* numbers) {
-  if (sleeping_ == 0) return nullptr;
-  for (std::size_t k = 0; k < moving_; ++k) at_[k] = asleep_[numbers[k]];
-  return at_.data();
+/// What is out of balance is carried on when other neighbours are awake.
+void SphereSleep::keep_balance(std::uint32_t n) {
+  fresh_[n] = 1;
+  for (std::size_t d = n * numbers_; d < (n + 1) * numbers_; ++d) offset_[d] = unrest_[d];
 }
 
-const SleepStep* SphereSleep::step(const std::uint32_t* numbers, bool fresh) {
+void SphereSleep::settled() { std::fill(changed_.begin(), changed_.end(), std::uint8_t{0}); }
+
+const SleepStep* SphereSleep::step(const std::uint32_t* numbers) {
   if (sleeping_ == 0) return nullptr;
-  step_ = {at_.data(), numbers, offset_.data(), unrest_.data(), wakes_.data(), unrest * gravity_, fresh};
+  step_ = {at_.data(), numbers, offset_.data(), unrest_.data(), wakes_.data(), fresh_.data(), unrest * gravity_};
   return &step_;
 }
 
@@ -166,6 +172,8 @@ void SphereSleep::archive(Archive& a) {
   a.number("sleepers", sleeping_);
   a.array("asleep", asleep_);
   a.array("calm", calm_);
+  a.array("fell asleep or woke", changed_);
+  a.array("beside such", fresh_);
   a.array("places of the last look", place_);
   a.array("accelerations of the last look", pull_);
   a.array("balance of sleepers", offset_);

@@ -1,8 +1,9 @@
 // Spheres that sleep: grains of a bed that nothing disturbs. They stay where they are, like fixed ones, and pairs of
 // two of them are not evaluated, until something wakes them.
 //
-// Who falls asleep: looks are sqrt(d/g) apart. A grain that between two looks, twice, went less than 1e-3 d, and is
-// slower than 1e-2 sqrt(g d), and whose acceleration by all but contacts changed by less than a tenth of g.
+// Who falls asleep: looks are sqrt(d/g)/4 apart. A grain that between two looks, twice, went less than 2.5e-4 d, and is
+// slower than 1e-2 sqrt(g d), and whose acceleration by all but contacts changed by less than a tenth of g. So a grain
+// that an impact far away shook sleeps again in less than sqrt(d/g).
 // Who wakes: a grain whose forces are out of the balance in which it fell asleep by more than 0.3 of its weight.
 // Forces of others that sleep do not change, so only those of grains that are awake are summed; what was out of balance
 // before somebody else fell asleep or woke is not forgotten. And whom the wind, or another acceleration, pushes by more
@@ -10,9 +11,10 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <vector>
 
-#include "models/grains/sphere_work.hpp"
+#include "models/grains/sphere_pairs.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -25,9 +27,8 @@ class SphereSleep {
     double diameter = 0.0;  // m, the mean one
   };
 
-  /// `all`: spheres of all phases and fixed ones.
-  void prepare(std::vector<Part> parts, std::size_t all, const Layout& layout, double gravity);
-  /// Gives what is kept by number its size; new ones are awake. `moving`: spheres of all phases.
+  void prepare(std::vector<Part> parts, const Layout& layout, double gravity);
+  /// Gives what is kept by number its size; new ones are awake. `moving`: spheres of all phases; `all`: and fixed ones.
   void make_room(std::vector<Part> parts, std::size_t moving, std::size_t all);
   /// Spheres have other numbers, `to` by the one before, or are gone (ContactMemory::gone).
   void renumber(const std::vector<std::uint32_t>& to, std::size_t moving);
@@ -43,24 +44,38 @@ class SphereSleep {
   bool look(Workspace& w, const std::uint32_t* numbers, double& lost);
   /// Wakes those whom the last step of contacts disturbed.
   void wake();
-  /// Before the first step with other sleepers: keeps what is out of balance.
-  void begin_again();
-  /// 1 of those that sleep, and of fixed ones; by sphere. Null while nobody sleeps.
-  const std::uint8_t* by_sphere(const std::uint32_t* numbers);
+  /// Whether the last look let somebody fall asleep.
+  bool some_fell_asleep() const { return fell_; }
+  /// Takes over who sleeps, by sphere: flags(). Since the last settled() those whose neighbours changed count as fresh.
+  void mark(const std::uint32_t* numbers);
+  /// 1 of those that sleep, of fixed ones and of the two that pad; by sphere, as of the last mark(). Null: nobody may.
+  const std::uint8_t* flags() const { return on() ? at_.data() : nullptr; }
+  /// Whether a sphere fell asleep or woke since the last settled(); by sphere, as of the last mark().
+  bool changed(std::size_t sphere) const { return changed_at_[sphere] != 0; }
+  /// Gives a chunk what follows from the flags: the pairs that are evaluated, who moves, and who sleeps beside one that
+  /// does. Keeps what is out of balance of those that sleep beside one that changed. Calls `beside` with each sphere of
+  /// another chunk in a pair with one that changed.
+  template <class F>
+  void sort_out(const SphereSet& s, SphereChunk& chunk, F&& beside);
+  /// All chunks are sorted out.
+  void settled();
   bool sleeps(std::uint32_t number) const { return !asleep_.empty() && asleep_[number]; }
-  const SleepStep* step(const std::uint32_t* numbers, bool fresh);
+  const SleepStep* step(const std::uint32_t* numbers);
 
   void archive(Archive& a);
 
  private:
   bool pushed(Workspace& w, const std::uint32_t* numbers);
+  void rouse(std::uint32_t number);
+  void keep_balance(std::uint32_t number);
   template <class F>
   void each_axis(F&& f) const {
     for (std::size_t d = 0; d < dimensions_; ++d) f(d);
   }
 
-  static constexpr double most_way = 1e-3, most_speed = 1e-2;  // of d, of sqrt(g d)
-  static constexpr double push = 0.1, unrest = 0.3;            // of g, of the weight
+  static constexpr double apart = 0.25;                          // of sqrt(d/g), looks
+  static constexpr double most_way = 2.5e-4, most_speed = 1e-2;  // of d, of sqrt(g d)
+  static constexpr double push = 0.1, unrest = 0.3;              // of g, of the weight
   static constexpr std::uint8_t looks = 2;
 
   std::vector<Part> parts_;
@@ -68,10 +83,56 @@ class SphereSleep {
   std::size_t moving_ = 0, dimensions_ = 2, numbers_ = 3, sleeping_ = 0;
   double gravity_ = 0.0, interval_ = 0.0, next_ = 0.0;  // m/s2, s, s
   std::array<double, 3> period_{};
+  bool fell_ = false;
   std::vector<std::uint8_t> asleep_, calm_, wakes_;     // by number
+  std::vector<std::uint8_t> changed_, fresh_;           // by number: who fell asleep or woke; whose neighbour did
   std::vector<double> place_, pull_, offset_, unrest_;  // m, m/s2, N (N m), N (N m); by number
-  std::vector<std::uint8_t> at_;                        // by sphere
+  std::vector<std::uint8_t> at_, changed_at_;           // by sphere
   SleepStep step_;
 };
+
+template <class F>
+void SphereSleep::sort_out(const SphereSet& s, SphereChunk& chunk, F&& beside) {
+  constexpr std::size_t batch = SphereChunk::batch;
+  constexpr std::uint8_t at_border = 1, beside_changed = 2;
+  std::array<std::uint8_t, SphereChunk::most> mark{};
+  const auto look = [&](std::uint32_t k, std::uint32_t other, bool live) {
+    const bool own = k >= chunk.begin && k < chunk.end;
+    if (changed_at_[other] && !own && k < s.moving) beside(k);
+    if (!own || !at_[k]) return;
+    std::uint8_t& of = mark[k - chunk.begin];
+    of = static_cast<std::uint8_t>(of | (live ? at_border : 0) | (changed_at_[other] ? beside_changed : 0));
+  };
+  const std::size_t batches = chunk.touches.size();
+  fit(chunk.live, batches);
+  std::uint32_t any = 0;
+  for (std::size_t q = 0; q < batches; ++q) {
+    std::uint32_t bits = 0;
+    for (std::size_t lane = 0; lane < batch; ++lane) {
+      const std::uint32_t a = chunk.a[q * batch + lane], b = chunk.b[q * batch + lane];
+      const bool live = !(at_[a] && at_[b]);
+      bits |= std::uint32_t{live} << lane;
+      if (!live && !changed_at_[a] && !changed_at_[b]) continue;
+      look(a, b, live);
+      look(b, a, live);
+    }
+    chunk.live[q] = static_cast<std::uint8_t>(bits);
+    any |= bits;
+  }
+  chunk.any_live = any != 0;
+  chunk.awake.clear();
+  chunk.border.clear();
+  for (std::size_t k = chunk.begin; k < chunk.end; ++k) {
+    if (!at_[k]) chunk.awake.push_back(static_cast<std::uint32_t>(k));
+    const std::uint8_t of = mark[k - chunk.begin];
+    if ((of & at_border) != 0) chunk.border.push_back(static_cast<std::uint32_t>(k));
+    if ((of & beside_changed) != 0 || (at_[k] && changed_at_[k])) keep_balance(s.numbers[k]);
+  }
+  chunk.all_awake = chunk.awake.size() == chunk.end - chunk.begin;
+  chunk.resting = 0.0;
+  for (const SphereChunk::Group& group : chunk.groups)
+    for (std::size_t q = group.first; q < group.end; ++q)
+      chunk.resting += group.weight * std::popcount(static_cast<unsigned>(chunk.touches[q] & ~chunk.live[q] & 0xff));
+}
 
 }  // namespace barchan

@@ -150,6 +150,7 @@ void SphereStrays::look(const SphereSet& s, std::uint32_t stray) {
 void SphereStrays::renew(const SphereSet& s, std::uint32_t stray, double step,
                          std::span<const SphereSearch::Side> sides, std::vector<SphereChunk>& chunks) {
   const double* r = s.records + stray * stride_;
+  sleep_ = s.asleep != nullptr;
   if (is_stray_[stray]) leave(stray);
   is_stray_[stray] = 1;
   double speed2 = 0.0;
@@ -223,6 +224,7 @@ void SphereStrays::add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std
       const std::size_t pair = q * batch + static_cast<std::size_t>(__builtin_ctz(room));
       chunk.a[pair] = a;
       chunk.b[pair] = b;
+      evaluate(chunk, pair);
       return;
     }
   }
@@ -230,12 +232,22 @@ void SphereStrays::add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std
   chunk.a.resize((batches + more_batches) * batch, far);
   chunk.b.resize((batches + more_batches) * batch, far + 1);
   chunk.grow(more_batches, numbers_);
+  if (sleep_) chunk.live.resize(batches + more_batches, 0);
   const auto first = static_cast<std::uint32_t>(batches), end = static_cast<std::uint32_t>(batches + more_batches);
   if (!chunk.groups.empty() && chunk.groups.back().law == law && chunk.groups.back().weight == weight)
     chunk.groups.back().end = end;
   else chunk.groups.push_back({law, first, end, weight});
   chunk.a[batches * batch] = a;
   chunk.b[batches * batch] = b;
+  evaluate(chunk, batches * batch);
+}
+
+/// A stray is awake: its pairs are evaluated.
+void SphereStrays::evaluate(SphereChunk& chunk, std::size_t pair) const {
+  constexpr std::size_t batch = SphereChunk::batch;
+  if (!sleep_) return;
+  chunk.any_live = true;
+  chunk.live[pair / batch] = static_cast<std::uint8_t>(chunk.live[pair / batch] | 1u << pair % batch);
 }
 
 void SphereStrays::add_sides(const SphereSet& s, std::uint32_t stray, std::span<const SphereSearch::Side> sides,

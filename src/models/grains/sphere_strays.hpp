@@ -33,6 +33,8 @@ class SphereStrays {
   void renew(const SphereSet& spheres, std::uint32_t stray, double step, std::span<const SphereSearch::Side> sides,
              std::vector<SphereChunk>& chunks);
 
+  /// The chunk of a sphere that moves.
+  std::uint32_t chunk_of(std::uint32_t sphere) const { return chunk_[sphere]; }
   const double* places() const { return places_.data(); }
   /// m, of everybody who is no stray, of walls too.
   double allowance() const { return least_; }
@@ -51,6 +53,7 @@ class SphereStrays {
   void leave(std::uint32_t stray);
   void drop_others(const SphereSet& s, std::uint32_t stray, std::vector<SphereChunk>& chunks);
   void drop(SphereChunk& chunk, std::size_t pair) const;
+  void evaluate(SphereChunk& chunk, std::size_t pair) const;
   void add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std::uint32_t law, double weight) const;
   void add_sides(const SphereSet& s, std::uint32_t stray, std::span<const SphereSearch::Side> sides,
                  SphereChunk& chunk) const;
@@ -63,6 +66,7 @@ class SphereStrays {
   SphereCells cells_;
   std::size_t dimensions_ = 2, moving_ = 0, all_ = 0, numbers_ = 0, stride_ = 0, radius_ = 0;
   double reach_ = 0.0, least_ = 0.0;
+  bool sleep_ = false;                      // some sphere may
   std::size_t slow_ = 0;                    // strays since the search whose allowance is the least
   std::vector<std::uint32_t> chunk_;        // by sphere that moves
   AlignedVector<double> places_;            // by sphere

@@ -82,9 +82,13 @@ struct SphereChunk : ContactBatches {
   std::vector<Group> groups;
   AlignedVector<std::uint32_t> a, b;  // by pair; what pads them is the two far away
   std::vector<AtSide> sides;
+  // Who sleeps decides which pairs are evaluated: those with one that is awake. Empty where no sphere may sleep.
+  AlignedVector<std::uint8_t> live;  // by batch: a bit a pair
+  bool any_live = true;              // of these bits
   bool all_awake = true;
   std::vector<std::uint32_t> awake;   // spheres, where some of the chunk sleep
   std::vector<std::uint32_t> border;  // spheres that sleep and have pairs with others that do not
+  double resting = 0.0;               // contacts of two that sleep
 
   // of the last step
   double lost = 0.0, stored = 0.0;  // J
@@ -95,7 +99,9 @@ struct SphereChunk : ContactBatches {
   bool wakes = false;                         // somebody of the border
   std::vector<std::array<double, 6>> pushed;  // by watched law: force on the wall (N) and its torque (N m)
 
-  bool idle() const { return !all_awake && awake.empty() && groups.empty() && sides.empty(); }
+  bool idle() const { return !all_awake && awake.empty() && !any_live && sides.empty(); }
+  /// Which of the pairs of a batch are evaluated, as bits.
+  std::uint32_t live_of(std::size_t q) const { return live.empty() ? 0xffu : live[q]; }
   /// Calls f with each sphere that moves.
   template <class F>
   void each_moving(F&& f) const {
@@ -113,8 +119,8 @@ struct SleepStep {
   const std::uint32_t* numbers = nullptr;       // by sphere, lasting
   double *offset = nullptr, *unrest = nullptr;  // N, N m; by number
   std::uint8_t* wakes = nullptr;                // by number
+  std::uint8_t* fresh = nullptr;                // by number: a neighbour fell asleep or woke since the last step
   double tolerance = 0.0;                       // m/s2
-  bool fresh = false;                           // the first step after somebody fell asleep or woke
 };
 
 /// Where the last step of a bundle leaves the spheres of a phase. Null: the phase has no such field.
@@ -144,6 +150,7 @@ struct SphereStep {
   double dt = 0.0;                         // s
   double fastest = 0.0;                    // m/s, of all chunks
   double fastest_wall = 0.0;               // m/s, of the spheres of walls that travel
+  std::uint32_t far = 0;                   // the first of the two spheres far away
   bool last = false;                       // of its bundle: half a kick, and into the columns
   bool rubs = false, rolls = false;        // some law does
   std::size_t numbers = 0;                 // of the memory of a pair

@@ -50,7 +50,7 @@ void Spheres::attach(Workspace& w) {
   watch_walls();
   bind_walls();
   ids_ = present_ids();
-  sleep_.prepare(parts_that_may_sleep(), all(), layout_, norm(scene_.domain.gravity));
+  sleep_.prepare(parts_that_may_sleep(), layout_, norm(scene_.domain.gravity));
   make_room();
   number();
   listed_numbers_ = numbers_;
@@ -131,6 +131,7 @@ void Spheres::begin_steps() {
   if (must_search_ || since_sort_ >= searches_a_sort) sort();
   point_at_columns();
   if (sleep_.on() && sleep_.look(*w_, numbers_.data(), lost_)) others_sleep_ = true;
+  rest_anew_ = sleep_.on() && (sleep_.some_fell_asleep() || loaded_ || must_search_);
   each_ = dt / static_cast<double>(left_);
   for (auto& push : w_->sphere_pushes) push.impulse = push.turn = {};
   sum_pushes(0.5 * each_);
@@ -177,7 +178,7 @@ void Spheres::pack(double dt) {
     for (int d = 0; d < Dim; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
     const double inverse_mass = 1.0 / (p.mass() * layout_.slab);
     const auto n = static_cast<std::int64_t>(part.count);
-    const bool fresh = must_search_, all = must_search_ || others_sleep_ || loaded_;
+    const bool fresh = must_search_;
     double* others = records_[1 - now_].data();
 #pragma omp parallel for schedule(static) reduction(max : farthest, fastest2)
     for (std::int64_t i = 0; i < n; ++i) {
@@ -186,10 +187,13 @@ void Spheres::pack(double dt) {
       double* q = passive + (part.first + k) * passive_size;
       if (sleep_.sleeps(numbers_[part.first + k])) {
         for (std::size_t d = 0; d < Dim; ++d) q[d] = a[d][k];
+        if (!rest_anew_) continue;
+        std::array<float, Dim> way{};
+        for (std::size_t d = 0; d < Dim; ++d) way[d] = way_of<Dim>(r, d);
         for (double* record : {r, others + (part.first + k) * R::size}) {
-          if (!all) break;
           std::fill_n(record, R::size, 0.0);
           for (std::size_t d = 0; d < Dim; ++d) record[d] = c.position[d][k];
+          for (std::size_t d = 0; d < Dim; ++d) set_way<Dim>(record, d, way[d]);
           record[R::radius] = radius ? radius[k] : part.mean_radius;
           q[passive_mass] = inverse_mass * std::pow(part.mean_radius / record[R::radius], 3);
         }
@@ -215,40 +219,33 @@ void Spheres::pack(double dt) {
   }
   loaded_ = false;
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
-  if (must_search_ || others_sleep_ || walls_left_) search();
-  else if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt);
+  if (must_search_ || walls_left_) return search();
+  if (others_sleep_) sort_out_sleepers(false);
+  if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt);
 }
 
 SphereSet Spheres::set() {
-  return {layout_.dimensions,
-          records_[now_].data(),
-          moving_,
-          all(),
-          numbers_.data(),
-          kinds_.data(),
-          sleep_.by_sphere(numbers_.data()),
-          strays_.places()};
+  return {layout_.dimensions, records_[now_].data(), moving_,        all(),
+          numbers_.data(),    kinds_.data(),         sleep_.flags(), strays_.places()};
 }
 
 /// Fills the lists from the present records.
 void Spheres::search() {
   // A search costs about four steps of all pairs and a step (1 + s)^D pairs of the slack s (see
   // Neighbours::choose_skin).
-  if (searches_ > 0 && !others_sleep_) {
+  if (searches_ > 0) {
     const double per_slack = static_cast<double>(kept_ + 1) / slack_;
     slack_ = std::clamp(std::sqrt(4.0 / (layout_.dimensions * per_slack)), std::max(0.02, 0.5 * slack_),
                         std::min(0.4, 1.5 * slack_));
   }
-  if (others_sleep_) sleep_.begin_again();
-  fresh_ = others_sleep_;
   strays_.begin(set(), slack());
-  if (!kept_memory_)
-    search_.keep(set(), chunks_, listed_numbers_.data(), others_sleep_ || must_search_ ? &sleeping_ : nullptr);
+  if (!kept_memory_) search_.keep(set(), chunks_, listed_numbers_.data());
   kept_memory_ = false;
-  search_.find(set(), slack(), chunks_, others_sleep_ || must_search_ ? &sleeping_ : nullptr);
+  search_.find(set(), slack(), chunks_);
   rest_.recall(step_, set(), chunks_);
   strays_.take_cells(search_.cells());
-  cells_loaded_ = others_sleep_ = false;
+  if (sleep_.on()) sort_out_sleepers(true);
+  cells_loaded_ = false;
   listed_numbers_ = numbers_;
   for (auto& records : {&records_[0], &records_[1]})
     for (std::size_t k = 0; k < moving_; ++k)
@@ -303,7 +300,8 @@ void Spheres::go() {
   step_.last = last;
   step_.fastest = 0.0;
   for (const SphereChunk& chunk : chunks_) step_.fastest = std::max(step_.fastest, chunk.fastest);
-  step_.sleep = sleep_.step(numbers_.data(), fresh_);
+  step_.far = static_cast<std::uint32_t>(all());
+  step_.sleep = sleep_.step(numbers_.data());
   const auto n = static_cast<std::int64_t>(chunks_.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t c = 0; c < n; ++c) step_spheres(step_, chunks_[static_cast<std::size_t>(c)]);
@@ -314,16 +312,13 @@ void Spheres::go() {
         for (std::size_t q = 0; q < 6; ++q) pushing_[k][q] += chunk.pushed[k][q];
     sum_pushes(last ? 0.5 * dt : dt);
   }
-  if (fresh_) step_spheres(step_, sleeping_);
-  fresh_ = false;
-  stored_ = sleeping_.stored;
-  contacts_ = sleeping_.contacts;
+  stored_ = contacts_ = 0.0;
   double farthest = 0.0;
   bool wakes = false;
   for (const SphereChunk& chunk : chunks_) {
     lost_ += chunk.lost;
     stored_ += chunk.stored;
-    contacts_ += chunk.contacts;
+    contacts_ += chunk.contacts + chunk.resting;
     deepest_ = std::max(deepest_, chunk.deepest);
     farthest = std::max(farthest, chunk.farthest);
     wakes = wakes || chunk.wakes;
@@ -334,8 +329,9 @@ void Spheres::go() {
   if (last) return;
   now_ = 1 - now_;
   carry_walls(static_cast<double>(bundle_ - left_ + 1) * dt);
-  if (wakes || walls_left_) search();
-  else if (!(farthest < SphereStrays::used_up)) search_strays(dt);
+  if (walls_left_) return search();
+  if (wakes) sort_out_sleepers(false);
+  if (!(farthest < SphereStrays::used_up)) search_strays(dt);
 }
 
 }  // namespace barchan

@@ -113,6 +113,7 @@ class Spheres : public Model {
   template <int Dim>
   void pack(double dt);
   void search();
+  void sort_out_sleepers(bool all);
   void search_strays(double dt);
   template <int Dim>
   void list_strays(double dt);
@@ -155,16 +156,17 @@ class Spheres : public Model {
   SphereStep step_;
   SphereRest rest_;
   SphereSleep sleep_;
-  SphereChunk sleeping_;  // pairs of spheres that sleep; no sphere of its own
+  std::vector<std::uint8_t> sorted_out_;  // by chunk
   bool must_search_ = true;
-  bool kept_memory_ = false;                   // of contacts: the search has it, the lists are of other spheres
-  bool loaded_ = false;                        // records of those that sleep are to be made again
-  bool cells_loaded_ = false;                  // the cells of the search are to be made again
-  bool others_sleep_ = false, fresh_ = false;  // than when the pairs were listed; and no step was made since
-  double slack_ = 0.1;                         // of the reach
-  long left_ = 0;                              // steps of the contacts in the present step of the scene
-  long bundle_ = 0;                            // all of them
-  double each_ = 0.0;                          // s, of one of them
+  bool kept_memory_ = false;   // of contacts: the search has it, the lists are of other spheres
+  bool loaded_ = false;        // no step of the scene began since
+  bool cells_loaded_ = false;  // the cells of the search are to be made again
+  bool others_sleep_ = false;  // than the chunks know
+  bool rest_anew_ = false;     // records of those that sleep are to be made again
+  double slack_ = 0.1;         // of the reach
+  long left_ = 0;              // steps of the contacts in the present step of the scene
+  long bundle_ = 0;            // all of them
+  double each_ = 0.0;          // s, of one of them
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;
   double contacts_ = 0.0;

@@ -45,7 +45,7 @@ void Spheres::number() {
 
 /// Takes over the particles that are there now.
 void Spheres::renumber() {
-  search_.keep(set(), chunks_, listed_numbers_.data(), sleep_.on() ? &sleeping_ : nullptr);
+  search_.keep(set(), chunks_, listed_numbers_.data());
   const std::vector<Part> before = parts_;
   const std::size_t moved = moving_, fixed = fixed_kind_.size();
   const std::vector<std::int64_t> old = std::move(ids_);
@@ -69,6 +69,32 @@ void Spheres::renumber() {
   others_sleep_ = others_sleep_ || sleep_.sleeping() != slept;
   make_room();
   must_search_ = kept_memory_ = true;
+}
+
+/// Others sleep than before: the chunks that this concerns, or all, learn it.
+void Spheres::sort_out_sleepers(bool all) {
+  constexpr std::uint8_t asks = 1, done = 2;
+  sleep_.mark(numbers_.data());
+  sorted_out_.assign(chunks_.size(), all ? asks : std::uint8_t{0});
+  for (std::size_t c = 0; c < chunks_.size() && !all; ++c)
+    for (std::size_t k = chunks_[c].begin; k < chunks_[c].end && sorted_out_[c] == 0; ++k)
+      if (sleep_.changed(k)) sorted_out_[c] = asks;
+  const SphereSet s = set();
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t c = 0; c < chunks_.size(); ++c) {
+      if (sorted_out_[c] != asks) continue;
+      sorted_out_[c] = done;
+      sleep_.sort_out(s, chunks_[c], [&](std::uint32_t k) {
+        std::uint8_t& other = sorted_out_[strays_.chunk_of(k)];
+        if (other != 0) return;
+        other = asks;
+        more = true;
+      });
+    }
+  }
+  sleep_.settled();
+  others_sleep_ = false;
 }
 
 std::vector<SphereSleep::Part> Spheres::parts_that_may_sleep() const {
@@ -106,7 +132,7 @@ void Spheres::make_room() {
   layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
   sleep_.make_room(parts_that_may_sleep(), moving_, all());
   for (const SphereWall& wall : walls_) sleep_.keep_awake(moving_ + wall.first, wall.count);
-  search_.reserve(all(), chunks_, sleep_.on() ? &sleeping_ : nullptr);
+  search_.reserve(all(), chunks_, sleep_.on());
   SphereSet sizes;
   sizes.dimensions = layout_.dimensions;
   sizes.moving = moving_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/reproducible_sum.hpp"
+#include "models/grains/sphere_forces.hpp"
 #include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
 #include "scene/contact_words.hpp"
@@ -26,7 +27,14 @@ void Spheres::history(HistoryRow& row) const {
   const double depth = layout_.slab;  // energies are by metre of depth in 2D
   row.add("contacts", contacts_);
   row.add("contacts_deepest", deepest_);
-  row.add("contacts_stored_energy [J]", stored_ / depth);
+  double stored = stored_;
+  if (sleep_.on()) {
+    SphereStep now = step_;
+    now.records = records_[now_].data();
+    now.dt = each_;
+    for (const SphereChunk& chunk : chunks_) stored += energy_at_rest(now, chunk);
+  }
+  row.add("contacts_stored_energy [J]", stored / depth);
   row.add("contacts_lost_energy [J]", lost_ / depth);
   row.add("rotation_energy [J]", turning);
   if (sleep_.on()) row.add("asleep", static_cast<double>(sleep_.sleeping()));
@@ -49,7 +57,9 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
     for (const auto& group : chunk.groups)
       for (std::size_t k = group.first * SphereChunk::batch; group.law == law && k < group.end * SphereChunk::batch;
            ++k)
-        n += chunk.a[k] == far ? 0u : group.weight == 1.0 && chunk.b[k] < moving_ ? 2u : 1u;
+        n += chunk.a[k] == far || (chunk.live_of(k / SphereChunk::batch) >> k % SphereChunk::batch & 1u) == 0 ? 0u
+             : group.weight == 1.0 && chunk.b[k] < moving_                                                    ? 2u
+                                                                                                              : 1u;
     n += static_cast<std::uint64_t>(
         std::count_if(chunk.sides.begin(), chunk.sides.end(), [&](const auto& at) { return at.law == law; }));
   }
@@ -123,7 +133,7 @@ void Spheres::archive(Archive& a) {
   if (a.loads()) {
     numbers_ = listed_numbers_;
     loaded_ = sleep_.on();
-    if (loaded_) sleep_.by_sphere(numbers_.data());
+    if (loaded_) sleep_.mark(numbers_.data());
   }
   const auto pairs = [&a](SphereChunk& chunk) {
     a.array("groups", chunk.groups);
@@ -136,13 +146,13 @@ void Spheres::archive(Archive& a) {
     a.array("at sides", chunk.sides);
     if (!sleep_.on()) continue;
     a.number("all awake", chunk.all_awake);
+    a.array("evaluated pairs", chunk.live);
+    a.number("any evaluated", chunk.any_live);
+    a.number("contacts at rest", chunk.resting);
     a.array("awake", chunk.awake);
     a.array("border", chunk.border);
   }
-  if (!sleep_.on()) return;
-  pairs(sleeping_);
-  a.number("energy of sleepers", sleeping_.stored);
-  a.number("contacts of sleepers", sleeping_.contacts);
+  if (sleep_.on()) a.number("length of a step", each_);
 }
 
 }  // namespace barchan
