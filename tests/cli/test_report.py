@@ -218,12 +218,12 @@ class Reports(unittest.TestCase):
 class Parts(unittest.TestCase):
     def test_each_column_is_in_one_plot_or_constant(self):
         t = numpy.linspace(0, 1, 2000)
-        names = ["time [s]", "step", "dt [s]", "a_kinetic_energy [J]", "b_kinetic_energy [J]", "odd [K]", "odder [K]", "flat [m]", "rounded [m]", *(f"m{k}_x [m]" for k in range(9))]
-        history = Table({name: (numpy.ones(2000) if name.startswith("flat") else 5 + 1e-14 * t if name.startswith("rounded") else numpy.cos(9 * t) * (1e-6 if name.startswith("b_") else 1.)) for name in names})
+        names = ["time [s]", "step", "dt [s]", "a_kinetic_energy [J]", "b_kinetic_energy [J]", "odd [K]", "odder [K]", "flat [m]", "rounded [m]", "tiny [m]", *(f"m{k}_x [m]" for k in range(9))]
+        history = Table({name: (numpy.ones(2000) if name.startswith("flat") else 5 + 1e-14 * t if name.startswith("rounded") else numpy.cos(9 * t) * (1e-6 if name.startswith("b_") else 1e-13 if name.startswith("tiny") else 1.)) for name in names})
         groups, constant = plots.history_groups(history)
         shown = [name for _, _, columns in groups for name in columns]
         self.assertEqual(sorted(shown + [name for name, _, _ in constant]), sorted(name.split(" [")[0] for name in names if name not in ("time [s]", "step")))
-        self.assertEqual([n for n, _, _ in constant], ["flat", "rounded"])
+        self.assertEqual([n for n, _, _ in constant], ["flat", "rounded", "tiny"])
         self.assertTrue(all(len(columns) <= plots.MOST_LINES for _, _, columns in groups))
         self.assertFalse(any({"a_kinetic_energy", "b_kinetic_energy"} <= set(columns) for _, _, columns in groups))  # one would be flat beside the other
 

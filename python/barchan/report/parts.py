@@ -238,7 +238,7 @@ def history(g):
     shown, constant = plots.history_plots(g.history)
     out = grid_of(shown)
     if constant:
-        out += '<p class="hint">Columns that never change: ' + ", ".join(f"<code>{esc(n)}</code> = {number(v)} {esc(u)}".rstrip() for n, u, v in constant) + ".</p>"
+        out += '<p class="hint">Columns that do not change, or by round-off alone: ' + ", ".join(f"<code>{esc(n)}</code> = {number(v)} {esc(u)}".rstrip() for n, u, v in constant) + ".</p>"
     return out
 
 
