@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "python"))
 os.environ["BARCHAN_PROGRAM"] = str(PROGRAM)
 import barchan  # noqa: E402
 from barchan import sweep  # noqa: E402
-from barchan.sweep import results  # noqa: E402
+from barchan.sweep import command, results  # noqa: E402
 from barchan.sweep.cases import folder_of, varied  # noqa: E402
 
 HOP = ROOT / "scenes/verification/hop.toml"
@@ -141,6 +141,7 @@ class Sweeps(unittest.TestCase):
         process.send_signal(number)
         return process.wait(), len(list((self.folder / "out").glob("*/case.json"))), words
 
+    @unittest.skipIf(os.environ.get("BARCHAN_SANITIZE"), "a sanitizer takes too long for the million steps of this test and finds nothing in them that other tests do not run")
     def test_killed_it_goes_on(self):
         out = self.folder / "out"
         two_run = lambda: sum(file.read_text().count("\n") > 3 for file in out.glob("*/history.csv")) >= 2
@@ -187,6 +188,14 @@ class Sweeps(unittest.TestCase):
         (self.folder / "out2").write_text("")
         ended = subprocess.run([PROGRAM, "sweep", self.scene, "--out", self.folder / "out2", "--vary", "time.end=0.01"], capture_output=True, text=True)
         self.assertEqual(ended.returncode, 4)
+
+    def test_names_of_scenes(self):
+        for word in ("hop", "verification/hop", str(HOP)):
+            self.assertEqual(pathlib.Path(command.scene_file(word)), HOP)
+        self.assertEqual(pathlib.Path(command.scene_file("dune")), ROOT / "scenes/dune.toml")  # scenes/paper has a dune too
+        for word, said in (("hopp", 'did you mean "hop"'), ("hop.toml", "no such scene file")):
+            with self.assertRaisesRegex(barchan.SceneError, said):
+                command.scene_file(word)
 
     def test_measures(self):
         out = self.folder / "out"

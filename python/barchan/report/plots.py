@@ -110,8 +110,16 @@ FAMILIES = (  # heading, pattern of the columns' names without units
 )
 
 
+def is_round_off(full, history):
+    """Whether a column with a unit is everywhere smaller than 1e-11 of the largest value with this unit: the momentum along x of a body that falls, for one."""
+    unit = history.unit(full)
+    top = lambda values: abs(values[numpy.isfinite(values)]).max(initial=0.)
+    return bool(unit) and bare(full) != "dt" and top(history[full]) < 1e-11 * max(top(values) for other, values in history.items() if history.unit(other) == unit and bare(other) != "time")
+
+
 def history_groups(history):
-    """Plots of history.csv as (heading, unit, columns), in the order of FAMILIES, then by unit; and the columns that never change as (name, unit, value). Each column is in one."""
+    """Plots of history.csv as (heading, unit, columns), in the order of FAMILIES, then by unit; and the columns that never change, or by round-off alone, as (name, unit, value). Each
+    column is in one."""
     rest = {full: values for full, values in history.items() if bare(full) not in ("time", "step")}
     constant = []
     for full in list(rest):
@@ -119,6 +127,8 @@ def history_groups(history):
         if not len(finite) or numpy.ptp(finite) <= 1e-9 * abs(finite).max():  # round-off is no change
             constant.append((bare(full), history.unit(full), float(finite[0]) if len(finite) else float("nan")))
             del rest[full]
+    for full in [full for full in rest if is_round_off(full, history)]:
+        constant.append((bare(full), history.unit(full), float(rest.pop(full)[-1])))
     groups = []
     for heading, pattern in FAMILIES:
         chosen = [full for full in rest if re.fullmatch(pattern, bare(full))]

@@ -6,18 +6,20 @@ import pathlib
 import shlex
 import sys
 
-from ..errors import OutputError, PackageMissing, SceneError
+from ..errors import OutputError, PackageMissing, SceneError, nearest
 from ..program import find_program
 from . import results
 from .cases import combinations
 from .runner import Runner
+
+SHARED = pathlib.Path(__file__).resolve().parents[3]  # of the source tree; of an installation PREFIX/share/barchan
 
 
 def parser():
     """Options of the command line."""
     p = argparse.ArgumentParser(prog="barchan sweep", description="Runs a scene with every combination of the values of some keys, goes on after a fault and after being stopped, and gathers one table and one page.",
                                 epilog="Exit status: 0 all runs ended well, 1 some did not (the table says which), 2 wrong command or every run was refused, 128 + n stopped by signal n: the same command goes on.")
-    p.add_argument("scene", help="scene file (.toml)")
+    p.add_argument("scene", help="scene file (.toml), or the name of a scene that comes along")
     p.add_argument("--vary", action="append", default=[], metavar="KEY=VALUES", help="FROM:TO:NUMBER (evenly, both ends with it), FROM:TO:NUMBER:log (equal ratios) or VALUE,VALUE,...; again for another key")
     p.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene in all runs")
     p.add_argument("-j", "--jobs", type=int, metavar="N", help="runs at a time (default: processors over --threads)")
@@ -28,13 +30,24 @@ def parser():
     return p
 
 
+def scene_file(word):
+    """The file that a person names: a file as it is, else the scene of this name that comes along (dune, verification/hop or hop). Throws SceneError."""
+    if pathlib.Path(word).is_file():
+        return word
+    scenes = SHARED / "scenes"
+    if not word.endswith(".toml"):
+        found = [scenes / f"{word}.toml"] if (scenes / f"{word}.toml").is_file() else [file for file in scenes.rglob("*.toml") if file.stem == word]
+        if len(found) == 1:
+            return str(found[0])
+    raise SceneError(f"{word}: there is no such scene file (.toml){nearest(pathlib.Path(word).stem, [file.stem for file in scenes.rglob('*.toml')])}")
+
+
 def main(words):
     """Runs the sweep; returns the exit status."""
     options = parser().parse_args(words)
     if not options.vary:
         raise SceneError("sweep: nothing to vary: --vary KEY=FROM:TO:NUMBER or --vary KEY=VALUE,VALUE,...")
-    if not options.scene.endswith(".toml") or not pathlib.Path(options.scene).is_file():
-        raise SceneError(f"{options.scene}: there is no such scene file (.toml)")
+    options.scene = scene_file(options.scene)
     if options.threads < 1 or (options.jobs is not None and options.jobs < 1):
         raise SceneError("--jobs and --threads are numbers of 1 or more")
     measures = [results.measure(text) for text in options.measure]
