@@ -35,7 +35,7 @@ def find_program():
         if os.access(named, os.X_OK):
             return pathlib.Path(named)
         raise ProgramNotFound(f"BARCHAN_PROGRAM names {named}, which is no program")
-    beside = [HERE.parents[1] / "build/barchan", HERE.parents[2] / "bin/barchan", HERE.parents[3] / "bin/barchan"]
+    beside = [HERE.parents[1] / "build/barchan", HERE.parents[3] / "bin/barchan"]  # HERE: ROOT/python/barchan, PREFIX/share/barchan/python/barchan
     for place in beside:
         if place.is_file() and os.access(place, os.X_OK):
             return place

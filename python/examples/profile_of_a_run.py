@@ -8,9 +8,7 @@ import pathlib
 
 import barchan
 
-scenes = pathlib.Path(barchan.__file__).resolve().parents[2] / "scenes"
-if not scenes.is_dir():  # an installation has them beside the package
-    scenes = pathlib.Path(barchan.__file__).resolve().parents[3] / "barchan/scenes"
+scenes = pathlib.Path(barchan.__file__).resolve().parents[2] / "scenes"  # of the source tree, or PREFIX/share/barchan/scenes
 series = barchan.run(scenes / "verification/poiseuille.toml", out="out/poiseuille", threads=1)
 profile = series.profiles["across"]
 y, u = profile["y"], profile["velocity_mean_x"]

@@ -148,10 +148,12 @@ class Reports(unittest.TestCase):
         self.assertIn("--restart latest", page.text)
 
     def test_warnings_stand_on_top(self):
-        self.copy("warned", warnings=["a <b>bold</b> warning & more", "another"], end_reason="SIGTERM")
+        self.copy("warned", warnings=["a <b>bold</b> warning & more", "another"], end_reason="SIGTERM",
+                  retreats={"count": 2, "list": [{"step": 900, "time": .1, "back_to": 768, "share_of_step": .5, "reason": "it was too fast"}]})
         page = self.report("warned", "--no-plan")
         self.assertIn("a <b>bold</b> warning & more", page.text)
         self.assertIn("2 warnings of the program", page.text[:800])
+        self.assertRegex(page.text, "The run went back 2 times.* 900 0.1 768 0.5 it was too fast")
         self.assertIn("The run was stopped by a signal at 0.02 s of 0.02 s, after", page.text)
 
     def test_damage_is_said_and_the_rest_is_shown(self):
@@ -216,12 +218,12 @@ class Reports(unittest.TestCase):
 class Parts(unittest.TestCase):
     def test_each_column_is_in_one_plot_or_constant(self):
         t = numpy.linspace(0, 1, 2000)
-        names = ["time [s]", "step", "dt [s]", "a_kinetic_energy [J]", "b_kinetic_energy [J]", "odd [K]", "odder [K]", "flat [m]", *(f"m{k}_x [m]" for k in range(9))]
-        history = Table({name: (numpy.ones(2000) if name.startswith("flat") else numpy.cos(9 * t) * (1e-6 if name.startswith("b_") else 1.)) for name in names})
+        names = ["time [s]", "step", "dt [s]", "a_kinetic_energy [J]", "b_kinetic_energy [J]", "odd [K]", "odder [K]", "flat [m]", "rounded [m]", *(f"m{k}_x [m]" for k in range(9))]
+        history = Table({name: (numpy.ones(2000) if name.startswith("flat") else 5 + 1e-14 * t if name.startswith("rounded") else numpy.cos(9 * t) * (1e-6 if name.startswith("b_") else 1.)) for name in names})
         groups, constant = plots.history_groups(history)
         shown = [name for _, _, columns in groups for name in columns]
         self.assertEqual(sorted(shown + [name for name, _, _ in constant]), sorted(name.split(" [")[0] for name in names if name not in ("time [s]", "step")))
-        self.assertEqual([n for n, _, _ in constant], ["flat"])
+        self.assertEqual([n for n, _, _ in constant], ["flat", "rounded"])
         self.assertTrue(all(len(columns) <= plots.MOST_LINES for _, _, columns in groups))
         self.assertFalse(any({"a_kinetic_energy", "b_kinetic_energy"} <= set(columns) for _, _, columns in groups))  # one would be flat beside the other
 
@@ -237,6 +239,17 @@ class Parts(unittest.TestCase):
     def test_numbers(self):
         for value, text in ((0, "0"), (1234, "1234"), (19852, "19&#8201;852"), (1.1025e-05, "1.103e-5"), (2.5e10 + .5, "2.5e10"), (float("nan"), "nan"), (None, ""), ("<", "&lt;")):
             self.assertEqual(parts.number(value), text)
+
+    def test_settings_are_applied(self):
+        scene = {"time": {"end": 1}, "fill": [{"phase": "a"}, {"phase": "b"}], "x": 3}
+        gather.with_settings(scene, ["time.end=0.5", "fill.1.velocity=[1, 2]", "new.key=word", "x=true", "fill.7.a=1", "x.y=2"])
+        self.assertEqual(scene, {"time": {"end": .5}, "fill": [{"phase": "a"}, {"phase": "b", "velocity": [1, 2]}], "x": True, "new": {"key": "word"}})
+
+    def test_friction_velocity_of_the_scene(self):
+        wind = {"log-profile": {"friction-velocity": .3}}
+        for scene, expected in (({"fill": [{"phase": "air", "velocity": wind}]}, .3), ({"fill": [{"phase": "air", "velocity": wind}], "forcing": [{"phase": "air", "friction-velocity": .4}]}, .4),
+                                ({"phases": {"air": {"friction-velocity": .5}}}, .5), ({"fill": [{"phase": "sand", "velocity": wind}]}, None), (None, None)):
+            self.assertEqual(parts.asked_friction_velocity(gather.Gathered(pathlib.Path("."), "n", {}, scene=scene), "air"), expected)
 
     def test_states(self):
         for reason, expected in (("end", ("ended", 0)), ("TERMINATE", ("ended", 0)), ("breakdown: x", ("broken", 3)), ("output failed: x", ("failed", 4)), ("SIGINT", ("stopped", 130)), ("", ("killed", None))):

@@ -33,7 +33,7 @@ class Gathered:
     grids: dict = dataclasses.field(default_factory=dict)
     plan: dict | None = None
     scene_text: str | None = None
-    scene: dict | None = None       # the document, with what --set changed at the top level of `end_time` alone
+    scene: dict | None = None       # the document, with what --set changed
     scene_file: str = ""
     pictures: list = dataclasses.field(default_factory=list)
     films: list = dataclasses.field(default_factory=list)
@@ -47,12 +47,6 @@ class Gathered:
     @property
     def end_time(self):
         """The time.end of the scene in s, None if nobody knows."""
-        for each in reversed(self.run.get("scene", {}).get("set", [])):
-            if each.replace(" ", "").startswith("time.end="):
-                try:
-                    return float(each.split("=")[1])
-                except ValueError:
-                    break
         if self.plan:
             return self.plan.get("end")
         return (self.scene or {}).get("time", {}).get("end")
@@ -146,12 +140,31 @@ def read_scene(g):
     g.scene_file = str(found)
     try:
         g.scene_text = found.read_text()
-        g.scene = tomllib.loads(g.scene_text)
+        g.scene = with_settings(tomllib.loads(g.scene_text), g.run.get("scene", {}).get("set", []))
     except (OSError, ValueError) as error:
         g.remarks.append(f"{found}: {error}")
     first = g.series.files[0] if g.series and len(g.series) else g.folder / "history.csv"
     if first.exists() and found.stat().st_mtime > first.stat().st_mtime:
         g.remarks.append(f"{found} was changed after the run began: text and plan on this page are those of the file as it is now")
+
+
+def with_settings(scene, settings):
+    """The document with the settings KEY=VALUE of the command line, as the program applies them; what does not fit is left out (the program has refused it)."""
+    for each in settings:
+        key, _, text = each.partition("=")
+        try:
+            value = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            value = text.strip()  # a word without quotation marks
+        *path, last = key.strip().split(".")
+        try:
+            at = scene
+            for part in path:
+                at = at[int(part)] if isinstance(at, list) else at.setdefault(part, {})
+            at[int(last) if isinstance(at, list) else last] = value
+        except (LookupError, ValueError, TypeError, AttributeError):
+            continue
+    return scene
 
 
 def read_plan(g):

@@ -117,10 +117,8 @@ def wind(g):
 
 
 def asked_friction_velocity(g, phase):
-    """u* (m/s) that the scene says for this fluid or column: of its forcing, else of its logarithmic wind. With settings of the command line nobody guesses."""
+    """u* (m/s) that the scene says for this fluid or column: of its forcing, else of its logarithmic wind."""
     scene = g.scene or {}
-    if any("friction-velocity" in each for each in g.run.get("scene", {}).get("set", [])):
-        return None
     places = [f for f in scene.get("forcing", []) if f.get("phase") == phase]
     places += [f["velocity"]["log-profile"] for f in scene.get("fill", []) + scene.get("inflow", []) if f.get("phase") == phase and isinstance(f.get("velocity"), dict) and "log-profile" in f["velocity"]]
     column = scene.get("phases", {}).get(phase, {})
@@ -214,8 +212,8 @@ def schedule(g):
     retreats = run.get("retreats") or {}
     if retreats.get("count"):
         out += f"<p><b>The run went back {retreats['count']} times</b> after a failed step.</p>" + rows_table(
-            ("step", "time (s)", "back to step", "why"), [[number(r.get("step")), number(r.get("time")), number(r.get("to_step", r.get("to"))), esc(r.get("reason", ""))]
-                                                          for r in retreats.get("list", retreats.get("of", [])) or []], False)
+            ("step that failed", "time (s)", "back to step", "share of the step from there", "why"),
+            [[number(r["step"]), number(r["time"]), number(r["back_to"]), number(r["share_of_step"]), esc(r["reason"])] for r in retreats.get("list", [])])
     return out
 
 

@@ -24,10 +24,9 @@ def data_uri(kind, content):
 
 def render(g, film=False):
     """Renders pictures of the run into its folder with pvstate/render (ParaView): frames over the series, of the states that the scene names. Throws OutputError."""
-    places = [HERE.parents[3] / "pvstate/render", HERE.parents[3] / "share/barchan/pvstate/render", HERE.parents[2].parent / "pvstate/render"]
-    tool = next((place for place in places if place.is_file()), None)
-    if tool is None:
-        raise OutputError("--render needs pvstate/render, which is not beside this package")
+    tool = HERE.parents[3] / "pvstate/render"  # of the source tree; of an installation PREFIX/share/barchan/pvstate/render
+    if not tool.is_file():
+        raise OutputError(f"--render needs {tool}, which is not there")
     if g.series is None or not len(g.series):
         raise OutputError(f"--render: {g.folder} has no frame")
     said = g.run.get("scene", {}).get("state") or "airflow"
@@ -121,13 +120,12 @@ def top_speed(frames):
 
 
 def sizes(frame, kind, chosen, spacing):
-    """Diameters (m) with which particles are drawn."""
+    """Diameters (m) with which particles are drawn: of grains their own, of others the spacing of their phase, or of the scene (`spacing`; None: nobody knows it)."""
     if "radius" in frame and (frame["radius"][chosen] > 0).all():
         return 2 * frame["radius"][chosen]
-    if "smoothing_length" in frame:
-        h = frame["smoothing_length"][chosen]
-        return 2 * h if kind == "grains" else numpy.minimum(h, spacing * 1.1) if spacing else h
-    return numpy.full(int(chosen.sum()), spacing or 1e-3)
+    if spacing and kind != "grains" or "smoothing_length" not in frame:
+        return numpy.full(int(chosen.sum()), spacing or 1e-3)
+    return (2 if kind == "grains" else 1) * frame["smoothing_length"][chosen]
 
 
 def view_of(frames, gravity=None):
@@ -183,7 +181,8 @@ def draw(frame, view, top, g):
         if not chosen.any():
             continue
         x = frame.x[chosen]
-        s = numpy.maximum(sizes(frame, kind, chosen, spacing) * points * 1.12, .35 if chosen.sum() > 300 else 4.) ** 2  # a few particles must be seen
+        own = (g.plan or {}).get("phases", {}).get(frame.names[k] if k < len(frame.names) else "", {}).get("spacing")
+        s = numpy.maximum(sizes(frame, kind, chosen, own or spacing) * points * 1.12, .35 if chosen.sum() > 300 else 4.) ** 2  # a few particles must be seen
         nearest_last = numpy.argsort(-x[:, 3 - up], kind="stable") if not two else slice(None)
         x, s = x[nearest_last], s[nearest_last] if numpy.ndim(s) else s
         speed = numpy.sqrt((frame["velocity"][chosen] ** 2).sum(axis=1))[nearest_last]

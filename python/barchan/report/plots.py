@@ -63,7 +63,7 @@ def panel(labels, width, height):
     across = 2 if width > 5 and max(map(len, labels), default=0) < 36 else 1
     below = .48 + .17 * -(-len(labels) // across) + (.16 if labels else 0)
     figure, axes = pyplot().subplots(figsize=(width, height + below))
-    figure.subplots_adjust(left=.62 / width, right=1 - .1 / width, top=1 - .2 / (height + below), bottom=below / (height + below))
+    figure.subplots_adjust(left=.72 / width, right=1 - .1 / width, top=1 - .2 / (height + below), bottom=below / (height + below))
     axes.legend_below = lambda: axes.legend(loc="upper left", bbox_to_anchor=(-.04, -.47 / (height - .2)), ncol=across, handlelength=2.4, borderaxespad=0, labelspacing=.25) if labels else None
     return figure, axes
 
@@ -116,7 +116,7 @@ def history_groups(history):
     constant = []
     for full in list(rest):
         finite = rest[full][numpy.isfinite(rest[full])]
-        if not len(finite) or finite.min() == finite.max():
+        if not len(finite) or numpy.ptp(finite) <= 1e-9 * abs(finite).max():  # round-off is no change
             constant.append((bare(full), history.unit(full), float(finite[0]) if len(finite) else float("nan")))
             del rest[full]
     groups = []
