@@ -3,9 +3,9 @@
 
     docs/gallery.py [--write | --check] [--root DIR]
 
-The scenes are those of scenes/; docs/gallery/scenes.json says for a scene its picture (in docs/gallery), the ParaView state, the settings of the
-run, the frame, and what is seen in it. --check has status 1 when the page is old, when a scene has no row, or when a row names a scene or a
-picture that is not there. Without the file the scenes are listed without pictures.
+The scenes are those of scenes/. docs/gallery/scenes.json has for each scene its picture (in docs/gallery), the ParaView state, the settings of the
+run, the time, and what is seen in it; bench/gallery.py makes the pictures. A picture that is not there is left out. --check has status 1 when the
+page is old, when a scene has no row, or when a row names a scene that is not there. Without the file the scenes are listed without pictures.
 """
 import argparse
 import json
@@ -41,8 +41,9 @@ def table(root):
         if row is None:
             lines.append(f"| {link} | | |")
         else:
-            frame = f", frame {row['frame']}" if row["frame"] != "last" else ""
-            lines.append(f"| {link} | ![{title(scene)}]({row['picture']}) | {row['seen']} State `{row['state']}`{frame}.<br>`{command(row)}` |")
+            moment = f" at {row['time']:.4g} s" if "time" in row else ""
+            picture = f"![{title(scene)}]({row['picture']})" if (root / "docs/gallery" / row["picture"]).exists() else ""
+            lines.append(f"| {link} | {picture} | {row['seen']} State `{row['state']}`{moment}.<br>`{command(row)}` |")
     return lines
 
 
@@ -51,9 +52,7 @@ def wrong(root):
     found, named = [], rows(root)
     scenes = [str(scene.relative_to(root)) for scene in sorted(root.glob("scenes/**/*.toml"))] if named else []
     found += [f"docs/gallery/scenes.json: no row of {scene}" for scene in scenes if scene not in named]
-    for name, row in named.items():
-        found += [f"docs/gallery/scenes.json: there is no {path}" for path in (name, f"docs/gallery/{row['picture']}") if not (root / path).exists()]
-    return found
+    return found + [f"docs/gallery/scenes.json: there is no {name}" for name in named if not (root / name).exists()]
 
 
 def main():

@@ -27,6 +27,7 @@ constexpr std::pair<std::string_view, std::string_view> by_name[] = {
     {"roughness", "8.3e-6"},
     {"count", "50"},
     {"seed", "7"},
+    {"restitution", "0.9"},
     {"every", "1e-3"},
     {"start", "0.05"},
 };
@@ -73,6 +74,7 @@ std::string value_of(const Key& key) {
   if (accepts & as_word) return other_word(key);
   if (accepts & as_words) return "[" + other_word(key) + "]";
   if (accepts & as_boolean) return default_text(key) == "true" ? "false" : "true";
+  if (key.section == "saltation" && key.name == "phase") return "\"sand\"";
   if (const std::string_view value = value_in(by_name, key.name); !value.empty()) return std::string(value);
   if (accepts & as_section) return "{ " + joined(lines_of(path_of(key)), ", ") + " }";
   const double* number = std::get_if<double>(&key.slot.otherwise.value);

@@ -166,7 +166,7 @@ constexpr Key rows_of_keys[] = {
     {"interactions.pair", "border", at<&Interaction::border>("none: fluid stays in its phase").like("\"y - 0.05\""), "m",
      "Only of two phases of one fluid, spacings 1 to 2: below zero the fluid has the finer particles, above zero the coarser ones, as in \"y - 0.05\". "
      "A coarse particle that crosses it becomes 4 fine ones (3D: 8), and so many fine ones become a coarse one; mass and momentum are kept (docs/method.md).", {}, "x y z"},
-    {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it").like("0.9"), "",
+    {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
      "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
      "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
     {"interactions.pair", "friction", at<&Interaction::friction>("0").like("0.3"), "", "Coulomb's coefficient of friction of such a contact.", {.at_least = 0.0, .at_most = 10.0}},
@@ -370,7 +370,7 @@ constexpr Key rows_of_keys[] = {
     {"wall-shear", "start", at<&WallShear::start, WallShear>(0.0), "s", "Time of the first sample.", not_negative},
 
     {"saltation", "name", at<&SaltationLayer::name, SaltationLayer>(required), "", "Letters, digits and underscores: it is written to saltation_NAME.csv, .vtp and .json; of grains with a diameter also to hops_NAME.csv."},
-    {"saltation", "phase", at<&SaltationLayer::phase, SaltationLayer>(required).like("\"sand\""), "", "Grains that are measured."},
+    {"saltation", "phase", at<&SaltationLayer::phase, SaltationLayer>(required), "", "Grains that are measured."},
     {"saltation", "flight", at<&SaltationLayer::flight>(5.0), "diameters", "Height over the bed above which a grain is in flight; the least rise of a flight that counts as a hop.", positive},
     {"saltation", "count", at<&SaltationLayer::count>("one a diameter"), "", "Number of slices of the domain's height.", {.at_least = 1, .at_most = 100000}},
     {"saltation", "every", at<&SaltationLayer::every, SaltationLayer>("that of history.csv"), "s", "Time between samples.", positive},

@@ -2,6 +2,7 @@
 
     test_how_tos.py PROGRAM SOURCE_DIR [PAGE...]
 """
+import os
 import sys
 import tempfile
 import unittest
@@ -21,6 +22,7 @@ class HowTos(unittest.TestCase):
             if page.name not in ("README.md", "faq.md"):
                 self.assertIn(f"({page.name})", index)
 
+    @unittest.skipIf(os.environ.get("BARCHAN_SANITIZE"), "a sanitizer takes ten times as long; other tests run such scenes under it")
     def test_every_command_does_what_its_page_says(self):
         for page in PAGES:
             if CHOSEN and page.stem not in CHOSEN:

@@ -18,7 +18,8 @@ PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 PAGES = [*sorted(SOURCE.glob("*.md")), *sorted(SOURCE.glob("docs/**/*.md"))]
 
 # Lists that several people add to, and pages that programs write.
-NOT_YET_OF_ONE_WIDTH = ("CHANGELOG.md", "method.md", "output.md", "saltation.md", "validation.md")
+NOT_YET_OF_ONE_WIDTH = ("CHANGELOG.md", "install.md", "method.md", "output.md", "paper.md", "python.md", "report.md", "saltation.md", "validation.md",
+                        "versions.md")
 
 
 def anchors(text):
@@ -139,7 +140,7 @@ class Pages(unittest.TestCase):
         for scene in SOURCE.glob("scenes/**/*.toml"):
             self.assertIn(f"`{scene.relative_to(SOURCE)}`", page)
 
-    def test_a_scene_or_a_picture_that_is_missing_is_named(self):
+    def test_a_scene_that_is_missing_is_named(self):
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)
             for part in ("scenes", "docs/gallery"):
@@ -150,7 +151,7 @@ class Pages(unittest.TestCase):
             (root / "docs/gallery/scenes.json").write_text(json.dumps([row]))
             ended = subprocess.run([sys.executable, SOURCE / "docs/gallery.py", "--check", "--root", root], capture_output=True, text=True)
             self.assertEqual(ended.returncode, 1)
-            for words in ("no row of scenes/new.toml", "there is no scenes/old.toml", "there is no docs/gallery/scenes/old.png", "is old"):
+            for words in ("no row of scenes/new.toml", "there is no scenes/old.toml", "is old"):
                 self.assertIn(words, ended.stdout)
 
     def test_every_picture_of_the_gallery_has_its_command(self):

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "scene/constants.hpp"
 #include "scene/document.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
@@ -790,7 +791,8 @@ TEST(SceneExamples, AreAcceptedByTheRowsOfTheirKeys) {
   for (const Key& key : all_keys()) {
     const auto [text, dotted] = document_with_example(key);
     Problems problems("example");  // other keys are missing there; this one is not
-    const toml::table document = parse_document(text, "example", {}, problems);
+    toml::table document = parse_document(text, "example", {}, problems);
+    replace_constants(document, problems);
     validate(document, problems);
     EXPECT_FALSE(problems.touch(dotted)) << text;
   }
