@@ -37,6 +37,8 @@ MEASURES = (
 def command_of(file):
     """The command that makes a file of results (a path from bench/)."""
     folder, name = file.split("/")[0], pathlib.Path(file).stem
+    if name == "peers":
+        return "by hand, as the file says"
     if folder in ("accuracy", "saltation"):
         if (folder, name) == ("saltation", "storm"):
             return "bench/saltation/storm.py"
@@ -89,7 +91,7 @@ def text_of(rows, known):
              "the command makes.", "",
              f"{len(rows)} rows: {missed} miss their bound, {len(rows) - missed - free} meet it, {free} have none and are told for comparison.", "",
              "- *Bias* is 100 (measured - reference)/reference. Where the reference is 0 the measured value is an error over the scale that its name tells, and",
-             "  the bias is 100 times it. It has a sign where the sign is known.",
+             "  the bias is 100 times it. It has a sign where the sign is known. Beside another code the bias is the difference to that code, no error.",
              "- *Scatter* is what the measured value moves by: the standard error of a mean, or the range over the beds or seeds that were run; one run has none.",
              "- *Bound* is what was asked before the measurement, of the value or of the bias. Bounds are in the programs that measure; none is set here.",
              "- The last column numbers the results' files below: by which command and when each was measured.", "",
