@@ -24,15 +24,16 @@ shown.SetRepresentationType("Surface" if not series.two_dimensional else "Slice"
 ColorBy(shown, ("POINTS", "velocity_mean", "Magnitude"), separate=True)
 low, high = grid.PointData["velocity_mean"].GetRange(-1)
 figure.colours([shown], "velocity_mean", 0.0, nice_ceiling(high), "mean speed on the grid, m/s", preset="Viridis (matplotlib)")
-if series.two_dimensional:
-    sample = Calculator(registrationName="velocity", Input=grid)
-    sample.ResultArrayName, sample.Function = "velocity", "velocity_mean"
-    cells = [max(int(round(b - a)), 1) for a, b in grid.GetDataInformation().GetExtent() and [(grid.GetDataInformation().GetExtent()[2 * k],
-             grid.GetDataInformation().GetExtent()[2 * k + 1]) for k in range(2)]]
-    every = ExtractSubset(registrationName="every", Input=sample)
-    every.VOI = list(grid.GetDataInformation().GetExtent())
-    every.SampleRateI, every.SampleRateJ = max(1, cells[0] // 32), max(1, cells[1] // 24)
-    step = min((box[1] - box[0]) / min(cells[0], 32), (box[3] - box[2]) / min(cells[1], 24))
-    figure.arrows(every, 0.95 * step / nice_ceiling(high), scale_of=nice_ceiling(high), colour=[1.0, 1.0, 1.0], name="arrow", thickness=1.7, centred=True)
+if series.two_dimensional:   # arrows at some of the points: 32 in a row, 24 rows at most
+    renamed = Calculator(registrationName="velocity", Input=grid)
+    renamed.ResultArrayName, renamed.Function = "velocity", "velocity_mean"
+    extent = list(grid.GetDataInformation().GetExtent())
+    columns, rows = max(extent[1] - extent[0], 1), max(extent[3] - extent[2], 1)
+    some = ExtractSubset(registrationName="some points", Input=renamed)
+    some.VOI = extent
+    some.SampleRateI, some.SampleRateJ = max(1, columns // 32), max(1, rows // 24)
+    room = min((box[1] - box[0]) / min(columns, 32), (box[3] - box[2]) / min(rows, 24))
+    top = nice_ceiling(high)
+    figure.arrows(some, 0.95 * room / top, scale_of=top, colour=[1.0, 1.0, 1.0], name="arrow", thickness=1.7, centred=True)
 figure.others(series.phases("fluid", "grains"))
 figure.finish()

@@ -39,7 +39,24 @@ def rows(bench):
             made = one(name, r, source, file)
             if made:
                 found.append(made)
-    return found
+    return [*found, *peers(bench)]
+
+
+def peers(bench):
+    """L1 of Taylor-Green vortices beside other codes: measured on one machine, and published by PySPH."""
+    file = "accuracy/peers.json"
+    both = load(bench, file)
+    ours = {n: error for s in both["measured"]["series"] if s["code"] == "Barchan" for n, error, _ in s["points"]}
+    for s in both["measured"]["series"]:
+        for n, error, _ in s["points"]:
+            if s["code"] != "Barchan" and n in ours:
+                yield row("L1 of the speed at t = 1, beside another code's", f"Taylor-Green, Re 100, {n} a side; {s['code']}, {s['scheme']}", error, ours[n],
+                          f"{s['code']}, run beside Barchan on one machine in 2026 (bench/accuracy/peers.json)", file)
+    for name, errors in both["published"]["series"].items():
+        for n, error in zip(both["published"]["sizes"], errors):
+            if n in ours:
+                yield row("L1 of the speed at t = 1, beside a published one", f"Taylor-Green, Re 100, {n} a side; {name}", error, ours[n],
+                          "PySPH: Ramachandran et al. 2021, ACM Trans. Math. Softw. 47, 34, and its automated runs", file)
 
 
 def one(name, r, source, file):
