@@ -283,7 +283,7 @@ constexpr Key rows_of_keys[] = {
     {"outflow", "side", at<&Outflow::side>(required).like("\"right\""), "",
      "Side of the domain, all of it that no wall closes. What stands there at the start goes on beyond it. Where the flow turns, fluid enters."},
     {"outflow", "pressure", at<&Outflow::pressure>("0").like("0"), "Pa", "Pressure beyond the side and its absorbing layer.", {}, "x y z t"},
-    {"outflow", "layer", at<&Outflow::layer>("20 spacings"), "m",
+    {"outflow", "layer", at<&Outflow::layer>("20 spacings, of joined phases of a fluid those of the coarsest"), "m",
      "Length of the layer beyond the side in which sound is absorbed; the fluid flows on in it. Short sound needs a short layer.", not_negative},
 
     {"influx", "phase", at<&Influx::phase>(required).like("\"sand\""), "", "Grains with a diameter that enter."},

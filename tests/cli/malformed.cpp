@@ -48,6 +48,39 @@ std::string dune(const std::string& from, const std::string& to) { return with(d
 /// The square with one thing changed.
 std::string square(const std::string& from, const std::string& to) { return with(square_text, from, to); }
 
+/// Two phases of one fluid with a border, with one thing changed.
+std::string joined(const std::string& from, const std::string& to) {
+  return with(R"toml(spacing = 0.1
+[domain]
+size = [1, 1]
+periodic = ["x", "y"]
+[phases.a]
+kind = "fluid"
+density = 1
+viscosity = 0.1
+sound-speed = 10
+spacing = 0.05
+[phases.b]
+kind = "fluid"
+density = 1
+viscosity = 0.1
+sound-speed = 10
+[interactions]
+a-a = 2.1
+b-b = 2.1
+a-b = { radius = 2.1, border = "x - 0.5" }
+[[fill]]
+phase = "a"
+shape = { box = { min = [0, 0], max = [0.5, 1] } }
+[[fill]]
+phase = "b"
+shape = "the-rest"
+[time]
+end = 0.01
+)toml",
+              from, to);
+}
+
 /// The square with a viscous fluid on a floor whose shear is measured, with one thing changed.
 std::string shear(const std::string& from, const std::string& to) {
   const std::string floor =

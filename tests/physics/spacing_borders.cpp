@@ -36,8 +36,8 @@ std::string box(int dimensions, const std::string& size, double spacing, const s
   return text + pairs + fills + "[time]\nend = 1\nlargest-speed = 1.5\n[output]\nhistory-every = 1\n";
 }
 
-std::string fill(const std::string& phase, const std::string& shape, const std::string& velocity,
-                 const std::string& more = "perturb = 0.2") {
+std::string section_of(const std::string& phase, const std::string& shape, const std::string& velocity,
+                       const std::string& more = "perturb = 0.2") {
   return "[[fill]]\nphase = \"" + phase + "\"\nshape = " + shape + "\nvelocity = " + velocity + "\n" + more + "\n";
 }
 
@@ -92,9 +92,9 @@ void expect_all_kept(int dimensions, const std::string& filled, const std::strin
   const std::string few = dimensions == 2
                               ? "{ box = { min = [0.94, 0.44], max = [1.06, 0.56] } }"
                               : "{ box = { min = [0.4375, 0.1875, 0.1875], max = [0.5625, 0.3125, 0.3125] } }";
-  const Scene scene = parse_scene(
-      box(dimensions, size, spacing, border, fill(other, few, velocity) + fill(filled, "\"the-rest\"", velocity)),
-      "test.toml");
+  const Scene scene = parse_scene(box(dimensions, size, spacing, border,
+                                      section_of(other, few, velocity) + section_of(filled, "\"the-rest\"", velocity)),
+                                  "test.toml");
   const auto blocks = make_particles(scene);
   const Plan plan = make_plan(scene, blocks);
   Totals before;
@@ -194,8 +194,8 @@ std::vector<Vec3> merged_naively(const ParticleBlock& fine, double spacing, std:
 TEST(SpacingBorders, MergeThoseThatALookAtAllParticlesMerges) {
   // The border lies on nodes of its grid, so that distances are those of the formula.
   const Scene scene = parse_scene(box(2, "[2, 1]", 0.05, "abs(x-1)-0.5",
-                                      fill("coarse", "{ box = { min = [0, 0], max = [0.05, 0.05] } }", "[1, 0]") +
-                                          fill("fine", "\"the-rest\"", "[1, 0]", "perturb = 0.3")),
+                                      section_of("coarse", "{ box = { min = [0, 0], max = [0.05, 0.05] } }", "[1, 0]") +
+                                          section_of("fine", "\"the-rest\"", "[1, 0]", "perturb = 0.3")),
                                   "test.toml");
   const auto blocks = make_particles(scene);
   const Simulation run(scene, make_plan(scene, blocks), blocks);
@@ -229,9 +229,10 @@ TEST(SpacingBorders, MergeThoseThatALookAtAllParticlesMerges) {
 // Corrected operators are exact for a uniform field on any arrangement of particles, and a split or a merge of equal
 // velocities has that velocity: the stream stays uniform to rounding, through a border in all directions.
 TEST(SpacingBorders, AStreamThroughARoundBorderStaysUniform) {
-  const auto run = small::simulation(box(2, "[1, 1]", 0.02, "sqrt((x-0.5)^2+(y-0.5)^2)-0.25",
-                                         fill("fine", "{ box = { min = [0.4, 0.4], max = [0.6, 0.6] } }", "[1, 0.5]") +
-                                             fill("coarse", "\"the-rest\"", "[1, 0.5]")));
+  const auto run =
+      small::simulation(box(2, "[1, 1]", 0.02, "sqrt((x-0.5)^2+(y-0.5)^2)-0.25",
+                            section_of("fine", "{ box = { min = [0.4, 0.4], max = [0.6, 0.6] } }", "[1, 0.5]") +
+                                section_of("coarse", "\"the-rest\"", "[1, 0.5]")));
   while (run->time() < 0.2) run->step(1.0);
   double error = 0.0, mass = 0.0, density = 0.0;
   for (const PhaseParticles& p : run->phases()) {
@@ -266,8 +267,8 @@ std::string layer_of(const std::vector<double>& spacings) {
             std::to_string(1e-3 * spacings[k]) + "\n";
     pairs += names[k] + "-" + names[k] + " = 2.1\n" + names[k] + "-ground = 2.1\n";
     if (k > 0) pairs += names[k - 1] + "-" + names[k] + " = { radius = 2.1, border = \"y - " + tops[k - 1] + "\" }\n";
-    fills += fill(names[k], "{ box = { min = [0, " + low + "], max = [0.06, " + tops[k] + "] } }",
-                  "{ log-profile = { friction-velocity = 0.4, roughness = 1e-4 } }");
+    fills += section_of(names[k], "{ box = { min = [0, " + low + "], max = [0.06, " + tops[k] + "] } }",
+                        "{ log-profile = { friction-velocity = 0.4, roughness = 1e-4 } }");
     low = tops[k];
   }
   return text + "[phases.ground]\nkind = \"wall\"\nroughness = 1e-4\n[phases.lid]\nkind = \"wall\"\nspacing = " +
@@ -337,8 +338,8 @@ std::string with_centre(std::string text, double from) {
 TEST(SpacingBorders, AVortexIsCarriedThrough) {
   const std::string velocity = "[\"1-5*(y-0.5)" + swirl + "\", \"5*(x-XC-2*rint((x-XC)/2))" + swirl + "\"]";
   const std::string pressure = "perturb = 0.2\npressure = \"-0.125*exp(1-100*((x-XC-2*rint((x-XC)/2))^2+(y-0.5)^2))\"";
-  const std::string fine = fill("fine", "{ box = { min = [0.5, 0], max = [1.5, 1] } }", velocity, pressure);
-  const std::string rest = fill("coarse", "\"the-rest\"", velocity, pressure);
+  const std::string fine = section_of("fine", "{ box = { min = [0.5, 0], max = [1.5, 1] } }", velocity, pressure);
+  const std::string rest = section_of("coarse", "\"the-rest\"", velocity, pressure);
   const double coarse = vortex_error(with_centre(box(2, "[2, 1]", 0.02, "", rest), 0.0), 0.0);
   const std::string joined = box(2, "[2, 1]", 0.02, "abs(x-1)-0.5", fine + rest);
   const double into_fine = vortex_error(with_centre(joined, 0.0), 0.0);
@@ -354,8 +355,8 @@ TEST(SpacingBorders, AVortexIsCarriedThrough) {
 
 std::string busy() {
   return box(2, "[1, 1]", 0.04, "sqrt((x-0.5)^2+(y-0.5)^2)-0.25",
-             fill("fine", "{ box = { min = [0.4, 0.4], max = [0.6, 0.6] } }", "[1, 0]") +
-                 fill("coarse", "\"the-rest\"", "[\"1-0.5*sin(6.2831853*y)\", \"0.5*sin(6.2831853*x)\"]"));
+             section_of("fine", "{ box = { min = [0.4, 0.4], max = [0.6, 0.6] } }", "[1, 0]") +
+                 section_of("coarse", "\"the-rest\"", "[\"1-0.5*sin(6.2831853*y)\", \"0.5*sin(6.2831853*x)\"]"));
 }
 
 /// Ids and fields in the order of the ids.

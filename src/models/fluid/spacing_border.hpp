@@ -12,6 +12,12 @@
 // particle has a mass of its own; here the ratio is 2^d exactly, so that both phases keep one mass. The joint of the
 // two phases, whose kernel is that of the coarse one for both, is the consistent scheme (docs/method.md).
 //
+// The mean of a group differs from the velocity in its middle by the curvature of the field, k <r^2>, and so does a
+//   particle from the mean of its parts. With k of a fit to the residuals of the linear one (the isotropic part alone,
+//   no more than a quarter of the spread in the group) each new particle is put right, less the mean of all that one
+//   look puts right in a split or in a merge: so their momentum stays. Without it a vortex that passes loses 0.5 %
+//   more.
+//
 // Mass is kept exactly, momentum and centre of mass to rounding. The kinetic energy that a merge loses, or a split
 // finds in its gradient, is booked in State::departed. Who is passed on follows from places and ids alone.
 #pragma once
@@ -59,6 +65,7 @@ class SpacingBorder : public Model {
     std::array<double, 6> skew{};  // Field::anisotropy
     Vec3 drag{};                   // m/s2, Field::drag_acceleration
     double near_void = 0.0;
+    Vec3 sharper{};  // m/s, what the curvature of the velocity adds
   };
   struct Passed {
     double to_fine = 0.0, to_coarse = 0.0, loss = 0.0;  // kg, kg, J
@@ -78,7 +85,9 @@ class SpacingBorder : public Model {
   void around(const Vec3& x, double radius, F&& f) const;
   Values values_of(const Member& m) const;
   Made mean_of_group() const;
-  std::array<Values, 3> gradient(const Member& m, const Values& own) const;
+  std::array<Values, 3> gradient(const Vec3& x, const Values& own) const;
+  Vec3 curvature(const Vec3& x, const Values& own, const std::array<Values, 3>& slope) const;
+  static void add_curvature(std::vector<Made>& made);
   std::array<Vec3, 8> corners(const Member& m) const;
   bool gather_group(std::size_t seed, double radius);
   std::size_t parts() const { return std::size_t{1} << layout_.dimensions; }

@@ -48,13 +48,13 @@ SpacingBorder::Values SpacingBorder::values_of(const Member& m) const {
 
 // ---- split ----------------------------------------------------------------------------------------------------------
 
-/// By axis, of the values about a member: a linear least squares fit; zero where its neighbours do not tell.
-std::array<SpacingBorder::Values, 3> SpacingBorder::gradient(const Member& m, const Values& own) const {
+/// By axis, of the values about a place: a linear least squares fit; zero where its neighbours do not tell.
+std::array<SpacingBorder::Values, 3> SpacingBorder::gradient(const Vec3& x, const Values& own) const {
   const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
   const double radius = 2.0 * coarse_spacing_, share = std::pow(0.5, layout_.dimensions);
   std::array<std::array<double, 3>, 3> moment{};
   std::array<Values, 3> sums{};
-  around(m.x, radius, [&](std::size_t k, const Vec3& r, double r2) {
+  around(x, radius, [&](std::size_t k, const Vec3& r, double r2) {
     if (r2 == 0.0) return;
     const double near = 1.0 - r2 / (radius * radius), weight = (members_[k].coarse ? 1.0 : share) * near * near;
     const Values values = values_of(members_[k]);
@@ -80,6 +80,38 @@ std::array<SpacingBorder::Values, 3> SpacingBorder::gradient(const Member& m, co
       sums[d][c] /= moment[d][d];
     }
   return sums;
+}
+
+/// 1/(m s): k of v = v0 + g.r + k r^2 about a place, by component of the velocity.
+Vec3 SpacingBorder::curvature(const Vec3& x, const Values& own, const std::array<Values, 3>& slope) const {
+  const double radius = 2.0 * coarse_spacing_, share = std::pow(0.5, layout_.dimensions);
+  double weights = 0.0, squares = 0.0, fourths = 0.0;
+  Vec3 residuals{}, with_squares{};
+  around(x, radius, [&](std::size_t k, const Vec3& r, double r2) {
+    const double near = 1.0 - r2 / (radius * radius), weight = (members_[k].coarse ? 1.0 : share) * near * near;
+    const Values values = values_of(members_[k]);
+    weights += weight;
+    squares += weight * r2;
+    fourths += weight * r2 * r2;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double left = values[c] - own[c] - (slope[0][c] * r[0] + slope[1][c] * r[1] + slope[2][c] * r[2]);
+      residuals[c] += weight * left;
+      with_squares[c] += weight * r2 * left;
+    }
+  });
+  const double spread = fourths - squares * squares / std::max(weights, 1e-300);
+  if (!(spread > 0.01 * fourths)) return {};
+  Vec3 k{};
+  for (std::size_t c = 0; c < 3; ++c) k[c] = (with_squares[c] - squares * residuals[c] / weights) / spread;
+  return k;
+}
+
+/// Adds to each what the curvature says, less the mean of all: the sum of the velocities stays.
+void SpacingBorder::add_curvature(std::vector<Made>& made) {
+  Vec3 mean{};
+  for (const Made& one : made) mean = mean + one.sharper;
+  for (Made& one : made)
+    for (std::size_t c = 0; c < 3; ++c) one.values[c] += one.sharper[c] - mean[c] / static_cast<double>(made.size());
 }
 
 /// The places of the parts about a particle: pairs of opposite ones, so that their sum is zero to the bit.
@@ -121,7 +153,8 @@ void SpacingBorder::split() {
   for (const std::size_t seed : seeds_) {
     Member& m = members_[seed];
     const Values own = values_of(m);
-    const auto slope = gradient(m, own);
+    const auto slope = gradient(m.x, own);
+    const Vec3 k = curvature(m.x, own, slope);
     const auto places = corners(m);
     Made one;
     for (int c = 0; c < coarse.components(Field::anisotropy); ++c)
@@ -136,10 +169,16 @@ void SpacingBorder::split() {
       for (std::size_t c = 0; c < most_values; ++c)
         one.values[c] = own[c] + (slope[0][c] * r[0] + slope[1][c] * r[1] + slope[2][c] * r[2]);
       one.values[4] = std::max(one.values[4], 0.0);
+      for (std::size_t c = 0; c < 3; ++c) {
+        double most = 0.0;  // a quarter of what the gradient makes across the square
+        for (std::size_t d = 0; d < 3; ++d) most += 0.25 * fine_spacing_ * std::abs(slope[d][c]);
+        one.sharper[c] = std::clamp(k[c] * squared(r), -most, most);
+      }
       made_fine_.push_back(one);
     }
     m.taken = true;
   }
+  add_curvature(made_fine_);
 }
 
 // ---- merge ----------------------------------------------------------------------------------------------------------
@@ -190,6 +229,19 @@ SpacingBorder::Made SpacingBorder::mean_of_group() const {
     if (fine.has(Field::near_void)) one.near_void = std::max(one.near_void, fine.column(Field::near_void)[m.place]);
   }
   one.x = first + share * away;
+  Values low = values_of(members_[group_.front()]), high = low;
+  double squares = 0.0;
+  for (const std::size_t k : group_) {
+    const Values values = values_of(members_[k]);
+    squares += share * squared(apart(members_[k].x, one.x));
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], values[c]);
+      high[c] = std::max(high[c], values[c]);
+    }
+  }
+  const Vec3 middle = wrapped(one.x), k = curvature(middle, one.values, gradient(middle, one.values));
+  for (std::size_t c = 0; c < 3; ++c)
+    one.sharper[c] = std::clamp(-k[c] * squares, -0.25 * (high[c] - low[c]), 0.25 * (high[c] - low[c]));
   return one;
 }
 
@@ -210,6 +262,7 @@ void SpacingBorder::merge() {
     made_coarse_.push_back(mean_of_group());
     for (const std::size_t k : group_) members_[k].taken = true;
   }
+  add_curvature(made_coarse_);
 }
 
 }  // namespace barchan
