@@ -43,7 +43,7 @@ def mixing_length(k, roughness, depth):
     In the height over the ground, with a = ik (u - U') the stretching along x and nu = kappa (z + z0):
       u' = s/(2 nu) - ik w,  w' = -a,  s' = U a + w U' + ik p - 4 ik nu a,  p' = -ik U w + ik s
     with the stress s and the pressure p less the normal stress of z; u = w = 0 below, w = s = 0 on the lid."""
-    n = 600
+    n = 300
     xi = numpy.linspace(0.0, numpy.log1p(depth / roughness), n)  # ln(1 + z/z0)
     height = roughness * numpy.exp(xi)  # z + z0 = dz/dxi
     speed, shear, nu, i_k = xi / KAPPA, 1.0 / (KAPPA * height), KAPPA * height, 1j * k
