@@ -29,7 +29,7 @@ def colours(html, png):
     with tempfile.TemporaryDirectory() as profile:
         run.command(["chromium", *FLAGS, f"--user-data-dir={profile}", f"--screenshot={png}", "--window-size=1400,5000", html.absolute().as_uri()], timeout=300)
     from PIL import Image
-    return int(len(numpy.unique(numpy.asarray(Image.open(png).convert("RGB")).reshape(-1, 3), axis=0)))
+    return len(numpy.unique(numpy.asarray(Image.open(png).convert("RGB"), numpy.int32) @ [65536, 256, 1]))
 
 
 def examine(program, scene, out, seconds):
