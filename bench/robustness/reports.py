@@ -56,7 +56,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=20.)
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--write", action="store_true")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     scenes = [scene.resolve() for scene in options.scenes] or sorted((ROOT / "scenes").rglob("*.toml"))
     rows = []
     print(table.head("scene", "status of the run", "MB", "user CPU s of the report", "colours of the picture", ""))
