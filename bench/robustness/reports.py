@@ -29,7 +29,7 @@ def colours(html, png):
     with tempfile.TemporaryDirectory() as profile:
         run.command(["chromium", *FLAGS, f"--user-data-dir={profile}", f"--screenshot={png}", "--window-size=1400,5000", html.absolute().as_uri()], timeout=300)
     from PIL import Image
-    return int(len(numpy.unique(numpy.asarray(Image.open(png).convert("RGB")).reshape(-1, 3), axis=0)))
+    return len(numpy.unique(numpy.asarray(Image.open(png).convert("RGB"), numpy.int32) @ [65536, 256, 1]))
 
 
 def examine(program, scene, out, seconds):
@@ -56,7 +56,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=20.)
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--write", action="store_true")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     scenes = [scene.resolve() for scene in options.scenes] or sorted((ROOT / "scenes").rglob("*.toml"))
     rows = []
     print(table.head("scene", "status of the run", "MB", "user CPU s of the report", "colours of the picture", ""))

@@ -9,7 +9,7 @@ import sys
 import warnings
 
 from . import scene as scenes
-from .errors import Breakdown, BarchanError, NoSeries, ProgramNotFound, SceneError, Stopped, Unreadable, error_of
+from .errors import Breakdown, ProgramNotFound, SceneError, Stopped, Unreadable, error_of
 
 HERE = pathlib.Path(__file__).resolve().parent
 
