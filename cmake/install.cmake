@@ -2,6 +2,7 @@
 # (component program), and the library with its headers (component development).
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/barchan)
+set(CPACK_PACKAGE_CONTACT "The Barchan developers <barchan@localhost>" CACHE STRING "maintainer of the packages: name <address>")
 
 # ---- the program
 install(TARGETS barchan RUNTIME COMPONENT program)
@@ -32,13 +33,15 @@ if(NOT BARCHAN_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
     COMMAND barchan completion fish > ${made}/barchan.fish
     DEPENDS barchan COMMENT "Manual page and completions")
   find_program(GZIP gzip REQUIRED)
+  configure_file(packaging/debian/changelog.in ${made}/changelog @ONLY)
   add_custom_command(OUTPUT ${made}/barchan.1.gz ${made}/changelog.gz
     COMMAND ${GZIP} -9nc ${made}/barchan.1 > ${made}/barchan.1.gz
-    COMMAND ${GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${made}/changelog.gz
-    DEPENDS ${made}/barchan.1 CHANGELOG.md COMMENT "Compressed as Debian wants them")
+    COMMAND ${GZIP} -9nc ${made}/changelog > ${made}/changelog.gz
+    DEPENDS ${made}/barchan.1 ${made}/changelog COMMENT "Compressed as Debian wants them")
   add_custom_target(barchan_made ALL DEPENDS ${made}/barchan.1.gz)
   install(FILES ${made}/barchan.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
   install(FILES ${made}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  install(FILES ${made}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libbarchan-dev COMPONENT development)
   install(FILES ${made}/barchan.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME barchan COMPONENT program)
   foreach(folder site-functions vendor-completions)  # of zsh; of Debian's packages
     install(FILES ${made}/_barchan DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder} COMPONENT program)
@@ -63,11 +66,11 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libbarchan-dev RE
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME barchan)
 set(CPACK_PACKAGE_VENDOR "The Barchan developers")
-set(CPACK_PACKAGE_CONTACT "The Barchan developers <barchan@localhost>" CACHE STRING "maintainer of the packages: name <address>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulator of wind-blown sand, multiphase flow and impact")
 set(CPACK_PACKAGE_DESCRIPTION "Barchan integrates a scene with smoothed particle hydrodynamics (SPH):
-wind over sand beds and dunes, flow with free surfaces, impact of elastic and rigid
-bodies, and what couples them. It reads a scene file and writes a series for ParaView.")
+wind over sand beds and dunes, flow with free surfaces, impact of
+elastic and rigid bodies, and what couples them. It reads a scene file
+and writes a series for ParaView.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)

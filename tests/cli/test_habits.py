@@ -308,6 +308,21 @@ class Terminals(Case):
         self.assertNotIn("\033", run("run", "gersho", status=2))
 
 
+class Versions(Case):
+    def test_an_old_checkpoint_is_refused_and_nothing_is_written(self):
+        run("run", "hop", "--quiet", "--threads", "1", "--set", "time.end=1e-4", folder=self.folder)
+        checkpoint = self.folder / "out/hop/hop.checkpoint"
+        newer, page = checkpoint.read_bytes(), (SOURCE / "docs/versions.md").read_text()
+        checkpoint.write_bytes(newer.replace(b"barchan checkpoint 2", b"barchan checkpoint 1", 1))
+        before = {file: file.read_bytes() for file in (self.folder / "out/hop").iterdir()}
+        said = run("run", "hop", "--quiet", "--threads", "1", "--set", "time.end=2e-4", "--restart", str(checkpoint), folder=self.folder, status=2)
+        message = said.strip().split(": ", 2)[2]
+        self.assertIn(message, page)  # as docs/versions.md says
+        self.assertEqual({file: file.read_bytes() for file in (self.folder / "out/hop").iterdir()}, before)
+        checkpoint.write_bytes(newer)
+        run("run", "hop", "--quiet", "--threads", "1", "--set", "time.end=2e-4", "--restart", str(checkpoint), folder=self.folder)
+
+
 class Citation(Case):
     def test_versions_agree(self):
         project = re.search(r"project\(barchan VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
