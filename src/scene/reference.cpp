@@ -141,6 +141,7 @@ constexpr std::pair<std::string_view, std::string_view> sections[] = {
     {"inflow", "`[[inflow]]`"},
     {"inflow.velocity", "`velocity = { ... }` of an inflow"},
     {"inflow.velocity.log-profile", "`log-profile = { ... }`"},
+    {"inflow.fluctuations", "`fluctuations = { ... }` of an inflow"},
     {"outflow", "`[[outflow]]`"},
     {"influx", "`[[influx]]`"},
     {"motion", "`[[motion]]`"},

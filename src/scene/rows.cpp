@@ -275,8 +275,8 @@ constexpr Key rows_of_keys[] = {
     {"inflow", "fluctuations", at<&Inflow::fluctuations>("none"), "",
      "Synthetic turbulence on top of the velocity, carried in with the mean speed through the side; for fluids without a mixing length."},
     {"inflow.fluctuations", "length", at<&Fluctuations::length>(required), "m", "Longitudinal integral length of the fluctuations, at least four spacings.", positive},
-    {"inflow.fluctuations", "rms", at<&Fluctuations::rms>(required), "m/s", "Root mean square of each component, positive; where the speed is below half of its mean over the side they shrink with it."},
-    {"inflow.fluctuations", "shear-stress", at<&Fluctuations::shear_stress>(0.0), "Pa", "Reynolds shear stress in x and y, - density <u'v'>."},
+    {"inflow.fluctuations", "rms", at<&Fluctuations::rms>(required).like("[0.5, 0.3]"), "m/s", "Root mean square of each component, positive; where the speed is below half of its mean over the side they shrink with it."},
+    {"inflow.fluctuations", "shear-stress", at<&Fluctuations::shear_stress>(0.0).like("0.1"), "Pa", "Reynolds shear stress in x and y, - density <u'v'>."},
     {"inflow.fluctuations", "seed", at<&Fluctuations::seed>(1), "", "Of the random numbers.", not_negative},
 
     {"outflow", "phase", at<&Outflow::phase>(required), "", "Fluid that leaves."},

@@ -237,9 +237,6 @@ TEST(RigidStart, RefusesWhatCannotBe) {
                       "no rigid body of phase \"a\"");
   expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]",
                       "holds already");
-  expect_body_refused(scene_text, "[interactions]",
-                      "[phases.b]\nkind = \"fluid\"\ndensity = 1\n[interactions]\nb-b = 2.1\na-b = 2.1",
-                      "expected \"plain\", or no entry a-b");
   expect_body_refused(scene_text, first, first + "\npressure = 1", "only fluids");
   expect_body_refused(scene_text, "density = 1000", "density = 1000\nstiffness = 1e6", "nothing reads it");
   std::string boxes = scene_text;
