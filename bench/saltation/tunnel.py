@@ -1,0 +1,182 @@
+#!/usr/bin/python3
+"""A dune in a wind tunnel (scenes/dune_tunnel.toml): wind before, over and behind the dune, and the flux of sand along x.
+
+    /usr/bin/python3 bench/saltation/tunnel.py build/barchan --out /tmp/tunnel               runs the scene, writes results/tunnel.json and docs/gallery/dune_tunnel.png
+    /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --from 0.3 --to 0.6    measures a run that is there between two times
+
+Means of the frames between two times (the last second, if none are given). Wind at a place: mean of the air's particles within 1 cm of it, by height over the ground. u*: slope of
+a line through the mean speed over the logarithm of the height, 2 to 10 cm over the bed. Flux: mass by length times speed along the wind of all grains, in parts of 3 cm; its error is that of
+the mean of the frames.
+"""
+import argparse
+import json
+import math
+import pathlib
+import sys
+import tomllib
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page, run  # noqa: E402
+from barchan_bench.frame import Frame, series, table  # noqa: E402
+
+SCENE, RESULT, PICTURE = ROOT / "scenes/dune_tunnel.toml", ROOT / "bench/saltation/results/tunnel.json", ROOT / "docs/gallery/dune_tunnel.png"
+FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
+PART, REACH = 0.03, 0.01  # m, of the flux; about a place
+
+
+class Ground:
+    """Height of the bed with its asymmetric dune."""
+
+    def __init__(self, scene):
+        shape = next(f["shape"] for f in scene["fill"] if f["phase"] == "ground")
+        dune = shape["dune"]
+        self.length, self.top = scene["domain"]["size"]
+        self.bed, self.crest, self.height_of_dune = shape["bed"], dune["at"], dune["height"]
+        self.lee = self.height_of_dune / math.tan(math.radians(dune["slip-face-angle"]))
+        self.windward = dune["length"] - self.lee
+        self.toe, self.end = self.crest - self.windward, self.crest + self.lee
+
+    def height(self, x):
+        s = np.asarray(x) - self.crest
+        side = np.where(s > -self.windward, self.height_of_dune / 2 * (1 + np.cos(np.pi * s / self.windward)), 0)
+        return self.bed + np.where(s >= 0, np.where(s < self.lee, self.height_of_dune * (1 - s / self.lee), 0), side)
+
+
+class Means:
+    """Sums over the frames of a run between two times."""
+
+    def __init__(self, folder, ground, scene, begin, end):
+        self.ground, self.spacing = ground, scene["spacing"]
+        self.air, self.flux, self.fastest = [], [], 0.0
+        parts = round(ground.length / PART)
+        diameter = scene["phases"]["sand"]["diameter"]["mean"]
+        density = scene["phases"]["sand"]["density"]
+        frames = [(t, p) for t, p in series(next(folder.glob("*.pvd"))) if begin <= t <= end]
+        for _, path in frames:
+            air, self.sand = Frame(path, phase="air"), Frame(path, phase="sand")
+            inside = (air.x[:, 0] > 0) & (air.x[:, 0] < ground.length)
+            self.last = air.keep(inside)
+            self.air.append(np.column_stack([air.x[:, :2], air["velocity"][:, :2]]))
+            mass = density * math.pi / 6 * (2 * self.sand["radius"]) ** 3 / diameter
+            sums = np.histogram(self.sand.x[:, 0], bins=parts, range=(0, ground.length), weights=mass * self.sand["velocity"][:, 0])[0]
+            self.flux.append(sums / PART * 1e3)
+            self.fastest = max(self.fastest, float(np.hypot(*self.sand["velocity"][:, :2].T).max()))
+        self.frames, self.times = len(frames), (frames[0][0], frames[-1][0])
+        self.flux, self.air = np.array(self.flux), np.concatenate(self.air)
+
+    def wind(self, x):
+        """Heights over the ground (m) and mean speed along the wind (m/s) about a place."""
+        near = self.air[np.abs(self.air[:, 0] - x) < REACH]
+        height = near[:, 1] - self.ground.height(near[:, 0])
+        rows = np.floor(height / self.spacing).astype(int)
+        numbers = [r for r in range(rows.max() + 1) if (rows == r).sum() >= 3]
+        return np.array([height[rows == r].mean() for r in numbers]), np.array([near[rows == r, 2].mean() for r in numbers])
+
+
+def wind_that_enters():
+    """y (m) and speed (m/s)."""
+    profile = table(SCENE.parent / "dune_wind.csv")
+    return profile["y"], profile["velocity_x"]
+
+
+def friction_velocity(height, speed):
+    kept = (height > 0.02) & (height < 0.1)
+    return float(np.polyfit(np.log(height[kept]), speed[kept], 1)[0] * KAPPA)
+
+
+def at(wind, height):
+    return float(np.interp(height, *wind))
+
+
+def back(means, ground):
+    """The lee near the ground (lowest row): the slowest mean wind, and where it turns forwards for good (m behind the crest)."""
+    places = np.arange(ground.crest, ground.length - REACH, 0.01)
+    speeds = np.array([means.wind(x)[1][0] for x in places])
+    turned = np.nonzero(speeds < 0)[0]
+    return float(speeds.min()), float(places[turned[-1]] + 0.005 - ground.crest) if len(turned) else 0.0
+
+
+def measure(folder, begin, end):
+    scene = tomllib.loads(SCENE.read_text())
+    ground = Ground(scene)
+    means = Means(folder, ground, scene, begin, end)
+    entering = wind_that_enters()
+    upstream, crest = means.wind(ground.toe - 0.1), means.wind(ground.crest)
+    meant = np.interp(upstream[0] + ground.bed, *entering)
+    off = upstream[1] / meant - 1
+    history = table(folder / "history.csv")
+    chosen = (history["time"] >= begin) & (history["time"] <= end)
+    parts = (np.arange(means.flux.shape[1]) + 0.5) * PART
+    flux, error = means.flux.mean(0), means.flux.std(0) / math.sqrt(means.frames)
+    before = parts < ground.toe
+    reverse, length = back(means, ground)
+    speed_up = at(crest, 0.01) / at(upstream, 0.01) - 1
+    half = ground.windward / 2
+    meant_speed_up = (1 + 2 * ground.height_of_dune / half) * (ground.top - ground.bed) / (ground.top - ground.bed - ground.height_of_dune) - 1
+    stress = DENSITY * FRICTION_VELOCITY**2
+    return means, ground, {
+        "times_s": means.times, "frames": means.frames, "u_star_upstream": friction_velocity(*upstream),
+        "wind_upstream_over_entering": [[float(h), float(o)] for h, o in zip(upstream[0], off)], "largest_difference_above_one_spacing": float(np.abs(off[1:]).max()),
+        "wind_near_the_focus": [float(upstream[0][0]), float(upstream[1][0]), float(meant[0])], "flux_g_m_s": flux.tolist(), "flux_error": error.tolist(), "part_m": PART,
+        "flux_upstream": float(flux[before].mean()), "flux_upstream_error": float(means.flux[:, before].mean(1).std() / math.sqrt(means.frames)),
+        "entered_g_m_s": float(1e3 * np.ptp(history["sand_left_in"][chosen]) / np.ptp(history["time"][chosen])), "flux_upstream_over_saturated": float(flux[before].mean() / SATURATED),
+        "ground_stress_over_rho_u2": float(history["air-sand_ground_stress"][chosen].mean() / stress),
+        "speed_up_10_mm": float(speed_up), "speed_up_2H_over_L_and_blockage": float(meant_speed_up), "reverse_m_s": reverse,
+        "reverse_length_over_H": length / ground.height_of_dune, "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
+
+
+def draw(means, ground, result):
+    plt = page.pyplot()
+    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(11, 10), height_ratios=[2.6, 1, 1.4])
+    x, u = means.last.x, means.last["velocity"]
+    most = float(np.abs(u[:, 0]).max())
+    drawn = top.scatter(x[:, 0], x[:, 1], c=u[:, 0], s=9, cmap="coolwarm", vmin=-most, vmax=most)
+    figure.colorbar(drawn, ax=top, label="air along the wind, m/s; white: 0", orientation="horizontal", shrink=.4, pad=.02, aspect=40)
+    lattice = means.last.x[:, :2]
+    cells = np.unique((lattice / 0.015).astype(int), axis=0, return_index=True)[1]
+    speed = np.hypot(u[cells, 0], u[cells, 1])
+    top.quiver(x[cells, 0], x[cells, 1], u[cells, 0] / speed, u[cells, 1] / speed, scale=75, width=8e-4, color="k")
+    sand = means.sand
+    v = np.hypot(*sand["velocity"][:, :2].T)
+    flies = top.scatter(sand.x[:, 0], sand.x[:, 1], c=v, s=1.5, cmap="YlOrBr", vmin=0, vmax=means.fastest)
+    figure.colorbar(flies, ax=top, label="speed of grains, m/s", orientation="horizontal", shrink=.4, pad=.1, aspect=40)
+    top.set(aspect="equal", xlim=(0, ground.length), ylim=(0, ground.top), ylabel="y, m", title=f"t = {means.times[1]:.2f} s; arrows: direction of the air only")
+    parts = (np.arange(len(result["flux_g_m_s"])) + 0.5) * PART
+    middle.errorbar(parts, result["flux_g_m_s"], result["flux_error"], marker="o")
+    middle.axhline(SATURATED, color="grey", ls="--", label="saturated at u* = 0.5 m/s, Creyssels et al. 2009")
+    middle.fill_between(parts, 60 * (ground.height(parts) - ground.bed) / ground.height_of_dune, color="tan", alpha=.3, label="dune, without scale")
+    middle.set(xlim=(0, ground.length), ylim=(0, None), xlabel="x, m", ylabel="flux, g/m/s", title=f"means of {means.times[0]:.2f} to {means.times[1]:.2f} s")
+    middle.legend()
+    for name, place in (("10 cm before the toe", ground.toe - .1), ("crest", ground.crest), ("5 cm behind the slip face", ground.end + .05), ("far behind", ground.length - .06)):
+        height, speeds = means.wind(place)
+        bottom.plot(speeds, height, marker=".", label=f"{name}, x = {place:.2f} m")
+    entering = wind_that_enters()
+    bottom.plot(entering[1], entering[0] - ground.bed, "k--", label="enters")
+    bottom.axvline(0, color="grey", lw=.7)
+    bottom.set(yscale="log", ylim=(1e-3, .26), xlabel="mean wind, m/s", ylabel="height over the ground, m")
+    bottom.legend()
+    figure.tight_layout()
+    figure.savefig(PICTURE, dpi=90)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("barchan")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("/tmp/barchan_tunnel"))
+    parser.add_argument("--from", dest="begin", type=float)
+    parser.add_argument("--to", dest="end", type=float)
+    options = parser.parse_args()
+    if options.barchan != "none":
+        run.scene(options.barchan, SCENE, options.out, threads=2)
+    end = options.end or table(options.out / "history.csv")["time"][-1]
+    means, ground, result = measure(options.out, max(end - 1, 0) if options.begin is None else options.begin, end)
+    RESULT.write_text(json.dumps(result, indent=1) + "\n")
+    draw(means, ground, result)
+    for name, value in result.items():
+        print(name, np.round(value, 3).tolist())
+
+
+if __name__ == "__main__":
+    main()
