@@ -6,7 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "scene/formula.hpp"
@@ -85,7 +87,9 @@ class Constants {
       if (auto* inner = node.as_table()) inner_table(*key, of_pair ? "interactions.pair" : path_of(*key), *inner, here);
       else if (auto* array = node.as_array()) entries(*key, *array, here);
       else if (auto* text = node.as_string(); text && value(*key, *text, here))
-        put([&](auto&& number) { table.insert_or_assign(name, std::move(number)); });
+        put([&table, &at = name](auto&& number) {
+          table.insert_or_assign(at, std::forward<decltype(number)>(number));
+        });
     }
   }
 
@@ -185,7 +189,9 @@ class Constants {
       if (auto* inner = node.as_table()) section(*inner, path_of(key), here + "." + std::to_string(k) + ".");
       else if (auto* point = node.as_array()) entries(key, *point, here);
       else if (auto* text = node.as_string(); text && value(key, *text, here))
-        put([&](auto&& number) { array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(k), std::move(number)); });
+        put([&](auto&& number) {
+          array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(k), std::forward<decltype(number)>(number));
+        });
     }
   }
 
