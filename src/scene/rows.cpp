@@ -154,7 +154,7 @@ constexpr Key rows_of_keys[] = {
      "Kernel radius (support) as a length, in place of radius.", positive},
     {"interactions.pair", "law", at<&Interaction::law>(ContactLaw::kernel), "",
      "Contact of grains: through the kernel, or of spheres that touch (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
-    {"interactions.pair", "drag", drag("0; duran with a column").like("\"cheng\""), "",
+    {"interactions.pair", "drag", drag("0; duran with a column"), "",
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
      "grain's drag by name (docs/method.md).", not_negative},
     {"interactions.pair", "lift", at<&Interaction::lift>(0.0).like("0.85"), "",
