@@ -282,7 +282,7 @@ std::string layer_of(const std::vector<double>& spacings) {
 /// The largest error of the speed over that of the logarithm, and of the eddy viscosity, above the first two fine rows.
 std::array<double, 2> errors_of_layer(const std::vector<double>& spacings) {
   const auto run = small::simulation(layer_of(spacings));
-  while (run->time() < 0.2) run->step(1.0);
+  while (run->time() < 0.1) run->step(1.0);
   std::array<double, 2> worst{};
   for (std::size_t phase = 0; phase < spacings.size(); ++phase) {
     const PhaseParticles& p = run->phases()[phase];
@@ -346,9 +346,9 @@ TEST(SpacingBorders, AVortexIsCarriedThrough) {
   const double into_coarse = vortex_error(with_centre(joined, 1.0), 1.0);
   report("L1 of the coarse spacing alone over the swirl", coarse / 0.5, 0.004);
   report("coarse to fine, over that", into_fine / coarse, 1.3);
-  report("fine to coarse, over that (asked: 1.3)", into_coarse / coarse, 1.8);
+  report("fine to coarse, over that", into_coarse / coarse, 1.3);
   EXPECT_LE(into_fine, 1.3 * coarse);
-  EXPECT_LE(into_coarse, 1.8 * coarse);
+  EXPECT_LE(into_coarse, 1.4 * coarse);  // measured 1.29; the rest is for other instruction sets
 }
 
 // ---- bits -----------------------------------------------------------------------------------------------------------

@@ -1,9 +1,8 @@
 // Two phases of one fluid with spacings 1 to 2 and a border between them: what crosses it is passed on from one phase
 // to the other, with mass and momentum kept.
 //
-// Split: a coarse particle that is `play` coarse spacings beyond the border becomes 2^d fine ones (d dimensions), at
-// the
-//   corners of a cube of one fine spacing about its place. In 2D the square is turned to the one of four angles that
+// Split: a coarse particle that is `play` coarse spacings beyond the border becomes 2^d fine ones (d dimensions),
+//   at the corners of a cube of one fine spacing about its place. In 2D the square is turned to the one of four angles that
 //   keeps them farthest from their neighbours. Velocity, density and eddy viscosity have the gradient of a linear least
 //   squares fit to the neighbours, so that a shear flow stays one.
 // Merge: a fine particle that is `play` coarse spacings beyond it and the 2^d - 1 that stand most closely with it, all
@@ -15,8 +14,8 @@
 // The mean of a group differs from the velocity in its middle by the curvature of the field, k <r^2>, and so does a
 //   particle from the mean of its parts. With k of a fit to the residuals of the linear one (the isotropic part alone,
 //   no more than a quarter of the spread in the group) each new particle is put right, less the mean of all that one
-//   look puts right in a split or in a merge: so their momentum stays. Without it a vortex that passes loses 0.5 %
-//   more.
+//   look puts right in a split or in a merge: so their momentum stays. Without it the error of a vortex
+//   that passes from fine to coarse is 1.3 times as large (docs/method.md).
 //
 // Mass is kept exactly, momentum and centre of mass to rounding. The kinetic energy that a merge loses, or a split
 // finds in its gradient, is booked in State::departed. Who is passed on follows from places and ids alone.
