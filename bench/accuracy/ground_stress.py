@@ -38,10 +38,9 @@ def compare(name, spacing, x, stress, theory, bound, seconds):
 
 
 def main(program, spacings):
-    axes = page.pyplot().subplots(figsize=(8, 4.6))
-    figure, axes = axes
+    figure, axes = page.pyplot().subplots(figsize=(8, 4.6))
     fine = numpy.linspace(0.0, PERIOD, 401)
-    theories = {"the linear equations of this channel": lambda k: mixing_length(k, ROUGHNESS, DEPTH),
+    theories = {"the linear equations": lambda k: mixing_length(k, ROUGHNESS, DEPTH),
                 "Jackson & Hunt": lambda k: jackson_hunt(k, LENGTH, ROUGHNESS, DEPTH)}
     curves = {name: over_hill(fine, PERIOD, hill, transfer) for name, transfer in theories.items()}
     for (name, curve), colour, style in zip(curves.items(), (page.BLACK, page.ORANGE), ("-", "--")):

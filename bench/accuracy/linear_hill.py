@@ -27,7 +27,8 @@ def middle_layer(length, roughness):
 
 def jackson_hunt(k, length, roughness, depth):
     """Stress over height of a wave e^(ikx) of the ground, as Weng et al. 1991 write the theory of Jackson & Hunt 1975; the
-    pressure of the outer layer is that of potential flow under a lid at `depth`, k coth(k depth) in place of k."""
+    pressure of the outer layer is that of potential flow under a lid at `depth`, k coth(k depth) in place of k. Written
+    from memory of that form; the limit of ln(l/z0) large."""
     l, h = inner_layer(length, roughness), middle_layer(length, roughness)
     outer = (numpy.log(h / roughness) / numpy.log(l / roughness)) ** 2
     sigma = numpy.sqrt(1j * length * k * roughness / l)
