@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "scene/checks.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -69,8 +70,24 @@ void check_partner(const Scene& scene, const Interaction& pair, const Phase& a, 
            "diameter");
   if (other.kind() == PhaseKind::fluid && other.fluid().scheme == FluidScheme::consistent)
     check_fluid(scene, pair, rigid(a) ? a : b, other, report);
-  if (other.if_grains() && other.diameter())
-    report(dotted, "spheres do not touch rigid bodies yet; expected grains without a diameter, or no such entry");
+  if (other.if_grains() && other.diameter() && of_spheres(pair)) {
+    if (other.if_grains()->sleep && !report.touched("phases." + other.name + ".sleep"))
+      report("phases." + other.name + ".sleep",
+             "grains that sleep do not feel rigid bodies that come; expected no such key beside the entry " + pair.a +
+                 "-" + pair.b);
+    for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+      const Fill& fill = scene.fills[k];
+      const std::string shape = "fill." + std::to_string(k) + ".shape",
+                        packing = "fill." + std::to_string(k) + ".packing";
+      if (fill.phase == (rigid(a) ? a : b).name && !report.touched(shape) && !has_surface(fill.shape, scene.dimensions))
+        report(shape, "spheres touch the surface of a body, and this shape has none; expected " +
+                          std::string(scene.dimensions == 2 ? "box, cube, disc, ring, polygon or surface"
+                                                            : "box, cube or sphere"));
+      if (fill.phase == other.name && fill.packing == Packing::settled && !report.touched(packing))
+        report(packing,
+               "grains settle without rigid bodies, and would stand in them; expected rows, staggered or random");
+    }
+  }
 }
 
 /// All fills of two phases that touch by surfaces must have one.
@@ -125,6 +142,16 @@ void check_rigid(const Scene& scene, const Report& report) {
   }
   for (const Phase& phase : scene.phases)
     if (known(phase) && rigid(phase) && !report.touched("interactions")) check_stiffness(scene, phase, report);
+  for (std::size_t k = 0; k < scene.force_meters.size(); ++k) {
+    const Phase* phase = find_phase(scene, scene.force_meters[k].phase);
+    const std::string dotted = "force." + std::to_string(k) + ".phase";
+    if (!phase || !known(*phase) || !rigid(*phase) || report.touched(dotted)) continue;
+    if (touches_as_spheres(scene, *phase))
+      report(dotted,
+             "the push of spheres is not in the acceleration of a body's particles, from which its force is "
+             "measured; expected no such section: history.csv has " +
+                 phase->name + "_force_x and " + phase->name + "_spheres_force_x");
+  }
 }
 
 }  // namespace barchan

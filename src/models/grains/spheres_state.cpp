@@ -30,6 +30,7 @@ void Spheres::history(HistoryRow& row) const {
   row.add("contacts_lost_energy [J]", lost_ / depth);
   row.add("rotation_energy [J]", turning);
   if (sleep_.on()) row.add("asleep", static_cast<double>(sleep_.sleeping()));
+  bodies_.history(row);
 }
 
 std::optional<std::string> Spheres::trouble() const {
@@ -113,6 +114,7 @@ void Spheres::archive(Archive& a) {
   a.number("contacts", contacts_);
   a.number("set of records", now_);
   if (!watched_.empty()) a.array("forces on walls", pushing_);
+  bodies_.archive(a);
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
