@@ -216,95 +216,115 @@ void SphereBodies::touch_all(const Present& s, const SphereStep& step) {
   }
 }
 
+/// The bodies that may touch a sphere.
 template <int Dim>
 void SphereBodies::touch_one(const Present& s, const SphereStep& step, const Part& part, std::size_t sphere,
                              Tally& tally, std::array<double, 6>* loads) {
   using R = SphereRecord<Dim>;
-  constexpr std::size_t dim = Dim, stride = Dim == 2 ? 4 : 8, first_spin = Dim == 2 ? 2 : 0;
-  double* const to = forces_.data() + sphere * stride;
-  std::fill_n(to, stride, 0.0);
+  constexpr std::size_t stride = Dim == 2 ? 4 : 8;
+  std::fill_n(forces_.data() + sphere * stride, stride, 0.0);
   if (remembers_[part.phase] == 0) return;
   const double* r = s.records + sphere * R::size;
   const double radius = r[R::radius];
   Vec3 at{}, v{};
-  for (std::size_t d = 0; d < dim; ++d) {
+  for (std::size_t d = 0; d < Dim; ++d) {
     at[d] = r[d];
     v[d] = r[R::velocity + d];
   }
   Memory& memory = state_->phases[part.phase].own(memory_[part.phase])[sphere - part.first];
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const std::uint32_t number = laws_[part.phase * bodies_.size() + b];
-    if (number == SphereSearch::none) continue;
+    const std::uint32_t law = laws_[part.phase * bodies_.size() + b];
+    if (law == SphereSearch::none) continue;
     const Body& body = bodies_[b];
     double& far = far_[sphere * bodies_.size() + b];
     const double way = s.dt * (norm(v) + norm(body.velocity) + norm(body.rate) * (body.border.reach() + radius));
     far -= way;
     if (far > way) continue;  // a contact sets in up to a step before the touch
-    Vec3 arm = at - body.place;
-    for (std::size_t d = 0; d < dim; ++d)
-      if (period_[d] > 0.0) arm[d] -= period_[d] * std::round(arm[d] / period_[d]);
-    const double out = norm(arm) - body.border.reach() - radius;
-    const auto gap = out > way ? std::nullopt : body.border.gap(axes_[b], arm);
-    Touch* touched = nullptr;
-    for (Touch& t : memory.of)
-      if (t.body == static_cast<std::int64_t>(b) + 1) touched = &t;
+    Meeting m{sphere, b, law, radius, at - body.place, {}, v, {}};
+    for (std::size_t d = 0; d < Dim; ++d)
+      if (period_[d] > 0.0) m.arm[d] -= period_[d] * std::round(m.arm[d] / period_[d]);
+    const double out = norm(m.arm) - body.border.reach() - radius;
+    const auto gap = out > way ? std::nullopt : body.border.gap(axes_[b], m.arm);
     far = out > way ? out : gap ? gap->distance - radius : 0.0;
-    if (gap && !std::isfinite(gap->distance)) tally.deepest = std::max(tally.deepest, 1.0);
-    with_parts(step.laws[number], step.rubs, step.rolls, [&](const auto& law) {
-      using Law = std::decay_t<decltype(law)>;
-      constexpr std::size_t numbers = Law::template numbers<dim>;
-      const auto leave = [&] {
-        if (!touched) return;
-        for (std::size_t k = 0; k < Law::template springs<dim>; ++k)
-          tally.lost += law.left_behind() * touched->memory[k] * touched->memory[k];
-        *touched = {};
-      };
-      if (!gap || !std::isfinite(gap->distance)) return leave();
-      const Vec3& normal = gap->normal;
-      const Vec3 foot = arm - gap->distance * normal, carried = body.velocity + cross(body.rate, foot);
-      const double overlap = radius - gap->distance;
-      if (!(overlap > -s.dt * std::abs(dot(v - carried, normal)))) return leave();
-      for (Touch& t : memory.of)
-        if (!touched && t.body == 0) touched = &t;
-      TouchingSpheres<One, dim> pair;
-      for (std::size_t d = 0; d < dim; ++d) {
-        pair.normal[d] = One(normal[d]);
-        pair.velocity[d] = One(v[d] - carried[d]);
-      }
-      for (std::size_t d = 0; d < R::spins; ++d) {
-        pair.spin_a[d] = One(r[R::spin + d]);
-        pair.spin_b[d] = One(body.rate[first_spin + d]);
-      }
-      pair.overlap = One(overlap);
-      pair.lever_a = One(gap->distance);
-      pair.lever_b = One(0.0);
-      pair.reduced_radius = One(radius);
-      pair.inverse_mass = One(s.passive[sphere * passive_size + passive_mass] +
-                              inverse_mass(state_of(body), axes_[b], foot, normal) / layout_->slab);
-      pair.reduced_mass = One(1.0) / pair.inverse_mass;
-      std::array<One, numbers> slip;
-      for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(touched ? touched->memory[k] : 0.0);
-      const auto f = Law::touch(typename Law::template Constants<One>(law, s.dt), pair, slip);
-      if (touched) {
-        touched->body = static_cast<std::int64_t>(b) + 1;
-        for (std::size_t k = 0; k < numbers; ++k) touched->memory[k] = slip[k].v;
-      }
-      Vec3 force{}, turn{};
-      for (std::size_t d = 0; d < dim; ++d) force[d] = f.force[d].v;
-      for (std::size_t d = 0; d < R::spins; ++d) turn[first_spin + d] = f.torque_b[d].v;
-      const Vec3 torque = turn - cross(foot, force);
-      for (std::size_t d = 0; d < dim; ++d) to[d] += force[d];
-      for (std::size_t d = 0; d < R::spins; ++d) to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
-      for (std::size_t d = 0; d < 3; ++d) {
-        loads[b][d] -= force[d];
-        loads[b][3 + d] += torque[d];
-      }
-      tally.lost += f.lost.v;
-      tally.stored += f.stored.v;
-      tally.deepest = std::max(tally.deepest, 0.5 * overlap / radius);
-      tally.contacts += 1.0;
+    const bool near = gap && std::isfinite(gap->distance);
+    if (gap && !near) tally.deepest = std::max(tally.deepest, 1.0);
+    if (near) {
+      m.gap = *gap;
+      m.carried = body.velocity + cross(body.rate, m.arm - gap->distance * gap->normal);
+    }
+    const bool touches = near && radius - gap->distance > -s.dt * std::abs(dot(v - m.carried, gap->normal));
+    with_parts(step.laws[law], step.rubs, step.rolls, [&](const auto& parts) {
+      if (touches) meet<Dim>(parts, s, m, memory, tally, loads[b]);
+      else part_from<Dim>(parts, b, memory, tally);
     });
   }
+}
+
+/// What the springs across the normal held is lost.
+template <int Dim, class Law>
+void SphereBodies::part_from(const Law& law, std::size_t body, Memory& memory, Tally& tally) {
+  for (Touch& t : memory.of) {
+    if (t.body != static_cast<std::int64_t>(body) + 1) continue;
+    for (std::size_t k = 0; k < Law::template springs<Dim>; ++k)
+      tally.lost += law.left_behind() * t.memory[k] * t.memory[k];
+    t = {};
+  }
+}
+
+/// The forces of a contact; the body gets what the sphere loses, with the moment about its place.
+template <int Dim, class Law>
+void SphereBodies::meet(const Law& law, const Present& s, const Meeting& m, Memory& memory, Tally& tally,
+                        std::array<double, 6>& load) {
+  using R = SphereRecord<Dim>;
+  constexpr std::size_t dim = Dim, first_spin = Dim == 2 ? 2 : 0, numbers = Law::template numbers<dim>;
+  const Body& body = bodies_[m.body];
+  const auto name = static_cast<std::int64_t>(m.body) + 1;
+  Touch* touch = nullptr;
+  for (Touch& t : memory.of)
+    if (t.body == name) touch = &t;
+  for (Touch& t : memory.of)
+    if (!touch && t.body == 0) touch = &t;
+  const double *r = s.records + m.sphere * R::size, overlap = m.radius - m.gap.distance;
+  const Vec3 foot = m.arm - m.gap.distance * m.gap.normal;
+  TouchingSpheres<One, dim> pair;
+  for (std::size_t d = 0; d < dim; ++d) {
+    pair.normal[d] = One(m.gap.normal[d]);
+    pair.velocity[d] = One(m.velocity[d] - m.carried[d]);
+  }
+  for (std::size_t d = 0; d < R::spins; ++d) {
+    pair.spin_a[d] = One(r[R::spin + d]);
+    pair.spin_b[d] = One(body.rate[first_spin + d]);
+  }
+  pair.overlap = One(overlap);
+  pair.lever_a = One(m.gap.distance);
+  pair.lever_b = One(0.0);
+  pair.reduced_radius = One(m.radius);
+  pair.inverse_mass = One(s.passive[m.sphere * passive_size + passive_mass] +
+                          inverse_mass(state_of(body), axes_[m.body], foot, m.gap.normal) / layout_->slab);
+  pair.reduced_mass = One(1.0) / pair.inverse_mass;
+  std::array<One, numbers> slip;
+  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(touch ? touch->memory[k] : 0.0);
+  const auto f = Law::touch(typename Law::template Constants<One>(law, s.dt), pair, slip);
+  if (touch) {
+    touch->body = name;
+    for (std::size_t k = 0; k < numbers; ++k) touch->memory[k] = slip[k].v;
+  }
+  Vec3 force{}, turn{};
+  double* const to = forces_.data() + m.sphere * (Dim == 2 ? 4 : 8);
+  for (std::size_t d = 0; d < dim; ++d) to[d] += force[d] = f.force[d].v;
+  for (std::size_t d = 0; d < R::spins; ++d) {
+    to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
+    turn[first_spin + d] = f.torque_b[d].v;
+  }
+  const Vec3 torque = turn - cross(foot, force);
+  for (std::size_t d = 0; d < 3; ++d) {
+    load[d] -= force[d];
+    load[3 + d] += torque[d];
+  }
+  tally.lost += f.lost.v;
+  tally.stored += f.stored.v;
+  tally.deepest = std::max(tally.deepest, 0.5 * overlap / m.radius);
+  tally.contacts += 1.0;
 }
 
 void SphereBodies::history(HistoryRow& row) const {

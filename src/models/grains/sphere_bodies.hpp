@@ -85,6 +85,16 @@ class SphereBodies {
     std::string name;
     RowMean mean_force, mean_torque;
   };
+  /// A sphere and a body that may touch.
+  struct Meeting {
+    std::size_t sphere, body;
+    std::uint32_t law;
+    double radius;  // m, of the sphere
+    Vec3 arm;       // m, its centre from the body's place
+    Gap gap;        // of its centre
+    Vec3 velocity;  // m/s, of the sphere
+    Vec3 carried;   // m/s, of the body at the nearest place of its border
+  };
   /// Sums over a block of spheres.
   struct Tally {
     double lost = 0.0, stored = 0.0, deepest = 0.0, contacts = 0.0;
@@ -94,6 +104,11 @@ class SphereBodies {
   template <int Dim>
   void touch_one(const Present& s, const SphereStep& step, const Part& part, std::size_t sphere, Tally& tally,
                  std::array<double, 6>* loads);
+  template <int Dim, class Law>
+  void meet(const Law& law, const Present& s, const Meeting& m, Memory& memory, Tally& tally,
+            std::array<double, 6>& load);
+  template <int Dim, class Law>
+  void part_from(const Law& law, std::size_t body, Memory& memory, Tally& tally);
   void kick(Body& body, double time);
   void see(Body& body);
   RigidBody& state_of(const Body& body) const { return state_->bodies[body.number]; }
