@@ -95,12 +95,11 @@ void Spheres::archive(Archive& a) {
   }
   a.array("ids of spheres", ids_);
   if (a.loads()) {
-    std::size_t first = 0;
+    moving_ = 0;
     for (Part& part : parts_) {
-      part.first = first;
-      first += part.count;
+      part.first = moving_;
+      moving_ += part.count;
     }
-    moving_ = first;
     make_room();
   }
   a.number("must search", must_search_);
