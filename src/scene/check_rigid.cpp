@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "scene/checks.hpp"
-#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -142,16 +141,6 @@ void check_rigid(const Scene& scene, const Report& report) {
   }
   for (const Phase& phase : scene.phases)
     if (known(phase) && rigid(phase) && !report.touched("interactions")) check_stiffness(scene, phase, report);
-  for (std::size_t k = 0; k < scene.force_meters.size(); ++k) {
-    const Phase* phase = find_phase(scene, scene.force_meters[k].phase);
-    const std::string dotted = "force." + std::to_string(k) + ".phase";
-    if (!phase || !known(*phase) || !rigid(*phase) || report.touched(dotted)) continue;
-    if (touches_as_spheres(scene, *phase))
-      report(dotted,
-             "the push of spheres is not in the acceleration of a body's particles, from which its force is "
-             "measured; expected no such section: history.csv has " +
-                 phase->name + "_force_x and " + phase->name + "_spheres_force_x");
-  }
 }
 
 }  // namespace barchan
