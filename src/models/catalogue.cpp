@@ -11,8 +11,8 @@
 #include "models/bodies/sets.hpp"
 #include "models/bodies/total_phase.hpp"
 #include "models/column/column_phase.hpp"
-#include "models/coupling/drag_entry.hpp"
 #include "models/coupling/border_load.hpp"
+#include "models/coupling/drag_entry.hpp"
 #include "models/coupling/rigid_in_fluid.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
@@ -95,7 +95,7 @@ EntryKind kind_of_entry(const Interaction& pair, const Phase& a, const Phase& b)
     return p.kind() == elastic || p.kind() == rigid || p.kind() == grains || p.kind() == wall;
   };
   if (touches(a) && touches(b))
-    return of_spheres(pair) ? EntryKind{describe_sphere_contact}
+    return of_spheres(pair) ? EntryKind{is(grains, rigid) ? describe_spheres_on_bodies : describe_sphere_contact}
                             : EntryKind{describe_kernel_contact, make_contact_entry};
   throw SceneError("interactions: no law between \"" + a.name + "\", of kind " + a.kind_word() + ", and \"" + b.name +
                    "\", of kind " + b.kind_word() + "; expected no such entry");

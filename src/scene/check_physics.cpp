@@ -120,8 +120,10 @@ class PhysicsChecker {
   }
 
   void contact(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) {
-    const auto grains_or_wall = [](const Phase& p) {
-      return p.kind() == PhaseKind::grains || p.kind() == PhaseKind::wall;
+    const bool some_grains = a.kind() == PhaseKind::grains || b.kind() == PhaseKind::grains;
+    const auto grains_or_wall = [&](const Phase& p) {
+      return p.kind() == PhaseKind::grains || p.kind() == PhaseKind::wall ||
+             (p.kind() == PhaseKind::rigid && some_grains);
     };
     if (!of_spheres(pair)) {
       for (const Phase* p : {&a, &b})
@@ -131,7 +133,8 @@ class PhysicsChecker {
       return;
     }
     if (!grains_or_wall(a) || !grains_or_wall(b))
-      return tell(dotted + ".law", "only grains touch as spheres, each other and walls; expected no such key here");
+      return tell(dotted + ".law",
+                  "only grains touch as spheres, each other, walls and rigid bodies; expected no such key here");
     if (report_.has(dotted + ".radius"))
       tell(dotted + ".radius", "spheres feel each other when they touch; expected no such key beside law");
     if (report_.has(dotted + ".kernel"))

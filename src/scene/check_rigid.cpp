@@ -69,8 +69,24 @@ void check_partner(const Scene& scene, const Interaction& pair, const Phase& a, 
            "diameter");
   if (other.kind() == PhaseKind::fluid && other.fluid().scheme == FluidScheme::consistent)
     check_fluid(scene, pair, rigid(a) ? a : b, other, report);
-  if (other.if_grains() && other.diameter())
-    report(dotted, "spheres do not touch rigid bodies yet; expected grains without a diameter, or no such entry");
+  if (other.if_grains() && other.diameter() && of_spheres(pair)) {
+    if (other.if_grains()->sleep && !report.touched("phases." + other.name + ".sleep"))
+      report("phases." + other.name + ".sleep",
+             "grains that sleep do not feel rigid bodies that come; expected no such key beside the entry " + pair.a +
+                 "-" + pair.b);
+    for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+      const Fill& fill = scene.fills[k];
+      const std::string shape = "fill." + std::to_string(k) + ".shape",
+                        packing = "fill." + std::to_string(k) + ".packing";
+      if (fill.phase == (rigid(a) ? a : b).name && !report.touched(shape) && !has_surface(fill.shape, scene.dimensions))
+        report(shape, "spheres touch the surface of a body, and this shape has none; expected " +
+                          std::string(scene.dimensions == 2 ? "box, cube, disc, ring, polygon or surface"
+                                                            : "box, cube or sphere"));
+      if (fill.phase == other.name && fill.packing == Packing::settled && !report.touched(packing))
+        report(packing,
+               "grains settle without rigid bodies, and would stand in them; expected rows, staggered or random");
+    }
+  }
 }
 
 /// All fills of two phases that touch by surfaces must have one.

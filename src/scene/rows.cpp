@@ -153,7 +153,7 @@ constexpr Key rows_of_keys[] = {
     {"interactions.pair", "radius-in-metres", at<&Interaction::radius_in_metres>("radius says it").like("2.5e-3"), "m",
      "Kernel radius (support) as a length, in place of radius.", positive},
     {"interactions.pair", "law", at<&Interaction::law>(ContactLaw::kernel), "",
-     "Contact of grains: through the kernel, or of spheres that touch (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
+     "Contact of grains: through the kernel, or of spheres that touch each other, walls or rigid bodies (no radius): spring and dashpot, or Hertz and Mindlin (docs/method.md)."},
     {"interactions.pair", "drag", drag("0; duran with a column"), "",
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
      "grain's drag by name (docs/method.md).", not_negative},

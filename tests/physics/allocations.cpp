@@ -89,7 +89,9 @@ INSTANTIATE_TEST_SUITE_P(
                     small::Named{"DrownedConsistent", &small::drowned_consistent},
                     small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
                     small::Named{"Rigid", &small::rigid}, small::Named{"Paddle", &small::paddle},
-                    small::Named{"Drum", &small::drum}, small::Named{"HertzianSpheres", &small::hertzian_spheres}),
+                    small::Named{"Drum", &small::drum}, small::Named{"SpheresOnBlock", &small::spheres_on_block},
+                    small::Named{"SpheresOnBlock3D", &small::spheres_on_block_3d},
+                    small::Named{"HertzianSpheres", &small::hertzian_spheres}),
     [](const auto& s) { return std::string(s.param.name); });
 
 }  // namespace

@@ -152,6 +152,73 @@ largest-speed = 2
 inline const std::string drowned_ball_consistent =
     changed(drowned_ball, "scheme = \"plain\"\nenergy = true", "scheme = \"consistent\"");
 
+/// Spheres that fall on a free body from two sides, without weight.
+inline const std::string spheres_on_block = R"toml(
+spacing = 0.01
+[domain]
+origin = [-0.5, -0.5]
+size = [1, 1]
+[phases.sand]
+kind = "grains"
+density = 2500
+diameter = { mean = 0.02, spread = 0.2 }
+restitution = 0.6
+friction = 0.4
+rolling-friction = 0.05
+[phases.block]
+kind = "rigid"
+density = 2000
+[interactions]
+sand-sand = { law = "linear" }
+sand-block = { law = "hertz" }
+[[fill]]
+phase = "block"
+shape = { polygon = [[-0.1, -0.05], [0.12, -0.06], [0.1, 0.06], [-0.08, 0.05]] }
+velocity = [0, 0.2]
+angular-velocity = 2
+[[fill]]
+phase = "sand"
+shape = { box = { min = [-0.25, 0.1], max = [0.2, 0.16] } }
+velocity = [0.3, -1]
+[time]
+end = 0.3
+largest-speed = 1.5
+)toml";
+
+/// The same in three dimensions, on a box.
+inline const std::string spheres_on_block_3d = R"toml(
+dimensions = 3
+spacing = 0.01
+[domain]
+origin = [-0.5, -0.5, -0.5]
+size = [1, 1, 1]
+[phases.sand]
+kind = "grains"
+density = 2500
+diameter = { mean = 0.02, spread = 0.2 }
+restitution = 0.6
+friction = 0.4
+rolling-friction = 0.05
+[phases.block]
+kind = "rigid"
+density = 2000
+[interactions]
+sand-sand = { law = "linear" }
+sand-block = { law = "linear" }
+[[fill]]
+phase = "block"
+shape = { box = { min = [-0.06, -0.04, -0.05], max = [0.06, 0.04, 0.05] } }
+velocity = [0, 0.2, 0]
+angular-velocity = [1, 2, 0]
+[[fill]]
+phase = "sand"
+shape = { box = { min = [-0.06, 0.09, -0.06], max = [0.07, 0.12, 0.04] } }
+velocity = [0.2, -1, 0.1]
+[time]
+end = 0.3
+largest-speed = 1.5
+)toml";
+
 /// A fluid with a wall below, in wind; nothing else.
 inline const std::string channel = R"toml(
 spacing = 0.01

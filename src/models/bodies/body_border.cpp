@@ -10,11 +10,13 @@ BodyBorder::BodyBorder(const RigidBody& body, const Scene& scene, double spacing
     : first_place_(body.first_place), first_(body) {
   const Shape& shape = scene.fills[body.fill].shape;
   surfaces_ = surfaces_of(shape, scene, spacing);
-  for (ContactSurface& surface : surfaces_) surface.prepare(reach, spacing);
-  for (const BorderPoint& p : border_points(shape, scene.dimensions, spacing, width)) {
-    pieces_.push_back({first_.to_own(p.at - first_place_), first_.to_own(p.normal), p.content});
-    reach_ = std::max(reach_, norm(p.at - first_place_));
+  for (ContactSurface& surface : surfaces_) {
+    surface.prepare(reach, spacing);
+    for (const TouchPoint& probe : surface.probes())
+      reach_ = std::max(reach_, norm(probe.at - first_place_) + probe.radius);
   }
+  for (const BorderPoint& p : border_points(shape, scene.dimensions, spacing, width))
+    pieces_.push_back({first_.to_own(p.at - first_place_), first_.to_own(p.normal), p.content});
 }
 
 std::optional<Gap> BodyBorder::gap(const OwnAxes& now, const Vec3& arm) const {

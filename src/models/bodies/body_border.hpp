@@ -23,7 +23,7 @@ class BodyBorder {
   BodyBorder(const RigidBody& body, const Scene& scene, double spacing, double width, double reach);
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  double reach() const { return reach_; }  ///< m, from the body's place to its farthest piece
+  double reach() const { return reach_; }  ///< m, from the body's place to the farthest place of its border
   /// Of the place `arm` (m, in space, from the body's place) when the body's own axes are `now`. The normal is in
   /// space.
   std::optional<Gap> gap(const OwnAxes& now, const Vec3& arm) const;

@@ -76,6 +76,8 @@ RigidPhase::RigidPhase(const Scene& scene, const Layout& layout, std::size_t num
       forces_(scene, plan_.name),
       limit_{"motion " + plan_.name, 1e300, "a tenth of a radian, a fifth of a spacing"} {
   for (const Motion& motion : scene.motions) holds_.emplace_back(motion);
+  touches_spheres_ = std::any_of(layout.entries.begin(), layout.entries.end(),
+                                 [&](const PlanEntry& e) { return e.has(number) && e.own_steps; });
   felt_ = forces_.any() || std::any_of(layout.entries.begin(), layout.entries.end(),
                                        [&](const PlanEntry& e) { return e.has(number) && !e.by_outlines; });
 }
@@ -112,6 +114,11 @@ void RigidPhase::schedule(Schedule& s) {
   s.add({stage::kick_and_drift, plan_.name, {{plan_.name, {position}, {position, velocity}}}, [this] {
            kick_and_drift();
          }});
+  if (touches_spheres_)  // which moved its bodies after that
+    s.add({stage::walls, plan_.name, {{plan_.name, {position}, {position, velocity}}}, [this] {
+             carry_places();
+             carry_velocities();
+           }});
   s.add({stage::rigid_loads, plan_.name, {{plan_.name, {position}, {acceleration}}}, [this] { clear_loads(); }});
   const RecordTouch told{{}, {}, plan_.heats ? RecordSet{Record::carried} : RecordSet{}};
   s.add({stage::rigid, plan_.name, {{plan_.name, {position, acceleration}, {acceleration}, told}}, [this] {

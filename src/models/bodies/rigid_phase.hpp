@@ -69,6 +69,7 @@ class RigidPhase : public Model {
   const PlanPhase& plan_;
   std::size_t number_, first_body_ = 0;
   Forces forces_;
+  bool touches_spheres_ = false;                   // in the steps of contacts (models/grains/sphere_bodies.hpp)
   bool felt_ = false;                              // particles feel something by themselves
   std::vector<Carrier> carriers_;                  // by body, of the task that runs
   std::vector<Vec3> old_rates_;                    // 1/s, by body, of the step before its kick

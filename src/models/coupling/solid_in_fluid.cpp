@@ -11,7 +11,11 @@ void describe_coupling(const Scene& scene, const Interaction& pair, const Layout
 }
 
 SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid, bool by_borders)
-    : scene_(scene), layout_(layout), solid_(solid), by_borders_(by_borders), separate_(layout.phases[solid].separate) {}
+    : scene_(scene),
+      layout_(layout),
+      solid_(solid),
+      by_borders_(by_borders),
+      separate_(layout.phases[solid].separate) {}
 
 void SolidInFluid::attach(Workspace& w) {
   w_ = &w;

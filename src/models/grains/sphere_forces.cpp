@@ -402,6 +402,9 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
     with_law(step, group.law, [&](const auto& law) { group_of<Dim>(law, step, chunk, group, sums, tally); });
   for (auto& at : chunk.sides)
     with_law(step, at.law, [&](const auto& law) { side_of<Dim>(law, step, chunk, at, sums); });
+  if (step.by_bodies)
+    for (std::size_t k = 0; k < (chunk.end - chunk.begin) * Sums<Dim>::size; ++k)
+      sums.of[k] += step.by_bodies[chunk.begin * Sums<Dim>::size + k];
   chunk.lost += simd::sum(tally.lost);
   chunk.stored += simd::sum(tally.stored);
   for (std::size_t k = 0; k < width; ++k) chunk.deepest = std::max(chunk.deepest, tally.deepest[static_cast<int>(k)]);

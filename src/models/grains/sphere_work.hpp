@@ -156,6 +156,8 @@ struct SphereStep {
   std::size_t numbers = 0;                 // of the memory of a pair
   const SleepStep* sleep = nullptr;        // null: nobody sleeps
   std::span<const WatchedLaw> watched;
+  const double* by_bodies =
+      nullptr;  // by sphere, as the sums of a chunk: what rigid bodies do to it; null: none is there
 };
 
 }  // namespace barchan

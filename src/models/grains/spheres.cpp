@@ -29,6 +29,7 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       continue;
     add_wall(k, blocks[k]);
   }
+  bodies_.begin(layout_, state);
 }
 
 void Spheres::attach(Workspace& w) {
@@ -49,6 +50,8 @@ void Spheres::attach(Workspace& w) {
   search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), sides_with_spheres(), step_.numbers);
   watch_walls();
   bind_walls();
+  bodies_.attach(scene_, layout_, laws_, w.state);
+  body_parts_.reserve(parts_.size());
   ids_ = present_ids();
   sleep_.prepare(parts_that_may_sleep(), layout_, norm(scene_.domain.gravity));
   make_room();
@@ -136,6 +139,7 @@ void Spheres::begin_steps() {
   for (auto& push : w_->sphere_pushes) push.impulse = push.turn = {};
   sum_pushes(0.5 * each_);
   carry_walls(each_);
+  if (bodies_.any()) bodies_.begin_steps(dt, each_);
   layout_.dimensions == 2 ? pack<2>(each_) : pack<3>(each_);
 }
 
@@ -302,6 +306,7 @@ void Spheres::go() {
   for (const SphereChunk& chunk : chunks_) step_.fastest = std::max(step_.fastest, chunk.fastest);
   step_.far = static_cast<std::uint32_t>(all());
   step_.sleep = sleep_.step(numbers_.data());
+  if (bodies_.any()) touch_bodies(last);
   const auto n = static_cast<std::int64_t>(chunks_.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t c = 0; c < n; ++c) step_spheres(step_, chunks_[static_cast<std::size_t>(c)]);
@@ -312,7 +317,10 @@ void Spheres::go() {
         for (std::size_t q = 0; q < 6; ++q) pushing_[k][q] += chunk.pushed[k][q];
     sum_pushes(last ? 0.5 * dt : dt);
   }
-  stored_ = contacts_ = 0.0;
+  stored_ = bodies_.stored();
+  contacts_ = bodies_.contacts();
+  lost_ += bodies_.lost();
+  deepest_ = std::max(deepest_, bodies_.deepest());
   double farthest = 0.0;
   bool wakes = false;
   for (const SphereChunk& chunk : chunks_) {
@@ -327,11 +335,21 @@ void Spheres::go() {
   if (wakes) sleep_.wake();
   others_sleep_ = wakes;
   if (last) return;
+  if (bodies_.any()) bodies_.go_on(dt);
   now_ = 1 - now_;
   carry_walls(static_cast<double>(bundle_ - left_ + 1) * dt);
   if (walls_left_) return search();
   if (wakes) sort_out_sleepers(false);
   if (!(farthest < SphereStrays::used_up)) search_strays(dt);
+}
+
+/// Contacts with rigid bodies in the present step of contacts; the bodies get what the spheres lose.
+void Spheres::touch_bodies(bool last) {
+  body_parts_.clear();
+  for (const Part& part : parts_) body_parts_.push_back({part.phase, part.first, part.count});
+  bodies_.touch({body_parts_, step_.records, step_.passive, moving_, each_, last ? 0.5 : 1.0}, step_);
+  step_.by_bodies = bodies_.forces();
+  if (last) bodies_.end_steps();
 }
 
 }  // namespace barchan

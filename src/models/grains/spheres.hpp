@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/errors.hpp"
+#include "models/grains/sphere_bodies.hpp"
 #include "models/grains/sphere_rest.hpp"
 #include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_sleep.hpp"
@@ -77,6 +78,7 @@ class Spheres : public Model {
   void schedule(Schedule& s) override;
   void limits(std::vector<StepLimit>& limits) const override;
   void history(HistoryRow& row) const override;
+  void begin_row() override { bodies_.begin_row(); }
   std::optional<std::string> trouble() const override;
   std::uint64_t pairs(const PlanEntry& entry) const override;
   long searches() const override { return searches_; }
@@ -127,6 +129,7 @@ class Spheres : public Model {
   template <int Dim>
   void carry_wall(const SphereWall& wall, double elapsed);
   void watch_walls();
+  void touch_bodies(bool last);
   void sum_pushes(double time);
   double slack() const { return slack_ * laws_.reach(); }
 
@@ -140,7 +143,9 @@ class Spheres : public Model {
   std::vector<double> fixed_;  // x y z r of the walls' spheres
   std::vector<std::uint8_t> fixed_kind_;
   std::vector<SphereWall> walls_;  // that travel
-  bool walls_left_ = false;        // one of their spheres went farther than the lists allow
+  SphereBodies bodies_;
+  std::vector<SphereBodies::Part> body_parts_;  // as parts_
+  bool walls_left_ = false;                     // one of their spheres went farther than the lists allow
   std::size_t moving_ = 0;
   std::vector<std::int64_t> ids_;  // of the spheres that move, by lasting number
 

@@ -38,6 +38,7 @@ void Spheres::history(HistoryRow& row) const {
   row.add("contacts_lost_energy [J]", lost_ / depth);
   row.add("rotation_energy [J]", turning);
   if (sleep_.on()) row.add("asleep", static_cast<double>(sleep_.sleeping()));
+  bodies_.history(row);
 }
 
 std::optional<std::string> Spheres::trouble() const {
@@ -104,12 +105,11 @@ void Spheres::archive(Archive& a) {
   }
   a.array("ids of spheres", ids_);
   if (a.loads()) {
-    std::size_t first = 0;
+    moving_ = 0;
     for (Part& part : parts_) {
-      part.first = first;
-      first += part.count;
+      part.first = moving_;
+      moving_ += part.count;
     }
-    moving_ = first;
     make_room();
   }
   a.number("must search", must_search_);
@@ -123,6 +123,7 @@ void Spheres::archive(Archive& a) {
   a.number("contacts", contacts_);
   a.number("set of records", now_);
   if (!watched_.empty()) a.array("forces on walls", pushing_);
+  bodies_.archive(a);
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
