@@ -27,6 +27,7 @@ ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__)
 sys.path.insert(0, str(ROOT / "python"))
 os.environ["BARCHAN_PROGRAM"] = str(PROGRAM)
 from barchan.report import command, gather, parts, plots  # noqa: E402
+from barchan.report.page import make as make_page  # noqa: E402
 from barchan.tables import Table  # noqa: E402
 
 MOST_BYTES = 10_000_000
@@ -234,6 +235,16 @@ class Parts(unittest.TestCase):
         a, b = plots.thinned(x, y)
         self.assertLessEqual(len(a), plots.MOST_POINTS + 2)
         self.assertEqual((numpy.nanmax(b), numpy.nanmin(b), a[0], a[-1]), (50, -70, 0, 99_999))
+
+    def test_a_part_that_fails_leaves_the_others(self):
+        g = gather.Gathered(pathlib.Path("."), "n", {"end_reason": "end", "seconds": {"kick": "long"}}, state="ended", plan={"title": "t", "phases": {}})
+        page = Page(make_page(g))
+        self.assertIn('the part "How the time went" could not be made: TypeError', page.text)
+        self.assertIn("Program, machine, scene", page.text)
+
+    def test_a_scene_without_interactions(self):
+        plan = {"phases": {"bar": {"kind": "rigid", "particles": 3, "spacing": .1, "mass": 1., "sound_speed": 0.}}}
+        self.assertIn("the matrix is empty", parts.matrix(gather.Gathered(pathlib.Path("."), "n", {}, plan=plan)))
 
     def test_numbers(self):
         for value, text in ((0, "0"), (1234, "1234"), (19852, "19&#8201;852"), (1.1025e-05, "1.103e-5"), (2.5e10 + .5, "2.5e10"), (float("nan"), "nan"), (None, ""), ("<", "&lt;")):

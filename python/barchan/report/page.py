@@ -1,5 +1,6 @@
 """The page: its parts in order, in one file that needs no other."""
 
+from ..errors import PackageMissing
 from . import parts
 
 STYLE = """
@@ -30,11 +31,24 @@ def frame(title, heading, sub, body):
             f'<title>{parts.esc(title)}</title><style>{STYLE}</style></head><body><main><h1>{heading}</h1><p class="sub">{parts.esc(sub)}</p>{body}</main></body></html>\n')
 
 
+def attempt(g, heading, body):
+    """The HTML of a part; what a part cannot cope with, a damaged run.json for one, is said on top and leaves the others whole."""
+    try:
+        return body()
+    except PackageMissing:
+        raise
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        g.remarks.append(f'the part "{heading}" could not be made: {type(error).__name__}: {error}')
+        return ""
+
+
 def make(g, film=False):
     """The page of a run, as text."""
-    sections = [("What drives the flow", parts.wind(g), "wind"), ("Pictures", parts.show_pictures(g) + parts.show_films(g, film), "pictures"), ("Measured", parts.measured(g), "measured"),
-                ("History", parts.budgets(g) + parts.history(g), "history"), ("What ran: phases and their matrix", parts.matrix(g), "matrix"),
-                ("How the time went", parts.schedule(g), "time"), ("Program, machine, scene", parts.about(g), "about")]
+    sections = [("What drives the flow", lambda: parts.wind(g), "wind"), ("Pictures", lambda: parts.show_pictures(g) + parts.show_films(g, film), "pictures"),
+                ("Measured", lambda: parts.measured(g), "measured"), ("History", lambda: parts.budgets(g) + parts.history(g), "history"),
+                ("What ran: phases and their matrix", lambda: parts.matrix(g), "matrix"), ("How the time went", lambda: parts.schedule(g), "time"),
+                ("Program, machine, scene", lambda: parts.about(g), "about")]
+    sections = [(heading, attempt(g, heading, body), anchor) for heading, body, anchor in sections]
     there = [(heading, body, anchor) for heading, body, anchor in sections if body]
     nav = "<nav>" + "".join(f'<a href="#{anchor}">{parts.esc(heading.split(":")[0])}</a>' for heading, _, anchor in there) + "</nav>"
     body = parts.notices(g) + parts.tiles(g) + nav + "".join(parts.section(*each) for each in there)

@@ -155,7 +155,7 @@ def matrix(g):
     phases = plan["phases"]
     rows = [[esc(n), esc(p["kind"]), number(p["particles"]), number(p["spacing"]), number(p["mass"]), number(p["sound_speed"]), esc(p.get("enclosure", ""))] for n, p in phases.items()]
     out = rows_table(("phase", "kind", "particles", "spacing (m)", "mass of one (kg)", "sound speed (m/s)", ""), rows)
-    names, entries = list(phases), plan["interactions"]
+    names, entries = list(phases), plan.get("interactions") or {}  # a scene may have none
     cells = []
     for k, a in enumerate(names):
         row = [f"<b>{esc(a)}</b>"] + [""] * k
@@ -163,6 +163,8 @@ def matrix(g):
             entry = entries.get(f"{a}-{b}") or entries.get(f"{b}-{a}")
             row.append(entry_cell(entry, g.run.get("pairs", {}), (f"{a}-{b}", f"{b}-{a}")) if entry else '<span class="none">&middot;</span>')
         cells.append(row)
+    if not entries:
+        return out + "<p>No phase interacts with another or with itself: the matrix is empty.</p>"
     out += "<h3>The matrix of interactions</h3>" + rows_table(["", *map(esc, names)], cells, numeric=False).replace("<table>", '<table class="matrix">')
     return out + ('<p class="hint">An entry that is not there costs nothing. &Sigma;VW and the gradient sum are those of a lattice; the truth is 1 and 1. '
                   '<span class="chip good">consistent</span> by itself or <span class="chip good">corrected</span> by the scheme; <span class="chip plain">contact</span>: no kernel sum; '
