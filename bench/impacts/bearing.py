@@ -93,7 +93,7 @@ def page(r):
             f"| mean driving torque, second half [N m/m] | {r['torque']:.4f} | |",
             f"| largest change of the oil's density | {100 * r['density']:.1f} % | |", "",
             "A ball catches the inclusion, throws it against the outer ring and rolls over it; so do those that follow.", "",
-            "![Speed of the oil about the balls](gallery/bearing.png)", ""]
+            "![Speed of the oil about the balls at 60 ms](gallery/scenes/bearing.png)", ""]
 
 
 def main():
