@@ -1,10 +1,10 @@
 // Two phases of one fluid with spacings 1 to 2 and a border between them: what crosses it is passed on from one phase
 // to the other, with mass and momentum kept.
 //
-// Split: a coarse particle that is `play` coarse spacings beyond the border becomes 2^d fine ones (d dimensions),
-//   at the corners of a cube of one fine spacing about its place. In 2D the square is turned to the one of four angles that
-//   keeps them farthest from their neighbours. Velocity, density and eddy viscosity have the gradient of a linear least
-//   squares fit to the neighbours, so that a shear flow stays one.
+// Split: a coarse particle that is `play` coarse spacings beyond the border becomes 2^d fine ones (d dimensions), at
+//   the corners of a cube of one fine spacing about its place. In 2D the square is turned to the one of four angles
+//   that keeps them farthest from their neighbours. Velocity, density and eddy viscosity have the gradient of a linear
+//   least squares fit to the neighbours, so that a shear flow stays one.
 // Merge: a fine particle that is `play` coarse spacings beyond it and the 2^d - 1 that stand most closely with it, all
 //   of them beyond the border, become a coarse one at their centre of mass with their mean velocity.
 // Splitting by fixed patterns and merging with means go back to Feldman & Bonet 2007 and Vacondio et al. 2013. There a
