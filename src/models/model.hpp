@@ -92,8 +92,8 @@ class Model {
   /// A term of the budget of energy now (J), beside motion, weight and the compression of fluids: what a body holds
   /// as strain; less the work that a drive has done since the start.
   virtual double budget_energy() { return 0.0; }
-  /// Replaces the files of its own results in a folder, each whole or not at all; called with every frame. `time` (s) is
-  /// that of the frame. Throws OutputError.
+  /// Replaces the files of its own results in a folder, each whole or not at all; called with every frame. `time` (s)
+  /// is that of the frame. Throws OutputError.
   virtual void write(const std::string& /*folder*/, double /*time*/) const {}
   /// What a user should know of the run so far before its results are used.
   virtual void report(Warnings&) const {}
