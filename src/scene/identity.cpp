@@ -61,13 +61,18 @@ Values values_of(const std::string& text) {
 
 std::map<std::string, std::string> checksums_of_files(const Scene& scene) {
   std::map<std::string, std::string> checksums;
+  const auto add = [&](const std::string& section, std::size_t k, const std::string& file) {
+    if (!file.empty())
+      checksums[section + " " + std::to_string(k) + ", checksum of its file"] = checksum_of(path_of_file(scene, file));
+  };
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     std::string file;
     if (const auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape)) file = surface->file;
     if (const auto* grains = std::get_if<FileShape>(&scene.fills[k].shape)) file = grains->file;
-    if (!file.empty())
-      checksums["fill " + std::to_string(k) + ", checksum of its file"] = checksum_of(path_of_file(scene, file));
+    add("fill", k, file);
   }
+  for (std::size_t k = 0; k < scene.inflows.size(); ++k) add("inflow", k, scene.inflows[k].profile);
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k) add("influx", k, scene.influxes[k].file);
   return checksums;
 }
 
