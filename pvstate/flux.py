@@ -1,4 +1,6 @@
-"""Flux of grains by height over the bed of each [[saltation]] of the scene, from the files saltation_NAME.vtp beside the series.
+"""Flux of grains by height over the bed of each [[saltation]] of the scene.
+
+From the files saltation_NAME.vtp beside the series.
 
 The axis of the flux is logarithmic: a flux that falls exponentially with the height is a straight line.
 """

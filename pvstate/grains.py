@@ -1,4 +1,6 @@
-"""All grains of a scene, from the colour of sand at rest to dark when fast; fluids faint, bodies grey, walls dark."""
+"""All grains, from the colour of sand at rest to dark when fast; all else faint.
+
+Fluids are faint, bodies grey, walls dark."""
 import os
 import sys
 

@@ -1,5 +1,6 @@
-"""Mean velocity on the first [[grid]] of the scene, from the file grid_NAME.vti beside the series: speed as colour, arrows over it; walls and bodies of the
-last frame.
+"""Mean velocity on the first [[grid]] of the scene: speed as colour, and arrows.
+
+From the file grid_NAME.vti beside the series; walls and bodies are those of the last frame.
 """
 import os
 import sys

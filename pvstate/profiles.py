@@ -1,4 +1,6 @@
-"""Mean velocity over the line or the height of each [[profile]] of the scene, from the files profile_NAME.vtp beside the series.
+"""Mean velocity along the line or the height of each [[profile]] of the scene.
+
+From the files profile_NAME.vtp beside the series.
 
 A profile that runs up has its places on the vertical axis, as a wind profile is drawn; any other has them on the horizontal one.
 """

@@ -1,4 +1,6 @@
-"""Ways of the particles that travel farthest over the series, coloured by their speed; all else as in the last frame, faint.
+"""Ways of the particles that travel farthest, coloured by their speed.
+
+All else is shown as in the last frame, faint.
 
 Grains are taken where there are some, else bodies, else fluids. Positions are those of the frames, joined by straight lines; a jump of more than half of the
 domain is a periodic side, and parts the line. BARCHAN_TRAJECTORIES=24 chooses how many.

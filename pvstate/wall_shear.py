@@ -1,4 +1,6 @@
-"""Shear stress of the fluid along each [[wall-shear]] of the scene, from the files wall_shear_NAME.vtp beside the series."""
+"""Shear stress of the fluid along each [[wall-shear]] of the scene.
+
+From the files wall_shear_NAME.vtp beside the series."""
 import os
 import sys
 

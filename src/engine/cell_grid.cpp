@@ -215,6 +215,7 @@ void CellGrid::make_images(const PhaseParticles& particles) {
     total += end_[h.source] - begin_[h.source];
     end_[h.cell] = static_cast<std::uint32_t>(total);
   }
+  if (images_.capacity() < total - n) images_.reserve(total - n + (total - n) / 8 + 16);  // their number comes and goes
   images_.resize(total - n);
   std::array<const double*, 3> x{};
   for (std::size_t d = 0; d < dimensions_; ++d) {

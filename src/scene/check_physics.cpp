@@ -382,10 +382,8 @@ void check_physics(const Scene& scene, const Report& report) {
   const auto kind_known = [&](const Phase& phase) { return !report.touched("phases." + phase.name + ".kind"); };
   const bool all_known = std::all_of(scene.phases.begin(), scene.phases.end(), kind_known);
   PhysicsChecker checker(scene, report);
-  for (const Phase& phase : scene.phases) {
-    if (!all_known || phase.kind() != PhaseKind::fluid) continue;
-    checker.fluid(phase);
-  }
+  for (const Phase& phase : scene.phases)
+    if (all_known && phase.kind() == PhaseKind::fluid) checker.fluid(phase);
   for (const Phase& phase : scene.phases) {
     if (all_known && phase.kind() == PhaseKind::grains) checker.grains(phase);
     if (all_known && (phase.if_grains() || phase.if_wall())) checker.spheres(phase);

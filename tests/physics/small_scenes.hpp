@@ -192,6 +192,7 @@ spacing = 0.01
 [domain]
 origin = [-0.5, -0.5, -0.5]
 size = [1, 1, 1]
+periodic = ["x", "y", "z"]
 [phases.sand]
 kind = "grains"
 density = 2500

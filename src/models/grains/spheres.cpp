@@ -164,6 +164,20 @@ void Spheres::sort() {
   number();
 }
 
+/// Both records of a sphere that sleeps: where it is, at rest.
+template <int Dim>
+static void rest_in(double* one, double* other, const SphereColumns& c, std::size_t k, double radius) {
+  using R = SphereRecord<Dim>;
+  std::array<float, Dim> way{};
+  for (std::size_t d = 0; d < Dim; ++d) way[d] = way_of<Dim>(one, d);
+  for (double* record : {one, other}) {
+    std::fill_n(record, R::size, 0.0);
+    for (std::size_t d = 0; d < Dim; ++d) record[d] = c.position[d][k];
+    for (std::size_t d = 0; d < Dim; ++d) set_way<Dim>(record, d, way[d]);
+    record[R::radius] = radius;
+  }
+}
+
 /// The state into the records; half a kick and the first drift.
 template <int Dim>
 void Spheres::pack(double dt) {
@@ -192,15 +206,9 @@ void Spheres::pack(double dt) {
       if (sleep_.sleeps(numbers_[part.first + k])) {
         for (std::size_t d = 0; d < Dim; ++d) q[d] = a[d][k];
         if (!rest_anew_) continue;
-        std::array<float, Dim> way{};
-        for (std::size_t d = 0; d < Dim; ++d) way[d] = way_of<Dim>(r, d);
-        for (double* record : {r, others + (part.first + k) * R::size}) {
-          std::fill_n(record, R::size, 0.0);
-          for (std::size_t d = 0; d < Dim; ++d) record[d] = c.position[d][k];
-          for (std::size_t d = 0; d < Dim; ++d) set_way<Dim>(record, d, way[d]);
-          record[R::radius] = radius ? radius[k] : part.mean_radius;
-          q[passive_mass] = inverse_mass * std::pow(part.mean_radius / record[R::radius], 3);
-        }
+        const double own = radius ? radius[k] : part.mean_radius;
+        rest_in<Dim>(r, others + (part.first + k) * R::size, c, k, own);
+        q[passive_mass] = inverse_mass * std::pow(part.mean_radius / own, 3);
         continue;
       }
       double v2 = 0.0;
