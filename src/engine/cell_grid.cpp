@@ -138,6 +138,7 @@ void CellGrid::place_cells() {
 
 void CellGrid::make_runs() {
   runs_.clear();
+  runs_.reserve(std::min<std::size_t>(walk_.size(), 4096));  // their number comes and goes
   for (std::size_t w = 0; w < walk_.size(); ++w) {
     const std::uint32_t begin = begin_[walk_[w]], end = end_[walk_[w]];
     if (begin == end) continue;
@@ -215,12 +216,14 @@ void CellGrid::make_images(const PhaseParticles& particles) {
     total += end_[h.source] - begin_[h.source];
     end_[h.cell] = static_cast<std::uint32_t>(total);
   }
-  if (images_.capacity() < total - n) images_.reserve(total - n + (total - n) / 8 + 16);  // their number comes and goes
+  // Their number comes and goes: a body that crosses a periodic side has none before and many then.
+  const std::size_t room = std::max(total - n, n <= 4096 ? n : 0);
+  if (images_.capacity() < room) images_.reserve(room + room / 8 + 16);
   images_.resize(total - n);
   std::array<const double*, 3> x{};
   for (std::size_t d = 0; d < dimensions_; ++d) {
     auto& s = search_[d];
-    const std::size_t needed = total + 16;  // the search reads whole vectors
+    const std::size_t needed = n + room + 16;  // the search reads whole vectors
     if (s.size() < needed) s.resize(needed + needed / 8);
     x[d] = particles.column(Field::position, static_cast<int>(d));
   }
