@@ -66,7 +66,7 @@ void ForceOn::attach(Workspace& w) {
   balance_ = !meter_.box && !fluids_.empty() && std::all_of(fluids_.begin(), fluids_.end(), [&](const Felt& felt) {
     return touches_nothing_else(felt.phase);
   });
-  by_volume_ = !balance_ && volume_.there() && fluids_.size() == 1 && stands_alone(fluids_.front());
+  by_volume_ = !balance_ && volume_.there() && fluids_.size() == 1 && stands_alone(fluids_.front().phase);
   if (!by_volume_) volume_ = {};
 }
 
@@ -90,14 +90,14 @@ void ForceOn::make_volume(const State& state) {
 
 /// The fluid is laminar, consistent, without a free surface, free of a [[forcing]], and touches nothing that could come
 /// into the volume.
-bool ForceOn::stands_alone(const Felt& felt) const {
-  const PlanPhase& fluid = layout_.phases[felt.phase];
+bool ForceOn::stands_alone(std::size_t number) const {
+  const PlanPhase& fluid = layout_.phases[number];
   const bool forced = std::any_of(scene_.forcings.begin(), scene_.forcings.end(),
                                   [&](const Forcing& f) { return f.phase == fluid.name; });
-  return scene_.phases[felt.phase].fluid().scheme == FluidScheme::consistent && !fluid.eddies && !fluid.free_surface &&
+  return scene_.phases[number].fluid().scheme == FluidScheme::consistent && !fluid.eddies && !fluid.free_surface &&
          !forced && std::all_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
-           if (!e.has(felt.phase) || e.partner(felt.phase) == felt.phase) return true;
-           const PlanPhase& other = layout_.phases[e.partner(felt.phase)];
+           if (!e.has(number) || e.partner(number) == number) return true;
+           const PlanPhase& other = layout_.phases[e.partner(number)];
            return !other.flows && !other.moves && !other.travels;
          });
 }
@@ -113,13 +113,14 @@ bool ForceOn::touches_nothing_else(std::size_t fluid) const {
 void ForceOn::schedule(Schedule& s) {
   using enum Field;
   const FieldSet reads = FieldSet{position, velocity, acceleration};
-  const FieldSet of_fluid = by_volume_ ? FieldSet{position, velocity, acceleration, density, pressure} : reads;
+  const FieldSet by_volume{position, velocity, acceleration, density, pressure};
   const FieldSet writes = stays_ ? FieldSet{acceleration} : FieldSet{};
   const std::string& name = layout_.phases[phase_].name;
   Touches touches{{name, reads, writes, {stays_ ? RecordSet{Record::extended} : RecordSet{}, {}, {}}}};
   for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
     if (stays_ && e.extends && e.other == phase_)
-      touches.push_back({layout_.phases[e.fluid].name, of_fluid, {}, {{}, {Record::motion}, {}}});
+      touches.push_back(
+          {layout_.phases[e.fluid].name, stands_alone(e.fluid) ? by_volume : reads, {}, {{}, {Record::motion}, {}}});
   s.add({stays_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 

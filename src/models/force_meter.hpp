@@ -41,7 +41,7 @@ class ForceOn : public Model {
   void sum_up();
   void add_sums(double share, const Vec3& less);
   bool touches_nothing_else(std::size_t fluid) const;
-  bool stands_alone(const Felt& felt) const;
+  bool stands_alone(std::size_t number) const;
   void make_volume(const State& state);
   void measure_volume();
 

@@ -13,7 +13,6 @@ namespace barchan {
 namespace {
 
 using testing::report;
-using testing::with;
 
 const std::vector<double>& values(const Table& table, const std::string& name) {
   for (const auto& f : table.fields)

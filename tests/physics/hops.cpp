@@ -66,7 +66,7 @@ std::string text_of(const Simulation& run) {
                       (std::string("barchan_hops_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
   std::filesystem::create_directories(folder);
   run.write_results(folder.string(), run.time());
-  const std::string text = read_text(folder / "hops_s.csv");
+  std::string text = read_text(folder / "hops_s.csv");
   std::filesystem::remove_all(folder);
   return text;
 }

@@ -16,7 +16,6 @@
 namespace barchan {
 namespace {
 
-using testing::Drive;
 using testing::report;
 
 /// A box that repeats itself on all sides. `border`: of the fine and the coarse phase, empty: there is only the coarse

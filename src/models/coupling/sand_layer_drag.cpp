@@ -20,13 +20,13 @@ void SandLayer::find_near() {
   rate_.resize(p.size());
   std::uint8_t* keeps = may_rest_ ? p.own(keeps_) : nullptr;
   for (std::size_t k = 0; k < p.size(); ++k) {
-    if (may_rest_ && !all_due_ && keeps[k]) continue;
-    const bool rests = may_rest_ && all_due_ && u[k] == 0.0 && v[k] == 0.0;
-    if (may_rest_) keeps[k] = rests;
+    if (keeps && !all_due_ && keeps[k]) continue;
+    const bool rests = keeps && all_due_ && u[k] == 0.0 && v[k] == 0.0;
+    if (keeps) keeps[k] = rests;
     const Ground g = ground(x[k]);
     const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
     if (height >= top_) {
-      if (may_rest_) keeps[k] = 0;
+      if (keeps) keeps[k] = 0;
       flying_.push_back(k);
     } else if (height > -deep * diameter_) {
       near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, g, rests});

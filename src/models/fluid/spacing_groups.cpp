@@ -13,7 +13,7 @@ void SpacingBorder::around(const Vec3& x, double radius, F&& f) const {
   std::array<std::array<std::size_t, 3>, 3> near{};
   std::array<std::size_t, 3> count{1, 1, 1};
   for (std::size_t d = 0; d < 3; ++d) {
-    if (cells_[d] == 1) continue;
+    if (cells_[d] <= 1) continue;
     const double s = std::clamp((x[d] - layout_.domain.low[d]) / cell_[d], 0.0, static_cast<double>(cells_[d]) - 0.5);
     const auto n = static_cast<long>(cells_[d]), at = static_cast<long>(s);
     count[d] = 0;
