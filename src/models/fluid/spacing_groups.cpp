@@ -13,13 +13,13 @@ void SpacingBorder::around(const Vec3& x, double radius, F&& f) const {
   std::array<std::array<std::size_t, 3>, 3> near{};
   std::array<std::size_t, 3> count{1, 1, 1};
   for (std::size_t d = 0; d < 3; ++d) {
-    if (cells_[d] <= 1) continue;
+    if (cells_[d] == 1) continue;
     const double s = std::clamp((x[d] - layout_.domain.low[d]) / cell_[d], 0.0, static_cast<double>(cells_[d]) - 0.5);
     const auto n = static_cast<long>(cells_[d]), at = static_cast<long>(s);
     count[d] = 0;
     for (long k = at - 1; k <= at + 1; ++k) {
       if (!layout_.domain.periodic[d] && (k < 0 || k >= n)) continue;
-      const auto cell = static_cast<std::size_t>((k + n) % n);
+      const auto cell = static_cast<std::size_t>(k < 0 ? k + n : k >= n ? k - n : k);
       bool there = false;  // of two cells both sides are one
       for (std::size_t c = 0; c < count[d]; ++c) there = there || near[d][c] == cell;
       if (!there) near[d][count[d]++] = cell;
