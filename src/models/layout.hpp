@@ -54,6 +54,7 @@ struct PlanEntry {
   double drag = 0;                   // drag coefficient, 0: none
   DragLaw drag_law = DragLaw::none;  // of grains in a wind
   double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
+  double coupling_interval = 0.0;    // s, the same; 0: that of the model
   double restitution = 1;            // of a contact of bodies
   double friction = 0;               // of a contact of bodies: Coulomb's coefficient
   int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed

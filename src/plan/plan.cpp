@@ -131,6 +131,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.drag_law = i.drag_law;
     e.lift = i.lift;
     e.gusts = i.gusts;
+    e.coupling_interval = i.coupling_interval.value_or(0.0);
     e.restitution = i.restitution.value_or(1.0);
     e.friction = i.friction.value_or(0.0);
     e.kernel_word = word_of(i.kernel);

@@ -204,7 +204,7 @@ class PhysicsChecker {
         tell(dotted + ".drag",
              "another law than that of \"" + other.name + "\", which is the same air; expected one law");
       if (other.spacing < fluid.spacing)
-        for (const char* key : {".lift", ".gusts"})
+        for (const char* key : {".lift", ".gusts", ".coupling-interval"})
           if (report_.has(dotted + key))
             tell(dotted + key, "only near the ground, in the layers of the finest air, \"" + other.name +
                                    "\", it acts; expected no such key here");
@@ -281,7 +281,7 @@ class PhysicsChecker {
       return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };
     using enum PhaseKind;
-    for (const char* key : {".lift", ".gusts"})
+    for (const char* key : {".lift", ".gusts", ".coupling-interval"})
       if (report_.has(dotted + key) && (pair.drag_law == DragLaw::none || !is(fluid, grains)))
         tell(dotted + key,
              "only the entry of a fluid of particles and grains with a law of drag by name, as drag = \"duran\", has "

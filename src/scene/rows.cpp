@@ -160,8 +160,9 @@ constexpr Key rows_of_keys[] = {
      "Only with a law of drag by name, in a fluid: lift of a grain that stands on the bed over its drag, by the shear of the wind about it (docs/method.md); 0.85 measured by Chepil 1958.", not_negative},
     {"interactions.pair", "gusts", at<&Interaction::gusts>(0.0).like("0.38"), "",
      "Only with a law of drag by name, in a fluid: standard deviation of the wind near the bed over its mean, in patterns that the wind carries (docs/method.md); 0.38 at a wall.", {.at_least = 0.0, .at_most = 0.6}},
-    {"interactions.pair", "buoyancy", at<&Interaction::buoyancy>(false), "",
-     "Only with a law of drag by name: grains weigh less by the fluid that they displace, g (1 - rho_fluid/rho_grain) (docs/method.md). In air 0.05 % for quartz; in water it matters."},
+    {"interactions.pair", "coupling-interval", at<&Interaction::coupling_interval>("0.004 sqrt(d/g)").like("8e-5"), "s",
+     "Only with a law of drag by name, in a fluid: the least time between two exchanges of momentum of the wind and its grains; in between a grain keeps its drag (docs/method.md). In whole steps of the fluid.", {.at_most = 1e-3, .above = 0.0}},
+    {"interactions.pair", "buoyancy", at<&Interaction::buoyancy>(false), "", "Only with a law of drag by name: grains weigh less by the fluid that they displace, g (1 - rho_fluid/rho_grain) (docs/method.md). In air 0.05 % for quartz; in water it matters."},
     {"interactions.pair", "border", at<&Interaction::border>("none: fluid stays in its phase").like("\"y - 0.05\""), "m",
      "Only of two phases of one fluid, spacings 1 to 2: below zero the fluid has the finer particles, above zero the coarser ones, as in \"y - 0.05\". "
      "A coarse particle that crosses it becomes 4 fine ones (3D: 8), and so many fine ones become a coarse one; mass and momentum are kept (docs/method.md).", {}, "x y z"},
@@ -170,7 +171,6 @@ constexpr Key rows_of_keys[] = {
      "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
     {"interactions.pair", "friction", at<&Interaction::friction>("0").like("0.3"), "", "Coulomb's coefficient of friction of such a contact.", {.at_least = 0.0, .at_most = 10.0}},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
-
     {"fill", "phase", at<&Fill::phase>(required).like("\"sand\""), "", "Phase of the particles."},
     {"fill", "shape", fill_shape().like("{ bed = 0.01 }"), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
     {"fill", "packing", at<&Fill::packing>(Packing::square), "",

@@ -173,15 +173,16 @@ struct Interaction {
   double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
   std::optional<double> radius_in_metres;  // m; empty: `radius` says it
   KernelKind kernel{};
-  double drag{};                      // fluid-grains: drag coefficient of a grain, 0 switches it off
-  DragLaw drag_law{};                 // column-grains: drag of a grain
-  double lift{};                      // with drag_law and a fluid: lift of a grain on the bed over its drag
-  double gusts{};                     // the same: standard deviation of the wind at the bed over its mean
-  bool buoyancy{};                    // with drag_law: grains weigh less by the fluid that they displace
-  Expression border{};                // fluid-fluid: above zero the coarser particles; a number: none is given
-  ContactLaw law{};                   // of grains with grains, walls and bodies
-  std::optional<double> restitution;  // contact of bodies: of two particles that meet
-  std::optional<double> friction;     // contact of bodies: Coulomb's coefficient
+  double drag{};                            // fluid-grains: drag coefficient of a grain, 0 switches it off
+  DragLaw drag_law{};                       // column-grains: drag of a grain
+  double lift{};                            // with drag_law and a fluid: lift of a grain on the bed over its drag
+  double gusts{};                           // the same: standard deviation of the wind at the bed over its mean
+  std::optional<double> coupling_interval;  // s, the same: between two exchanges of momentum
+  bool buoyancy{};                          // with drag_law: grains weigh less by the fluid that they displace
+  Expression border{};                      // fluid-fluid: above zero the coarser particles; a number: none is given
+  ContactLaw law{};                         // of grains with grains, walls and bodies
+  std::optional<double> restitution;        // contact of bodies: of two particles that meet
+  std::optional<double> friction;           // contact of bodies: Coulomb's coefficient
 };
 
 // ---- fills: what is where at the beginning -------------------------------------------------------------------------

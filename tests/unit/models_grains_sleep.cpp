@@ -158,6 +158,7 @@ TEST(SphereSleep, WakesWhomTheContactsDisturbed) {
   const SleepStep* step = grains.sleep.step(grains.numbers.data());
   ASSERT_NE(step, nullptr);
   EXPECT_NEAR(step->tolerance, 0.3 * gravity, 1e-15);
+  EXPECT_NEAR(step->tolerance * step->lag, 1e-2 * bound, 1e-15) << "an impulse that would give that speed wakes";
   step->wakes[grains.numbers[1]] = 1;
   grains.sleep.wake();
   EXPECT_EQ(grains.asleep(), (Who{true, false, true, true, true, true}));

@@ -34,7 +34,9 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       diameter_(layout.phases[grains_].diameter),
       top_(reach * layout.phases[fluid_].spacing),
       lift_(entry.lift),
-      interval_(interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
+      interval_(entry.coupling_interval > 0.0
+                    ? entry.coupling_interval
+                    : interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
       grid_(layout, airs_about(layout, grains_)),
       may_rest_(scene.phases[grains_].grains().sleep) {
   if (!(entry.gusts > 0.0)) return;

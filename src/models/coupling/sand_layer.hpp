@@ -54,7 +54,7 @@ class SandLayer : public Model {
   static constexpr double deep = 6.0;        // diameters: grains below feel no wind
   static constexpr double cells = 4.0;       // a diameter
   static constexpr double fine = 10.0;       // diameters over the ground with such cells
-  static constexpr double interval = 0.004;  // of sqrt(d/g), between two exchanges: 20 us for 0.25 mm
+  static constexpr double interval = 0.004;  // of sqrt(d/g), between two exchanges: 20 us for 0.25 mm; by default
   static constexpr double long_as = 40.0;    // diameters, of a layer, at least one spacing of the air
   static constexpr long rest_keeps = 16;     // exchanges, of the drag of a grain that rests
   static constexpr std::size_t heights = 8;  // of the ground, known a spacing of the air

@@ -68,10 +68,12 @@ void leave(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
 }
 
 /// How far the forces on the border's spheres are out of the balance in which they fell asleep: those of spheres that
-/// are awake, which alone change. Who feels more than `tolerance` wakes.
+/// are awake, which alone change. Means over `lag`, so that what only vibrates wakes nobody: a force F that lasts a time
+/// t much shorter counts as F t/lag. Who feels more than `tolerance` wakes.
 template <int Dim>
 void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
   constexpr std::size_t spins = SphereRecord<Dim>::spins, numbers = Dim + spins, torque = Dim == 2 ? 2 : 4;
+  const double share = step.dt / (sleep.lag + step.dt);
   for (const std::uint32_t k : chunk.border) {
     const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
     double *offset = sleep.offset + sleep.numbers[k] * numbers, *unrest = sleep.unrest + sleep.numbers[k] * numbers;
@@ -81,7 +83,7 @@ void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& c
     for (std::size_t d = 0; d < numbers; ++d) {
       const double now = force[d < Dim ? d : torque + d - Dim];
       if (fresh) offset[d] -= now;
-      unrest[d] = now + offset[d];
+      unrest[d] += share * (now + offset[d] - unrest[d]);
       (d < Dim ? push2 : turn2) += unrest[d] * unrest[d];
     }
     const double most = sleep.tolerance / step.passive[k * passive_size + passive_mass],

@@ -21,6 +21,7 @@ void SphereSleep::prepare(std::vector<Part> parts, const Layout& layout, double 
   double least = 1e300;
   for (const Part& part : parts_) least = std::min(least, part.diameter);
   interval_ = apart * std::sqrt(least / gravity);
+  lag_ = most_speed / unrest * std::sqrt(least / gravity);
   for (std::size_t d = 0; d < 3; ++d)
     period_[d] = layout.bounds.periodic[d] ? layout.bounds.high[d] - layout.bounds.low[d] : 0.0;
 }
@@ -162,7 +163,7 @@ void SphereSleep::settled() { std::fill(changed_.begin(), changed_.end(), std::u
 
 const SleepStep* SphereSleep::step(const std::uint32_t* numbers) {
   if (sleeping_ == 0) return nullptr;
-  step_ = {at_.data(), numbers, offset_.data(), unrest_.data(), wakes_.data(), fresh_.data(), unrest * gravity_};
+  step_ = {at_.data(), numbers, offset_.data(), unrest_.data(), wakes_.data(), fresh_.data(), unrest * gravity_, lag_};
   return &step_;
 }
 

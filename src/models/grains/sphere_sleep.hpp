@@ -4,7 +4,9 @@
 // Who falls asleep: looks are sqrt(d/g)/4 apart. A grain that between two looks, twice, went less than 2.5e-4 d, and is
 // slower than 1e-2 sqrt(g d), and whose acceleration by all but contacts changed by less than a tenth of g. So a grain
 // that an impact far away shook sleeps again in less than sqrt(d/g).
-// Who wakes: a grain whose forces are out of the balance in which it fell asleep by more than 0.3 of its weight.
+// Who wakes: a grain whose forces are out of the balance in which it fell asleep by more than 0.3 of its weight, in a
+// mean over sqrt(d/g)/30. So a short push wakes it whose impulse would give it 1e-2 sqrt(g d), the speed above which
+// nobody falls asleep, and vibration wakes nobody.
 // Forces of others that sleep do not change, so only those of grains that are awake are summed; what was out of balance
 // before somebody else fell asleep or woke is not forgotten. And whom the wind, or another acceleration, pushes by more
 // than a tenth of g beyond what it was.
@@ -81,7 +83,7 @@ class SphereSleep {
   std::vector<Part> parts_;
   const Layout* layout_ = nullptr;
   std::size_t moving_ = 0, dimensions_ = 2, numbers_ = 3, sleeping_ = 0;
-  double gravity_ = 0.0, interval_ = 0.0, next_ = 0.0;  // m/s2, s, s
+  double gravity_ = 0.0, interval_ = 0.0, next_ = 0.0, lag_ = 0.0;  // m/s2, s, s
   std::array<double, 3> period_{};
   bool fell_ = false;
   std::vector<std::uint8_t> asleep_, calm_, wakes_;     // by number

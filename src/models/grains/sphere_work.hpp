@@ -121,6 +121,7 @@ struct SleepStep {
   std::uint8_t* wakes = nullptr;                // by number
   std::uint8_t* fresh = nullptr;                // by number: a neighbour fell asleep or woke since the last step
   double tolerance = 0.0;                       // m/s2
+  double lag = 0.0;                             // s, the mean of what is out of balance
 };
 
 /// Where the last step of a bundle leaves the spheres of a phase. Null: the phase has no such field.
