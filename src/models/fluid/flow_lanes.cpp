@@ -74,7 +74,8 @@ std::size_t FlowLanes::nearest(const Vec3& x) const {
   const long most = std::max(count_[0], count_[1]);
   for (long ring = 0; ring <= most; ++ring) {
     if (ring > 2 && least <= std::pow(static_cast<double>(ring - 2) * cell_, 2)) break;
-    for (long j = -ring; j <= ring; ++j)
+    const long deep = count_[1] == 1 ? 0 : ring;  // of one row, all others repeat it or are not there
+    for (long j = -deep; j <= deep; ++j)
       for (long i = -ring; i <= ring; ++i)
         if (std::max(std::abs(i), std::abs(j)) == ring) look(at[0] + i, at[1] + j);
   }

@@ -81,7 +81,10 @@ void GroundDistance::refresh(std::span<const Ground> phases) {
 
 template <int Dim>
 void GroundDistance::refresh(std::span<const Ground> phases) {
-  std::fill(nearest_.begin(), nearest_.end(), -1);
+  const bool known = !seeds_.empty();
+  std::swap(seeds_, last_.seeds);
+  std::swap(normals_, last_.normals);
+  std::swap(half_, last_.half);
   std::fill(crowd_.begin(), crowd_.end(), std::uint8_t{0});
   seeds_.clear();
   surfaces_ = false;
@@ -117,13 +120,17 @@ void GroundDistance::refresh(std::span<const Ground> phases) {
       for (const std::ptrdiff_t step : around_) crowd += crowd_[cell + static_cast<std::size_t>(step)];
       if (crowd < 4) return;
     }
-    if (nearest_[cell] < 0) give(cell, at, static_cast<std::int32_t>(seeds_.size()));
     seeds_.push_back(x);
     normals_.push_back(normal);
     half_.push_back(half);
     surfaces_ = surfaces_ || dot(normal, normal) > 0.0;
   });
   alike_ = half_.empty() || std::all_of(half_.begin(), half_.end(), [&](double h) { return h == half_[0]; });
+  if (known && seeds_ == last_.seeds && normals_ == last_.normals && half_ == last_.half) return;  // the same nearest
+  std::fill(nearest_.begin(), nearest_.end(), -1);
+  for (std::size_t seed = 0; seed < seeds_.size(); ++seed)
+    if (const std::size_t cell = cell_of<Dim>(seeds_[seed], at); nearest_[cell] < 0)
+      give(cell, at, static_cast<std::int32_t>(seed));
   propagate<Dim>();
 }
 

@@ -27,7 +27,7 @@ class GroundDistance {
   GroundDistance(const Bounds& bounds, const Sides& sides, double spacing, bool has_particles);
 
   /// Takes the ground's particles anew: walls within the domain, and grains that at least three others surround (those
-  /// in flight are no ground). Allocates only to grow.
+  /// in flight are no ground). If they are the same, their nearest ones are known. Allocates only to grow.
   void refresh(std::span<const Ground> phases);
 
   /// Distance to the nearest surface, at least 0 and at most the domain's diagonal.
@@ -77,6 +77,10 @@ class GroundDistance {
   std::vector<Vec3>
       normals_;            // by seed: of the surface that it lies on; zero: of a particle, whose surface is not known
   bool surfaces_ = false;  // some seed has a normal
+  struct {
+    std::vector<Vec3> seeds, normals;
+    std::vector<double> half;
+  } last_;  // of the last time, for comparison
 };
 
 }  // namespace barchan

@@ -233,7 +233,7 @@ void Spheres::pack(double dt) {
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
   if (must_search_ || walls_left_) return search();
   if (others_sleep_) sort_out_sleepers(false);
-  if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt);
+  if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt, false);
 }
 
 SphereSet Spheres::set() {
@@ -271,21 +271,23 @@ void Spheres::search() {
   ++since_sort_;
 }
 
-/// Whose way is longer than its allowance.
+/// Whose way is longer than its allowance. `stepped`: the chunks know their farthest sphere.
 template <int Dim>
-void Spheres::list_strays(double dt) {
+void Spheres::list_strays(double dt, bool stepped) {
   gone_.clear();
-  for (const SphereChunk& chunk : chunks_)
+  for (const SphereChunk& chunk : chunks_) {
+    if (stepped && chunk.farthest < SphereStrays::used_up) continue;
     chunk.each_moving([&](std::size_t k) {
       const float way2 = next_way2<Dim>(records_[now_].data() + k * SphereRecord<Dim>::size, dt);
       if (static_cast<double>(way2 * strays_.tightness()[k]) >= SphereStrays::used_up)
         gone_.push_back(static_cast<std::uint32_t>(k));
     });
+  }
 }
 
 /// Searches those anew who have used up their allowances, or all.
-void Spheres::search_strays(double dt) {
-  layout_.dimensions == 2 ? list_strays<2>(dt) : list_strays<3>(dt);
+void Spheres::search_strays(double dt, bool stepped) {
+  layout_.dimensions == 2 ? list_strays<2>(dt, stepped) : list_strays<3>(dt, stepped);
   if (!strays_.few(gone_.size())) return search();
   const SphereSet s = set();
   if (cells_loaded_) {
@@ -348,7 +350,7 @@ void Spheres::go() {
   carry_walls(static_cast<double>(bundle_ - left_ + 1) * dt);
   if (walls_left_) return search();
   if (wakes) sort_out_sleepers(false);
-  if (!(farthest < SphereStrays::used_up)) search_strays(dt);
+  if (!(farthest < SphereStrays::used_up)) search_strays(dt, true);
 }
 
 /// Contacts with rigid bodies in the present step of contacts; the bodies get what the spheres lose.

@@ -116,9 +116,9 @@ class Spheres : public Model {
   void pack(double dt);
   void search();
   void sort_out_sleepers(bool all);
-  void search_strays(double dt);
+  void search_strays(double dt, bool stepped);
   template <int Dim>
-  void list_strays(double dt);
+  void list_strays(double dt, bool stepped);
   void go();
   void point_at_columns();
   template <int Dim>
