@@ -91,7 +91,7 @@ def heaps(r):
               "| friction | rolling-friction | angle above the slot | of the heap below |", "| --- " * 4 + "|"]
     lines += [f"| {f['friction']} | {f['rolling']} | {f['angle']:.1f} | {f['below']:.1f} |" for f in r["frictions"]]
     return lines + ["", "rolling-friction was chosen for the angle, after 0.3 (one bed: 29.5) and 0.6 (32.8, 32.5, 38.1) had been seen. The angle depends on how a slope came to be: a bed whose end opens at once slides to rest at 25 to 27 degrees with friction 1.0 and rolling-friction 0.8 (an earlier form of "
-                    "`repose.toml`). A slope of 32 degrees of these grains, which settled in the form of a slope, stays at rest (`dune.toml`)."]
+                    "`repose.toml`). A slope of 32 degrees of these grains, which settled in the form of a slope, stays at rest (`dune_box.toml`)."]
 
 
 def threshold(r):
@@ -279,7 +279,7 @@ def resolved(r):
 
 
 def storm(r):
-    lines = ["## A dune in air of held speed", "", "What holds the mean speed pulls with 22.6 Pa at 0.5 s, 74 times rho u*^2 of the start (0.306 Pa), as a wind of u* = 4.3 m/s would; the flux is then 2,833 g/m/s and grows, 77 times what is measured at u* = 0.5 m/s. It is no steady wind, and the figures below are of the momentum and of the places of the grains.", "", "`scenes/dune.toml`: `bench/saltation/storm.py`, one run of 0.5 s, which says how each figure is measured. Momentum along x, N s for each metre of depth:", "",
+    lines = ["## A dune in air of held speed", "", "What holds the mean speed pulls with 22.6 Pa at 0.5 s, 74 times rho u*^2 of the start (0.306 Pa), as a wind of u* = 4.3 m/s would; the flux is then 2,833 g/m/s and grows, 77 times what is measured at u* = 0.5 m/s. It is no steady wind, and the figures below are of the momentum and of the places of the grains.", "", "`scenes/dune_box.toml`: `bench/saltation/storm.py`, one run of 0.5 s, which says how each figure is measured. Momentum along x, N s for each metre of depth:", "",
              "| put in: held bulk speed, stress on the lid | gained by air and grains | given by grains to the core, to the lid | to the ground by the pressure of the air | rest | largest rest in the run |",
              "| --- " * 6 + "|",
              f"| {r['put']:.4f} | {r['gained']:.4f} | {r['core']:.4f}, {r['lid']:.4f} | {r['pressure']:.4f} | {r['rest']:.4f}, {100 * r['share']:.1f} % of what is put in | {100 * r['largest']:.1f} % |", "",
@@ -294,30 +294,55 @@ def storm(r):
 
 
 def tunnel(r):
-    begin, end = r["times_s"]
-    height, speed, enters = r["wind_near_the_focus"]
-    flux = r["flux_g_m_s"]
-    places = ", ".join(f"{1e2 * (k + .5) * r['part_m']:.1f}: {q:.0f}" for k, q in enumerate(flux))
-    whole = end - begin > 0.9
-    lines = ["## A dune in a wind tunnel", "",
-             f"`scenes/dune_tunnel.toml`, `bench/saltation/tunnel.py`: means of {r['frames']} frames from {begin:.2f} to {end:.2f} s of one run"
-             + ("." if whole else ". Asked for is the mean over the last of two seconds: that run has not been done yet, and the figures may change in it."), "",
-             "| figure | wanted | measured |", "| --- | --- | --- |",
-             f"| u* of the wind 10 cm before the toe, by its slope from 2 to 10 cm over the bed | 0.5 m/s within 5 % | {r['u_star_upstream']:.3f} m/s ({100 * (r['u_star_upstream'] / .5 - 1):+.1f} %) |",
-             f"| the same wind over that of the saltating column which enters, largest difference above one spacing | 10 % | {100 * r['largest_difference_above_one_spacing']:.1f} % |",
-             f"| near the focus of the saltation layer, {1e3 * height:.1f} mm over the bed | {enters:.2f} m/s within 10 % | {speed:.2f} m/s ({100 * (speed / enters - 1):+.1f} %) |",
-             f"| flux before the toe | 35 g/m/s within 20 % (Creyssels et al. 2009) | {r['flux_upstream']:.1f} g/m/s ({100 * (r['flux_upstream_over_saturated'] - 1):+.0f} %"
-             + (")" if abs(r["flux_upstream_over_saturated"] - 1) < .2 else ", **missed**)") + f", error of the mean {r['flux_upstream_error']:.0f} g/m/s; {r['entered_g_m_s']:.1f} g/m/s entered in that time, by a Poisson process of 35 |",
-             f"| flux along x, g/m/s, middles of parts of 3 cm in cm | stated | {places}; errors of the means {min(r['flux_error']):.0f} to {max(r['flux_error']):.0f} |",
-             f"| stress on top of the layers, mean over the tunnel, over rho u*^2 | stated | {r['ground_stress_over_rho_u2']:.2f}; the dune takes its share by the pressure |",
-             f"| speed-up 10 mm over the crest | 2H/L corrected for blockage: {r['speed_up_2H_over_L_and_blockage']:.2f} | {r['speed_up_10_mm']:.2f} |",
-             f"| slowest mean wind of the lowest row behind the crest | reverse flow over 4 to 10 H | {r['reverse_m_s']:.2f} m/s; reverse flow "
-             + (f"over {r['reverse_length_over_H']:.1f} H behind the crest" + (", **missed** |" if r["reverse_length_over_H"] < 4 else " |") if r["reverse_m_s"] < 0 else "nowhere in the mean: **missed** |"),
-             f"| fastest grain; largest density error of the air | | {r['fastest_grain_m_s']:.1f} m/s; {100 * r['largest_density_error']:.1f} % |", "",
-             "The air has spacings of 5 mm, and a layer of 7.5 mm at the ground is one-dimensional: what is small behind the brink is not resolved. Its viscosity is a mixing length by the distance to the ground,",
-             "which is too large in a wake. An ensemble of four and hop lengths have not been measured. The 2 s take 13 minutes of processor time.", "",
-             "![Wind along x, grains by their speed, flux along x and the wind at four places](gallery/dune_tunnel.png)"]
-    return lines
+    runs = r["runs"]
+    begin, end = runs[0]["times_s"]
+
+    def over(figure):
+        """Mean of the runs and its standard deviation."""
+        values = [figure(run) for run in runs]
+        mean = sum(values) / len(values)
+        return mean, (sum((v - mean) ** 2 for v in values) / max(len(values) - 1, 1)) ** 0.5
+
+    def of(name):
+        return over(lambda run: run[name])
+
+    def verdict(good):
+        return "" if good else ", **missed**"
+    height = runs[0]["wind_near_the_focus"][0]
+    speed, speed_spread = over(lambda run: run["wind_near_the_focus"][1])
+    enters = runs[0]["wind_near_the_focus"][2]
+    u_star, u_spread = of("u_star_upstream")
+    off = max(run["largest_difference_above_one_spacing"] for run in runs)
+    flux, flux_spread = of("flux_upstream")
+    drives = {name: over(lambda run, name=name: run["driven_by_Pa"][name])[0] for name in runs[0]["driven_by_Pa"]}
+    u_all, u_all_spread = of("u_star_of_all_that_drives")
+    pressure, pressure_spread = of("pressure_on_the_dune_N_m")
+    speed_up, speed_up_spread = of("speed_up_10_mm")
+    reverse, reverse_spread = of("reverse_m_s")
+    length, length_spread = of("reverse_length_over_H")
+    parts = range(len(runs[0]["flux_g_m_s"]))
+    places = ", ".join(f"{1e2 * (k + .5) * runs[0]['part_m']:.1f}: {over(lambda run, k=k: run['flux_g_m_s'][k])[0]:.0f}" for k in parts)
+    scatter = [over(lambda run, k=k: run["flux_g_m_s"][k])[1] for k in parts]
+    return ["## A dune in a wind tunnel", "",
+            f"`scenes/dune.toml`, `bench/saltation/tunnel.py`: {len(runs)} runs of two seconds, whose grains that enter are other ones (`influx.0.seed`). Means from {begin:.2f} to {end:.2f} s, of "
+            f"{runs[0]['frames']} frames a run; +- is the standard deviation of the runs.", "",
+            "| figure | wanted | measured |", "| --- | --- | --- |",
+            f"| u* of the wind 10 cm before the toe, by its slope from 2 to 10 cm over the bed | 0.5 m/s within 10 % | {u_star:.3f} +- {u_spread:.3f} m/s ({100 * (u_star / .5 - 1):+.1f} %){verdict(abs(u_star / .5 - 1) < .1)} |",
+            f"| the same wind over that of the saltating column which enters, largest difference above one spacing, all runs | 10 % | {100 * off:.1f} %{verdict(off < .1)} |",
+            f"| near the focus of the saltation layer, {1e3 * height:.1f} mm over the bed | {enters:.2f} m/s within 10 % | {speed:.2f} +- {speed_spread:.2f} m/s ({100 * (speed / enters - 1):+.1f} %){verdict(abs(speed / enters - 1) < .1)} |",
+            f"| u* of all that drives air and grains between 5 and 60 cm: lid {drives['lid']:.3f} Pa, air that enters less air that leaves {drives['air']:.3f} Pa, grains {drives['grains']:.3f} Pa | 0.5 m/s within 5 % | "
+            f"{u_all:.3f} +- {u_all_spread:.3f} m/s ({100 * (u_all / .5 - 1):+.0f} %){verdict(abs(u_all / .5 - 1) < .05)} |",
+            f"| flux before the toe | 35 g/m/s within 20 % (Creyssels et al. 2009) | {flux:.1f} +- {flux_spread:.1f} g/m/s ({100 * (flux / 35 - 1):+.0f} %){verdict(abs(flux / 35 - 1) < .2)}; "
+            f"{of('entered_g_m_s')[0]:.1f} g/m/s entered in that time |",
+            f"| flux along x, g/m/s, middles of parts of 3 cm in cm | stated | {places}; +- {min(scatter):.0f} to {max(scatter):.0f} |",
+            f"| stress on top of the layers near the ground, mean over the tunnel, over rho u*^2 | stated | {of('ground_stress_over_rho_u2')[0]:.2f} +- {of('ground_stress_over_rho_u2')[1]:.2f} |",
+            f"| pressure of the air on the dune along x | stated | {1e3 * pressure:.0f} +- {1e3 * pressure_spread:.0f} mN/m, by length of the tunnel {of('pressure_on_the_dune_over_length_Pa')[0] / .30625:.2f} rho u*^2 |",
+            f"| speed-up 10 mm over the crest | 2H/L corrected for blockage: {runs[0]['speed_up_2H_over_L_and_blockage']:.2f} | {speed_up:.2f} +- {speed_up_spread:.2f} |",
+            f"| slowest mean wind of the lowest row behind the crest | reverse flow over 4 to 10 H | {reverse:.2f} +- {reverse_spread:.2f} m/s; reverse flow over {length:.1f} +- {length_spread:.1f} H behind the crest{verdict(4 <= length <= 10)} |",
+            f"| fastest grain; largest density error of the air, of all runs | | {max(run['fastest_grain_m_s'] for run in runs):.1f} m/s; {100 * max(run['largest_density_error'] for run in runs):.1f} % |", "",
+            "The air has spacings of 5 mm, and a layer of 7.5 mm at the ground is one-dimensional: what is small behind the brink is not resolved. Its viscosity is a mixing length by the distance to the ground, "
+            "which is too large in a wake.", "",
+            "![Wind along x, grains by their speed, flux along x and the wind at four places](gallery/dune_tunnel.png)"]
 
 
 def main():

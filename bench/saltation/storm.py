@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The dune in a storm (scenes/dune.toml): momentum along x of all that moves, erosion and deposition, winds.
+"""The dune in a storm (scenes/dune_box.toml): momentum along x of all that moves, erosion and deposition, winds.
 
     /usr/bin/python3 bench/saltation/storm.py build/barchan --out /tmp/storm      runs the scene (some minutes), writes results/storm.json
     /usr/bin/python3 bench/saltation/storm.py none --out /tmp/storm               measures a run that is there
@@ -23,7 +23,7 @@ from barchan_bench import ROOT, page, run  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
 RESULT = ROOT / "bench/saltation/results/storm.json"
-SCENE = ROOT / "scenes/dune.toml"
+SCENE = ROOT / "scenes/dune_box.toml"
 
 WATCHED = 'force=[{ name = "core", phase = "core", by = "sand" }, { name = "lid", phase = "lid", by = "sand" }]'
 PLACES = {"windward side, x = 9 to 16 cm": (.09, .16), "crest, 16 to 20 cm": (.16, .20), "slip face, 20 to 24.7 cm": (.20, .247),
@@ -82,7 +82,7 @@ def measure(folder):
     column = table(folder / "history.csv").__getitem__
     report = json.loads((folder / "run.json").read_text())
     t = column("time [s]")
-    paths = [path for _, path in series(folder / "dune.pvd")]
+    paths = [path for _, path in series(folder / "dune_box.pvd")]
     times = np.linspace(0, t[-1], len(paths))
     frames = [Frame(path, time) for path, time in zip((paths[0], paths[-1]), (0, t[-1]))]
     airs = []

@@ -1,14 +1,18 @@
 #!/usr/bin/python3
-"""A dune in a wind tunnel (scenes/dune_tunnel.toml): wind before, over and behind the dune, and the flux of sand along x.
+"""A dune in a wind tunnel (scenes/dune.toml): wind before, over and behind the dune, what drives it, and the flux of sand along x.
 
-    /usr/bin/python3 bench/saltation/tunnel.py build/barchan --out /tmp/tunnel               runs the scene, writes results/tunnel.json and docs/gallery/dune_tunnel.png
-    /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --from 0.3 --to 0.6    measures a run that is there between two times
+    /usr/bin/python3 bench/saltation/tunnel.py build/barchan --out /tmp/tunnel               runs the scene four times, two at once, each with other grains that enter (influx.0.seed);
+                                                                                             writes results/tunnel.json and docs/gallery/dune_tunnel.png
+    /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --from 0.3 --to 0.6    measures the runs that are there between two times
 
 Means of the frames between two times (the last second, if none are given). Wind at a place: mean of the air's particles within 1 cm of it, by height over the ground. u*: slope of
 a line through the mean speed over the logarithm of the height, 2 to 10 cm over the bed. Flux: mass by length times speed along the wind of all grains, in parts of 3 cm; its error is that of
-the mean of the frames.
+the mean of the frames. What drives the air and the sand between x = 5 and 60 cm: the stress of the lid, what the air brings in by momentum and pressure less what it takes out (profiles
+"upstream" and "far": sum of rho (mean u^2 + rms^2) + p over the height), and the same of the grains (history.csv, between the open sides); for each metre of length, as u* = sqrt(tau/rho).
+Pressure on the dune: the sum of p dh/dx over the ground, p the mean of the first row's particles within 2.5 mm.
 """
 import argparse
+import concurrent.futures
 import json
 import math
 import pathlib
@@ -21,9 +25,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, page, run  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-SCENE, RESULT, PICTURE = ROOT / "scenes/dune_tunnel.toml", ROOT / "bench/saltation/results/tunnel.json", ROOT / "docs/gallery/dune_tunnel.png"
+SCENE, RESULT, PICTURE = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunnel.json", ROOT / "docs/gallery/dune_tunnel.png"
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
-PART, REACH = 0.03, 0.01  # m, of the flux; about a place
+PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
 
 
 class Ground:
@@ -44,12 +48,16 @@ class Ground:
         return self.bed + np.where(s >= 0, np.where(s < self.lee, self.height_of_dune * (1 - s / self.lee), 0), side)
 
 
+    def slope(self, x):
+        return (self.height(x + 1e-6) - self.height(x - 1e-6)) / 2e-6
+
+
 class Means:
     """Sums over the frames of a run between two times."""
 
     def __init__(self, folder, ground, scene, begin, end):
         self.ground, self.spacing = ground, scene["spacing"]
-        self.air, self.flux, self.fastest = [], [], 0.0
+        self.air, self.flux, self.pushes, self.fastest = [], [], [], 0.0
         parts = round(ground.length / PART)
         diameter = scene["phases"]["sand"]["diameter"]["mean"]
         density = scene["phases"]["sand"]["density"]
@@ -59,6 +67,7 @@ class Means:
             inside = (air.x[:, 0] > 0) & (air.x[:, 0] < ground.length)
             self.last = air.keep(inside)
             self.air.append(np.column_stack([air.x[:, :2], air["velocity"][:, :2]]))
+            self.pushes.append(push_on_dune(self.last, ground, self.spacing))
             mass = density * math.pi / 6 * (2 * self.sand["radius"]) ** 3 / diameter
             sums = np.histogram(self.sand.x[:, 0], bins=parts, range=(0, ground.length), weights=mass * self.sand["velocity"][:, 0])[0]
             self.flux.append(sums / PART * 1e3)
@@ -73,6 +82,32 @@ class Means:
         rows = np.floor(height / self.spacing).astype(int)
         numbers = [r for r in range(rows.max() + 1) if (rows == r).sum() >= 3]
         return np.array([height[rows == r].mean() for r in numbers]), np.array([near[rows == r, 2].mean() for r in numbers])
+
+
+def push_on_dune(air, ground, spacing):
+    """N/m: sum of p dh/dx over cells of 1 mm, p the mean of the first row's particles within 2.5 mm."""
+    first = air.x[:, 1] - ground.height(air.x[:, 0]) < spacing * np.hypot(1, ground.slope(air.x[:, 0]))
+    order = np.argsort(air.x[first, 0])
+    x, p = air.x[first, 0][order], air["pressure"][first][order]
+    cells = np.arange(ground.toe, ground.end, 1e-3) + 5e-4
+    sums = np.concatenate([[0], np.cumsum(p)])
+    low, high = np.searchsorted(x, cells - 2.5e-3), np.searchsorted(x, cells + 2.5e-3)
+    return float(((sums[high] - sums[low]) / np.maximum(high - low, 1) * ground.slope(cells)).sum() * 1e-3)
+
+
+def through(profile):
+    """Momentum and pressure of the air through a section (N/m)."""
+    known = np.isfinite(profile["velocity_mean_x"])
+    return float(np.trapz((DENSITY * (profile["velocity_mean_x"] ** 2 + profile["velocity_rms_x"] ** 2) + profile["pressure_mean"])[known], profile["y"][known]))
+
+
+def driven_by(folder, ground, history, chosen):
+    """Pa, for each metre of length: lid; momentum and pressure of the air that enters less what leaves; the same of the grains."""
+    sections = [table(folder / f"profile_{name}.csv") for name in ("upstream", "far")]
+    places = [float(s["x"][0]) for s in sections]
+    grains = sum(sign * np.ptp(history[f"sand_{side}_momentum_x"][chosen]) for sign, side in ((1, "left_in"), (-1, "left_out"), (-1, "right_out")))
+    return {"lid": DENSITY * FRICTION_VELOCITY**2, "air": (through(sections[0]) - through(sections[1])) / (places[1] - places[0]),
+            "grains": float(grains / np.ptp(history["time"][chosen]) / ground.length)}
 
 
 def wind_that_enters():
@@ -116,7 +151,11 @@ def measure(folder, begin, end):
     half = ground.windward / 2
     meant_speed_up = (1 + 2 * ground.height_of_dune / half) * (ground.top - ground.bed) / (ground.top - ground.bed - ground.height_of_dune) - 1
     stress = DENSITY * FRICTION_VELOCITY**2
+    drives = driven_by(folder, ground, history, chosen) if begin >= 0.99 else None
     return means, ground, {
+        "driven_by_Pa": drives, "u_star_of_all_that_drives": math.sqrt(max(sum(drives.values()), 0) / DENSITY) if drives else None,
+        "pressure_on_the_dune_N_m": float(np.mean(means.pushes)), "pressure_on_the_dune_over_length_Pa": float(np.mean(means.pushes)) / ground.length,
+        "ground_stress_Pa": float(history["air-sand_ground_stress"][chosen].mean()),
         "times_s": means.times, "frames": means.frames, "u_star_upstream": friction_velocity(*upstream),
         "wind_upstream_over_entering": [[float(h), float(o)] for h, o in zip(upstream[0], off)], "largest_difference_above_one_spacing": float(np.abs(off[1:]).max()),
         "wind_near_the_focus": [float(upstream[0][0]), float(upstream[1][0]), float(meant[0])], "flux_g_m_s": flux.tolist(), "flux_error": error.tolist(), "part_m": PART,
@@ -168,14 +207,22 @@ def main():
     parser.add_argument("--from", dest="begin", type=float)
     parser.add_argument("--to", dest="end", type=float)
     options = parser.parse_args()
+    seeds = range(1, RUNS + 1)
     if options.barchan != "none":
-        run.scene(options.barchan, SCENE, options.out, threads=2)
-    end = options.end or table(options.out / "history.csv")["time"][-1]
-    means, ground, result = measure(options.out, max(end - 1, 0) if options.begin is None else options.begin, end)
-    RESULT.write_text(json.dumps(result, indent=1) + "\n")
-    draw(means, ground, result)
-    for name, value in result.items():
-        print(name, np.round(value, 3).tolist())
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            list(pool.map(lambda seed: run.scene(options.barchan, SCENE, options.out / f"seed_{seed}", [f"influx.0.seed={seed}"]), seeds))
+    runs, shown = [], None
+    for folder in (options.out / f"seed_{seed}" for seed in seeds):
+        if not (folder / "history.csv").exists():
+            continue
+        end = options.end or float(table(folder / "history.csv")["time"][-1])
+        measured = measure(folder, max(end - 1, 0) if options.begin is None else options.begin, end)
+        runs.append(measured[2])
+        shown = shown or measured
+    RESULT.write_text(json.dumps({"runs": runs}, indent=1) + "\n")
+    draw(*shown)
+    for name in runs[0]:
+        print(name, *(each[name] if isinstance(each[name], (list, tuple, dict, type(None))) else round(each[name], 4) for each in runs))
 
 
 if __name__ == "__main__":
