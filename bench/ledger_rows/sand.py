@@ -136,17 +136,17 @@ def tunnel(bench):
     def figure(quantity, reference, values, source, bound=None, met=None):
         return row(quantity, case, reference, mean(values), source, file, scatter=half_range(values), bound=bound, met=met)
     u_star = [r["u_star_upstream"] for r in runs]
-    yield figure("u* of the wind 10 cm before the toe, m/s", .5, u_star, "logarithmic law; the wind that enters", "within 10 %", abs(mean(u_star) / .5 - 1) <= .1)
+    yield figure("u* of the wind 10 cm before the toe, m/s", .5, u_star, "the wind that enters: law of the wall over a saltating column", "within 10 %", abs(mean(u_star) / .5 - 1) <= .1)
     entering = first["wind_near_the_focus"][2]
     focus = [r["wind_near_the_focus"][1] for r in runs]
-    yield figure("wind near the focus of the saltation layer, m/s", entering, focus, "column of saltating grains, scenes/saltation.toml", "within 10 %", abs(mean(focus) / entering - 1) <= .1)
+    yield figure("wind near the focus of the saltation layer, m/s", entering, focus, "column of saltating grains (scenes/saltation.toml), whose flux is compared with Creyssels et al. 2009", "within 10 %", abs(mean(focus) / entering - 1) <= .1)
     everything = [r["u_star_of_all_that_drives"] for r in runs]
     yield figure("u* of all that drives air and grains, m/s", .5, everything, "balance of momentum between 5 and 60 cm; the dune's own drag is in it", "within 5 %", abs(mean(everything) / .5 - 1) <= .05)
     flux_before = [r["flux_upstream"] for r in runs]
     yield figure("flux before the toe, g/m/s", 35, flux_before, CREYSSELS, "within 20 %", abs(mean(flux_before) / 35 - 1) <= .2)
     yield figure("speed-up 10 mm over the crest", first["speed_up_2H_over_L_and_blockage"], [r["speed_up_10_mm"] for r in runs], "rule 2 H/L of Jackson & Hunt 1975, with blockage")
     length = [r["reverse_length_over_H"] for r in runs]
-    yield figure("reverse flow behind the crest, heights", 7, length, "4 to 10 heights behind the crest of a dune; 7 is the middle", "4 to 10", 4 <= mean(length) <= 10)
+    yield figure("reverse flow behind the crest, heights", 7, length, "4 to 10 heights behind the crest: Parsons et al. 2004 and field studies they compare with (recalled)", "4 to 10", 4 <= mean(length) <= 10)
 
 
 def peers(bench):
