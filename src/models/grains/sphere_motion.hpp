@@ -68,8 +68,8 @@ void leave(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
 }
 
 /// How far the forces on the border's spheres are out of the balance in which they fell asleep: those of spheres that
-/// are awake, which alone change. Means over `lag`, so that what only vibrates wakes nobody: a force F that lasts a time
-/// t much shorter counts as F t/lag. Who feels more than `tolerance` wakes.
+/// are awake, which alone change. Means over `lag`, so that what only vibrates wakes nobody: a force F that lasts a
+/// time t much shorter counts as F t/lag. Who feels more than `tolerance` wakes.
 template <int Dim>
 void watch_border(const SleepStep& sleep, const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) {
   constexpr std::size_t spins = SphereRecord<Dim>::spins, numbers = Dim + spins, torque = Dim == 2 ? 2 : 4;
