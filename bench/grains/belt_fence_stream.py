@@ -46,9 +46,10 @@ def mean(values):
 
 # --- a hopper over a belt ---------------------------------------------------------------------------------------------
 
-SLOT, FLOOR, TOP_OF_BELT, SPEED = 0.010, 0.030, 0.001, 0.3  # m, m, m, m/s
-DRAINING, STEADY = (0.2, 1.2), (1.2, 1.7)                   # s: the slot is measured, the layer is measured
-LAYER, BIN = (0.15, 0.28), 0.002                            # m, along x
+SLOT, FLOOR, TOP_OF_BELT, SPEED = 0.014, 0.030, 0.001, 0.5  # m, m, m, m/s
+DRAINING, STEADY = (0.2, 0.9), (0.65, 0.9)                  # s: the slot is measured, the layer is measured
+LAYER, BIN = (0.11, 0.20), 0.002                            # m, along x
+BULK = ((0.015, 0.045), (0.065, 0.065))                     # m: lower and upper corner of the box in which the bulk density is measured, until its sand sinks below 75 mm
 C, K = 1.03, 1.4                                            # of a slot, Nedderman 1992; of round grains, Beverloo et al. 1961
 
 
@@ -56,22 +57,22 @@ def belt(folder):
     phase = scene_of("belt")["phases"]["sand"]
     d = phase["diameter"]["mean"]
     times, inside, heights, loads, speeds = [], [], [], [], []
-    rest = Frame(frames(folder, 0, 0)[0][1], phase="sand")
-    x, y = rest.x[:, 0], rest.x[:, 1]
-    box = (x > 0.025) & (x < 0.065) & (y > 0.036) & (y < 0.106)
-    bulk = float(masses(rest, phase)[box].sum() / (0.040 * 0.070))
+    bulks = []
     for time, path in frames(folder, 0, STEADY[1]):
         sand = Frame(path, phase="sand")
         m, x, y = masses(sand, phase), sand.x[:, 0], sand.x[:, 1]
         times.append(time)
         inside.append(m[y > FLOOR].sum())
+        if DRAINING[0] - 1e-9 <= time <= 0.65:
+            (left, low), (right, high) = BULK
+            bulks.append(m[(x > left) & (x < right) & (y > low) & (y < high)].sum() / (right - left) / (high - low))
         if time >= STEADY[0] - 1e-9:
             on = (x > LAYER[0]) & (x < LAYER[1]) & (y < FLOOR)
             tops = [(y + sand["radius"])[on & (x >= left) & (x < left + BIN)].max(initial=TOP_OF_BELT) for left in np.arange(*LAYER, BIN)]
             heights.append(np.mean(tops) - TOP_OF_BELT)
             loads.append(m[on].sum() / (LAYER[1] - LAYER[0]))
             speeds.append(np.average(sand["velocity"][on, 0], weights=m[on]))
-    times, inside = np.array(times), np.array(inside)
+    times, inside, bulk = np.array(times), np.array(inside), float(np.mean(bulks))
     chosen = (times >= DRAINING[0] - 1e-9) & (times <= DRAINING[1] + 1e-9)
     rate = -float(np.polyfit(times[chosen], inside[chosen], 1)[0])
     halves = [-float(np.polyfit(t, m, 1)[0]) for t, m in zip(np.array_split(times[chosen], 2), np.array_split(inside[chosen], 2))]
@@ -79,7 +80,7 @@ def belt(folder):
     late = (history["time"] >= STEADY[0]) & (history["time"] <= STEADY[1])
     left = float(np.polyfit(history["time"][late], history["sand_right_out"][late], 1)[0])
     beverloo = C * bulk * math.sqrt(G) * (SLOT - K * d) ** 1.5
-    return {"bulk_density_at_rest_kg_m3": bulk, "rate_kg_m_s": rate, "rate_in_halves": halves, "beverloo_kg_m_s": beverloo, "rate_over_beverloo": rate / beverloo,
+    return {"bulk_density_in_the_hopper_kg_m3": bulk, "rate_kg_m_s": rate, "rate_in_halves": halves, "beverloo_kg_m_s": beverloo, "rate_over_beverloo": rate / beverloo,
             "height_m": float(np.mean(heights)), "height_expected_m": rate / bulk / SPEED, "height_over_expected": float(np.mean(heights)) / (rate / bulk / SPEED),
             "load_kg_m2": float(np.mean(loads)), "load_expected_kg_m2": rate / SPEED, "bulk_density_on_the_belt_kg_m3": float(np.mean(loads) / np.mean(heights)),
             "speed_of_layer_m_s": float(np.mean(speeds)), "leaves_kg_m_s": left, "force_x_N_m": mean(history["belt_force_x"][late]), "force_x_expected_N_m": -rate * SPEED,
@@ -89,8 +90,8 @@ def belt(folder):
 
 # --- a fence in a wind tunnel -----------------------------------------------------------------------------------------
 
-FENCE, BACK, HEIGHT, GROUND = 0.18, 0.192, 0.030, 0.0035  # m
-WIND, CELL = (0.3, 0.6), 0.006                            # s, m
+FENCE, BACK, HEIGHT, GROUND = 0.16, 0.176, 0.024, 0.0035  # m
+WIND, CELL = (0.25, 0.45), 0.008                          # s, m
 
 
 def fence(folder):
@@ -128,7 +129,7 @@ def fence(folder):
 
     return {"reverse_length_over_H": float((places[back[-1]] + CELL / 2 - BACK) / HEIGHT) if len(back) else 0.0, "slowest_m_s": float(low.min()),
             "reverse_before_over_H": float((FENCE - before[front[0]] + CELL / 2) / HEIGHT) if len(front) else 0.0,
-            "speed_over_upstream": {f"{h} H high": {f"{n} H behind": speed(BACK + n * HEIGHT, h * HEIGHT) / upstream[h] for n in (2, 4, 6, 8, 10, 11)} for h in upstream},
+            "speed_over_upstream": {f"{h} H high": {f"{n} H behind": speed(BACK + n * HEIGHT, h * HEIGHT) / upstream[h] for n in (2, 4, 6, 8, 10, 12, 15, 18)} for h in upstream},
             "entered_kg_m_s": rate("sand_left_in"), "left_kg_m_s": rate("sand_right_out"), "left_backwards_kg_m_s": rate("sand_left_out"),
             "at_rest_g_m": {k: float(1e3 * m[z & at_rest].sum()) for k, z in zones.items()}, "in_flight_g_m": {k: float(1e3 * m[z & ~at_rest].sum()) for k, z in zones.items()},
             "passed_the_fence_g_m": float(1e3 * (m[x > BACK].sum() + history["sand_right_out"][-1])), "entered_g_m": float(1e3 * history["sand_left_in"][-1]),
@@ -137,27 +138,40 @@ def fence(folder):
 
 # --- water over sand --------------------------------------------------------------------------------------------------
 
-CALM = 4.0  # s: measured from then on
+CALM = 1.0  # s: measured from then on
+
+
+def meyer_peter(shields):
+    """Meyer-Peter & Mueller 1948."""
+    return 8 * max(shields - 0.047, 0.0) ** 1.5
 
 
 def wong_parker(shields):
+    """Their data again: Wong & Parker 2006, eq. (24)."""
     return 3.97 * max(shields - 0.0495, 0.0) ** 1.5
 
 
-def stream(folder, friction_velocity=None):
+def stream(folder):
     scene = scene_of("stream")
     water, sand = scene["phases"]["water"], scene["phases"]["sand"]
     d, ratio = sand["diameter"]["mean"], sand["density"] / water["density"]
-    u = friction_velocity or scene["constants"]["u"]
-    shields = u**2 / ((ratio - 1) * G * d)
+    u = scene["constants"]["u"]
+    heavy = (ratio - 1) * G * d                                 # m2/s2
     unit = sand["density"] * math.sqrt((ratio - 1) * G * d**3)  # kg/m/s
     history = table(folder / "history.csv")
     late = history["time"] >= CALM
     flux, stress = mean(history["sand_flux"][late]), mean(history["water-sand_ground_stress"][late])
-    return {"friction_velocity_m_s": u, "shields": shields, "shields_of_the_ground_stress": stress[0] / water["density"] / ((ratio - 1) * G * d), "ground_stress_Pa": stress,
-            "flux_kg_m_s": flux, "flux_dimensionless": [f / unit for f in flux], "wong_parker": wong_parker(shields),
-            "over_wong_parker": flux[0] / unit / wong_parker(shields) if shields > 0.0495 else None, "time_s": [CALM, float(history["time"][-1])],
-            "mean_speed_of_the_water_m_s": mean(history["water_mean_vx"][late]), "largest_density_error": float(history["largest_density_error"].max())}
+    measured = stress[0] / water["density"] / heavy
+
+    def rate(name):
+        return float(np.ptp(history[name][late]) / np.ptp(history["time"][late]))
+
+    return {"friction_velocity_m_s": u, "shields_of_the_stream": u**2 / heavy, "shields": measured, "ground_stress_Pa": stress,
+            "flux_kg_m_s": flux, "flux_dimensionless": [f / unit for f in flux], "wong_parker": wong_parker(measured), "meyer_peter": meyer_peter(measured),
+            "over_wong_parker": flux[0] / unit / wong_parker(measured), "over_meyer_peter": flux[0] / unit / meyer_peter(measured),
+            "enters_kg_m_s": rate("sand_left_in"), "leaves_kg_m_s": rate("sand_right_out"), "bed_m": [float(history["sand_bed"][late][k]) for k in (0, -1)],
+            "time_s": [CALM, float(history["time"][-1])], "mean_speed_of_the_water_m_s": mean(history["water_mean_vx"][late]),
+            "largest_density_error": float(history["largest_density_error"].max())}
 
 
 def main():
