@@ -90,8 +90,8 @@ def belt(folder):
 
 # --- a fence in a wind tunnel -----------------------------------------------------------------------------------------
 
-FENCE, BACK, HEIGHT, GROUND = 0.16, 0.176, 0.024, 0.0035  # m
-WIND, CELL = (0.25, 0.45), 0.008                          # s, m
+FENCE, BACK, HEIGHT, GROUND = 0.12, 0.136, 0.024, 0.0035  # m
+WIND, CELL = (0.18, 0.3), 0.008                           # s, m
 
 
 def fence(folder):
@@ -129,7 +129,7 @@ def fence(folder):
 
     return {"reverse_length_over_H": float((places[back[-1]] + CELL / 2 - BACK) / HEIGHT) if len(back) else 0.0, "slowest_m_s": float(low.min()),
             "reverse_before_over_H": float((FENCE - before[front[0]] + CELL / 2) / HEIGHT) if len(front) else 0.0,
-            "speed_over_upstream": {f"{h} H high": {f"{n} H behind": speed(BACK + n * HEIGHT, h * HEIGHT) / upstream[h] for n in (2, 4, 6, 8, 10, 12, 15, 18)} for h in upstream},
+            "speed_over_upstream": {f"{h} H high": {f"{n} H behind": speed(BACK + n * HEIGHT, h * HEIGHT) / upstream[h] for n in (2, 4, 6, 8, 10, 12, 13)} for h in upstream},
             "entered_kg_m_s": rate("sand_left_in"), "left_kg_m_s": rate("sand_right_out"), "left_backwards_kg_m_s": rate("sand_left_out"),
             "at_rest_g_m": {k: float(1e3 * m[z & at_rest].sum()) for k, z in zones.items()}, "in_flight_g_m": {k: float(1e3 * m[z & ~at_rest].sum()) for k, z in zones.items()},
             "passed_the_fence_g_m": float(1e3 * (m[x > BACK].sum() + history["sand_right_out"][-1])), "entered_g_m": float(1e3 * history["sand_left_in"][-1]),
