@@ -149,6 +149,22 @@ def tunnel(bench):
     yield figure("reverse flow behind the crest, heights", 7, length, "4 to 10 heights behind the crest: Parsons et al. 2004 and field studies they compare with (recalled)", "4 to 10", 4 <= mean(length) <= 10)
 
 
+def belt_and_stream(bench):
+    file = "grains/results/belt_fence_stream.json"
+    r = load(bench, file)
+    belt, stream, fence = r["belt"], r["stream"], r["fence"]
+    yield row("rate through a slot, kg/m/s", "hopper_belt.toml, 14 diameters", belt["beverloo_kg_m_s"], belt["rate_kg_m_s"],
+              "Beverloo, Leniger & van de Velde 1961, form and constants for a slot as in Nedderman 1992 (recalled)", file)
+    yield row("height of the layer on a belt, m", "hopper_belt.toml", belt["height_expected_m"], belt["height_m"], "rate over bulk density and speed (exact)", file)
+    yield row("load of a belt, kg/m2", "hopper_belt.toml", belt["load_expected_kg_m2"], belt["load_kg_m2"], "rate over speed (exact)", file)
+    yield row("force of grains on a belt, N/m", "hopper_belt.toml", belt["force_x_expected_N_m"], belt["force_x_N_m"][0], "momentum that the grains gain (exact)", file,
+              scatter=belt["force_x_N_m"][1])
+    yield row("flux of sand in water over rho_s sqrt((s - 1) g d^3)", f"water_over_sand.toml, Shields number {stream['shields']:.3f}", stream["wong_parker"],
+              stream["flux_dimensionless"][0], "Wong & Parker 2006, J. Hydraul. Eng. 132, 1159 (recalled)", file, scatter=stream["flux_dimensionless"][1])
+    yield row("reverse flow behind a fence, heights", "fence_tunnel.toml, a solid fence of six spacings", 12, fence["reverse_length_over_H"],
+              "10 to 14 heights: Good & Joubert 1968; Castro & Fackrell 1978 (recalled)", file, bound="10 to 14", met=10 <= fence["reverse_length_over_H"] <= 14)
+
+
 def peers(bench):
     file = "grains/results/lammps.json"
     for r in load(bench, file):
@@ -157,4 +173,4 @@ def peers(bench):
 
 
 def rows(bench):
-    return [r for part in (grains_in_air, splash, threshold, flux, heaps, storm, tunnel, paper, peers) for r in part(bench)]
+    return [r for part in (grains_in_air, splash, threshold, flux, heaps, storm, tunnel, belt_and_stream, paper, peers) for r in part(bench)]
