@@ -1,4 +1,4 @@
-"""What moves in water: a wave maker, and a sphere that sinks in a tube."""
+"""What moves in water: a wave maker."""
 
 import math
 
@@ -111,3 +111,9 @@ def wave_maker(kh, n):
         tell(name, "consistent", n, "the same from the height of the top row: at the piston, two depths from it",
              f"{surface[0]:+.3f}, {surface[1]:+.3f}", "", seconds)
     attempt(name, "consistent", n, measure)
+
+
+CASES = {
+    "wave-maker": (lambda: [wave_maker(kh, n) for kh in TANKS for n in (25,)],
+                   "Wave maker: a piston, height of the waves over the stroke (Havelock 1929)"),
+}
