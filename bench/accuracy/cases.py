@@ -18,6 +18,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import cases_grains
+import cases_motion
 import cases_open
 import cases_periodic
 import cases_surface
@@ -29,7 +30,7 @@ from harness import RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open):
+for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion):
     CASES.update(topic.CASES)
 
 
