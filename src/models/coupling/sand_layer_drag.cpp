@@ -42,7 +42,8 @@ void SandLayer::find_near() {
     const Place& at = places_[k];
     if (at.where == Place::over) flying_.push_back(k);
     if (at.where == Place::in)
-      near_.push_back({k, between(x[k]), at.height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, at.ground, at.rests});
+      near_.push_back(
+          {k, between(x[k]), at.height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, at.ground, at.rests});
   }
 }
 
@@ -120,8 +121,8 @@ void SandLayer::spread() {
     }
 }
 
-/// That of the grains that rest, or of the others. Each thread has columns side by side, and adds to a column in the order
-/// of the grains.
+/// That of the grains that rest, or of the others. Each thread has columns side by side, and adds to a column in the
+/// order of the grains.
 void SandLayer::spread(bool resting, std::vector<AirColumn::Load>& loads) {
   const PhaseParticles& p = w_->particles(grains_);
 #pragma omp parallel

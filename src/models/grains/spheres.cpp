@@ -241,28 +241,6 @@ void Spheres::pack(double dt) {
   if (!(static_cast<double>(farthest) < SphereChunk::used_up)) search_strays(dt, false);
 }
 
-/// Where the middle of each chunk's work stands in that of all: each thread takes chunks side by side, so that they stay
-/// in its core's cache, and about as much work as the others.
-void Spheres::share_out() {
-  constexpr double touching = 36.0, near = 10.0;  // a batch, against a sphere that moves
-  middles_.resize(chunks_.size());
-  double all = 0.0;
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    const SphereChunk& chunk = chunks_[c];
-    std::size_t touch = 0, live = 0;
-    for (std::size_t q = 0; q < chunk.touches.size(); ++q) {
-      touch += (chunk.live_of(q) & chunk.touches[q]) != 0;
-      live += chunk.live_of(q) != 0;
-    }
-    const std::size_t moves = chunk.all_awake ? chunk.end - chunk.begin : chunk.awake.size();
-    const double work = touching * static_cast<double>(touch) + near * static_cast<double>(live) +
-                        static_cast<double>(moves + chunk.border.size()) + 1.0;
-    middles_[c] = all + 0.5 * work;
-    all += work;
-  }
-  for (double& middle : middles_) middle /= all;
-}
-
 SphereSet Spheres::set() {
   return {layout_.dimensions, records_[now_].data(), moving_,        all(),
           numbers_.data(),    kinds_.data(),         sleep_.flags(), strays_.places()};

@@ -155,7 +155,7 @@ class Spheres : public Model {
   AlignedVector<double> records_[2], passive_;
   std::size_t now_ = 0;  // which set of records
   std::vector<SphereChunk> chunks_;
-  std::vector<double> middles_;  // by chunk: where the middle of its work stands in that of all, 0 to 1
+  std::vector<double> middles_;         // by chunk: where the middle of its work stands in that of all, 0 to 1
   std::vector<SphereColumns> columns_;  // by phase
   std::vector<std::uint32_t> numbers_, listed_numbers_, order_;
   std::vector<std::uint8_t> kinds_;
