@@ -114,6 +114,6 @@ def wave_maker(kh, n):
 
 
 CASES = {
-    "wave-maker": (lambda: [wave_maker(kh, n) for kh in TANKS for n in (25,)],
+    "wave-maker": (lambda: [wave_maker(kh, n) for kh in TANKS for n in (25, 40)],
                    "Wave maker: a piston, height of the waves over the stroke (Havelock 1929)"),
 }
