@@ -93,6 +93,14 @@ double allocated_memory() {
 #endif
 }
 
+double heap_memory() {
+#ifdef __GLIBC__
+  return static_cast<double>(mallinfo2().uordblks);
+#else
+  return 0.0;
+#endif
+}
+
 double resident_memory() { return pages().resident; }
 
 double mapped_memory() { return pages().size; }

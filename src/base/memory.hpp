@@ -16,6 +16,9 @@ AvailableMemory available_memory();
 /// Bytes that this program has allocated and not freed; negative where the C library does not tell.
 double allocated_memory();
 
+/// Bytes of it in blocks too small to be given back one by one; 0 where the C library does not tell.
+double heap_memory();
+
 /// Bytes of the machine's memory that this process holds now, and the most that it has held, shared libraries included;
 /// negative where nothing tells.
 double resident_memory();

@@ -24,8 +24,9 @@ double median(std::vector<double> values) {
 /// What a run holds at the most, from what this process holds now that has made the same steps: besides, a run writes
 /// frames, one at a time, and keeps `states` to go back to. `before`: allocated_memory() without the simulation.
 MemoryNeed memory_of_a_run(Simulation& simulation, double before, double states) {
-  constexpr double writer = 3.4e6;   // VTK's writer and its buffers, the threads: code and data, measured
-  constexpr double disorder = 0.05;  // of the arrays: by what lists grow in a long run, measured
+  constexpr double writer = 3.1e6;   // VTK's writer and its buffers, the threads: code and data, measured
+  constexpr double disorder = 0.04;  // of the arrays: by what lists grow in a long run, measured
+  constexpr double holes = 0.06;     // of the heap: between blocks of the writer and of the steps, measured
   constexpr double of_a_vertex = 2 * sizeof(std::int32_t);  // of a frame, made when it is written
   const double now = resident_memory(), allocated = allocated_memory();
   MemoryNeed need;
@@ -35,7 +36,7 @@ MemoryNeed memory_of_a_run(Simulation& simulation, double before, double states)
   const double state = static_cast<double>(size_of([&](Archive& a) { simulation.archive(a); }));
   const Frame frame = simulation.frame(0);
   need.parts = {{"program", now - arrays + writer},
-                {"arrays", (1.0 + disorder) * arrays},
+                {"arrays", (1.0 + disorder) * arrays + holes * heap_memory()},
                 {"a frame", static_cast<double>(frame.bytes()) + of_a_vertex * static_cast<double>(frame.size())}};
   if (states > 0.0) need.parts.emplace_back("states to go back to", states * state);
   if (const double more = most_resident_memory() - need.bytes(); more > 0.0)
