@@ -47,6 +47,8 @@ void check_shape_keys(const std::string& shape, bool fitted, const Report& repor
 void check_outline(const Fill& fill, double spacing, const std::string& shape, const Scene& scene,
                    const Report& report) {
   const auto* surface = std::get_if<SurfaceShape>(&fill.shape);
+  if (!surface && report.has(shape + ".part") && report.is_section(shape))
+    report(shape + ".part", "only the mesh of a file has parts; expected surface beside it");
   if (!surface && !std::holds_alternative<PolygonShape>(fill.shape)) {
     for (const char* key : {"scale", "turn", "move"})
       if (report.has(shape + "." + key) && report.is_section(shape))
@@ -56,7 +58,8 @@ void check_outline(const Fill& fill, double spacing, const std::string& shape, c
   const std::string key = shape + (surface ? ".surface" : ".polygon");
   if (report.touched(shape) || report.touched("spacing") || !(spacing > 0.0)) return;
   if (surface && surface->triangles && scene.dimensions == 2)
-    return report(key, "a surface of triangles in two dimensions; expected a file of lines, or dimensions = 3");
+    return report(key,
+                  "a surface of triangles in two dimensions; expected lines, flat cells of one z, or dimensions = 3");
   const std::string misfit = misfit_of_outline(facets_of(fill.shape), facet_dimensions(fill.shape), spacing);
   if (!misfit.empty()) report(key, misfit);
 }

@@ -107,7 +107,7 @@ void read_surfaces(Scene& scene, const Report& report) {
     const std::string dotted = "fill." + std::to_string(k) + ".shape.surface";
     if (!surface || report.touched(dotted)) continue;
     const std::string path = path_of_file(scene, surface->file);
-    SurfaceFile file = read_surface(path);
+    SurfaceFile file = read_surface(path, surface->part);
     if (!file.problem.empty())
       report(dotted, "\"" + shortened(path) + "\": " + file.problem +
                          "; expected .stl, .obj, .ply, .vtp, .vtu, .vtk or .csv, relative to the scene's file (meshio "

@@ -25,6 +25,7 @@
 #include <filesystem>
 
 #include "base/memory.hpp"
+#include "scene/mesh_solid.hpp"
 #include "scene/mesh_words.hpp"
 
 namespace barchan {
@@ -51,25 +52,12 @@ class Listener : public vtkOutputWindow {
 };
 Listener* Listener::New() { VTK_STANDARD_NEW_BODY(Listener); }
 
-/// The places of a cell's corners in their order around it; its numbers may be wrong.
-std::vector<Vec3> corners_of(vtkDataSet& data, vtkIdType k, vtkIdList& ids) {
-  data.GetCellPoints(k, &ids);
-  std::vector<Vec3> corners(static_cast<std::size_t>(ids.GetNumberOfIds()));
-  for (vtkIdType i = 0; i < ids.GetNumberOfIds(); ++i) {
-    const vtkIdType id = ids.GetId(i);
-    if (id < 0 || id >= data.GetNumberOfPoints())
-      refuse("cell " + std::to_string(k) + " names point " + std::to_string(id) + " of " +
-             std::to_string(data.GetNumberOfPoints()));
-    data.GetPoint(id, corners[static_cast<std::size_t>(i)].data());
-  }
-  return corners;
-}
-
-void take_cells(vtkDataSet& data, Mesh& mesh) {
+void take_cells(vtkDataSet& data, const Part& part, Mesh& mesh) {
   vtkNew<vtkIdList> ids;
   std::vector<std::size_t> order;
   for (vtkIdType k = 0; k < data.GetNumberOfCells(); ++k) {
-    const std::vector<Vec3> corners = corners_of(data, k, *ids);
+    if (!part.has(k)) continue;
+    const std::vector<Vec3> corners = corners_of_cell(data, k, *ids);
     order.resize(corners.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto least = [&](std::size_t wanted) {
@@ -99,28 +87,30 @@ void take_cells(vtkDataSet& data, Mesh& mesh) {
       case VTK_QUADRATIC_TRIANGLE:
       case VTK_QUADRATIC_QUAD:
       case VTK_BIQUADRATIC_QUAD: refuse("has curved cells; expected triangles, polygons or lines"); break;
-      default: break;  // points and cells of three dimensions bound nothing
+      default: break;  // points bound nothing
     }
   }
 }
 
 template <class Reader>
-void read_with(const std::string& path, Mesh& mesh, const Listener& listener) {
+void read_with(const std::string& path, int part, Mesh& mesh, const Listener& listener) {
   vtkNew<Reader> reader;
   reader->SetFileName(path.c_str());
   reader->Update();
   auto* data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   if (!data || reader->GetErrorCode() != 0 || listener.heard) refuse(unreadable);
-  take_cells(*data, mesh);
+  const Part wanted(*data, part);
+  if (has_solid_cells(*data, wanted)) take_border(*data, wanted, mesh);
+  else take_cells(*data, wanted, mesh);
 }
 
-Mesh read_here(const std::string& path, const std::string& suffix) {
+Mesh read_here(const std::string& path, const std::string& suffix, int part) {
   return whole([&](Mesh& mesh) {
     vtkNew<Listener> listener;
     vtkOutputWindow::SetInstance(listener);
-    if (suffix == ".vtp") read_with<vtkXMLPolyDataReader>(path, mesh, *listener);
-    else if (suffix == ".vtu") read_with<vtkXMLUnstructuredGridReader>(path, mesh, *listener);
-    else read_with<vtkGenericDataObjectReader>(path, mesh, *listener);
+    if (suffix == ".vtp") read_with<vtkXMLPolyDataReader>(path, part, mesh, *listener);
+    else if (suffix == ".vtu") read_with<vtkXMLUnstructuredGridReader>(path, part, mesh, *listener);
+    else read_with<vtkGenericDataObjectReader>(path, part, mesh, *listener);
   });
 }
 
@@ -161,7 +151,7 @@ void bound_the_child(pid_t parent, const std::string& path) {
 }
 
 /// What the child does: nothing that it damages or prints reaches the program.
-[[noreturn]] void be_the_child(int to, const std::string& path, const std::string& suffix) {
+[[noreturn]] void be_the_child(int to, const std::string& path, const std::string& suffix, int part) {
   const int nowhere = open("/dev/null", O_WRONLY);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
@@ -169,7 +159,7 @@ void bound_the_child(pid_t parent, const std::string& path) {
     std::signal(signal, SIG_DFL);
   bool sent = false;
   try {
-    sent = send_mesh(to, read_here(path, suffix));
+    sent = send_mesh(to, read_here(path, suffix, part));
   } catch (...) {}  // no memory, for one: the status tells
   _exit(sent ? 0 : 1);
 }
@@ -203,7 +193,7 @@ Mesh unpacked(const std::string& bytes) {
 
 }  // namespace
 
-Mesh read_vtk_mesh(const std::string& path, const std::string& suffix) {
+Mesh read_vtk_mesh(const std::string& path, const std::string& suffix, int part) {
   int ends[2];
   if (pipe(ends) != 0) return {{}, {}, "cannot be read: " + std::string(std::strerror(errno))};
   const pid_t parent = getpid(), child = fork();
@@ -215,7 +205,7 @@ Mesh read_vtk_mesh(const std::string& path, const std::string& suffix) {
   if (child == 0) {
     close(ends[0]);
     bound_the_child(parent, path);
-    be_the_child(ends[1], path, suffix);
+    be_the_child(ends[1], path, suffix, part);
   }
   close(ends[1]);
   const std::string bytes = receive_all(ends[0]);

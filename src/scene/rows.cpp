@@ -198,8 +198,12 @@ constexpr Key rows_of_keys[] = {
     {"fill.shape", "ring", shape<RingShape>(), "", "Ring; in 3D a tube along z."},
     {"fill.shape", "polygon", in_shape<&PolygonShape::corners>().like("[[0, 0], [0.1, 0], [0.05, 0.08]]"), "m", "Corners [x, y]; in 3D a prism along z."},
     {"fill.shape", "surface", in_shape<&SurfaceShape::file>().like("\"gear.stl\""), "",
-     "File with a closed surface of triangles (.stl .obj .ply .vtp .vtu .vtk), or with a closed outline in x, y: lines (.vtp .vtu .vtk) or corners "
-     "(.csv). In 3D an outline is a prism along z. Its place is relative to the scene's file."},
+     "File with a closed surface of triangles (.stl .obj .ply .vtp .vtu .vtk), with a mesh of tetrahedra or other solid cells (.vtu .vtk), of which "
+     "the border counts, or with a closed outline in x, y: lines (.vtp .vtu .vtk), flat cells of one z, of which the border counts, or corners (.csv). "
+     "In 3D an outline is a prism along z. Its place is relative to the scene's file."},
+    {"fill.shape", "part", in_shape<&SurfaceShape::part, belongs>("all").like("2"), "",
+     "Only with surface, of .vtu .vtp .vtk: the cells of this number in the cell data gmsh:physical (meshio), CellEntityIds (Gmsh's .vtk) or medit:ref.",
+     {.at_least = 1}},
     {"fill.shape", "scale", placed<&Placement::scale>(1.0).like("1e-3"), "", "Only with polygon or surface: factor on all lengths, as 1e-3 for a file in millimetres.", positive},
     {"fill.shape", "turn", placed<&Placement::turn>(0.0), "degrees", "Only with polygon or surface: turned about z through the origin, anticlockwise, after scale."},
     {"fill.shape", "move", placed<&Placement::move>("zero"), "m", "Only with polygon or surface: moved by this, after turn."},

@@ -218,6 +218,7 @@ struct SurfaceShape {
   Placement placement;
   std::vector<Facet> facets;  // as the file has them; read with the scene
   bool triangles{};           // else segments in x, y
+  int part{};                 // of a VTK file: the cells of this number; 0: all
 };
 struct CubeShape {
   Vec3 centre{};

@@ -24,12 +24,17 @@ std::optional<std::string> bytes_of(const std::string& path) {
   return bytes;
 }
 
-Mesh mesh_of(const std::string& path) {
+Mesh mesh_of(const std::string& path, int part) {
   std::string suffix = std::filesystem::path(path).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
   const bool vtk = suffix == ".vtp" || suffix == ".vtu" || suffix == ".vtk";
   if (!vtk && suffix != ".stl" && suffix != ".obj" && suffix != ".ply" && suffix != ".csv")
-    return {{}, {}, "a file of an unknown kind"};
+    return {{},
+            {},
+            suffix == ".msh"
+                ? "is Gmsh's own; in Python meshio.write(\"a.vtu\", meshio.read(\"a.msh\")) makes one of VTK"
+                : "a file of an unknown kind"};
+  if (part != 0 && !vtk) return {{}, {}, "has no parts; only .vtu, .vtp and .vtk have"};
   const auto bytes = bytes_of(path);
   if (!bytes) return {{}, {}, "cannot be read"};
   if (suffix == ".stl") return parse_stl(*bytes);
@@ -37,7 +42,7 @@ Mesh mesh_of(const std::string& path) {
   if (suffix == ".ply") return parse_ply(*bytes);
   if (suffix == ".csv") return parse_corners(*bytes);
   if (std::string problem = wrong_number_of_vtk(*bytes, suffix); !problem.empty()) return {{}, {}, problem};
-  return read_vtk_mesh(path, suffix);
+  return read_vtk_mesh(path, suffix, part);
 }
 
 /// Points nearer to each other than the tolerance become one: the first.
@@ -68,9 +73,33 @@ void merge_points(std::vector<Facet>& facets) {
     for (Vec3& x : f) x = first_near(x);
 }
 
+void flatten(std::vector<Facet>& facets) {
+  for (Facet& f : facets)
+    for (Vec3& x : f) x[2] = 0.0;
+}
+
+/// Whether all corners lie in one plane z.
+bool flat(const std::vector<Facet>& facets) {
+  for (const Facet& f : facets)
+    for (const Vec3& x : f)
+      if (x[2] != facets[0][0][2]) return false;
+  return !facets.empty();
+}
+
+/// The sides that an odd number of flat triangles has: those of one border it.
+std::vector<Facet> border_of(const std::vector<Facet>& triangles) {
+  std::map<std::pair<Vec3, Vec3>, int> sides;
+  for (const Facet& f : triangles)
+    for (std::size_t i = 0; i < 3; ++i) ++sides[std::minmax(f[i], f[(i + 1) % 3])];
+  std::vector<Facet> border;
+  for (const auto& [side, count] : sides)
+    if (count % 2 != 0) border.push_back({side.first, side.second, side.second});
+  return border;
+}
+
 }  // namespace
 
-SurfaceFile read_surface(const std::string& path) {
+SurfaceFile read_surface(const std::string& path, int part) {
   SurfaceFile file;
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -78,21 +107,26 @@ SurfaceFile read_surface(const std::string& path) {
   else if (!std::filesystem::is_regular_file(status)) file.problem = "is not a file";
   else if (std::filesystem::file_size(path, error) > most_of_a_surface || error) file.problem = "is larger than 1 GB";
   if (!file.problem.empty()) return file;
-  Mesh mesh = mesh_of(path);
+  Mesh mesh = mesh_of(path, part);
   file.problem = mesh.problem;
   if (!file.problem.empty()) return file;
   file.facets = std::move(mesh.triangles);
   file.triangles = !file.facets.empty();
   if (!file.triangles) {
     file.facets = std::move(mesh.segments);
-    for (Facet& f : file.facets)
-      for (Vec3& x : f) x[2] = 0.0;
+    flatten(file.facets);
   }
   for (const Facet& f : file.facets)
     for (const Vec3& x : f)
       if (!std::isfinite(norm(x))) file.problem = "has a point that is not finite";
   if (file.facets.empty()) file.problem = "has neither triangles nor lines";
-  if (file.problem.empty()) merge_points(file.facets);
+  if (!file.problem.empty()) return file;
+  merge_points(file.facets);
+  if (file.triangles && flat(file.facets)) {
+    file.facets = border_of(file.facets);
+    file.triangles = false;
+    flatten(file.facets);
+  }
   return file;
 }
 

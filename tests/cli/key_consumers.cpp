@@ -84,6 +84,10 @@ Outcome outcome_of(const std::string& base, const std::string& overrides, bool k
   std::ofstream(scene) << scene_texts().at(base);
   std::ofstream(place / "small.csv") << "0.2,0.7\n0.8,0.7\n0.5,0.9\n";  // for fill.shape.surface
   std::ofstream(place / "large.csv") << "0.2,0.7\n0.8,0.7\n0.5,0.95\n";
+  std::ofstream(place / "parts.vtk")  // for fill.shape.part
+      << "# vtk DataFile Version 2.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0.2 0.7 0 0.8 0.7 0 0.8 "
+         "0.9 0 0.2 0.9 0\nCELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES 2\n5\n5\nCELL_DATA 2\nSCALARS CellEntityIds int "
+         "1\nLOOKUP_TABLE default\n1\n2\n";
   std::string command = std::string(killed ? "timeout -s KILL 3 " : "") + "'" BARCHAN_PROGRAM "' run '" +
                         scene.string() + "' --quiet --threads 1 --out '" + out.string() + "'";
   std::istringstream list(overrides);
