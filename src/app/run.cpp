@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/launch.hpp"
 #include "app/make_report.hpp"
 #include "app/running.hpp"
 #include "app/signals.hpp"
@@ -70,6 +71,17 @@ void clear(const fs::path& directory, const Scene& scene, const Plan& plan, bool
   for (const auto& file : measured_files(directory / "run.json"))
     if (std::find(ours.begin(), ours.end(), file) == ours.end()) fs::remove(directory / file, ignored);
   fs::remove(directory / "run.json", ignored);
+}
+
+/// The lock of the output folder; of processes that were started together, a second one is told why it has none.
+void hold(std::optional<FolderLock>& lock, const fs::path& directory, const Launch& launch) {
+  try {
+    lock.emplace(directory);
+  } catch (const SceneError& e) {
+    if (!launch.together()) throw;
+    throw SceneError(e.what() + std::string("; ") + launch.told() +
+                     ": each is a run and needs an --out of its own, or start one process only");
+  }
 }
 
 /// After a failed step: goes back and lets the next steps be smaller. False when that has been tried often enough.
@@ -155,13 +167,15 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
 
 int run(const RunOptions& options) {
   outlive_readers();
+  const Launch launch = how_launched();
+  refuse_one_folder_for_many(launch, options.out);
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   if (options.threads > 0) use_threads(options.threads, 0);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   std::optional<FolderLock> lock;
   std::error_code unseen;
-  if (fs::is_directory(directory, unseen)) lock.emplace(directory);
+  if (fs::is_directory(directory, unseen)) hold(lock, directory, launch);
   std::optional<Archive> from = find_checkpoint(options.restart, directory, scene);
   const bool continued = from.has_value();
   SettledBeds beds;
@@ -179,7 +193,7 @@ int run(const RunOptions& options) {
   listen_to_signals();
   if (!lock) {
     make_directory(directory);
-    lock.emplace(directory);
+    hold(lock, directory, launch);
   }
   if (!lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
