@@ -8,17 +8,9 @@
 #include "laws/consistent_fluid.hpp"
 #include "laws/plain_fluid.hpp"
 #include "models/fluid/fluid_rates.hpp"
+#include "models/fluid/fluid_surface.hpp"
 
 namespace barchan {
-
-template <class V>
-BARCHAN_SIMD_INLINE V determinant(const std::array<V, 3>& m) {
-  return m[0] * m[2] - m[1] * m[1];
-}
-template <class V>
-BARCHAN_SIMD_INLINE V determinant(const std::array<V, 6>& m) {
-  return m[0] * (m[2] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[3]) + m[3] * (m[1] * m[4] - m[2] * m[3]);
-}
 
 /// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
 template <class V>
@@ -69,43 +61,6 @@ struct SurfaceColumns {
     for (std::size_t d = 0; d < Dim; ++d) normal[d] = fluid.column(Field::surface_normal, static_cast<int>(d));
   }
 };
-
-/// 0 below a, 1 above b, smooth between (3 x^2 - 2 x^3).
-template <class V>
-BARCHAN_SIMD_INLINE V smooth_step(V x, double a, double b) {
-  const V t = simd::min(simd::max((x - V(a)) * V(1.0 / (b - a)), V(0.0)), V(1.0));
-  return t * t * (V(3.0) - V(2.0) * t);
-}
-
-/// Takes the part of the shift that leads out of the fluid away; what leads inwards or along the surface stays.
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE void keep_inside(std::array<V, Dim>& shift, const std::array<V, Dim>& normal) {
-  V along = shift[0] * normal[0], square = normal[0] * normal[0];
-  for (std::size_t d = 1; d < Dim; ++d) {
-    along = simd::fma(shift[d], normal[d], along);
-    square = simd::fma(normal[d], normal[d], square);
-  }
-  const V out = simd::select(along < V(0.0), along / square, V(0.0));  // a normal of zero has nothing along it
-  for (std::size_t d = 0; d < Dim; ++d) shift[d] = simd::fnma(out, normal[d], shift[d]);
-}
-
-/// How full a neighbourhood is, 1 in a whole fluid and at its straight surface alike: what tr M misses beyond a
-/// surface, |B| tells. Measured: 0.98 to 1.04 in the rows at the surface of a lattice, within 0.05 of that on disturbed
-/// particles; 0.4 in spray. Half of a Wendland kernel has tr M = -Dim/2 and h|B| = 7/(3 pi) in 2D.
-constexpr double surface_share = 0.67;
-/// A loose neighbourhood (spray that landed, a pool that swelled) bears no pressure: what of its density is above that
-/// at rest decays at the rate `loosening` times what the neighbourhood misses beyond this share (at most a half, so
-/// that a step of 0.4 h/c takes no more than there is). Energy of compression is lost, none is won; weight then draws
-/// the fluid together. Water at rest keeps what is tolerated: a broken dam with 0.04, 0.02, 0.005 was 4.7, 2.4, 1.0 %
-/// above its volume.
-constexpr double tolerated_swelling = 0.015;
-
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V loosen(V rho, V trace, V lopsided, const FluidParameters& q) {
-  const V fullness = (V(surface_share) * lopsided - trace * V(1.0 / Dim)) * V(1.0 / q.lattice_moment);
-  return V(q.loosening) * simd::min(simd::max(fullness - V(1.0 - tolerated_swelling), V(-0.5)), V(0.0)) *
-         simd::max(rho - V(q.reference_density), V(0.0));
-}
 
 template <int Dim, class V>
 BARCHAN_SIMD_INLINE std::array<V, Dim> shift_of(const std::array<V, Dim>& concentration, const FluidParameters& q) {
@@ -201,57 +156,6 @@ BARCHAN_SIMD_INLINE auto is_loose(V content, const std::array<V, Dim>& concentra
   V square(0.0);
   for (std::size_t d = 0; d < Dim; ++d) square = simd::fma(concentration[d], concentration[d], square);
   return (over < V(0.0)) | (half * half * square > over * over);
-}
-
-/// Without friction, rows next to a heavy free surface rock each other up, where the operators change from corrected to
-/// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. The rate
-/// is that of gravity over a spacing. So a heavy fluid with a free surface has at least these viscosities, in rho0 h
-/// sqrt(g h): everywhere; more near the surface, where the operators are corrected, and where they are plain. Measured
-/// with a tank at rest (100 crossings) and a standing wave 50 spacings deep; without weight a surface needs none.
-constexpr double bulk_friction = 0.08, corrected_friction = 6.4, plain_friction = 3.0;
-
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V least_viscosity(V mu, V inner, const std::array<V, Dim>& normal, const FluidParameters& q) {
-  V square(0.0);
-  for (std::size_t d = 0; d < Dim; ++d) square = simd::fma(normal[d], normal[d], square);
-  const V near = simd::mask_zero(square > V(0.0), V(plain_friction) + inner * V(corrected_friction - plain_friction));
-  return simd::max(mu, (V(bulk_friction) + near) * V(q.least_viscosity));
-}
-
-/// In the top row the one-sided gradient takes curvature for its own: with weights that are isotropic the Laplacian
-/// sees x^2 along the surface with 0.47 of its truth, y^2 across with -0.06, and drags a potential flow with 0.5 nu k^2
-/// v. Weights of 0.12 along the surface leave below 0.005 (solved on lattices, radii of 2.1 to 4, 2D and 3D alike), so
-/// that there A grows until its least eigenvalue is -0.88.
-constexpr double surface_skew = 0.88, largest_raise = 3.0;
-
-/// The factor of A that makes it so; 1 inside. No weight comes below 0.1: the least eigenvalue of A (traceless) follows
-/// from its size and, in 3D, its determinant, within 2 %.
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V raised_weights(const std::array<V, Dim*(Dim + 1) / 2>& a, V outer) {
-  V square(1e-6);
-  for (std::size_t d = 0; d < Dim; ++d)
-    for (std::size_t e = 0; e <= d; ++e)
-      square = simd::fma(V(d == e ? 1.0 : 2.0) * a[moment_index(d, e)], a[moment_index(d, e)], square);
-  const V size = simd::sqrt(square);
-  V least = V(0.7071067811865476) * size;  // -(the least eigenvalue)
-  if constexpr (Dim == 3) {
-    const V shape = determinant(a) * V(7.3484692283495345) / (square * size);  // 1: (-1, -1, 2), -1: (1, 1, -2)
-    const V half = simd::sqrt(simd::min(simd::max(V(0.5) - V(0.5) * shape, V(0.0)), V(1.0)));
-    least = V(0.816496580927726) * size * (V(0.5) + V(0.5) * half);
-  }
-  return V(1.0) + outer * (simd::min(V(surface_skew) / least, V(largest_raise)) - V(1.0));
-}
-
-/// What the plain Laplacian of p - rho0 g.x lacks at a heavy surface, beyond which nothing lies: 2 B times its
-/// gradient, which the force knows. Without it the diffusion moved the surface: 1.1 % of a wave a period with 50 rows.
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V lost_beyond(const std::array<V, Dim>& force, const std::array<V, Dim>& concentration,
-                                  const FluidParameters& q) {
-  V lost(0.0);
-  if (q.least_viscosity > 0.0)
-    for (std::size_t d = 0; d < Dim; ++d)
-      lost = simd::fma(V(2.0) * (force[d] - V(q.reference_density * q.gravity[d])), concentration[d], lost);
-  return lost;
 }
 
 /// Where walls of different velocities meet, the pressure has no bound, and a particle that is squeezed into the corner
