@@ -210,7 +210,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   if constexpr (ends) {
     inner = simd::select(place.ends > V(0.0), smooth_step(place.wholeness, surface_begins, surface_ends), V(1.0));
     outer = V(1.0) - inner;
-    if (q.least_viscosity > 0.0) viscosity = least_viscosity<Dim, V>(V(mu), inner, place.normal, q);
+    if (q.least_viscosity > 0.0) viscosity = least_viscosity<Dim, V>(V(mu), outer, place.normal, q);
   }
   const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
   const V specific = V(1.0) / rho;
@@ -229,6 +229,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
         grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
     }
   }
+  if (ends && q.least_viscosity > 0.0) carry_weight<Dim, V>(force, grad_p, s, push, outer, q);
   const std::array<V, Dim> rubbed = friction(inverse, grad_v);
   V divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
