@@ -154,6 +154,34 @@ TEST_P(FreeSurface, StillTankIsQuiet) {
   EXPECT_LE(e.gain, 1e-3);
 }
 
+/// A standing wave with 25 rows over its depth, from the flat surface on: its amplitude after three periods. What is
+/// found is the largest size about that moment, so that an error of the frequency does not count.
+TEST(StandingWave, KeepsItsAmplitude) {
+  Drive drive("verification/standing_wave", {"spacing=0.04"});
+  const auto& p = drive.phase(0);
+  const double k = std::numbers::pi, period = 2 * k / std::sqrt(9.81 * k * std::tanh(k));
+  const auto amplitude = [&] {  // of the velocity (-cosh ky sin kx, sinh ky cos kx)
+    double along = 0, square = 0;
+    for (std::size_t q = 0; q < p.size(); ++q) {
+      const double x = p.column(Field::position, 0)[q], y = p.column(Field::position, 1)[q];
+      const double u = -std::cosh(k * y) * std::sin(k * x), v = std::sinh(k * y) * std::cos(k * x);
+      along += p.column(Field::velocity, 0)[q] * u + p.column(Field::velocity, 1)[q] * v;
+      square += u * u + v * v;
+    }
+    return along / square;
+  };
+  const double start = amplitude();
+  double late = 0;
+  for (int step = -8; step <= 8; ++step) {
+    drive.to((3 + step / 80.0) * period);
+    late = std::max(late, amplitude());
+  }
+  const double loss = 1 - std::cbrt(late / start);
+  report("amplitude that a period takes", loss, 0.01);
+  EXPECT_LE(loss, 0.01);
+  EXPECT_GE(loss, -0.005);  // nothing feeds it
+}
+
 TEST_P(FreeSurface, RotatingPatchKeepsCornersAndEnergy) {
   Drive drive("verification/square_patch", scheme(GetParam(), "fluid"));  // 50 a side, as the bound asks
   const auto& p = drive.phase(0);

@@ -240,6 +240,7 @@ void FluidPhase::attach(Workspace& w) {
     if (!plan_.eddies)
       q.least_viscosity =
           phase_.density * q.smoothing_length * std::sqrt(norm(scene_.domain.gravity) * q.smoothing_length);
+    q.surface_depth = 0.5 * plan_.spacing;
     q.loosening = 4.0 * q.sound_speed / q.smoothing_length;
     q.void_pressure = pressure_(phase_.density);
   } else {

@@ -8,17 +8,9 @@
 #include "laws/consistent_fluid.hpp"
 #include "laws/plain_fluid.hpp"
 #include "models/fluid/fluid_rates.hpp"
+#include "models/fluid/fluid_surface.hpp"
 
 namespace barchan {
-
-template <class V>
-BARCHAN_SIMD_INLINE V determinant(const std::array<V, 3>& m) {
-  return m[0] * m[2] - m[1] * m[1];
-}
-template <class V>
-BARCHAN_SIMD_INLINE V determinant(const std::array<V, 6>& m) {
-  return m[0] * (m[2] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[3]) + m[3] * (m[1] * m[4] - m[2] * m[3]);
-}
 
 /// Inverse of a symmetric matrix given by its lower triangle (xx xy yy | xx xy yy xz yz zz).
 template <class V>
@@ -69,43 +61,6 @@ struct SurfaceColumns {
     for (std::size_t d = 0; d < Dim; ++d) normal[d] = fluid.column(Field::surface_normal, static_cast<int>(d));
   }
 };
-
-/// 0 below a, 1 above b, smooth between (3 x^2 - 2 x^3).
-template <class V>
-BARCHAN_SIMD_INLINE V smooth_step(V x, double a, double b) {
-  const V t = simd::min(simd::max((x - V(a)) * V(1.0 / (b - a)), V(0.0)), V(1.0));
-  return t * t * (V(3.0) - V(2.0) * t);
-}
-
-/// Takes the part of the shift that leads out of the fluid away; what leads inwards or along the surface stays.
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE void keep_inside(std::array<V, Dim>& shift, const std::array<V, Dim>& normal) {
-  V along = shift[0] * normal[0], square = normal[0] * normal[0];
-  for (std::size_t d = 1; d < Dim; ++d) {
-    along = simd::fma(shift[d], normal[d], along);
-    square = simd::fma(normal[d], normal[d], square);
-  }
-  const V out = simd::select(along < V(0.0), along / square, V(0.0));  // a normal of zero has nothing along it
-  for (std::size_t d = 0; d < Dim; ++d) shift[d] = simd::fnma(out, normal[d], shift[d]);
-}
-
-/// How full a neighbourhood is, 1 in a whole fluid and at its straight surface alike: what tr M misses beyond a
-/// surface, |B| tells. Measured: 0.98 to 1.04 in the rows at the surface of a lattice, within 0.05 of that on disturbed
-/// particles; 0.4 in spray. Half of a Wendland kernel has tr M = -Dim/2 and h|B| = 7/(3 pi) in 2D.
-constexpr double surface_share = 0.67;
-/// A loose neighbourhood (spray that landed, a pool that swelled) bears no pressure: what of its density is above that
-/// at rest decays at the rate `loosening` times what the neighbourhood misses beyond this share (at most a half, so
-/// that a step of 0.4 h/c takes no more than there is). Energy of compression is lost, none is won; weight then draws
-/// the fluid together. Water at rest keeps what is tolerated: a broken dam with 0.04, 0.02, 0.005 was 4.7, 2.4, 1.0 %
-/// above its volume.
-constexpr double tolerated_swelling = 0.015;
-
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V loosen(V rho, V trace, V lopsided, const FluidParameters& q) {
-  const V fullness = (V(surface_share) * lopsided - trace * V(1.0 / Dim)) * V(1.0 / q.lattice_moment);
-  return V(q.loosening) * simd::min(simd::max(fullness - V(1.0 - tolerated_swelling), V(-0.5)), V(0.0)) *
-         simd::max(rho - V(q.reference_density), V(0.0));
-}
 
 template <int Dim, class V>
 BARCHAN_SIMD_INLINE std::array<V, Dim> shift_of(const std::array<V, Dim>& concentration, const FluidParameters& q) {
@@ -203,21 +158,6 @@ BARCHAN_SIMD_INLINE auto is_loose(V content, const std::array<V, Dim>& concentra
   return (over < V(0.0)) | (half * half * square > over * over);
 }
 
-/// Without friction, rows next to a heavy free surface rock each other up, where the operators change from corrected to
-/// plain, and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. The rate
-/// is that of gravity over a spacing. So a heavy fluid with a free surface has at least these viscosities, in rho0 h
-/// sqrt(g h): everywhere; more near the surface, where the operators are corrected, and where they are plain. Measured
-/// with a tank at rest (100 crossings) and a standing wave 50 spacings deep; without weight a surface needs none.
-constexpr double bulk_friction = 0.08, corrected_friction = 6.4, plain_friction = 0.8;
-
-template <int Dim, class V>
-BARCHAN_SIMD_INLINE V least_viscosity(V mu, V inner, const std::array<V, Dim>& normal, const FluidParameters& q) {
-  V square(0.0);
-  for (std::size_t d = 0; d < Dim; ++d) square = simd::fma(normal[d], normal[d], square);
-  const V near = simd::mask_zero(square > V(0.0), V(plain_friction) + inner * V(corrected_friction - plain_friction));
-  return simd::max(mu, (V(bulk_friction) + near) * V(q.least_viscosity));
-}
-
 /// Where walls of different velocities meet, the pressure has no bound, and a particle that is squeezed into the corner
 /// may change its density by a multiple in one step (a lid-driven cavity of Re 1000 with the default radius). In a
 /// fluid that fills its space a density off by more than `tolerated_error` of rest decays with the rate `calming`, and
@@ -270,7 +210,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   if constexpr (ends) {
     inner = simd::select(place.ends > V(0.0), smooth_step(place.wholeness, surface_begins, surface_ends), V(1.0));
     outer = V(1.0) - inner;
-    if (q.least_viscosity > 0.0) viscosity = least_viscosity<Dim, V>(V(mu), inner, place.normal, q);
+    if (q.least_viscosity > 0.0) viscosity = least_viscosity<Dim, V>(V(mu), outer, place.normal, q);
   }
   const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
   const V specific = V(1.0) / rho;
@@ -289,6 +229,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
         grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
     }
   }
+  if (ends && q.least_viscosity > 0.0) carry_weight<Dim, V>(force, grad_p, s, push, outer, q);
   const std::array<V, Dim> rubbed = friction(inverse, grad_v);
   V divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
@@ -305,7 +246,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
   V laplacian = laplace_p * dynamic, carried = along_p * V(1.0 / c2);
   if constexpr (ends) {
-    laplacian = inner * laplacian + outer * (V(2.0) * s.diffusion);
+    laplacian = inner * laplacian + outer * (V(2.0) * s.diffusion - lost_beyond<Dim, V>(force, s.concentration, q));
     carried = inner * carried;
   }
   r.density = -rho * divergence + V(q.diffusivity / c2) * laplacian +
@@ -320,14 +261,19 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   }
   if (ends && q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_of<Dim, V>(s.moment), lopsided, q);
   if (q.calming > 0.0) r.density = calm<V>(r.density, rho, q);
-  // The next step's weights; they stay positive: no entry of A beyond a half.
+  // The next step's weights; they stay positive: no entry of A beyond a half, save at a heavy surface.
   const V scale = V(-0.5 * (Dim + 2) * Dim) * per_trace;
+  auto a = moment;
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e <= d; ++e) {
       const std::size_t m = moment_index(d, e);
-      const V a = scale * moment[m] + V(d == e ? 0.5 * (Dim + 2) : 0.0);
-      anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a, V(0.5)), V(-0.5)));
+      a[m] = scale * moment[m] + V(d == e ? 0.5 * (Dim + 2) : 0.0);
+      anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a[m], V(0.5)), V(-0.5)));
     }
+  if (ends && q.least_viscosity > 0.0) {
+    const V factor = raised_weights<Dim, V>(a, outer);
+    for (auto& skew : anisotropy) skew *= factor;
+  }
   return r;
 }
 

@@ -48,7 +48,8 @@ struct FluidParameters {
   Vec3 acceleration;          // m/s2, further uniform body force
   double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole; plain: everywhere
   double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
-  double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_finish.hpp); else 0
+  double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_surface.hpp); else 0
+  double surface_depth;    // m, of the middle of the top row below a heavy free surface, half a spacing
   double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
   double calming = 0.0;    // 1/s, of a fluid that fills its space: see calm() in fluid_finish.hpp; 0: none
   double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
