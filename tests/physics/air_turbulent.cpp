@@ -69,5 +69,25 @@ TEST(LogarithmicLayer, Stays) {
   expect_layer(watch(drive, 0.3, 20));
 }
 
+/// The same with k and omega: besides, they stay those of the layer.
+TEST(LogarithmicLayer, StaysWithTwoEquations) {
+  Drive drive("verification/logarithmic_layer", {"phases.air.turbulence=k-omega"});
+  drive.to(0.2);
+  expect_layer(watch(drive, 0.3, 20));
+  const auto& p = drive.phase(0);
+  double energy = 0.0, rate = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double y = std::max(p.column(Field::position, 1)[i], 0.25 * drive.scene().spacing);
+    energy += p.column(Field::turbulent_kinetic_energy)[i] / (friction_velocity * friction_velocity / 0.3);
+    rate += p.column(Field::specific_dissipation_rate)[i] / (friction_velocity / (0.3 * 0.4 * y));
+  }
+  energy = energy / static_cast<double>(p.size()) - 1.0;
+  rate = rate / static_cast<double>(p.size()) - 1.0;
+  report("k over u*^2/0.3, less 1", energy, 0.03);
+  report("omega over u*/(0.12 y), less 1", rate, 0.03);
+  EXPECT_LE(std::abs(energy), 0.03);
+  EXPECT_LE(std::abs(rate), 0.03);
+}
+
 }  // namespace
 }  // namespace barchan

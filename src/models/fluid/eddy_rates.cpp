@@ -20,7 +20,7 @@ using EddySums = typename EddyFluid<Dim>::template Sums<Four>;
 /// What a turbulent fluid's particles have beside the columns of every fluid.
 template <int Dim>
 struct EddyColumns {
-  double* nu_t;
+  double *nu_t, *shear = nullptr;
   const double *distance, *root, *touch;
   std::array<const double*, Dim> velocity;
 
@@ -30,6 +30,7 @@ struct EddyColumns {
         root(records.root.data()),
         touch(records.touch.data()) {
     for (std::size_t d = 0; d < Dim; ++d) velocity[d] = fluid.column(Field::velocity, static_cast<int>(d));
+    if (fluid.has(Field::shear_rate)) shear = fluid.column(Field::shear_rate);
   }
 };
 
@@ -103,12 +104,18 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
   return s;
 }
 
-/// nu_t of the next step; where there is none yet, from the strain alone.
+/// nu_t of the next step; where there is none yet, from the strain alone. Of a fluid whose turbulence has equations of
+/// its own (k_omega.hpp): |S|.
 template <int Dim>
 BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
                                          const typename EddyFluid<Dim>::template Stress<Four>& stress, const FourOf& at,
                                          const EddyParameters& p) {
   if (p.model == Turbulence::none) return;
+  if (columns.shear) {
+    const Four root = load_four(columns.root, at.first, at.count);
+    store_four(simd::sqrt(stress.phi2) / simd::max(root * root, Four(1e-30)), columns.shear, at.first, at.count);
+    return;
+  }
   const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
   const Four grown = eddy_viscosity(Four(p.viscosity), length, simd::sqrt(stress.phi2) * Four(1.0 / p.density));
   const Four begun = length * length * simd::sqrt(stress.shear2);

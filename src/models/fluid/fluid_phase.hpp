@@ -13,6 +13,7 @@
 #include "models/drive.hpp"
 #include "models/fluid/energy.hpp"
 #include "models/fluid/held_boxes.hpp"
+#include "models/fluid/k_omega.hpp"
 #include "models/fluid/moving_boxes.hpp"
 #include "models/fluid/relief.hpp"
 #include "models/fluid/surface.hpp"
@@ -58,6 +59,8 @@ class FluidPhase : public Model {
   void bind_entries();
   void look_for_voids();
   void bind_eddies();
+  void bind_k_omega();
+  bool has_k_omega() const { return keys_.turbulence == Turbulence::k_omega; }
   void bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles);
   Relief relief() const;
   double largest_speed() const;
@@ -94,6 +97,8 @@ class FluidPhase : public Model {
   EddyParameters eddies_;
   std::vector<GroundDistance::Ground> ground_phases_;
   std::unique_ptr<GroundDistance> ground_;
+  std::vector<KOmegaNeighbour> k_omega_neighbours_;
+  KOmegaParameters k_omega_;
   double largest_viscosity_ = 0;  // m2/s
   StepLimit viscous_limit_;
 };
