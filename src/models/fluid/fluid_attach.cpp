@@ -101,6 +101,7 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   p.driven = Drive::exists(scene, phase);
   p.friction_velocity = stated_friction_velocity(scene, phase);
   enclose(scene, blocks, number, layout, warnings);
+  check_k_omega(scene, number, layout);
   p.fields = fields_of(scene, phase, p);
   p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
   if (p.sound_speed <= 0)

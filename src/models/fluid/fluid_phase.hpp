@@ -31,6 +31,9 @@ void declare_air(const Scene& scene, std::size_t number, Layout& layout);
 void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                   std::vector<std::string>& warnings);
 
+/// Throws SceneError where a fluid's two equations of turbulence cannot be.
+void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout);
+
 /// An entry of two fluids, or of a fluid with itself.
 void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
 /// What makes the sums of a fluid exact to first order; empty: nothing does.

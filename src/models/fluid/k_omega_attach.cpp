@@ -4,6 +4,7 @@
 
 #include "base/errors.hpp"
 #include "models/fluid/fluid_phase.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -23,16 +24,33 @@ const RecordArray& turbulence_of(const Workspace& w, const RecordArray* motion, 
 
 }  // namespace
 
+void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) {
+  const Phase& phase = scene.phases[fluid];
+  const PlanPhase& plan = layout.phases[fluid];
+  if (phase.fluid().turbulence != Turbulence::k_omega) return;
+  const std::string key = scene.file + ": phases." + plan.name + ".turbulence: \"k-omega\" ";
+  if (plan.free_surface)
+    throw SceneError(key + "knows no free surface, and \"" + plan.name + "\" has one; expected no turbulence");
+  if (!(plan.friction_velocity(0.0) > 0.0))
+    throw SceneError(key +
+                     "begins as the logarithmic layer of a friction velocity, and the scene states none; expected "
+                     "a log-profile as velocity of a fill, or a lid with shear-stress");
+  for (std::size_t k = 0; k < scene.phases.size(); ++k) {
+    const Phase& other = scene.phases[k];
+    if (k == fluid || !entry_between(scene, phase, other)) continue;
+    if (other.kind() == PhaseKind::grains || layout.phases[k].travels ||
+        layout.phases[k].moves != layout.phases[k].flows)
+      throw SceneError(key + "knows no grains, bodies or walls that move, and \"" + other.name +
+                       "\" is such a phase; expected \"mixing-length\", or no entry of the two");
+  }
+}
+
 /// Its entries as its turbulence sees them.
 void FluidPhase::bind_k_omega() {
   const std::string key = scene_.file + ": phases." + plan_.name + ".turbulence";
   k_omega_.viscosity = eddies_.viscosity;
   k_omega_.spacing = plan_.spacing;
   k_omega_.begins = plan_.friction_velocity(0.0);
-  if (!(k_omega_.begins > 0.0))
-    throw SceneError(key +
-                     ": \"k-omega\" begins as the logarithmic layer of a friction velocity, and the scene states "
-                     "none; expected a log-profile as velocity of a fill, or a lid with shear-stress");
   for (const EddyNeighbour& e : eddy_neighbours_) {
     KOmegaNeighbour n;
     n.pair = e.pair;
