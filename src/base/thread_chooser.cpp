@@ -1,6 +1,7 @@
 #include "base/thread_chooser.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace barchan {
 
@@ -16,13 +17,15 @@ void ThreadChooser::go_to(std::size_t choice) {
   if (choice != present_) ++switches_;
   present_ = choice;
   in_window_ = 0;
+  long_ = 0;
 }
 
-/// The first step of a block wakes threads and fills caches: the median of all leaves it and the searches out.
-double ThreadChooser::median() const {
+/// The first step of a block wakes threads and fills caches, and a search may fall into it: the mean without the first
+/// and the two longest of the others. Steps differ, so that a median of few would be that of one kind or another.
+double ThreadChooser::usual() const {
   std::array<double, block> sorted = window_;
-  std::sort(sorted.begin(), sorted.end());
-  return sorted[block / 2];
+  std::sort(sorted.begin() + 1, sorted.end());
+  return std::accumulate(sorted.begin() + 1, sorted.end() - 2, 0.0) / static_cast<double>(block - 3);
 }
 
 void ThreadChooser::give_up(bool at_once) {
@@ -57,16 +60,17 @@ void ThreadChooser::took(double seconds) {
   since_ += seconds;
   if (counts_.size() == 1) return;
   if (present_ > 0 && seconds_[0] > 0.0) {
-    lost_ += std::max(seconds - seconds_[0], 0.0);
-    if (seconds > hopeless * seconds_[0]) return give_up(false);
+    lost_ = std::max(lost_ + seconds - seconds_[0], 0.0);
+    if (seconds > hopeless * seconds_[0] && (trying_ || ++long_ == 2)) return give_up(false);
   }
   window_[in_window_++] = seconds;
   if (in_window_ < block) return;
-  const double usual = median();
+  const double now = usual();
   in_window_ = 0;
-  if (trying_) return measured(usual);
-  if (present_ > 0 && usual > slower * seconds_[present_]) return give_up(true);
-  seconds_[present_] = present_ > 0 ? std::min(usual, seconds_[present_]) : usual;
+  long_ = 0;
+  if (trying_) return measured(now);
+  if (present_ > 0 && (now > slower * seconds_[present_] || since_ >= longest_wait)) return give_up(true);
+  seconds_[present_] += follow * (now - seconds_[present_]);
   // With fewer threads than there could be: a trial of more.
   if (present_ + 1 < counts_.size() && since_ >= wait_ && may_lose()) {
     trying_ = true;

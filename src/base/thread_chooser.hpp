@@ -11,11 +11,14 @@ namespace barchan {
 /// do not depend on its choice.
 ///
 /// It begins with one thread and tries more, doubling, as long as a step becomes shorter by a tenth. Then it stays with
-/// the best and looks at every step: where a team becomes slower than it was measured, one thread is measured again.
+/// the best and looks at every step: where a team becomes slower than it was measured, and every twenty seconds, one
+/// thread is measured again.
 /// With fewer threads than there could be it tries more now and then, after half a second, and after twice that when
-/// the trial failed, to twenty seconds. What teams have lost against one thread may be a twentieth of the run and 30 ms
-/// at most: before it is more, no team is tried, and a step of a team that takes five times as long as with one thread
-/// ends its trial at once.
+/// the trial failed, to twenty seconds. What teams have lost against one thread, less what they gained since, may be a
+/// twentieth of the run and 30 ms at most: while it is more, no team is tried, and a step of a team that takes five
+/// times as long as with one thread ends its trial at once, or a second one among nine: one alone may be a search.
+/// Gains count because steps differ: one in six that takes longer, as those with an exchange of wind and grains do, is
+/// no loss of the team.
 class ThreadChooser {
  public:
   /// `most` < 1 counts as 1.
@@ -37,9 +40,10 @@ class ThreadChooser {
   long switches() const { return switches_; }
 
  private:
-  static constexpr std::size_t block = 5;                         // steps of a measurement
+  static constexpr std::size_t block = 9;                         // steps of a measurement
   static constexpr double better = 0.9;                           // of the time with fewer threads, to be worth more
   static constexpr double slower = 1.3;                           // of the measured time: something has changed
+  static constexpr double follow = 0.2;                           // of the difference to the next block
   static constexpr double hopeless = 5.0;                         // of the time with one thread
   static constexpr double first_wait = 0.5, longest_wait = 20.0;  // s
   static constexpr double share = 0.05, allowance = 0.03;         // of the run, s: what teams may lose
@@ -49,7 +53,7 @@ class ThreadChooser {
   /// Back to one thread, whose steps are measured anew; `at_once`: then more are tried without a wait.
   void give_up(bool at_once);
   bool may_lose() const { return lost_ < share * total_ + allowance; }
-  double median() const;
+  double usual() const;
 
   std::vector<int> counts_;      // 1, 2, 4, ..., most
   std::vector<double> seconds_;  // a step, as measured last, by choice; 0: not yet
@@ -58,6 +62,7 @@ class ThreadChooser {
   bool trying_ = true;  // a measurement is going on
   std::array<double, block> window_{};
   std::size_t in_window_ = 0;
+  int long_ = 0;  // steps of the block that took `hopeless` times as long as with one thread
   double total_ = 0.0, lost_ = 0.0, since_ = 0.0, wait_ = first_wait;  // s; since: the last trial
   long switches_ = 0;
 };

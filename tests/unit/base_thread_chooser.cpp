@@ -56,6 +56,18 @@ TEST(ThreadChooser, TakesAllOfAQuietMachine) {
   }
 }
 
+// Every sixth step has more than twice as much to do: with two threads it takes longer than a usual step with one. Now
+// and then all have half as much more.
+TEST(ThreadChooser, TakesATeamWhoseStepsDiffer) {
+  ThreadChooser chooser(2);
+  long number = 0;
+  run(chooser, 20000, [&](int threads, double) {
+    ++number;
+    return 5e-3 * (number % 6 == 0 ? 2.4 : 1.0) * (number % 200 < 5 ? 1.5 : 1.0) * (threads > 1 ? 0.62 : 1.0);
+  });
+  EXPECT_GT(static_cast<double>(chooser.uses()[1].steps), 0.95 * 20000.0);
+}
+
 // A team takes a slice of time of other processes at every barrier: sixty times as long as one thread.
 TEST(ThreadChooser, LosesLittleOnABusyMachine) {
   for (const double step : {1e-4, 5e-4, 5e-3}) {

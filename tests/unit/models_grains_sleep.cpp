@@ -160,7 +160,12 @@ TEST(SphereSleep, WakesWhomTheContactsDisturbed) {
   EXPECT_NEAR(step->tolerance, 0.3 * gravity, 1e-15);
   EXPECT_NEAR(step->tolerance * step->lag, 1e-2 * bound, 1e-15) << "an impulse that would give that speed wakes";
   step->wakes[grains.numbers[1]] = 1;
-  grains.sleep.wake();
+  std::vector<SphereChunk> chunks(2);
+  chunks[0].border = {1, 2};
+  chunks[1].border = {4};
+  chunks[0].wakes = true;
+  const auto woken = grains.sleep.wake(chunks, grains.numbers.data());
+  EXPECT_EQ(std::vector<std::uint32_t>(woken.begin(), woken.end()), (std::vector<std::uint32_t>{1}));
   EXPECT_EQ(grains.asleep(), (Who{true, false, true, true, true, true}));
   EXPECT_EQ(grains.sleep.sleeping(), 5u);
   grains.sleep.mark(grains.numbers.data());
@@ -168,6 +173,33 @@ TEST(SphereSleep, WakesWhomTheContactsDisturbed) {
   EXPECT_TRUE(grains.sleep.changed(1));
   EXPECT_FALSE(grains.sleep.changed(2));
   EXPECT_EQ(step->wakes[grains.numbers[1]], 0) << "told once";
+}
+
+/// Where only the last step of the contacts woke some, the flags are those that a look at all gives.
+TEST(SphereSleep, MarksThoseWhoWokeAsALookAtAllDoes) {
+  SixGrains grains;
+  for (int k = 0; k < 3; ++k) grains.look();
+  grains.sleep.mark(grains.numbers.data());
+  grains.sleep.settled();
+  const SleepStep* step = grains.sleep.step(grains.numbers.data());
+  std::vector<SphereChunk> chunks(1);
+  chunks[0].wakes = true;
+  chunks[0].border = {0, 3, 5};
+  const auto flags = [&] {
+    std::vector<int> all;
+    for (std::size_t k = 0; k < 6; ++k) all.push_back(2 * grains.sleep.changed(k) + grains.sleep.flags()[k]);
+    return all;
+  };
+  for (const std::uint32_t k : {3u, 5u}) {
+    step->wakes[grains.numbers[k]] = 1;
+    grains.sleep.wake(chunks, grains.numbers.data());
+    grains.sleep.mark_woken();
+    const auto alone = flags();
+    EXPECT_EQ(alone[k], 2) << "awake, and changed";
+    grains.sleep.mark(grains.numbers.data());
+    EXPECT_EQ(flags(), alone);
+    grains.sleep.settled();
+  }
 }
 
 /// Six grains in a row, each near the next one, in two chunks of three, with the lists of a search.

@@ -56,8 +56,8 @@ TEST(WallNormals, PointOutOfADiscAcrossTheSeam) {
   }
   auto wall = phase(2, places, 1.0, {Field::wall_normal, Field::wall_depth});
   wall.column(Field::wall_depth)[0] = 1.0;  // known: left alone
-  PhaseParticles* const walls[] = {&wall};
-  find_wall_normals(walls, b, 1.0);
+  const WallPart parts[] = {{&wall, 1.0}};
+  find_wall_normals(wall, parts, b, 1.0);
   EXPECT_EQ(norm(vector(wall, Field::wall_normal, 0)), 0.0);
   for (std::size_t k = 1; k < places.size(); ++k) {
     Vec3 out = position(wall, k) - Vec3{0, 20, 0};
@@ -70,6 +70,31 @@ TEST(WallNormals, PointOutOfADiscAcrossTheSeam) {
       EXPECT_GT(dot(n, out) / norm(out), 0.97) << "stairs and all";
     }
   }
+}
+
+/// A post on a floor: the floor's particles count by their volume, whatever their spacing.
+TEST(WallNormals, CountNeighboursByTheirVolume) {
+  const Bounds b = box(2, {40, 40, 0}, {false, false, false});
+  const auto filled = [](double low_x, double high_x, double low_y, double high_y, double dx) {
+    std::vector<Vec3> places;
+    for (double x = low_x + 0.5 * dx; x < high_x; x += dx)
+      for (double y = low_y + 0.5 * dx; y < high_y; y += dx) places.push_back({x, y, 0});
+    return places;
+  };
+  const auto post = filled(16, 20, 16, 40, 1.0);
+  const auto on_floor = [&](double dx, double volume) {
+    auto wall = phase(2, post, 1.0, {Field::wall_normal, Field::wall_depth});
+    const auto floor = phase(2, filled(0, 40, 12, 16, dx), dx * dx, {Field::wall_normal, Field::wall_depth});
+    const WallPart parts[] = {{&wall, 1.0}, {&floor, volume}};
+    find_wall_normals(wall, parts, b, 1.0);
+    std::size_t k = 0;
+    while (norm(position(wall, k) - Vec3{19.5, 17.5, 0}) > 1e-9) ++k;
+    const Vec3 n = vector(wall, Field::wall_normal, k);
+    return std::atan2(n[1], n[0]);
+  };
+  const double same = on_floor(1.0, 1.0);
+  EXPECT_NEAR(on_floor(0.5, 0.25), same, 0.02);
+  EXPECT_GT(on_floor(0.5, 1.0), same + 0.2) << "by their number the floor would push the normal up";
 }
 
 /// Two rows of a wall round a disc that touches no side; the second says nothing that the first does not.

@@ -75,13 +75,15 @@ void SandLayer::attach(Workspace& w) {
   layers_.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {
     layers_.emplace_back(air, profile(k));
-    spreads_.emplace_back(one.cells());
+    pulls_.emplace_back(one.cells());
+    rates_.emplace_back(one.cells());
     loads_.emplace_back(one.cells());
     if (!may_rest_) continue;
     rest_loads_.emplace_back(one.cells());
     speed_before_.emplace_back(one.cells());
   }
   const std::size_t grains = w.particles(grains_).size();
+  places_.reserve(grains);
   near_.reserve(grains);
   flying_.reserve(grains);
   rate_.assign(grains, 0.0);
@@ -223,8 +225,12 @@ void SandLayer::find_steady_wind() {
 
 /// The air of the layers goes on by a time (s).
 void SandLayer::blow(double dt) {
-  for (std::size_t c = 0; c < layers_.size(); ++c)
+  const auto n = static_cast<std::int64_t>(layers_.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto c = static_cast<std::size_t>(i);
     layers_[c].advance(dt, AirColumn::Top::at_speed(top_speed(c)), loads_[c]);
+  }
 }
 
 /// Mean wind (m/s) between two heights over the ground where a grain is.

@@ -79,6 +79,13 @@ class SandLayer : public Model {
     Ground ground;
     bool rests;  // and keeps its drag for some exchanges
   };
+  /// Where a grain is: not asked for, because it keeps its drag; over the layers, in them, or under them.
+  struct Place {
+    enum Where : std::uint8_t { unasked, over, in, under } where;
+    bool rests;
+    double height;
+    Ground ground;
+  };
   Ground ground(double x) const;
   Between between(double x) const;
   double wind_about(const Between& b, double low, double high) const;
@@ -116,7 +123,7 @@ class SandLayer : public Model {
   std::optional<Gusts> gusts_;  // where the entry has some
   std::vector<double> ground_;  // m, over the bottom of the domain
   std::vector<AirColumn> layers_;
-  std::vector<AirColumn::Spread> spreads_;
+  std::vector<AirColumn::Spread> pulls_, rates_;
   std::vector<AirColumn::Load> loads_;
   bool may_rest_;                                  // grains that rest keep their drag
   bool all_due_ = true;                            // of all grains in this exchange
@@ -124,6 +131,7 @@ class SandLayer : public Model {
   OwnColumn<std::uint8_t> keeps_;                  // by grain: it rested in the last exchange of all
   std::vector<AirColumn::Load> rest_loads_;        // pull: what those take from the layers
   std::vector<std::vector<double>> speed_before_;  // m/s, of the layers, in an exchange of all
+  std::vector<Place> places_;                      // by grain
   std::vector<Near> near_;                         // grains in the layers
   std::vector<std::size_t> flying_;                // grains over them
   std::vector<double> rate_;                       // 1/s, of each grain, by the difference of speed

@@ -1,4 +1,6 @@
 // What the grains of a layer feel: who is in it, the drag, the lift, and the sums by height that the air gets.
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,25 +16,34 @@ void SandLayer::find_near() {
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
   const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+  double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
   const double half = 0.5 * hold_;
+  rate_.resize(p.size());
+  places_.resize(p.size());
+  std::uint8_t* keeps = may_rest_ ? p.own(keeps_) : nullptr;
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Place& at = places_[k];
+    at.where = Place::unasked;
+    if (keeps && !all_due_ && keeps[k]) continue;
+    at.rests = keeps && all_due_ && u[k] == 0.0 && v[k] == 0.0;
+    at.ground = ground(x[k]);
+    const Ground& g = at.ground;
+    at.height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
+    at.where = at.height >= top_ ? Place::over : at.height > -deep * diameter_ ? Place::in : Place::under;
+    if (keeps) keeps[k] = at.rests && at.where != Place::over;
+    if (at.where == Place::under) ax[k] = ay[k] = rate_[k] = 0.0;
+  }
   near_.clear();
   flying_.clear();
-  rate_.resize(p.size());
-  std::uint8_t* keeps = may_rest_ ? p.own(keeps_) : nullptr;
   for (std::size_t k = 0; k < p.size(); ++k) {
-    if (keeps && !all_due_ && keeps[k]) continue;
-    const bool rests = keeps && all_due_ && u[k] == 0.0 && v[k] == 0.0;
-    if (keeps) keeps[k] = rests;
-    const Ground g = ground(x[k]);
-    const double height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
-    if (height >= top_) {
-      if (keeps) keeps[k] = 0;
-      flying_.push_back(k);
-    } else if (height > -deep * diameter_) {
-      near_.push_back({k, between(x[k]), height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, g, rests});
-    } else {
-      p.column(Field::drag_acceleration, 0)[k] = p.column(Field::drag_acceleration, 1)[k] = rate_[k] = 0.0;
-    }
+    const Place& at = places_[k];
+    if (at.where == Place::over) flying_.push_back(k);
+    if (at.where == Place::in)
+      near_.push_back(
+          {k, between(x[k]), at.height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, at.ground, at.rests});
   }
 }
 
@@ -110,24 +121,38 @@ void SandLayer::spread() {
     }
 }
 
-/// That of the grains that rest, or of the others.
+/// That of the grains that rest, or of the others. Each thread has columns side by side, and adds to a column in the
+/// order of the grains.
 void SandLayer::spread(bool resting, std::vector<AirColumn::Load>& loads) {
   const PhaseParticles& p = w_->particles(grains_);
-  const auto each = [&](auto&& amount_of, auto&& sums_of) {
-    for (auto& s : spreads_) s.clear();
-    for (const Near& q : near_) {
-      if (q.rests != resting) continue;
-      const double amount = p.mass_of(q.grain) * amount_of(q) * q.ground.along_x / width_;
-      const double low = q.height - q.radius, high = q.height + q.radius;
-      const Between& b = q.place;
-      spreads_[b.left].add(layers_[b.left], low, high, (1.0 - b.share) * amount);
-      spreads_[b.right].add(layers_[b.right], low, high, b.share * amount);
+#pragma omp parallel
+  {
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads()),
+               own = static_cast<std::size_t>(omp_get_thread_num());
+    const std::size_t first = layers_.size() * own / threads, end = layers_.size() * (own + 1) / threads;
+    for (std::size_t c = first; c < end; ++c) {
+      pulls_[c].clear();
+      rates_[c].clear();
     }
-    for (std::size_t c = 0; c < layers_.size(); ++c) spreads_[c].gather(layers_[c], sums_of(loads[c]));
-  };
-  each([](const Near& q) { return q.pull; }, [](AirColumn::Load& load) -> std::vector<double>& { return load.pull; });
-  each([&](const Near& q) { return rate_[q.grain]; },
-       [](AirColumn::Load& load) -> std::vector<double>& { return load.rate; });
+    for (const Near& q : near_) {
+      const Between& b = q.place;
+      if (q.rests != resting || ((b.left < first || b.left >= end) && (b.right < first || b.right >= end))) continue;
+      const double mass = p.mass_of(q.grain), along = q.ground.along_x;
+      const double pull = mass * q.pull * along / width_, rate = mass * rate_[q.grain] * along / width_;
+      const double low = q.height - q.radius, high = q.height + q.radius;
+      const auto add = [&](std::size_t c, double share) {
+        if (c < first || c >= end) return;
+        pulls_[c].add(layers_[c], low, high, share * pull);
+        rates_[c].add(layers_[c], low, high, share * rate);
+      };
+      add(b.left, 1.0 - b.share);
+      add(b.right, b.share);
+    }
+    for (std::size_t c = first; c < end; ++c) {
+      pulls_[c].gather(layers_[c], loads[c].pull);
+      rates_[c].gather(layers_[c], loads[c].rate);
+    }
+  }
 }
 
 /// After the layers went on: what those that rest took is what they take until the next exchange of all.

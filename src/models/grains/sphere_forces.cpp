@@ -314,6 +314,7 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
   std::fill(chunk.pushed.begin(), chunk.pushed.end(), std::array<double, 6>{});
   if (chunk.idle()) {
     chunk.farthest = chunk.fastest = 0.0;
+    chunk.gone.clear();
     return;
   }
   Sums<Dim> sums;  // 16 or 32 kB

@@ -18,6 +18,7 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
   const double dt = step.dt;
   float farthest = 0.0f;
   double fastest2 = 0.0;
+  chunk.gone.clear();
   chunk.each_moving([&](std::size_t k) {
     const double *from = step.records + k * R::size, *passive = step.passive + k * passive_size;
     const double* force = sums.of + (k - chunk.begin) * Sums<Dim>::size;
@@ -36,7 +37,9 @@ void move_on(const SphereStep& step, SphereChunk& chunk, const Sums<Dim>& sums) 
     to[R::radius] = radius;
     for (std::size_t d = 0; d < R::spins; ++d)
       to[R::spin + d] = from[R::spin + d] + dt * inverse_inertia * force[(Dim == 2 ? 2 : 4) + d];
-    farthest = std::max(farthest, next_way2<Dim>(to, dt) * step.tightness[k]);
+    const float used = next_way2<Dim>(to, dt) * step.tightness[k];
+    farthest = std::max(farthest, used);
+    if (static_cast<double>(used) >= SphereChunk::used_up) chunk.gone.push_back(static_cast<std::uint32_t>(k));
   });
   chunk.farthest = static_cast<double>(farthest);
   chunk.fastest = std::sqrt(fastest2);

@@ -138,16 +138,33 @@ bool SphereSleep::look(Workspace& w, const std::uint32_t* numbers, double& lost)
   return changed;
 }
 
-void SphereSleep::wake() {
-  for (std::size_t n = 0; n < moving_; ++n) {
-    if (!wakes_[n]) continue;
-    wakes_[n] = 0;
-    rouse(static_cast<std::uint32_t>(n));
+std::span<const std::uint32_t> SphereSleep::wake(std::span<const SphereChunk> chunks, const std::uint32_t* numbers) {
+  woken_.clear();
+  for (const SphereChunk& chunk : chunks) {
+    if (!chunk.wakes) continue;
+    for (const std::uint32_t k : chunk.border) {
+      if (!wakes_[numbers[k]]) continue;
+      wakes_[numbers[k]] = 0;
+      rouse(numbers[k]);
+      woken_.push_back(k);
+    }
+  }
+  return woken_;
+}
+
+void SphereSleep::mark_woken() {
+  std::fill(changed_at_.begin(), changed_at_.end(), std::uint8_t{0});
+  for (const std::uint32_t k : woken_) {
+    at_[k] = 0;
+    changed_at_[k] = 1;
   }
 }
 
 void SphereSleep::mark(const std::uint32_t* numbers) {
-  for (std::size_t k = 0; k < moving_; ++k) {
+  const auto n = static_cast<std::int64_t>(moving_);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
     at_[k] = asleep_[numbers[k]];
     changed_at_[k] = changed_[numbers[k]];
   }

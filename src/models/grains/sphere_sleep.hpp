@@ -14,6 +14,7 @@
 
 #include <array>
 #include <bit>
+#include <span>
 #include <vector>
 
 #include "models/grains/sphere_pairs.hpp"
@@ -44,12 +45,15 @@ class SphereSleep {
   /// Before a step: lets spheres fall asleep and wakes those that are pushed. `numbers`: by sphere. Adds the energy of
   /// motion that went (J). Whether any did either.
   bool look(Workspace& w, const std::uint32_t* numbers, double& lost);
-  /// Wakes those whom the last step of contacts disturbed.
-  void wake();
+  /// Wakes those whom the last step of contacts disturbed, all of them at the border of chunks. Returns who woke, by
+  /// sphere, until the next call.
+  std::span<const std::uint32_t> wake(std::span<const SphereChunk> chunks, const std::uint32_t* numbers);
   /// Whether the last look let somebody fall asleep.
   bool some_fell_asleep() const { return fell_; }
   /// Takes over who sleeps, by sphere: flags(). Since the last settled() those whose neighbours changed count as fresh.
   void mark(const std::uint32_t* numbers);
+  /// The same, where since the last settled() only those changed that the last wake() woke.
+  void mark_woken();
   /// 1 of those that sleep, of fixed ones and of the two that pad; by sphere, as of the last mark(). Null: nobody may.
   const std::uint8_t* flags() const { return on() ? at_.data() : nullptr; }
   /// Whether a sphere fell asleep or woke since the last settled(); by sphere, as of the last mark().
@@ -90,6 +94,7 @@ class SphereSleep {
   std::vector<std::uint8_t> changed_, fresh_;           // by number: who fell asleep or woke; whose neighbour did
   std::vector<double> place_, pull_, offset_, unrest_;  // m, m/s2, N (N m), N (N m); by number
   std::vector<std::uint8_t> at_, changed_at_;           // by sphere
+  std::vector<std::uint32_t> woken_;                    // spheres, by the last wake()
   SleepStep step_;
 };
 

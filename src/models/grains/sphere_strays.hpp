@@ -15,10 +15,6 @@ namespace barchan {
 
 class SphereStrays {
  public:
-  /// A sphere whose way has this share of the square of its allowance is a stray; the rest is what single precision may
-  /// hide.
-  static constexpr double used_up = 0.96;
-
   /// `reach` (m): the largest sum of radii; `chunks`: those of all moving spheres; `numbers_of_a_pair`: of its memory.
   void prepare(const SphereSet& spheres, double reach, const std::vector<SphereChunk>& chunks,
                std::size_t numbers_of_a_pair);

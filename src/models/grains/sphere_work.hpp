@@ -61,6 +61,9 @@ inline constexpr std::size_t passive_size = 4, passive_mass = 3;
 /// What the pairs remember stands beside them, batch by batch.
 struct SphereChunk : ContactBatches {
   static constexpr std::size_t most = 512;  // spheres
+  /// A sphere whose way has this share of the square of its allowance (models/grains/sphere_strays.hpp) is searched
+  /// anew; the rest is what single precision may hide.
+  static constexpr double used_up = 0.96;
 
   /// Batches of one law; `weight`: of their energies, 1/2 where another chunk has the pair too.
   struct Group {
@@ -95,6 +98,7 @@ struct SphereChunk : ContactBatches {
   double deepest = 0.0;             // overlap over the sum of radii
   double farthest = 0.0;            // square of the longest way since the search, one step ahead, over its allowance's
   double fastest = 0.0;             // m/s
+  std::vector<std::uint32_t> gone;  // spheres that have used up their allowance, one step ahead
   double contacts = 0.0;
   bool wakes = false;                         // somebody of the border
   std::vector<std::array<double, 6>> pushed;  // by watched law: force on the wall (N) and its torque (N m)

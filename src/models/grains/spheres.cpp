@@ -1,8 +1,12 @@
 #include "models/grains/spheres.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "models/grains/pair_order.hpp"
 #include "models/grains/sphere_forces.hpp"
 
 namespace barchan {
@@ -141,6 +145,7 @@ void Spheres::begin_steps() {
   carry_walls(each_);
   if (bodies_.any()) bodies_.begin_steps(dt, each_);
   layout_.dimensions == 2 ? pack<2>(each_) : pack<3>(each_);
+  share_out();
 }
 
 /// Puts neighbours near in memory, and particles into the periodic domain, where nobody else does.
@@ -233,7 +238,7 @@ void Spheres::pack(double dt) {
   for (SphereChunk& chunk : chunks_) chunk.fastest = std::sqrt(fastest2);
   if (must_search_ || walls_left_) return search();
   if (others_sleep_) sort_out_sleepers(false);
-  if (!(static_cast<double>(farthest) < SphereStrays::used_up)) search_strays(dt, false);
+  if (!(static_cast<double>(farthest) < SphereChunk::used_up)) search_strays(dt, false);
 }
 
 SphereSet Spheres::set() {
@@ -271,15 +276,18 @@ void Spheres::search() {
   ++since_sort_;
 }
 
-/// Whose way is longer than its allowance. `stepped`: the chunks know their farthest sphere.
+/// Whose way is longer than its allowance. `stepped`: the chunks know them.
 template <int Dim>
 void Spheres::list_strays(double dt, bool stepped) {
   gone_.clear();
   for (const SphereChunk& chunk : chunks_) {
-    if (stepped && chunk.farthest < SphereStrays::used_up) continue;
+    if (stepped) {
+      gone_.insert(gone_.end(), chunk.gone.begin(), chunk.gone.end());
+      continue;
+    }
     chunk.each_moving([&](std::size_t k) {
       const float way2 = next_way2<Dim>(records_[now_].data() + k * SphereRecord<Dim>::size, dt);
-      if (static_cast<double>(way2 * strays_.tightness()[k]) >= SphereStrays::used_up)
+      if (static_cast<double>(way2 * strays_.tightness()[k]) >= SphereChunk::used_up)
         gone_.push_back(static_cast<std::uint32_t>(k));
     });
   }
@@ -317,9 +325,15 @@ void Spheres::go() {
   step_.far = static_cast<std::uint32_t>(all());
   step_.sleep = sleep_.step(numbers_.data());
   if (bodies_.any()) touch_bodies(last);
-  const auto n = static_cast<std::int64_t>(chunks_.size());
-#pragma omp parallel for schedule(static)
-  for (std::int64_t c = 0; c < n; ++c) step_spheres(step_, chunks_[static_cast<std::size_t>(c)]);
+#pragma omp parallel
+  {
+    const double threads = omp_get_num_threads(), own = omp_get_thread_num();
+    for (std::size_t c = 0; c < chunks_.size(); ++c) {
+      if (std::floor(middles_[c] * threads) != own) continue;
+      step_spheres(step_, chunks_[c]);
+      if (last && sleep_.on()) order_pairs(chunks_[c], step_.numbers, step_.far);
+    }
+  }
   if (!watched_.empty()) {
     std::fill(pushing_.begin(), pushing_.end(), std::array<double, 6>{});
     for (const SphereChunk& chunk : chunks_)
@@ -342,15 +356,16 @@ void Spheres::go() {
     wakes = wakes || chunk.wakes;
   }
   ++kept_;
-  if (wakes) sleep_.wake();
+  std::span<const std::uint32_t> woken;
+  if (wakes) woken = sleep_.wake(chunks_, numbers_.data());
   others_sleep_ = wakes;
   if (last) return;
   if (bodies_.any()) bodies_.go_on(dt);
   now_ = 1 - now_;
   carry_walls(static_cast<double>(bundle_ - left_ + 1) * dt);
   if (walls_left_) return search();
-  if (wakes) sort_out_sleepers(false);
-  if (!(farthest < SphereStrays::used_up)) search_strays(dt, true);
+  if (wakes) sort_out_woken(woken);
+  if (!(farthest < SphereChunk::used_up)) search_strays(dt, true);
 }
 
 /// Contacts with rigid bodies in the present step of contacts; the bodies get what the spheres lose.

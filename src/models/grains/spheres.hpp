@@ -116,6 +116,8 @@ class Spheres : public Model {
   void pack(double dt);
   void search();
   void sort_out_sleepers(bool all);
+  void sort_out_woken(std::span<const std::uint32_t> woken);
+  void sort_out_chunks();
   void search_strays(double dt, bool stepped);
   template <int Dim>
   void list_strays(double dt, bool stepped);
@@ -124,6 +126,7 @@ class Spheres : public Model {
   template <int Dim>
   void make_records();
   SphereSet set();
+  void share_out();
   void bind_walls();
   void carry_walls(double elapsed);
   template <int Dim>
@@ -152,6 +155,7 @@ class Spheres : public Model {
   AlignedVector<double> records_[2], passive_;
   std::size_t now_ = 0;  // which set of records
   std::vector<SphereChunk> chunks_;
+  std::vector<double> middles_;         // by chunk: where the middle of its work stands in that of all, 0 to 1
   std::vector<SphereColumns> columns_;  // by phase
   std::vector<std::uint32_t> numbers_, listed_numbers_, order_;
   std::vector<std::uint8_t> kinds_;

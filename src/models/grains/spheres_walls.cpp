@@ -63,7 +63,7 @@ void Spheres::carry_wall(const SphereWall& wall, double elapsed) {
   }
   step_.fastest_wall = std::max(step_.fastest_wall, std::sqrt(fastest2));
   const double allowance = strays_.allowance();
-  walls_left_ = walls_left_ || !(farthest2 < SphereStrays::used_up * allowance * allowance);
+  walls_left_ = walls_left_ || !(farthest2 < SphereChunk::used_up * allowance * allowance);
 }
 
 /// Walls that travel, before the step of contacts that ends `elapsed` (s) after the step of the scene began.

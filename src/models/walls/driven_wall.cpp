@@ -65,8 +65,8 @@ void DrivenWall::find_faces(PhaseParticles& p, const std::vector<Vec3>& places) 
     for (int d = 0; d < layout_.dimensions; ++d)
       p.column(Field::wall_normal, d)[k] = face.normal[static_cast<std::size_t>(d)];
   }
-  PhaseParticles* const alone[] = {&p};
-  find_wall_normals(alone, layout_.bounds, spacing);
+  const WallPart alone{&p, 1.0};
+  find_wall_normals(p, {&alone, 1}, layout_.bounds, spacing);
   for (std::size_t k = 0; k < places.size(); ++k) {
     Face& face = p.own(face_)[k];
     face = {{}, p.column(Field::wall_depth)[k]};

@@ -201,18 +201,37 @@ void share_extended(Workspace& w, std::size_t solid) {
   w.layout.dimensions == 2 ? compact->copy<2>(extended, count) : compact->copy<3>(extended, count);
 }
 
+/// The fluids that feel a wall.
+static std::vector<std::size_t> fluids_at(const Layout& layout, std::size_t wall) {
+  std::vector<std::size_t> fluids;
+  for (const auto& e : layout.entries)
+    if (e.extends && e.other == wall) fluids.push_back(e.fluid);
+  return fluids;
+}
+
+/// A wall is faced away from itself and from those that the same fluids feel: grains that are fixed are nothing to air.
 void face_walls(const Layout& layout, State& state) {
-  std::vector<PhaseParticles*> walls;
+  std::vector<std::size_t> walls;
   bool slips = false;
-  double coarsest = 0.0;  // m
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     const PlanPhase& p = layout.phases[k];
     if (p.moves || p.travels || !state.phases[k].has(Field::wall_normal)) continue;
-    walls.push_back(&state.phases[k]);
-    coarsest = std::max(coarsest, layout.phases[k].spacing);
-    slips = slips || layout.phases[k].friction != Friction::smooth;
+    walls.push_back(k);
+    slips = slips || p.friction != Friction::smooth;
   }
-  if (slips) find_wall_normals(walls, layout.bounds, coarsest);
+  if (!slips) return;
+  for (const std::size_t wall : walls) {
+    const auto fluids = fluids_at(layout, wall);
+    std::vector<WallPart> parts;
+    for (const std::size_t other : walls) {
+      const auto about = fluids_at(layout, other);
+      if (other != wall && std::find_first_of(fluids.begin(), fluids.end(), about.begin(), about.end()) == fluids.end())
+        continue;
+      parts.push_back({&state.phases[other],
+                       std::pow(layout.phases[other].spacing / layout.phases[wall].spacing, layout.dimensions)});
+    }
+    find_wall_normals(state.phases[wall], parts, layout.bounds, layout.phases[wall].spacing);
+  }
 }
 
 }  // namespace barchan

@@ -23,19 +23,19 @@ class WallPlaces {
     }
   }
 
-  void add(const Vec3& x) { cells_[cell_of(x)].push_back(x); }
+  void add(const Vec3& x, double volume) { cells_[cell_of(x)].push_back({x, volume}); }
 
-  /// Calls f(x - y) with the nearest image of each place y in the cells about x.
+  /// Calls f(x - y, volume) with the nearest image of each place y in the cells about x.
   template <class F>
   void for_each_about(const Vec3& x, F&& f) const {
     for (const Cell& cell : about(cell_of(x))) {
       const auto found = cells_.find(cell);
       if (found == cells_.end()) continue;
-      for (const Vec3& y : found->second) {
+      for (const auto& [y, volume] : found->second) {
         Vec3 r = x - y;
         for (std::size_t d = 0; d < dimensions(); ++d)
           if (bounds_.periodic[d]) r[d] -= period(d) * std::round(r[d] / period(d));
-        f(r);
+        f(r, volume);
       }
     }
   }
@@ -70,7 +70,11 @@ class WallPlaces {
   const Bounds& bounds_;
   std::array<int, 3> count_{0, 0, 0};
   std::array<double, 3> side_;
-  std::map<Cell, std::vector<Vec3>> cells_;
+  struct Place {
+    Vec3 x;
+    double volume;
+  };
+  std::map<Cell, std::vector<Place>> cells_;
 };
 
 Vec3 vector_of(const PhaseParticles& p, Field field, std::size_t k) {
@@ -81,30 +85,30 @@ Vec3 vector_of(const PhaseParticles& p, Field field, std::size_t k) {
 
 }  // namespace
 
-void find_wall_normals(std::span<PhaseParticles* const> walls, const Bounds& bounds, double spacing) {
+void find_wall_normals(PhaseParticles& wall, std::span<const WallPart> parts, const Bounds& bounds, double spacing) {
   const double reach = 4.0 * spacing;
   WallPlaces places(bounds, reach);
-  for (const PhaseParticles* p : walls)
-    for (std::size_t k = 0; k < p->size(); ++k) places.add(vector_of(*p, Field::position, k));
-  for (PhaseParticles* p : walls)
-    for (std::size_t k = 0; k < p->size(); ++k) {
-      if (p->column(Field::wall_depth)[k] > 0.0 || norm(vector_of(*p, Field::wall_normal, k)) > 0.0) continue;
-      Vec3 out{};
-      double size = 0.0;
-      with_kernel<double>(KernelKind::cubic_spline, reach, bounds.dimensions, [&](const auto& kernel) {
-        places.for_each_about(vector_of(*p, Field::position, k), [&](const Vec3& r) {
-          const double length = norm(r);
-          if (!(length > 0.0) || length >= reach) return;
-          const double slope = std::abs(kernel.derivative(length));
-          out = out + slope / length * r;
-          size += slope;
-        });
+  for (const WallPart& part : parts)
+    for (std::size_t k = 0; k < part.particles->size(); ++k)
+      places.add(vector_of(*part.particles, Field::position, k), part.volume);
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    if (wall.column(Field::wall_depth)[k] > 0.0 || norm(vector_of(wall, Field::wall_normal, k)) > 0.0) continue;
+    Vec3 out{};
+    double size = 0.0;
+    with_kernel<double>(KernelKind::cubic_spline, reach, bounds.dimensions, [&](const auto& kernel) {
+      places.for_each_about(vector_of(wall, Field::position, k), [&](const Vec3& r, double volume) {
+        const double length = norm(r);
+        if (!(length > 0.0) || length >= reach) return;
+        const double slope = volume * std::abs(kernel.derivative(length));
+        out = out + slope / length * r;
+        size += slope;
       });
-      const double length = norm(out);
-      if (length > 1e-3 * size)
-        for (int d = 0; d < bounds.dimensions; ++d)
-          p->column(Field::wall_normal, d)[k] = out[static_cast<std::size_t>(d)] / length;
-    }
+    });
+    const double length = norm(out);
+    if (length > 1e-3 * size)
+      for (int d = 0; d < bounds.dimensions; ++d)
+        wall.column(Field::wall_normal, d)[k] = out[static_cast<std::size_t>(d)] / length;
+  }
 }
 
 }  // namespace barchan
