@@ -1,6 +1,7 @@
-"""What moves in water: a wave maker."""
+"""What moves in water: a wave maker, and a sphere that sinks in a tube."""
 
 import math
+import pathlib
 
 import numpy
 
@@ -113,7 +114,25 @@ def wave_maker(kh, n):
     attempt(name, "consistent", n, measure)
 
 
+# ---- a sphere that sinks in a tube -----------------------------------------------------------------------------------
+
+SPHERE, WATER, QUARTZ, NU, SHARE = 50e-6, 1000., 2650., 1e-6, .25  # m; kg/m3; kg/m3; m2/s; the diameter over that of the tube
+
+
+def sinking_sphere(n):
+    """Speed over that of Stokes flow in a tube (Faxen's series in Happel & Brenner 1983, section 7-3), from 3 ms on."""
+    q = SHARE
+    slower = 1 - 2.10444 * q + 2.08877 * q**3 - .94813 * q**5 - 1.372 * q**6 + 3.87 * q**8 - 4.19 * q**10
+    speed = (QUARTZ - WATER) * GRAVITY * SPHERE**2 / (18 * WATER * NU) * slower
+    scene = str(pathlib.Path(__file__).resolve().parent / "sinking_sphere.toml")
+    (h,), seconds = run(scene, [f"constants.points={n}"], files=("history.csv",))
+    late = h["time [s]"] > 3e-3
+    excess = -h["sphere_velocity_z [m/s]"][late].mean() / speed - 1
+    report("sphere sinks in a tube, Re 0.06", "consistent", n, f"speed over Faxen's, {excess:+.3f}: error", abs(excess), .05 if n > 8 else None, seconds)
+
+
 CASES = {
-    "wave-maker": (lambda: [wave_maker(kh, n) for kh in TANKS for n in (25,)],
+    "wave-maker": (lambda: [wave_maker(kh, n) for kh in TANKS for n in (25, 40)],
                    "Wave maker: a piston, height of the waves over the stroke (Havelock 1929)"),
+    "sinking-sphere": (lambda: [sinking_sphere(n) for n in (8, 14)], "A sphere that sinks in a tube of water, in three dimensions (Faxen)"),
 }

@@ -8,7 +8,7 @@ from harness import options, report, run, tell
 
 # Cd and St without bounds: Dennis & Chang 1970; Williamson 1989 and Park et al. 1998; Posdziech & Grundmann 2007 (two-dimensional flow).
 OPEN_CYLINDER = {20: (2.05, None), 100: (1.33, .165), 200: (1.34, .196)}
-WAKE = {20: 30, 100: 90, 200: 90}  # s, the end of a run
+WAKE = {20: 30, 100: 60, 200: 60}  # s, the end of a run; the means are of its last two fifths (Re 20: of the last fifth)
 NEAR = {20: (1.2, 20, 15), 100: (.75, 50, 28), 200: (.75, 50, 28)}  # m2/s, the wake's source; s, the end, the start of the means
 
 
