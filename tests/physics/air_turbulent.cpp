@@ -1,7 +1,9 @@
 // Turbulent air over rough ground: the logarithmic layer stays what it is, and a wrong one becomes it.
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
 
 namespace barchan {
 namespace {
@@ -87,6 +89,46 @@ TEST(LogarithmicLayer, StaysWithTwoEquations) {
   report("omega over u*/(0.12 y), less 1", rate, 0.03);
   EXPECT_LE(std::abs(energy), 0.03);
   EXPECT_LE(std::abs(rate), 0.03);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    small::simulation(text);
+  } catch (const SceneError& error) { return error.what(); }
+  return "";
+}
+
+/// Air between rough ground and a lid or another phase of this name and these keys, with its entry.
+std::string layer_under(const std::string& name, const std::string& keys, const std::string& fill,
+                        const std::string& velocity) {
+  return "dimensions = 2\nspacing = 5e-3\n[domain]\nsize = [0.1, 0.1]\nperiodic = [\"x\"]\n[phases.air]\n"
+         "kind = \"fluid\"\ndensity = 1.2\nviscosity = 1.5e-5\nsound-speed = 50\nturbulence = \"k-omega\"\n"
+         "[phases.ground]\nkind = \"wall\"\nroughness = 1e-4\n[phases." +
+         name + "]\n" + keys + "[interactions]\nair-air = 2.1\nair-ground = 2.1\nair-" + name + " = 2.1\n" +
+         "[[fill]]\nphase = \"ground\"\nshape = { sides = [\"bottom\"] }\n[[fill]]\nphase = \"" + name +
+         "\"\nshape = " + fill + "\n[[fill]]\nphase = \"air\"\nshape = \"the-rest\"\nvelocity = " + velocity +
+         "\n[time]\nend = 1\nlargest-speed = 5\n";
+}
+
+/// Two equations of turbulence are refused, by name, where nobody has said what they do.
+TEST(TwoEquations, AreRefusedWhereTheyCannotBe) {
+  const std::string wind = "{ log-profile = { friction-velocity = 0.2, roughness = 1e-4 } }",
+                    top = "{ sides = [\"top\"] }", post = "{ box = { min = [0.04, 0.04], max = [0.06, 0.06] } }",
+                    lid = "kind = \"wall\"\nshear-stress = [0.05, 0]\n";
+  EXPECT_EQ(refusal(layer_under("lid", lid, top, wind)), "");
+  EXPECT_EQ(refusal(layer_under("lid", lid, top, "[1, 0]")), "") << "the lid states the friction velocity";
+  EXPECT_NE(refusal(layer_under("lid", "kind = \"wall\"\nslip = \"free-slip\"\n", top, "[1, 0]"))
+                .find("phases.air.turbulence: \"k-omega\" begins as the logarithmic layer of a friction velocity"),
+            std::string::npos);
+  EXPECT_NE(refusal(layer_under("post", lid, post, wind)).find("knows no free surface, and \"air\" has one"),
+            std::string::npos);
+  const std::string moving = layer_under("lid", lid, top, wind) + "[[motion]]\nphase = \"lid\"\nvelocity = [1, 0]\n";
+  EXPECT_NE(refusal(moving).find("knows no grains, bodies or walls that move, and \"lid\" is such a phase"),
+            std::string::npos);
+  std::string dune = small::turbulent_dune;
+  dune.replace(dune.find("mixing-length"), 13, "k-omega");
+  EXPECT_NE(refusal(dune).find("knows no grains, bodies or walls that move, and \"sand\" is such a phase"),
+            std::string::npos);
 }
 
 }  // namespace

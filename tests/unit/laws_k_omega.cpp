@@ -44,6 +44,15 @@ TEST(KOmega, StaysPositiveWhateverTheStep) {
   }
 }
 
+/// Beside the ground omega is that of the layer, or what the equation makes up to twice that: air that slows down
+/// behind a crest has more.
+TEST(KOmega, OmegaBesideTheGround) {
+  const double u = 0.3, d = 5e-3, layer = log_layer_omega(u, d);
+  EXPECT_EQ(omega_beside_ground(0.5 * layer, u, d), layer);
+  EXPECT_EQ(omega_beside_ground(1.5 * layer, u, d), 1.5 * layer);
+  EXPECT_EQ(omega_beside_ground(9.0 * layer, u, d), 2.0 * layer);
+}
+
 /// Where shear is fast the stress is at most sqrt(beta*)/(7/8) k.
 TEST(KOmega, TheStressIsLimited) {
   const double k = 0.5, shear = 1e4;

@@ -123,6 +123,16 @@ BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
   store_four(simd::select(before > Four(0.0), grown, begun), columns.nu_t, at.first, at.count);
 }
 
+/// du . grad v by the gradient T/mu of the pairs' flux, in place of that of the differences. Beside the ground v grows
+/// as the logarithm and walls continue it as free slip: there the differences show less than half of its slope.
+template <int Dim>
+void carry_by_flux(Rates<Dim, Four>& r, const typename EddyFluid<Dim>::template Stress<Four>& stress, Four root) {
+  const Four per_viscosity = Four(1.0) / simd::max(root * root, Four(1e-30));
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e < Dim; ++e)
+      r.acceleration[d] += r.shift[e] * (stress.t[d][e] * per_viscosity - stress.gradient[d][e]);
+}
+
 template <int Dim, Beside beside, class T>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, const EddyRecords& eddies,
            std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& p) {
@@ -152,7 +162,8 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
     auto place = columns.template place<beside>(at, company);
     typename EddyFluid<Dim>::template Stress<Four> stress{s};
     const Four rho = load_four(columns.rho, at.first, at.count);
-    const auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    if (eddy_columns.shear) carry_by_flux<Dim>(r, stress, load_four(eddy_columns.root, at.first, at.count));
     renew_viscosity<Dim>(eddy_columns, stress, at, p);
     columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
   }

@@ -170,8 +170,8 @@ void step(PhaseParticles& fluid, const RecordArray& own, std::span<const KOmegaN
     double k = p.k, omega = p.omega;
     step_k_omega(p, q.step, k, omega);
     if (c.distance[i] < q.spacing)
-      omega = log_layer_omega(friction_velocity_of_energy(k),
-                              std::max({c.distance[i], 0.25 * q.spacing, 2.0 * q.roughness}));
+      omega = omega_beside_ground(omega, friction_velocity_of_energy(k),
+                                  std::max({c.distance[i], 0.25 * q.spacing, 2.0 * q.roughness}));
     c.k[i] = k;
     c.omega[i] = omega;
     c.nu_t[i] = k / limited_omega(omega, p.shear);
