@@ -122,8 +122,13 @@ TEST(TwoEquations, AreRefusedWhereTheyCannotBe) {
             std::string::npos);
   EXPECT_NE(refusal(layer_under("post", lid, post, wind)).find("knows no free surface, and \"air\" has one"),
             std::string::npos);
-  const std::string moving = layer_under("lid", lid, top, wind) + "[[motion]]\nphase = \"lid\"\nvelocity = [1, 0]\n";
-  EXPECT_NE(refusal(moving).find("knows no grains, bodies or walls that move, and \"lid\" is such a phase"),
+  EXPECT_NE(refusal(layer_under("post", "kind = \"rigid\"\ndensity = 1000\n", post, wind) +
+                    "[[fill]]\nphase = \"post\"\nshape = { sides = [\"top\"] }\n")
+                .find("\"post\" is such a phase"),
+            std::string::npos);
+  const std::string moving =
+      layer_under("lid", "kind = \"wall\"\n", post, wind) + "[[motion]]\nphase = \"lid\"\nvelocity = [1, 0]\n";
+  EXPECT_NE(refusal(moving).find("\"lid\" moves, and the turbulent fluid \"air\" does not know how far its ground is"),
             std::string::npos);
   std::string dune = small::turbulent_dune;
   dune.replace(dune.find("mixing-length"), 13, "k-omega");
