@@ -28,6 +28,9 @@ namespace barchan {
   row(surface_normal, "n", "1/m", vector, state, "of a fluid with a free surface: direction inwards near the surface, zero elsewhere") \
   row(near_void, "n_v", "1", scalar, state, "of a fluid of the consistent scheme that fills its space: steps for which the particle counts as beside a void, 0 in whole fluid") \
   row(eddy_viscosity, "nu_t", "m2/s", scalar, state, "kinematic viscosity of the unresolved turbulence") \
+  row(turbulent_kinetic_energy, "k", "m2/s2", scalar, state, "of a fluid with turbulence = \"k-omega\": kinetic energy of the unresolved turbulence") \
+  row(specific_dissipation_rate, "omega", "1/s", scalar, state, "of a fluid with turbulence = \"k-omega\": dissipation of its turbulence over 0.09 k") \
+  row(shear_rate, "|S|", "1/s", scalar, state, "of a fluid with turbulence = \"k-omega\": root of 2 S:S, S the rate of strain") \
   row(ground_distance, "d", "m", scalar, derived, "distance to the surface of the nearest wall or grain at rest") \
   row(wall_normal, "n", "1", vector, state, "unit normal of a wall particle, into the fluid") \
   row(wall_depth, "phi", "m", scalar, state, "distance of a wall particle behind the wall's surface, 0: unknown") \

@@ -10,7 +10,8 @@ int size_of(Record record, int dimensions) {
   const bool flat = dimensions == 2;
   switch (record) {
     case Record::motion:
-    case Record::extended: return flat ? MotionRecord<2>::size : MotionRecord<3>::size;
+    case Record::extended:
+    case Record::turbulence: return flat ? MotionRecord<2>::size : MotionRecord<3>::size;
     case Record::stress: return flat ? StressRecord<2>::size : StressRecord<3>::size;
     case Record::artificial: return ArtificialStressRecord::size;
     case Record::carried: return flat ? CarriedRecord<2>::size : CarriedRecord<3>::size;

@@ -11,6 +11,8 @@
 // that the turning of its rigid body gives, w x x_b, and the angular velocity of that body, w at the end of the step
 // and w0 with which its torque was computed:
 //   2D  x y u v cx cy w w0        3D  x y z u v w cx cy cz wx wy wz w0x w0y w0z -
+// A turbulence record is a motion record whose velocity is (k, ln omega), whose pressure is the root of k/omega:
+//   2D  x y k l s V - -      3D  x y z k l - s V     (l the logarithm of omega in 1/s)
 #pragma once
 
 #include <algorithm>

@@ -91,10 +91,11 @@ struct EddyFluid {
   struct Stress {
     const Sums<T>& s;
     T phi2{0.0}, shear2{0.0};
+    std::array<std::array<T, Dim>, Dim> t{}, gradient{};  // T M^-1, grad v
 
     template <class Matrix, class Gradient>
     BARCHAN_SIMD_INLINE std::array<T, Dim> operator()(const Matrix& inverse, const Gradient& grad_v) {
-      std::array<std::array<T, Dim>, Dim> t;
+      gradient = grad_v;
       std::array<T, Dim> friction = s.viscous;
       for (std::size_t d = 0; d < Dim; ++d)
         for (std::size_t e = 0; e < Dim; ++e) {

@@ -122,6 +122,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     if (seen[k]) need(k, Record::extended);
     if (p.heats) need(k, Record::carried);
     if (p.eddies) need(k, Record::eddies);
+    if (p.flows && scene.phases[k].fluid().turbulence == Turbulence::k_omega) need(k, Record::turbulence);
     if (mixed && (p.flows || seen[k])) records_[k]->make_compact(layout.bounds);
   }
 }

@@ -112,7 +112,11 @@ void check_fluctuations(const Scene& scene, std::size_t number, const Report& re
   const Phase* fluid = find_phase(scene, inflow.phase);
   if (!fluid || fluid->kind() != PhaseKind::fluid) return;
   const Fluctuations& given = *inflow.fluctuations;
-  if (fluid->fluid().turbulence == Turbulence::mixing_length)
+  const Turbulence turbulence = fluid->fluid().turbulence;
+  if (turbulence == Turbulence::k_omega)
+    return report(at, "k and omega of \"" + fluid->name +
+                          "\" stand for all fluctuations; expected turbulence = \"smagorinsky\", or no turbulence");
+  if (turbulence == Turbulence::mixing_length)
     return report(at, "the mixing length of \"" + fluid->name +
                           "\" stands for all fluctuations; expected turbulence = \"smagorinsky\", or no turbulence");
   for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)

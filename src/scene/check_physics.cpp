@@ -49,10 +49,11 @@ class PhysicsChecker {
     if (!entry_between(scene_, fluid, fluid))
       tell("interactions." + fluid.name + "-" + fluid.name,
            "missing: a fluid needs an entry with itself; expected " + fluid.name + "-" + fluid.name + " = 2.1");
-    if (own.turbulence == Turbulence::mixing_length && !has_ground(fluid))
+    if ((own.turbulence == Turbulence::k_omega || own.turbulence == Turbulence::mixing_length) && !has_ground(fluid))
       tell(dotted + ".turbulence",
-           "a mixing length needs ground, and this fluid touches no wall with friction and no grains; expected such an "
-           "entry in [interactions], or \"smagorinsky\"");
+           std::string(own.turbulence == Turbulence::k_omega ? "\"k-omega\"" : "a mixing length") +
+               " needs ground, and this fluid touches no wall with friction and no grains; expected such an "
+               "entry in [interactions], or \"smagorinsky\"");
   }
 
   void grains(const Phase& grains) {

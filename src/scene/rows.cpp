@@ -75,7 +75,7 @@ constexpr Key rows_of_keys[] = {
     {"phases", "scheme", of<&FluidKeys::scheme>(FluidScheme::consistent), "",
      "Gradient operators: as they are, or corrected to first order (docs/method.md)."},
     {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",
-     "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, or (C_s dx)^2 |S|."},
+     "Eddy viscosity of the unresolved turbulence: (0.4 d)^2 |S| with d the distance to the ground, (C_s dx)^2 |S|, or of two equations for its energy k and specific dissipation rate omega (Wilcox 2006)."},
     {"phases", "smagorinsky", of<&FluidKeys::smagorinsky>(0.15), "", "C_s, only with turbulence = \"smagorinsky\".", {.at_most = 1.0, .above = 0.0}},
     {"phases", "young", of<&ElasticKeys::young, &GrainsKeys::young>(required, "required; of grains: from largest-overlap").like("2e5"), "Pa",
      "Young's modulus; of grains for contacts with law = \"hertz\".", positive, "", "grains"},

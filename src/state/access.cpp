@@ -25,6 +25,7 @@ const char* name_of(Record record) {
     case Record::artificial: return "artificial stress";
     case Record::carried: return "carried";
     case Record::eddies: return "eddies";
+    case Record::turbulence: return "turbulence";
   }
   return "";
 }

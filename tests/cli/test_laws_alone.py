@@ -71,6 +71,7 @@ template <int Dim> void one_pair() {
   s = Law::template with_viscosity<double>(s, 1.0);
 }
 template void one_pair<2>(); template void one_pair<3>();""",
+    "k_omega": PAIRS + "PAIRS(KOmegaPairs) PAIRS(KOmegaBorder)",
     "eddy_friction": PAIRS + "PAIRS(EddyFriction)",
     "elastic": """
 template <int Dim> void one_pair() {

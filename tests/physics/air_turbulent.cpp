@@ -1,7 +1,9 @@
 // Turbulent air over rough ground: the logarithmic layer stays what it is, and a wrong one becomes it.
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "physics/drive.hpp"
+#include "physics/small_scenes.hpp"
 
 namespace barchan {
 namespace {
@@ -67,6 +69,71 @@ TEST(LogarithmicLayer, Stays) {
   Drive drive("verification/logarithmic_layer");
   drive.to(0.2);
   expect_layer(watch(drive, 0.3, 20));
+}
+
+/// The same with k and omega: besides, they stay those of the layer.
+TEST(LogarithmicLayer, StaysWithTwoEquations) {
+  Drive drive("verification/logarithmic_layer", {"phases.air.turbulence=k-omega"});
+  drive.to(0.2);
+  expect_layer(watch(drive, 0.3, 20));
+  const auto& p = drive.phase(0);
+  double energy = 0.0, rate = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double y = std::max(p.column(Field::position, 1)[i], 0.25 * drive.scene().spacing);
+    energy += p.column(Field::turbulent_kinetic_energy)[i] / (friction_velocity * friction_velocity / 0.3);
+    rate += p.column(Field::specific_dissipation_rate)[i] / (friction_velocity / (0.3 * 0.4 * y));
+  }
+  energy = energy / static_cast<double>(p.size()) - 1.0;
+  rate = rate / static_cast<double>(p.size()) - 1.0;
+  report("k over u*^2/0.3, less 1", energy, 0.03);
+  report("omega over u*/(0.12 y), less 1", rate, 0.03);
+  EXPECT_LE(std::abs(energy), 0.03);
+  EXPECT_LE(std::abs(rate), 0.03);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    small::simulation(text);
+  } catch (const SceneError& error) { return error.what(); }
+  return "";
+}
+
+/// Air between rough ground and a lid or another phase of this name and these keys, with its entry.
+std::string layer_under(const std::string& name, const std::string& keys, const std::string& fill,
+                        const std::string& velocity) {
+  return "dimensions = 2\nspacing = 5e-3\n[domain]\nsize = [0.1, 0.1]\nperiodic = [\"x\"]\n[phases.air]\n"
+         "kind = \"fluid\"\ndensity = 1.2\nviscosity = 1.5e-5\nsound-speed = 50\nturbulence = \"k-omega\"\n"
+         "[phases.ground]\nkind = \"wall\"\nroughness = 1e-4\n[phases." +
+         name + "]\n" + keys + "[interactions]\nair-air = 2.1\nair-ground = 2.1\nair-" + name + " = 2.1\n" +
+         "[[fill]]\nphase = \"ground\"\nshape = { sides = [\"bottom\"] }\n[[fill]]\nphase = \"" + name +
+         "\"\nshape = " + fill + "\n[[fill]]\nphase = \"air\"\nshape = \"the-rest\"\nvelocity = " + velocity +
+         "\n[time]\nend = 1\nlargest-speed = 5\n";
+}
+
+/// Two equations of turbulence are refused, by name, where nobody has said what they do.
+TEST(TwoEquations, AreRefusedWhereTheyCannotBe) {
+  const std::string wind = "{ log-profile = { friction-velocity = 0.2, roughness = 1e-4 } }",
+                    top = "{ sides = [\"top\"] }", post = "{ box = { min = [0.04, 0.04], max = [0.06, 0.06] } }",
+                    lid = "kind = \"wall\"\nshear-stress = [0.05, 0]\n";
+  EXPECT_EQ(refusal(layer_under("lid", lid, top, wind)), "");
+  EXPECT_EQ(refusal(layer_under("lid", lid, top, "[1, 0]")), "") << "the lid states the friction velocity";
+  EXPECT_NE(refusal(layer_under("lid", "kind = \"wall\"\nslip = \"free-slip\"\n", top, "[1, 0]"))
+                .find("phases.air.turbulence: \"k-omega\" begins as the logarithmic layer of a friction velocity"),
+            std::string::npos);
+  EXPECT_NE(refusal(layer_under("post", lid, post, wind)).find("knows no free surface, and \"air\" has one"),
+            std::string::npos);
+  EXPECT_NE(refusal(layer_under("post", "kind = \"rigid\"\ndensity = 1000\n", post, wind) +
+                    "[[fill]]\nphase = \"post\"\nshape = { sides = [\"top\"] }\n")
+                .find("\"post\" is such a phase"),
+            std::string::npos);
+  const std::string moving =
+      layer_under("lid", "kind = \"wall\"\n", post, wind) + "[[motion]]\nphase = \"lid\"\nvelocity = [1, 0]\n";
+  EXPECT_NE(refusal(moving).find("\"lid\" moves, and the turbulent fluid \"air\" does not know how far its ground is"),
+            std::string::npos);
+  std::string dune = small::turbulent_dune;
+  dune.replace(dune.find("mixing-length"), 13, "k-omega");
+  EXPECT_NE(refusal(dune).find("knows no grains, bodies or walls that move, and \"sand\" is such a phase"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -75,6 +75,20 @@ TEST(Restart, BetweenAnyTwoOfManySteps) {
   }
 }
 
+/// Air with two equations of turbulence: over a hill; through borders of spacings and open ends.
+TEST(Restart, OfTwoEquationsOfTurbulence) {
+  const std::string two = "phases.air.turbulence=k-omega";
+  const std::array<std::pair<std::string, std::vector<std::string>>, 2> scenes{
+      {{"verification/rushil", {two, "spacing=0.0234"}},
+       {"verification/joined_wind", {two, "phases.above.turbulence=k-omega", "phases.high.turbulence=k-omega"}}}};
+  const int threads = omp_get_max_threads();
+  for (const auto& [scene, overrides] : scenes) {
+    testing::Drive run(scene, overrides), other(scene, overrides);
+    expect_restarts(run.simulation(), other.simulation(), 20, 4, {1, 2});
+  }
+  omp_set_num_threads(threads);
+}
+
 TEST(Restart, RefusesTheStateOfAnotherScene) {
   const auto dune = small::simulation(small::dune), dam = small::simulation(small::dam);
   Archive saved;

@@ -20,7 +20,7 @@ using EddySums = typename EddyFluid<Dim>::template Sums<Four>;
 /// What a turbulent fluid's particles have beside the columns of every fluid.
 template <int Dim>
 struct EddyColumns {
-  double* nu_t;
+  double *nu_t, *shear = nullptr;
   const double *distance, *root, *touch;
   std::array<const double*, Dim> velocity;
 
@@ -30,6 +30,7 @@ struct EddyColumns {
         root(records.root.data()),
         touch(records.touch.data()) {
     for (std::size_t d = 0; d < Dim; ++d) velocity[d] = fluid.column(Field::velocity, static_cast<int>(d));
+    if (fluid.has(Field::shear_rate)) shear = fluid.column(Field::shear_rate);
   }
 };
 
@@ -103,17 +104,33 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
   return s;
 }
 
-/// nu_t of the next step; where there is none yet, from the strain alone.
+/// nu_t of the next step; where there is none yet, from the strain alone. Of a fluid whose turbulence has equations of
+/// its own (k_omega.hpp): |S|.
 template <int Dim>
 BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
                                          const typename EddyFluid<Dim>::template Stress<Four>& stress, const FourOf& at,
                                          const EddyParameters& p) {
   if (p.model == Turbulence::none) return;
+  if (columns.shear) {
+    const Four root = load_four(columns.root, at.first, at.count);
+    store_four(simd::sqrt(stress.phi2) / simd::max(root * root, Four(1e-30)), columns.shear, at.first, at.count);
+    return;
+  }
   const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
   const Four grown = eddy_viscosity(Four(p.viscosity), length, simd::sqrt(stress.phi2) * Four(1.0 / p.density));
   const Four begun = length * length * simd::sqrt(stress.shear2);
   const Four before = load_four(columns.nu_t, at.first, at.count);
   store_four(simd::select(before > Four(0.0), grown, begun), columns.nu_t, at.first, at.count);
+}
+
+/// du . grad v by the gradient T/mu of the pairs' flux, in place of that of the differences. Beside the ground v grows
+/// as the logarithm and walls continue it as free slip: there the differences show less than half of its slope.
+template <int Dim>
+void carry_by_flux(Rates<Dim, Four>& r, const typename EddyFluid<Dim>::template Stress<Four>& stress, Four root) {
+  const Four per_viscosity = Four(1.0) / simd::max(root * root, Four(1e-30));
+  for (std::size_t d = 0; d < Dim; ++d)
+    for (std::size_t e = 0; e < Dim; ++e)
+      r.acceleration[d] += r.shift[e] * (stress.t[d][e] * per_viscosity - stress.gradient[d][e]);
 }
 
 template <int Dim, Beside beside, class T>
@@ -145,7 +162,8 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
     auto place = columns.template place<beside>(at, company);
     typename EddyFluid<Dim>::template Stress<Four> stress{s};
     const Four rho = load_four(columns.rho, at.first, at.count);
-    const auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    if (eddy_columns.shear) carry_by_flux<Dim>(r, stress, load_four(eddy_columns.root, at.first, at.count));
     renew_viscosity<Dim>(eddy_columns, stress, at, p);
     columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
   }

@@ -301,6 +301,8 @@ void FlowZone::prescribe_inflow(PhaseParticles& p, std::size_t k, const Vec3& x,
   v[end_.axis()] += (is_upper(end_.side) ? 1.0 : -1.0) * sound / (rho_ * c_);
   for (int c = 0; c < p.dimensions(); ++c) p.column(Field::velocity, c)[k] = v[static_cast<std::size_t>(c)];
   set_pressure(p, k, lane_[lane].pressure - lane_[lane].slope * behind + sound);
+  if (p.has(Field::turbulent_kinetic_energy))  // none: a logarithmic layer enters (k_omega.hpp)
+    p.column(Field::turbulent_kinetic_energy)[k] = 0.0;
 }
 
 void FlowZone::prescribe_outflow(PhaseParticles& p, std::size_t k, const Vec3& x, std::size_t lane) {

@@ -53,6 +53,8 @@ std::vector<Field> fields_of(const Scene& scene, const Phase& phase, const PlanP
     f.push_back(near_void);
   if (plan.free_surface) f.insert(f.end(), {wholeness, surface_normal});
   if (plan.eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
+  if (keys.turbulence == Turbulence::k_omega)
+    f.insert(f.end(), {turbulent_kinetic_energy, specific_dissipation_rate, shear_rate});
   if (keys.energy) f.insert(f.end(), {energy, energy_rate});
   return f;
 }
@@ -99,6 +101,7 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   p.driven = Drive::exists(scene, phase);
   p.friction_velocity = stated_friction_velocity(scene, phase);
   enclose(scene, blocks, number, layout, warnings);
+  check_k_omega(scene, number, layout);
   p.fields = fields_of(scene, phase, p);
   p.sound_speed = phase.fluid().sound_speed.value_or(10.0 * layout.largest_speed);
   if (p.sound_speed <= 0)
@@ -328,7 +331,8 @@ void FluidPhase::bind_eddies() {
         bind_friction(e, other, sides, particles);
     eddy_neighbours_.push_back(e);
   }
-  if (keys_.turbulence == Turbulence::mixing_length && ground_phases_.empty())
+  if (has_k_omega()) bind_k_omega();
+  if ((keys_.turbulence == Turbulence::mixing_length || has_k_omega()) && ground_phases_.empty())
     throw SceneError(scene_.file + ": phases." + plan_.name +
                      ".turbulence: a mixing length needs ground, and this fluid touches no wall with friction and no "
                      "grains; expected such an entry in [interactions], or \"smagorinsky\"");

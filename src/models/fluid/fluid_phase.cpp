@@ -50,6 +50,12 @@ void FluidPhase::schedule(Schedule& s) {
   if (plan_.eddies) {
     Touches touches = beside(own({position, velocity, eddy_viscosity}, {ground_distance}), {velocity});
     touches.front().records.writes = {Record::eddies, Record::motion, Record::compact};
+    if (has_k_omega()) {
+      const FieldSet two{turbulent_kinetic_energy, specific_dissipation_rate};
+      touches.front().reads = touches.front().reads | two;
+      touches.front().writes = touches.front().writes | two | FieldSet{eddy_viscosity};
+      touches.front().records.writes = touches.front().records.writes | RecordSet{Record::turbulence};
+    }
     s.add({stage::eddies, plan_.name, touches, [this] { find_eddies(); }});
   }
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
@@ -57,11 +63,22 @@ void FluidPhase::schedule(Schedule& s) {
   if (plan_.eddies) {
     reads = reads | FieldSet{ground_distance};
     writes = writes | FieldSet{eddy_viscosity};
+    if (has_k_omega()) writes = writes | FieldSet{shear_rate};
   }
   if (plan_.free_surface) writes = writes | FieldSet{wholeness, surface_normal};
   if (std::find(plan_.fields.begin(), plan_.fields.end(), near_void) != plan_.fields.end())
     writes = writes | FieldSet{near_void};
   s.add({stage::fluid, plan_.name, beside(own(reads, writes), {position}, summed), [this] { rate(); }});
+  if (has_k_omega()) {
+    const FieldSet two{turbulent_kinetic_energy, specific_dissipation_rate};
+    Touches touches = beside(own(FieldSet{ground_distance, shear_rate, anisotropy, shift_velocity} | two,
+                                 FieldSet{eddy_viscosity} | two),
+                             {}, {Record::extended, Record::turbulence});
+    s.add({stage::fluid, plan_.name, touches, [this] {
+             k_omega_.step = w_->state.dt;
+             k_omega_step(*particles_, w_->records(number_, Record::turbulence), k_omega_neighbours_, k_omega_);
+           }});
+  }
   if (plan_.free_surface)
     s.add({stage::surface, plan_.name, own({position, wholeness}, {surface_normal}), [this] { find_surface(); }});
   if (keys_.energy) {
@@ -102,6 +119,12 @@ void FluidPhase::kick_and_drift() {
 void FluidPhase::find_eddies() {
   EddyRecords& records = w_->eddies_to_write(number_);
   largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
+  if (has_k_omega()) {
+    RecordArray& two = w_->to_write(number_, Record::turbulence);
+    const double diffusivity = pack_k_omega(*particles_, two, k_omega_);
+    if (w_->state.steps == 0) largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
+    largest_viscosity_ = std::max(largest_viscosity_, diffusivity);
+  }
   if (layout_.dimensions == 2) {
     if (CompactRecords* compact = w_->compact_to_write(number_)) records.give_roots(*compact, particles_->size());
     else records.give_roots(w_->to_write(number_, Record::motion), particles_->size());

@@ -13,6 +13,7 @@
 #include "models/drive.hpp"
 #include "models/fluid/energy.hpp"
 #include "models/fluid/held_boxes.hpp"
+#include "models/fluid/k_omega.hpp"
 #include "models/fluid/moving_boxes.hpp"
 #include "models/fluid/relief.hpp"
 #include "models/fluid/surface.hpp"
@@ -29,6 +30,9 @@ void declare_air(const Scene& scene, std::size_t number, Layout& layout);
 /// Throws SceneError when no sound speed can be chosen. `warnings`: what the scene may mean otherwise.
 void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                   std::vector<std::string>& warnings);
+
+/// Throws SceneError where a fluid's two equations of turbulence cannot be.
+void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout);
 
 /// An entry of two fluids, or of a fluid with itself.
 void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
@@ -58,6 +62,8 @@ class FluidPhase : public Model {
   void bind_entries();
   void look_for_voids();
   void bind_eddies();
+  void bind_k_omega();
+  bool has_k_omega() const { return keys_.turbulence == Turbulence::k_omega; }
   void bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles);
   Relief relief() const;
   double largest_speed() const;
@@ -94,6 +100,8 @@ class FluidPhase : public Model {
   EddyParameters eddies_;
   std::vector<GroundDistance::Ground> ground_phases_;
   std::unique_ptr<GroundDistance> ground_;
+  std::vector<KOmegaNeighbour> k_omega_neighbours_;
+  KOmegaParameters k_omega_;
   double largest_viscosity_ = 0;  // m2/s
   StepLimit viscous_limit_;
 };

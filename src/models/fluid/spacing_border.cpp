@@ -57,7 +57,10 @@ void SpacingBorder::begin(State& state, const std::vector<ParticleBlock>&) {
   for (const std::size_t phase : {fine_, coarse_}) state.phases[phase].number_may_change();
 }
 
-void SpacingBorder::attach(Workspace& w) { w_ = &w; }
+void SpacingBorder::attach(Workspace& w) {
+  w_ = &w;
+  if (w.particles(fine_).has(Field::turbulent_kinetic_energy)) count_ = most_values;
+}
 
 void SpacingBorder::schedule(Schedule& s) {
   s.add({stage::walls,
@@ -199,6 +202,10 @@ void SpacingBorder::create(std::size_t phase, const std::vector<Made>& made) {
     p.column(Field::density)[k] = one.values[3];
     p.column(Field::pressure)[k] = law(one.values[3]);
     if (p.has(Field::eddy_viscosity)) p.column(Field::eddy_viscosity)[k] = one.values[4];
+    if (count_ > 5) {
+      p.column(Field::turbulent_kinetic_energy)[k] = one.values[5];
+      p.column(Field::specific_dissipation_rate)[k] = std::exp(one.values[6]);
+    }
     for (int c = 0; c < p.components(Field::anisotropy); ++c)
       p.column(Field::anisotropy, c)[k] = one.skew[static_cast<std::size_t>(c)];
     if (p.has(Field::drag_acceleration))

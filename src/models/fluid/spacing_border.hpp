@@ -48,7 +48,7 @@ class SpacingBorder : public Model {
   void archive(Archive& a) override;
 
  private:
-  static constexpr std::size_t most_values = 5;  // velocity, density, eddy viscosity
+  static constexpr std::size_t most_values = 7;  // velocity, density, eddy viscosity, k, ln omega
   using Values = std::array<double, most_values>;
   /// A particle near the border.
   struct Member {
@@ -96,6 +96,7 @@ class SpacingBorder : public Model {
 
   const Scene& scene_;
   const Layout& layout_;
+  std::size_t count_ = 5;  // of the values, those that there are
   std::size_t fine_, coarse_, place_ = 0;  // of its row in State::departed
   std::string name_;
   double fine_spacing_, coarse_spacing_;  // m

@@ -43,6 +43,10 @@ SpacingBorder::Values SpacingBorder::values_of(const Member& m) const {
   for (int d = 0; d < p.dimensions(); ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d)[m.place];
   v[3] = p.column(Field::density)[m.place];
   if (p.has(Field::eddy_viscosity)) v[4] = p.column(Field::eddy_viscosity)[m.place];
+  if (count_ > 5) {
+    v[5] = p.column(Field::turbulent_kinetic_energy)[m.place];
+    v[6] = std::log(std::max(p.column(Field::specific_dissipation_rate)[m.place], 1e-30));
+  }
   return v;
 }
 
@@ -60,7 +64,7 @@ std::array<SpacingBorder::Values, 3> SpacingBorder::gradient(const Vec3& x, cons
     const Values values = values_of(members_[k]);
     for (std::size_t d = 0; d < dimensions; ++d) {
       for (std::size_t e = 0; e < dimensions; ++e) moment[d][e] += weight * r[d] * r[e];
-      for (std::size_t c = 0; c < most_values; ++c) sums[d][c] += weight * r[d] * (values[c] - own[c]);
+      for (std::size_t c = 0; c < count_; ++c) sums[d][c] += weight * r[d] * (values[c] - own[c]);
     }
   });
   // Elimination without pivots: the matrix is symmetric and positive.
@@ -71,11 +75,11 @@ std::array<SpacingBorder::Values, 3> SpacingBorder::gradient(const Vec3& x, cons
     for (std::size_t e = d + 1; e < dimensions; ++e) {
       const double factor = moment[e][d] / moment[d][d];
       for (std::size_t f = d; f < dimensions; ++f) moment[e][f] -= factor * moment[d][f];
-      for (std::size_t c = 0; c < most_values; ++c) sums[e][c] -= factor * sums[d][c];
+      for (std::size_t c = 0; c < count_; ++c) sums[e][c] -= factor * sums[d][c];
     }
   }
   for (std::size_t d = dimensions; d-- > 0;)
-    for (std::size_t c = 0; c < most_values; ++c) {
+    for (std::size_t c = 0; c < count_; ++c) {
       for (std::size_t e = d + 1; e < dimensions; ++e) sums[d][c] -= moment[d][e] * sums[e][c];
       sums[d][c] /= moment[d][d];
     }
@@ -166,9 +170,10 @@ void SpacingBorder::split() {
     for (std::size_t part = 0; part < parts(); ++part) {
       const Vec3& r = places[part];
       one.x = m.x + r;
-      for (std::size_t c = 0; c < most_values; ++c)
+      for (std::size_t c = 0; c < count_; ++c)
         one.values[c] = own[c] + (slope[0][c] * r[0] + slope[1][c] * r[1] + slope[2][c] * r[2]);
       one.values[4] = std::max(one.values[4], 0.0);
+      one.values[5] = std::max(one.values[5], 0.1 * own[5]);
       for (std::size_t c = 0; c < 3; ++c) {
         double most = 0.0;  // a quarter of what the gradient makes across the square
         for (std::size_t d = 0; d < 3; ++d) most += 0.25 * fine_spacing_ * std::abs(slope[d][c]);
@@ -220,7 +225,7 @@ SpacingBorder::Made SpacingBorder::mean_of_group() const {
     const Member& m = members_[k];
     away = away + apart(m.x, first);
     const Values values = values_of(m);
-    for (std::size_t c = 0; c < most_values; ++c) one.values[c] += share * values[c];
+    for (std::size_t c = 0; c < count_; ++c) one.values[c] += share * values[c];
     for (int c = 0; c < fine.components(Field::anisotropy); ++c)
       one.skew[static_cast<std::size_t>(c)] += share * fine.column(Field::anisotropy, c)[m.place];
     if (fine.has(Field::drag_acceleration))

@@ -1,0 +1,63 @@
+// Two equations of turbulence: what is known of their solutions in closed form.
+#include "laws/k_omega.hpp"
+
+#include <gtest/gtest.h>
+
+namespace barchan {
+namespace {
+
+/// In the logarithmic layer G grad l is constant, grad k = 0 and |S| = u*/(kappa d). What is left of domega/dt is what
+/// kappa = 0.4 differs by from the one of the constants, 0.4005.
+TEST(KOmega, ALogarithmicLayerStays) {
+  const double u = 0.4;
+  for (const double d : {1e-3, 1e-2, 0.1}) {
+    const double omega = log_layer_omega(u, d), energy = energy_of_friction_velocity(u), shear = u / (karman * d);
+    EXPECT_NEAR(energy / limited_omega(omega, shear), karman * u * d, 1e-12) << "the limiter is silent";
+    const KOmegaPlace place{energy, omega, shear, 0.0, 0.0, 0.0, 0.0, 1.0 / (d * d)};
+    double k = 0.0, w = 0.0;
+    step_k_omega(place, 1e-6 / omega, k, w);
+    EXPECT_NEAR((k / energy - 1.0) / 1e-6, 0.0, 1e-6);
+    EXPECT_NEAR((w / omega - 1.0) / 1e-6, 0.0, 2e-4);
+  }
+}
+
+/// dk/dt = -beta* k omega, domega/dt = -beta omega^2: omega = omega0/(1 + beta omega0 t), k ~ omega^(beta*/beta).
+TEST(KOmega, HomogeneousTurbulenceDecays) {
+  double k = 1.0, omega = 100.0;
+  const double dt = 1e-5, end = 0.5;
+  for (int step = 0; step < static_cast<int>(end / dt + 0.5); ++step) {
+    const KOmegaPlace place{k, omega, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    step_k_omega(place, dt, k, omega);
+  }
+  const double exact = 100.0 / (1.0 + 0.0708 * 100.0 * end);
+  EXPECT_NEAR(omega / exact, 1.0, 1e-3);
+  EXPECT_NEAR(k / std::pow(exact / 100.0, 0.09 / 0.0708), 1.0, 1e-3);
+}
+
+TEST(KOmega, StaysPositiveWhateverTheStep) {
+  for (const double dt : {1e-6, 1.0, 1e6}) {
+    const KOmegaPlace place{1e-3, 50.0, 10.0, 1e-5, -1e3, -1e3, 0.0, 0.0};
+    double k = 0.0, omega = 0.0;
+    step_k_omega(place, dt, k, omega);
+    EXPECT_GT(k, 0.0) << dt;
+    EXPECT_GT(omega, 0.0) << dt;
+  }
+}
+
+/// Beside the ground omega is that of the layer, or what the equation makes up to twice that: air that slows down
+/// behind a crest has more.
+TEST(KOmega, OmegaBesideTheGround) {
+  const double u = 0.3, d = 5e-3, layer = log_layer_omega(u, d);
+  EXPECT_EQ(omega_beside_ground(0.5 * layer, u, d), layer);
+  EXPECT_EQ(omega_beside_ground(1.5 * layer, u, d), 1.5 * layer);
+  EXPECT_EQ(omega_beside_ground(9.0 * layer, u, d), 2.0 * layer);
+}
+
+/// Where shear is fast the stress is at most sqrt(beta*)/(7/8) k.
+TEST(KOmega, TheStressIsLimited) {
+  const double k = 0.5, shear = 1e4;
+  EXPECT_NEAR(k / limited_omega(1.0, shear) * shear, 0.3 / 0.875 * k, 1e-12);
+}
+
+}  // namespace
+}  // namespace barchan
