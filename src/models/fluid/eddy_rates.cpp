@@ -105,7 +105,7 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
 }
 
 /// nu_t of the next step; where there is none yet, from the strain alone. Of a fluid whose turbulence has equations of
-/// its own (k_omega.hpp): |S|.
+/// its own (two_equations.hpp): |S|.
 template <int Dim>
 BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
                                          const typename EddyFluid<Dim>::template Stress<Four>& stress, const FourOf& at,

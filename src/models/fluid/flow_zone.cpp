@@ -301,7 +301,7 @@ void FlowZone::prescribe_inflow(PhaseParticles& p, std::size_t k, const Vec3& x,
   v[end_.axis()] += (is_upper(end_.side) ? 1.0 : -1.0) * sound / (rho_ * c_);
   for (int c = 0; c < p.dimensions(); ++c) p.column(Field::velocity, c)[k] = v[static_cast<std::size_t>(c)];
   set_pressure(p, k, lane_[lane].pressure - lane_[lane].slope * behind + sound);
-  if (p.has(Field::turbulent_kinetic_energy))  // none: a logarithmic layer enters (k_omega.hpp)
+  if (p.has(Field::turbulent_kinetic_energy))  // none: a logarithmic layer enters (two_equations.hpp)
     p.column(Field::turbulent_kinetic_energy)[k] = 0.0;
 }
 

@@ -71,13 +71,10 @@ void FluidPhase::schedule(Schedule& s) {
   s.add({stage::fluid, plan_.name, beside(own(reads, writes), {position}, summed), [this] { rate(); }});
   if (has_k_omega()) {
     const FieldSet two{turbulent_kinetic_energy, specific_dissipation_rate};
-    Touches touches = beside(own(FieldSet{ground_distance, shear_rate, anisotropy, shift_velocity} | two,
-                                 FieldSet{eddy_viscosity} | two),
-                             {}, {Record::extended, Record::turbulence});
-    s.add({stage::fluid, plan_.name, touches, [this] {
-             k_omega_.step = w_->state.dt;
-             k_omega_step(*particles_, w_->records(number_, Record::turbulence), k_omega_neighbours_, k_omega_);
-           }});
+    const Touches touches = beside(
+        own(FieldSet{ground_distance, shear_rate, anisotropy, shift_velocity} | two, FieldSet{eddy_viscosity} | two),
+        {}, {Record::extended, Record::turbulence});
+    s.add({stage::fluid, plan_.name, touches, [this] { step_k_omega(); }});
   }
   if (plan_.free_surface)
     s.add({stage::surface, plan_.name, own({position, wholeness}, {surface_normal}), [this] { find_surface(); }});
@@ -114,6 +111,11 @@ void FluidPhase::kick_and_drift() {
   if (!boxes_.empty()) hold_outside(*particles_, boxes_, layout_.bounds);
   for (const MovingBox& box : moving_boxes_) hold_outside(*particles_, box, layout_.bounds, w_->state.time + 0.5 * dt);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
+}
+
+void FluidPhase::step_k_omega() {
+  k_omega_.step = w_->state.dt;
+  k_omega_step(*particles_, w_->records(number_, Record::turbulence), k_omega_neighbours_, k_omega_);
 }
 
 void FluidPhase::find_eddies() {

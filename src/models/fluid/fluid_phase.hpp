@@ -13,11 +13,11 @@
 #include "models/drive.hpp"
 #include "models/fluid/energy.hpp"
 #include "models/fluid/held_boxes.hpp"
-#include "models/fluid/k_omega.hpp"
 #include "models/fluid/moving_boxes.hpp"
 #include "models/fluid/relief.hpp"
 #include "models/fluid/surface.hpp"
 #include "models/fluid/turbulence.hpp"
+#include "models/fluid/two_equations.hpp"
 #include "models/fluid/voids.hpp"
 #include "models/forces.hpp"
 #include "models/workspace.hpp"
@@ -63,6 +63,7 @@ class FluidPhase : public Model {
   void look_for_voids();
   void bind_eddies();
   void bind_k_omega();
+  void step_k_omega();
   bool has_k_omega() const { return keys_.turbulence == Turbulence::k_omega; }
   void bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles);
   Relief relief() const;

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "laws/k_omega.hpp"
-#include "models/fluid/k_omega.hpp"
+#include "models/fluid/two_equations.hpp"
 
 namespace barchan {
 

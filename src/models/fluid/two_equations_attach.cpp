@@ -1,4 +1,4 @@
-// What binds a fluid's two equations of turbulence (k_omega.hpp) to its entries.
+// What binds a fluid's two equations of turbulence (two_equations.hpp) to its entries.
 #include <algorithm>
 #include <cmath>
 
@@ -38,8 +38,7 @@ void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) 
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& other = scene.phases[k];
     if (k == fluid || !entry_between(scene, phase, other)) continue;
-    if (other.kind() == PhaseKind::grains || layout.phases[k].travels ||
-        layout.phases[k].moves != layout.phases[k].flows)
+    if (layout.phases[k].separate || layout.phases[k].travels || layout.phases[k].moves != layout.phases[k].flows)
       throw SceneError(key + "knows no grains, bodies or walls that move, and \"" + other.name +
                        "\" is such a phase; expected \"mixing-length\", or no entry of the two");
   }

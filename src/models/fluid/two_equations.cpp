@@ -1,5 +1,5 @@
-// The pair passes of k_omega.hpp.
-#include "models/fluid/k_omega.hpp"
+// The pair passes of two_equations.hpp.
+#include "models/fluid/two_equations.hpp"
 
 #include <algorithm>
 #include <cmath>
