@@ -154,9 +154,10 @@ TEST_P(FreeSurface, StillTankIsQuiet) {
   EXPECT_LE(e.gain, 1e-3);
 }
 
-/// A standing wave with 25 rows over its depth, from the flat surface on: its amplitude after three periods. What is
-/// found is the largest size about that moment, so that an error of the frequency does not count.
-TEST(StandingWave, KeepsItsAmplitude) {
+/// A standing wave with 25 rows over its depth, from the flat surface on: its frequency, from the moments at which the
+/// velocity turns (at a quarter and at 2.75 periods), and its amplitude after three periods. That is the largest size
+/// about that moment, so that an error of the frequency does not count.
+TEST(StandingWave, KeepsItsFrequencyAndAmplitude) {
   Drive drive("verification/standing_wave", {"spacing=0.04"});
   const auto& p = drive.phase(0);
   const double k = std::numbers::pi, period = 2 * k / std::sqrt(9.81 * k * std::tanh(k));
@@ -171,13 +172,29 @@ TEST(StandingWave, KeepsItsAmplitude) {
     return along / square;
   };
   const double start = amplitude();
+  // The line through nine amplitudes about the expected moment, a tenth of a period in all: where it is zero.
+  const auto turns = [&](double expected) {
+    double mean = 0, sum = 0, slope = 0;
+    for (int step = -4; step <= 4; ++step) {
+      drive.to((expected + step / 80.0) * period);
+      const double a = amplitude();
+      mean += a / 9;
+      slope += step / 80.0 * a;
+      sum += step * step / 6400.0;
+    }
+    return expected - mean * sum / slope;
+  };
+  const double first = turns(0.25), last = turns(2.75);
+  const double frequency = 2.5 / (last - first) - 1;
   double late = 0;
   for (int step = -8; step <= 8; ++step) {
     drive.to((3 + step / 80.0) * period);
     late = std::max(late, amplitude());
   }
   const double loss = 1 - std::cbrt(late / start);
+  report("frequency, error/sqrt(g k tanh kH)", frequency, 0.003);
   report("amplitude that a period takes", loss, 0.01);
+  EXPECT_LE(std::abs(frequency), 0.003);
   EXPECT_LE(loss, 0.01);
   EXPECT_GE(loss, -0.005);  // nothing feeds it
 }
