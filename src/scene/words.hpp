@@ -50,10 +50,9 @@ inline constexpr std::array words_of<Elasticity>{word("neo-hookean", Elasticity:
 
 enum class Turbulence { none, mixing_length, smagorinsky, k_omega };
 template <>
-inline constexpr std::array words_of<Turbulence>{word("none", Turbulence::none),
-                                                 word("mixing-length", Turbulence::mixing_length),
-                                                 word("smagorinsky", Turbulence::smagorinsky),
-                                                 word("k-omega", Turbulence::k_omega)};
+inline constexpr std::array words_of<Turbulence>{
+    word("none", Turbulence::none), word("mixing-length", Turbulence::mixing_length),
+    word("smagorinsky", Turbulence::smagorinsky), word("k-omega", Turbulence::k_omega)};
 
 enum class MixingLength { none, duran };  // of a column of air; Duran, Andreotti & Claudin 2012
 template <>

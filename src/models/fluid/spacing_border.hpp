@@ -96,7 +96,7 @@ class SpacingBorder : public Model {
 
   const Scene& scene_;
   const Layout& layout_;
-  std::size_t count_ = 5;  // of the values, those that there are
+  std::size_t count_ = 5;                  // of the values, those that there are
   std::size_t fine_, coarse_, place_ = 0;  // of its row in State::departed
   std::string name_;
   double fine_spacing_, coarse_spacing_;  // m
