@@ -188,7 +188,7 @@ class Ranks(Folder):
         self.assertEqual(many.stderr.count("first bad state"), 1)
 
     def test_what_cannot_run_is_refused_by_name_and_writes_nothing(self):
-        text = channel("plain").replace("viscosity = 1e-6", 'viscosity = 1e-6\nturbulence = "smagorinsky"')
+        text = channel("consistent").replace("viscosity = 1e-6", 'viscosity = 1e-6\nturbulence = "smagorinsky"')
         ended = self.start(2, text, "out")
         self.assertEqual(ended.returncode, 2, ended.stderr)
         self.assertIn("phases.water: a fluid with turbulence cannot run on several ranks yet", ended.stderr)
