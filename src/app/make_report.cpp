@@ -85,15 +85,15 @@ RunReport start_report(const Scene& scene) {
   return r;
 }
 
-RunReport make_report(const Simulation& simulation, const SeriesWriter& series, const Measurements* measurements,
+RunReport make_report(const Simulation& simulation, const SeriesWriter* series, const Measurements* measurements,
                       const Progress& progress) {
   RunReport r = start_report(simulation.scene());
   add_plan(r, simulation);
   r.steps = simulation.steps();
   r.simulated_time = simulation.time();
   const double stepping = add_passes(r, simulation);
-  r.seconds.emplace_back("output (waiting)", series.seconds_waiting());
-  r.seconds.emplace_back("output (behind)", series.seconds_writing());
+  r.seconds.emplace_back("output (waiting)", series ? series->seconds_waiting() : 0.0);
+  r.seconds.emplace_back("output (behind)", series ? series->seconds_writing() : 0.0);
   if (measurements) add_measured(r, simulation.plan(), *measurements);
   r.wall_seconds = progress.seconds();
   r.cpu_seconds = cpu_seconds();

@@ -12,7 +12,7 @@
 namespace barchan {
 
 /// `measurements`: null when the scene measures nothing.
-RunReport make_report(const Simulation& simulation, const SeriesWriter& series, const Measurements* measurements,
+RunReport make_report(const Simulation& simulation, const SeriesWriter* series, const Measurements* measurements,
                       const Progress& progress);
 
 /// The few words of a report that are true of every run of this process: program, scene, process and host.

@@ -5,18 +5,24 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <sstream>
+#include <streambuf>
 
 #include "app/commands.hpp"
+#include "app/guard.hpp"
 #include "app/launch.hpp"
 #include "app/make_report.hpp"
+#include "app/mpi_ranks.hpp"
 #include "app/running.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/instructions.hpp"
+#include "base/ranks.hpp"
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
 #include "plan/memory_need.hpp"
+#include "plan/rank_limits.hpp"
 #include "scene/identity.hpp"
 #include "scene/reader.hpp"
 #include "simulation/settle.hpp"
@@ -134,7 +140,7 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
   if (from) {
     from->load_again();
     course.beds.archive(*from, course.scene);
-    simulation.archive(*from);
+    simulation.load_whole([&] { simulation.archive(*from); });
     if (run->measurements()) run->measurements()->archive(*from);
     from->finish();
     simulation.check();
@@ -163,45 +169,99 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
   }
 }
 
-}  // namespace
+/// Nothing that the other ranks say is seen: all of them say the same.
+class Silence {
+ public:
+  Silence() {
+    if (ranks::is_first()) return;
+    out_ = std::cout.rdbuf(&nothing_);
+    err_ = std::cerr.rdbuf(&nothing_);
+  }
+  ~Silence() {
+    if (out_) std::cout.rdbuf(out_);
+    if (err_) std::cerr.rdbuf(err_);
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
 
-int run(const RunOptions& options) {
-  outlive_readers();
-  const Launch launch = how_launched();
-  refuse_one_folder_for_many(launch, options.out);
+ private:
+  struct Nothing : std::streambuf {
+    int overflow(int c) override { return c == EOF ? 0 : c; }
+  } nothing_;
+  std::streambuf *out_ = nullptr, *err_ = nullptr;
+};
+
+/// All that decides what a run computes, for ranks to compare.
+std::string command_of(const RunOptions& options) {
+  std::string text =
+      options.scene + "\n" + options.restart + "\n" + options.instructions + "\n" + std::to_string(options.retreats);
+  for (const std::string& one : options.overrides) text += "\n" + one;
+  return text;
+}
+
+int run_scene(const RunOptions& options, const Launch& launch) {
+  const bool first = ranks::is_first(), quiet = options.quiet || !first;
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   const Scene scene = read_scene(options.scene, options.overrides);
   if (options.threads > 0) use_threads(options.threads, 0);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   std::optional<FolderLock> lock;
   std::error_code unseen;
-  if (fs::is_directory(directory, unseen)) hold(lock, directory, launch);
+  if (first && fs::is_directory(directory, unseen)) hold(lock, directory, launch);
   std::optional<Archive> from = find_checkpoint(options.restart, directory, scene);
   const bool continued = from.has_value();
   SettledBeds beds;
   if (from) beds.archive(*from, scene);
-  auto blocks = make_particles(scene, options.quiet ? nullptr : &std::cout, &beds);
+  auto blocks = make_particles(scene, quiet ? nullptr : &std::cout, &beds);
   const Plan plan = make_plan(scene, blocks);
+  if (ranks::available()) check_for_ranks(scene, plan);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
-  use_threads(options.threads, plan.particles());
-  if (!options.quiet) std::cout << to_text(plan, scene) << std::flush;
+  use_threads(options.threads > 0 ? options.threads : threads_of_a_rank(), plan.particles());
+  if (!quiet) std::cout << to_text(plan, scene) << std::flush;
   else
     for (const std::string& warning : plan.warnings) std::cerr << "barchan: warning: " << warning << "\n";
   Simulation simulation(scene, plan, blocks);
   blocks.clear();  // their memory is needed from now on
   simulation.check_start();
   listen_to_signals();
-  if (!lock) {
+  if (first && !lock) {
     make_directory(directory);
     hold(lock, directory, launch);
   }
-  if (!lock->left_by().empty())
+  if (first && !lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
-  clear(directory, scene, plan, continued);
+  if (first) clear(directory, scene, plan, continued);
   Course course{scene,     simulation,
-                directory, Progress(scene.time.end, plan.particles(), options.quiet),
+                directory, Progress(scene.time.end, plan.particles(), quiet),
                 beds,      Team(omp_get_max_threads(), options.threads == 0)};
   return run_to_the_end(course, std::move(from), options.retreats);
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  outlive_readers();
+  const Launch launch = how_launched();
+  std::ostringstream words;
+  int status = 0;
+  try {
+    join_ranks(launch, command_of(options), options.out);
+    const Silence silence;
+    return leave_ranks(run_scene(options, launch));
+  } catch (...) {
+    if (!ranks::available()) {
+      leave_ranks(0);
+      throw;
+    }
+    status = guarded(words, []() -> int { throw; });
+  }
+  if (all_failed()) {
+    if (ranks::is_first()) std::cerr << words.str();
+    return leave_ranks(status);
+  }
+  std::cerr << words.str() << std::flush;
+  abort_ranks(status);
+  return status;
 }
 
 }  // namespace barchan

@@ -8,6 +8,7 @@
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/instructions.hpp"
+#include "base/ranks.hpp"
 #include "base/version.hpp"
 #include "output/checkpoint.hpp"
 #include "output/numbers.hpp"
@@ -93,11 +94,15 @@ Run::Run(Course& course, bool continued)
 }
 
 void Run::open() {
-  series_.emplace(directory_, scene_.name, scene_.output.format, scene_.output.compress,
-                  kept_frames(directory_, scene_, clock()));
-  history_.emplace(directory_ / "history.csv", simulation_.history_columns(), continued_, simulation_.time());
-  if (measurements_) measurements_->open(directory_, continued_, simulation_.time());
-  write_run_report(directory_ / "run.json", report("running"));
+  const std::vector<std::string> columns = simulation_.history_columns();
+  if (ranks::is_first()) {
+    series_.emplace(directory_, scene_.name, scene_.output.format, scene_.output.compress,
+                    kept_frames(directory_, scene_, clock()));
+    history_.emplace(directory_ / "history.csv", columns, continued_, simulation_.time());
+    if (measurements_) measurements_->open(directory_, continued_, simulation_.time());
+  }
+  const RunReport beginning = report("running");
+  if (series_) write_run_report(directory_ / "run.json", beginning);
 }
 
 int Run::go(Past* past) {
@@ -144,6 +149,7 @@ int Run::loop(Past* past) {
       write_frame();
       ++frames_due;
     }
+    agree();
     if (checkpoint_due()) write_checkpoint();
     course_.progress.step(simulation_);
     if (int status = 0; asked_to_stop(status)) return status;
@@ -154,14 +160,32 @@ int Run::loop(Past* past) {
 
 /// Looks for signals after every step, for the file TERMINATE after every sixteenth.
 bool Run::asked_to_stop(int& status) {
-  if (const int signal = stop_signal(); signal != 0) {
+  if (const int signal = ranks::active() ? course_.agreed.signal : stop_signal(); signal != 0) {
     status = stop(signal_name(signal), 128 + signal);
     return true;
   }
-  std::error_code unseen;  // a folder that cannot be looked into is no reason to stop; writing to it will tell
-  if (simulation_.steps() % 16 != 0 || !fs::exists(directory_ / "TERMINATE", unseen) || unseen) return false;
+  if (ranks::active()) {
+    if (course_.agreed.terminate) status = stop("TERMINATE", 0);
+    return course_.agreed.terminate;
+  }
+  if (!is_terminated()) return false;
   status = stop("TERMINATE", 0);
   return true;
+}
+
+bool Run::is_terminated() const {
+  std::error_code unseen;  // a folder that cannot be looked into is no reason to stop; writing to it will tell
+  return simulation_.steps() % 16 == 0 && fs::exists(directory_ / "TERMINATE", unseen) && !unseen;
+}
+
+/// Every rank may have got a signal; the clock and the folder are those of the first one.
+void Run::agree() {
+  if (!ranks::active()) return;
+  const bool first = ranks::is_first();
+  std::array<std::int64_t, 3> asks{stop_signal(), checkpoint_due_here() && first ? 1 : 0,
+                                   first && is_terminated() ? 1 : 0};
+  ranks::active()->reduce(asks.data(), asks.size(), Communicator::Take::largest);
+  course_.agreed = {static_cast<int>(asks[0]), asks[1] != 0, asks[2] != 0};
 }
 
 int Run::stop(const std::string& why, int status) {
@@ -172,7 +196,9 @@ int Run::stop(const std::string& why, int status) {
   return status;
 }
 
-bool Run::checkpoint_due() const {
+bool Run::checkpoint_due() const { return ranks::active() ? course_.agreed.checkpoint : checkpoint_due_here(); }
+
+bool Run::checkpoint_due_here() const {
   if (checkpoint_was_asked_for()) return true;
   return scene_.output.checkpoint_every > 0 &&
          course_.progress.seconds() - course_.last_checkpoint >= scene_.output.checkpoint_every;
@@ -180,19 +206,21 @@ bool Run::checkpoint_due() const {
 
 void Run::write_checkpoint() {
   simulation_.check();
-  series_->finish();
-  barchan::write_checkpoint(checkpoint_file(directory_, scene_),
-                            {version() + " (" + commit() + ")",
-                             name_of(instructions()),
-                             scene_.identity,
-                             simulation_.time(),
-                             simulation_.steps(),
-                             {}},
-                            [&](Archive& a) {
-                              course_.beds.archive(a, scene_);
-                              simulation_.archive(a);
-                              if (measurements_) measurements_->archive(a);
-                            });
+  if (series_) series_->finish();
+  simulation_.save_whole([&] {
+    barchan::write_checkpoint(checkpoint_file(directory_, scene_),
+                              {version() + " (" + commit() + ")",
+                               name_of(instructions()),
+                               scene_.identity,
+                               simulation_.time(),
+                               simulation_.steps(),
+                               {}},
+                              [&](Archive& a) {
+                                course_.beds.archive(a, scene_);
+                                simulation_.archive(a);
+                                if (measurements_) measurements_->archive(a);
+                              });
+  });
   course_.last_checkpoint = course_.progress.seconds();
   course_.checkpoint_step = simulation_.steps();
   course_.checkpoint_frames = clock().frames;
@@ -204,8 +232,9 @@ void Run::bring_checkpoint_up_to_date() {
 
 void Run::checkpoint_of_retreat() {
   const fs::path file = checkpoint_file(directory_, scene_);
-  if (!fs::exists(file)) return;
+  if (!ranks::any(ranks::is_first() && fs::exists(file))) return;
   write_checkpoint();
+  if (!ranks::is_first()) return;
   std::error_code ignored;
   fs::remove(older_checkpoint(file), ignored);
 }
@@ -213,18 +242,21 @@ void Run::checkpoint_of_retreat() {
 std::string Run::break_down(const std::string& what) {
   const long good = simulation_.good_step();
   if (good > clock().last_frame_step) {
-    series_->finish();
-    series_->write(simulation_.good_frame(static_cast<int>(clock().frames++)));
-    if (measurements_) measurements_->write(directory_, simulation_.good_time());
-    simulation_.write_results(directory_.string(), simulation_.good_time());
+    finish_series();
+    Frame frame = simulation_.good_frame(static_cast<int>(clock().frames++));
+    if (series_) {
+      series_->write(std::move(frame));
+      if (measurements_) measurements_->write(directory_, simulation_.good_time());
+      simulation_.write_results(directory_.string(), simulation_.good_time());
+    }
     clock().last_frame_step = good;
     clock().last_frame_time = simulation_.good_time();
   }
-  series_->finish();
+  finish_series();
   const fs::path bad = bad_file(directory_, scene_);
-  barchan::write_frame(bad, simulation_.frame(static_cast<int>(clock().frames)), scene_.output.format,
-                       scene_.output.compress);
-  std::string message = what + "; last good state: " + series_->last_file() +
+  const Frame frame = simulation_.frame(static_cast<int>(clock().frames));
+  if (series_) barchan::write_frame(bad, frame, scene_.output.format, scene_.output.compress);
+  std::string message = what + "; last good state: " + (series_ ? series_->last_file() : "") +
                         " (t = " + brief(clock().last_frame_time) + " s, step " +
                         std::to_string(clock().last_frame_step) + "), first bad state: " + bad.filename().string() +
                         " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";
@@ -233,16 +265,26 @@ std::string Run::break_down(const std::string& what) {
 }
 
 void Run::write_frame() {
-  series_->finish();  // one frame at a time is in memory
-  series_->write(simulation_.frame(static_cast<int>(clock().frames++)));
-  if (measurements_) measurements_->write(directory_, simulation_.time());
-  simulation_.write_results(directory_.string(), simulation_.time());
+  finish_series();  // one frame at a time is in memory
+  Frame frame = simulation_.frame(static_cast<int>(clock().frames++));
+  if (series_) {
+    series_->write(std::move(frame));
+    if (measurements_) measurements_->write(directory_, simulation_.time());
+    simulation_.write_results(directory_.string(), simulation_.time());
+  }
   clock().last_frame_step = simulation_.steps();
   clock().last_frame_time = simulation_.time();
 }
 
+void Run::write_row() {
+  const std::vector<double> row = simulation_.history_row();
+  if (history_) history_->row(row);
+  simulation_.begin_row();
+}
+
 RunReport Run::report(const std::string& reason) const {
-  RunReport r = make_report(simulation_, *series_, measurements_ ? &*measurements_ : nullptr, course_.progress);
+  RunReport r = make_report(simulation_, series_ ? &*series_ : nullptr, measurements_ ? &*measurements_ : nullptr,
+                            course_.progress);
   r.end_reason = reason;
   r.threads = course_.team.most();
   r.thread_uses = course_.team.uses();
@@ -259,8 +301,9 @@ RunReport Run::report(const std::string& reason) const {
 
 /// The report, when the series is whole.
 void Run::finish(const std::string& reason) {
-  series_->finish();
+  finish_series();
   const RunReport r = report(reason);
+  if (!series_) return;
   for (std::size_t k = simulation_.plan().warnings.size(); k < r.warnings.size(); ++k)  // those were told at the start
     std::cerr << "barchan: warning: " << r.warnings[k] << '\n';
   write_run_report(directory_ / "run.json", r);
@@ -268,6 +311,7 @@ void Run::finish(const std::string& reason) {
 }
 
 void Run::fail(const std::string& reason) {
+  if (ranks::active()) return;  // the others may not be there to count with
   if (series_) try_to_write(directory_ / "run.json", report(reason));
   course_.progress.end(reason);
 }

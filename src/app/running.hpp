@@ -30,6 +30,11 @@ struct Course {
   double last_checkpoint = 0.0;                       // s of the run's wall time
   long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
   std::vector<RunReport::Retreat> retreats{};
+  /// What is asked of a run on several ranks after this step.
+  struct Agreed {
+    int signal = 0;
+    bool checkpoint = false, terminate = false;
+  } agreed{};
 };
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);
@@ -84,13 +89,16 @@ class Run {
   int loop(Past* past);
   int stop(const std::string& why, int status);
   bool asked_to_stop(int& status);
+  bool is_terminated() const;
+  void agree();
   bool checkpoint_due() const;
+  bool checkpoint_due_here() const;
   /// A checkpoint, unless the last one says the same.
   void bring_checkpoint_up_to_date();
   void write_frame();
-  void write_row() {
-    history_->row(simulation_.history_row());
-    simulation_.begin_row();
+  void write_row();
+  void finish_series() {
+    if (series_) series_->finish();
   }
   RunReport report(const std::string& reason) const;
   void finish(const std::string& reason);
@@ -100,7 +108,7 @@ class Run {
   Simulation& simulation_;
   const std::filesystem::path& directory_;
   bool continued_;
-  std::optional<SeriesWriter> series_;
+  std::optional<SeriesWriter> series_;  // these two: of the first rank; empty on the others
   std::optional<History> history_;
   std::optional<Measurements> measurements_;  // empty: the scene measures nothing
   std::string reason_;

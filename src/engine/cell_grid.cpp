@@ -52,9 +52,12 @@ void CellGrid::order_interior(const Blocks& blocks) {
   for (std::size_t y0 = low[1]; y0 < high[1]; y0 += across)
     for (std::size_t x0 = low[0]; x0 < high[0]; x0 += wide)
       for (std::size_t z = low[2]; z < high[2]; ++z)
-        for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y)
+        for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y) {
+          if (ranks::available()) row_.push_back(static_cast<std::uint32_t>(walk_.size()));
           for (std::size_t x = x0; x < std::min(x0 + wide, high[0]); ++x)
             walk_.push_back(static_cast<std::uint32_t>((z * count_[1] + y) * count_[0] + x));
+        }
+  if (ranks::available()) row_.push_back(static_cast<std::uint32_t>(walk_.size()));
   // Strips as walked; the halo of a periodic side is made row by row, so it is contiguous on either side of them.
   strip_last_.resize(count_[0]);
   for (std::size_t c = 0; c < count_[0]; ++c) {
@@ -81,6 +84,7 @@ void CellGrid::order_interior(const Blocks& blocks) {
 }
 
 void CellGrid::sort(PhaseParticles& particles) {
+  if (shared_) migrate(particles);
   const std::size_t n = particles.size();
   if (cell_of_.size() < n) {
     cell_of_.resize(n);
@@ -95,7 +99,8 @@ void CellGrid::sort(PhaseParticles& particles) {
   }
   make_runs();
   particles.permute(order_.data());
-  make_images(particles);
+  if (shared_) make_own_images(particles);
+  else make_images(particles);
 }
 
 /// Wraps, finds the cell of each particle and counts those of each cell in end_. All threads of a team call it.
@@ -139,7 +144,8 @@ void CellGrid::place_cells() {
 void CellGrid::make_runs() {
   runs_.clear();
   runs_.reserve(std::min<std::size_t>(walk_.size(), 4096));  // their number comes and goes
-  for (std::size_t w = 0; w < walk_.size(); ++w) {
+  const auto [first, last] = own_walk();
+  for (std::size_t w = first; w < last; ++w) {
     const std::uint32_t begin = begin_[walk_[w]], end = end_[walk_[w]];
     if (begin == end) continue;
     if (!runs_.empty() && runs_.back().block == walk_block_[w] && runs_.back().end == begin) runs_.back().end = end;
@@ -208,6 +214,24 @@ void CellGrid::find_halo() {
       }
 }
 
+/// Room for the search positions of particles and images, `used` in all; nothing is left of earlier ones behind them.
+void CellGrid::fit_search(std::size_t particles, std::size_t room, std::size_t used) {
+  const std::size_t needed = particles + room + 16;  // the search reads whole vectors
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    auto& s = search_[d];
+    if (s.capacity() < needed) s.reserve(needed + needed / 8);
+    s.resize(needed);
+    std::fill(s.begin() + static_cast<std::ptrdiff_t>(used), s.end(), 0.0f);
+  }
+}
+
+/// The cells of this process in the walk: from, to.
+std::array<std::size_t, 2> CellGrid::own_walk() const {
+  if (!shared_) return {0, walk_.size()};
+  const auto rank = static_cast<std::size_t>(ranks::available()->rank());
+  return {shared_->first[rank], shared_->first[rank + 1]};
+}
+
 void CellGrid::make_images(const PhaseParticles& particles) {
   const std::size_t n = particles.size();
   std::size_t total = n;
@@ -220,13 +244,9 @@ void CellGrid::make_images(const PhaseParticles& particles) {
   const std::size_t room = std::max(total - n, n <= 4096 ? n : 0);
   if (images_.capacity() < room) images_.reserve(room + room / 8 + 16);
   images_.resize(total - n);
+  fit_search(n, room, total);
   std::array<const double*, 3> x{};
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    auto& s = search_[d];
-    const std::size_t needed = n + room + 16;  // the search reads whole vectors
-    if (s.size() < needed) s.resize(needed + needed / 8);
-    x[d] = particles.column(Field::position, static_cast<int>(d));
-  }
+  for (std::size_t d = 0; d < dimensions_; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
   const auto particles_end = static_cast<std::int64_t>(n), halo_end = static_cast<std::int64_t>(halo_cells_.size());
 #pragma omp parallel
   {
@@ -250,10 +270,28 @@ void CellGrid::make_images(const PhaseParticles& particles) {
 }
 
 void CellGrid::archive(Archive& a) {
+  if (whole_) {
+    a.array("cell begins", whole_->begin);
+    a.array("cell ends", whole_->end);
+    a.array("images", whole_->images);
+    for (std::size_t d = 0; d < dimensions_; ++d) a.array("search positions", whole_->search[d]);
+    return;
+  }
   a.array("cell begins", begin_);
   a.array("cell ends", end_);
   a.array("images", images_);
   for (std::size_t d = 0; d < dimensions_; ++d) a.array("search positions", search_[d]);
+  if (shared_) {
+    SharedCells& s = *shared_;
+    a.array("ranks", s.first);
+    a.array("sent", s.sends);
+    a.array("sent by rank", s.send_counts);
+    a.array("received by rank", s.receive_counts);
+    a.array("received", s.slots);
+    a.array("own images", s.image_begin);
+    for (auto& positions : s.image_search) a.array("search positions of own images", positions);
+    if (a.loads()) own_by_first();
+  }
   if (a.loads()) make_runs();
 }
 

@@ -11,10 +11,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/aligned.hpp"
+#include "base/ranks.hpp"
+#include "engine/shared_cells.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
@@ -24,12 +28,6 @@ struct Bounds {
   int dimensions = 2;
   Vec3 low{}, high{};  // m; periodic sides: the period
   std::array<bool, 3> periodic{false, false, false};
-};
-
-/// One periodic image: particle `source` of the phase, moved by `shift` periods.
-struct Image {
-  std::uint32_t source;
-  std::array<std::int8_t, 3> shift;
 };
 
 /// Blocks of the domain, each wider than any search: particles within reach stand in the same or adjacent blocks. The
@@ -64,6 +62,7 @@ class CellGrid {
     return {runs_by_block_.data() + first_run_[block], first_run_[block + 1] - first_run_[block]};
   }
 
+  std::size_t cells() const { return begin_.size(); }
   std::size_t images() const { return images_.size(); }
   const std::vector<Image>& image_list() const { return images_; }
   const std::array<double, 3>& period() const { return period_; }
@@ -121,6 +120,32 @@ class CellGrid {
     if (begin != end) f(begin, end);
   }
 
+  // Of a run on several ranks (engine/cell_ranks.cpp). All ranks call these together.
+
+  /// Whether this rank has cells of its own and ghosts in the others; image_list() then knows no sources.
+  bool is_shared() const { return shared_ != nullptr; }
+  /// Of the phase as one process sorted it: keeps the particles of the cells of this rank alone. Ghosts are missing.
+  void share(PhaseParticles& particles);
+  /// All cells are this process' own again: for who loads what one process had, and shares it then.
+  void unshare() { shared_.reset(); }
+  /// Marks, by padded cell, the cells of other particles that a search of this radius about the own ones of `about`
+  /// looks into.
+  void mark(const CellGrid& about, float reach, std::vector<char>& needed) const;
+  /// Makes ghosts in the marked cells, those beyond periodic sides among them.
+  void take_ghosts(const std::vector<char>& needed);
+  /// Sends an item of `width` bytes for every ghost that other ranks have of this one's particles: pack(image, item)
+  /// makes it, place(number of the image, item) takes what has come.
+  template <class Pack, class Place>
+  void fill_ghosts(std::size_t width, Pack&& pack, Place&& place) const;
+  /// The values that the sources of the ghosts have in a column.
+  void take_values(const double* column, std::vector<double>& ghosts) const;
+  /// The way back: pack(number of the image, item) of this rank's ghosts, place(source, item) where they come from.
+  template <class Pack, class Place>
+  void return_ghosts(std::size_t width, Pack&& pack, Place&& place) const;
+  /// On the first rank: makes what a checkpoint of one process holds; archive() then saves that, once.
+  void gather();
+  void forget_gathered() { whole_.reset(); }
+
   std::size_t bytes() const;
 
   /// Where the particles stood when they were sorted last, so that lists can be made anew as they were.
@@ -155,6 +180,16 @@ class CellGrid {
   void fill_cells(const std::vector<std::int64_t>& id);
   void make_runs();
   void make_images(const PhaseParticles& particles);
+  void fit_search(std::size_t particles, std::size_t room, std::size_t used);
+  // of a run on several ranks
+  void divide(const std::vector<std::int64_t>& particles_by_row);
+  void own_by_first();
+  void migrate(PhaseParticles& particles);
+  void balance();
+  void make_own_images(const PhaseParticles& particles);
+  std::size_t halo_number(std::uint32_t cell) const;
+  void answer(const std::vector<std::uint32_t>& asked, const std::vector<std::size_t>& asked_counts);
+  std::array<std::size_t, 2> own_walk() const;
 
   std::size_t dimensions_;
   Bounds bounds_;
@@ -172,6 +207,34 @@ class CellGrid {
   std::vector<std::uint32_t> cell_of_, order_;
   std::vector<Image> images_;
   std::array<AlignedVector<float>, 3> search_;
+  std::vector<std::uint32_t> row_;       // where the rows of strips begin in the walk; on several ranks
+  std::unique_ptr<SharedCells> shared_;  // null: all cells are this process' own
+  std::optional<SharedCells::Whole> whole_;
 };
+
+template <class Pack, class Place>
+void CellGrid::fill_ghosts(std::size_t width, Pack&& pack, Place&& place) const {
+  SharedCells& s = *shared_;
+  const auto sent = static_cast<std::int64_t>(s.sends.size()), come = static_cast<std::int64_t>(s.slots.size());
+  if (s.out.size() < s.sends.size() * width) s.out.resize(s.sends.size() * width);
+  if (s.in.size() < s.slots.size() * width) s.in.resize(s.slots.size() * width);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t k = 0; k < sent; ++k)
+    pack(s.sends[static_cast<std::size_t>(k)], s.out.data() + static_cast<std::size_t>(k) * width);
+  ranks::active()->exchange(s.out.data(), s.send_counts, s.in.data(), s.receive_counts, width);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t k = 0; k < come; ++k)
+    place(std::size_t{s.slots[static_cast<std::size_t>(k)]}, s.in.data() + static_cast<std::size_t>(k) * width);
+}
+
+template <class Pack, class Place>
+void CellGrid::return_ghosts(std::size_t width, Pack&& pack, Place&& place) const {
+  SharedCells& s = *shared_;
+  if (s.out.size() < s.sends.size() * width) s.out.resize(s.sends.size() * width);
+  if (s.in.size() < s.slots.size() * width) s.in.resize(s.slots.size() * width);
+  for (std::size_t k = 0; k < s.slots.size(); ++k) pack(std::size_t{s.slots[k]}, s.in.data() + k * width);
+  ranks::active()->exchange(s.in.data(), s.receive_counts, s.out.data(), s.send_counts, width);
+  for (std::size_t k = 0; k < s.sends.size(); ++k) place(std::size_t{s.sends[k].source}, s.out.data() + k * width);
+}
 
 }  // namespace barchan

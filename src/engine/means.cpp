@@ -26,17 +26,20 @@ double reproducible_mean(const double* values, std::size_t size) {
   std::int64_t most = 0;
 #pragma omp parallel for simd schedule(static) reduction(max : most)
   for (std::int64_t k = 0; k < n; ++k) most = std::max(most, bits_of_size(values[k]));
+  most = ranks::largest(most);
+  const std::size_t all = ranks::total(size);
   const auto largest = std::bit_cast<double>(most);
   if (!std::isfinite(largest)) return std::numeric_limits<double>::quiet_NaN();
   if (largest < least_term) return 0.0;
-  const SumCuts cuts(largest, size);
+  const SumCuts cuts(largest, all);
 #pragma omp parallel for simd schedule(static) reduction(+ : high, low)
   for (std::int64_t k = 0; k < n; ++k) cuts.add(values[k], high, low);
-  return (high + low) / static_cast<double>(n);
+  add_of_ranks(high, low);
+  return (high + low) / static_cast<double>(all);
 }
 
 void keep_mean_density(PhaseParticles& fluid) {
-  if (fluid.size() == 0) return;
+  if (ranks::total(fluid.size()) == 0) return;
   double* rate = fluid.column(Field::density_rate);
   add_everywhere(rate, fluid.size(), -reproducible_mean(rate, fluid.size()));
 }
@@ -46,7 +49,7 @@ void accelerate(PhaseParticles& fluid, int axis, double amount) {
 }
 
 void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt) {
-  if (fluid.size() == 0) return;
+  if (ranks::total(fluid.size()) == 0) return;
   for (int d = 0; d < fluid.dimensions(); ++d) {
     const auto c = static_cast<std::size_t>(d);
     if (!hold.axes[c]) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "state/particles.hpp"
 
@@ -15,6 +16,7 @@ void keep_mean_density(PhaseParticles& fluid);
 /// uniform acceleration that makes the mean velocity, half a step later, the wanted one.
 struct BulkHold {
   std::array<bool, 3> axes{};            // along which
+  std::array<std::uint8_t, 5> unused{};  // a checkpoint holds these bytes too: they must not be those of chance
   std::array<double, 3> velocity{};      // m/s, wanted mean
   std::array<double, 3> acceleration{};  // m/s2, what the last step added
   bool any() const { return axes[0] || axes[1] || axes[2]; }

@@ -147,6 +147,7 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
     if (grids_[p]) bounds_.dimensions == 2 ? measure<2>(particles[p], p) : measure<3>(particles[p], p);
   // A pair that no list holds stood more than radius + skin apart. In the same or adjacent blocks it comes within the
   // radius only by a relative displacement of a skin; elsewhere it stood a whole block apart.
+  widen_by_ranks();
   Range all;
   all.clear();
   for (std::size_t p = 0; p < grids_.size(); ++p)
@@ -224,10 +225,11 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force, cons
   }
   kept_ = 0;
   for (std::size_t p = 0; p < grids_.size(); ++p) {
-    if (!grids_[p] || (!first && !has_moved(p))) continue;
+    if (!grids_[p] || (!first && !has_moved(p) && !ranks::active())) continue;
     PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
     grids_[p]->sort(particles[p]);
   }
+  if (ranks::available()) share(particles);
   search(particles, beside);
   ++rebuilds_;
   return true;
@@ -269,12 +271,17 @@ void Neighbours::search(const std::vector<PhaseParticles>& particles, const std:
   }
 }
 
-void Neighbours::archive(Archive& a, const std::vector<PhaseParticles>& particles) {
+void Neighbours::archive(Archive& a, std::vector<PhaseParticles>& particles, bool whole) {
   a.number("skin", skin_);
   a.number("rebuilds", rebuilds_);
   a.number("steps of the lists", kept_);
-  for (auto& grid : grids_)
-    if (grid) grid->archive(a);
+  whole = whole && ranks::active();
+  for (auto& grid : grids_) {
+    if (!grid) continue;
+    if (whole && a.loads()) grid->unshare();
+    grid->archive(a);
+  }
+  if (whole && a.loads()) share(particles);
   if (a.loads()) search(particles, {});
 }
 

@@ -47,7 +47,11 @@ class Neighbours {
   std::size_t bytes() const;
 
   /// The epoch of the lists. Loading searches again among the places of the last sort: the same lists.
-  void archive(Archive& a, const std::vector<PhaseParticles>& particles);
+  /// On several ranks `whole` says that it is that of one process: to load it, the particles are those of all ranks
+  /// and are shared out; to save it, gather() has been called.
+  void archive(Archive& a, std::vector<PhaseParticles>& particles, bool whole = false);
+  void gather();
+  void forget_gathered();
 
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
@@ -66,6 +70,9 @@ class Neighbours {
   template <std::size_t Dim>
   void measure(const PhaseParticles& particles, std::size_t phase);
   bool has_moved(std::size_t phase) const;
+  void share(std::vector<PhaseParticles>& particles);
+  void take_ghosts();
+  void widen_by_ranks();
   void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);
 
   Bounds bounds_;

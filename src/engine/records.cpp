@@ -2,6 +2,23 @@
 
 namespace barchan {
 
+void RecordArray::take_ghosts(const CellGrid& grid, int dimensions) {
+  grid.fill_ghosts(
+      size_ * sizeof(double),
+      [&](const Image& image, std::byte* item) {
+        std::memcpy(item, data_.data() + image.source * size_, size_ * sizeof(double));
+        if (!image.shifted()) return;
+        for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d) {
+          double x = data_[image.source * size_ + d];
+          x += image.shift[d] * grid.period()[d];
+          std::memcpy(item + d * sizeof(double), &x, sizeof x);
+        }
+      },
+      [&](std::size_t q, const std::byte* item) {
+        std::memcpy(data_.data() + (particles_ + q) * size_, item, size_ * sizeof(double));
+      });
+}
+
 void EddyRecords::resize(std::size_t particles, std::size_t images) {
   const std::size_t needed = particles + images + 1;  // and the dummy
   for (auto* values : {&root, &touch}) {

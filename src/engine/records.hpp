@@ -19,6 +19,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -101,6 +102,7 @@ class RecordArray {
 
   /// Copies the images from their sources, shifted by their periods. The first `dimensions` fields are the position.
   void fill_images(const CellGrid& grid, int dimensions) {
+    if (grid.is_shared()) return take_ghosts(grid, dimensions);
     const auto& images = grid.image_list();
     const auto n = static_cast<std::int64_t>(images.size());
 #pragma omp parallel for schedule(static)
@@ -115,6 +117,8 @@ class RecordArray {
 
  private:
   static constexpr double far_away = 1.0e12;
+  /// The same on several ranks.
+  void take_ghosts(const CellGrid& grid, int dimensions);
   std::size_t size_, particles_ = 0, dummy_ = 0;
   AlignedVector<double> data_;
 };
@@ -180,6 +184,7 @@ class CompactRecords {
   /// Makes the images of the particles' records; x: the particles' positions (m) by axis.
   template <int Dim>
   void fill_images(const CellGrid& grid, const std::array<const double*, Dim>& x) {
+    if (grid.is_shared()) return take_ghosts<Dim>(grid, x);
     const auto& images = grid.image_list();
     const auto n = static_cast<std::int64_t>(images.size());
 #pragma omp parallel for schedule(static)
@@ -214,6 +219,23 @@ class CompactRecords {
   std::int32_t place(double x, std::size_t axis) const {
     constexpr double limit = 1.9 * 1073741824.0;  // what left the domain is far enough there
     return static_cast<std::int32_t>(std::clamp((x - middle_[axis]) * (1.0 / unit_), -limit, limit));
+  }
+  /// The images of the particles' records on several ranks.
+  template <int Dim>
+  void take_ghosts(const CellGrid& grid, const std::array<const double*, Dim>& x) {
+    grid.fill_ghosts(
+        size * sizeof(float),
+        [&](const Image& image, std::byte* item) {
+          std::array<float, size> to;
+          std::copy_n(data_.data() + static_cast<std::size_t>(image.source) * size, size, to.data());
+          for (std::size_t d = 0; d < Dim; ++d)
+            if (image.shift[d] != 0)
+              to[d] = std::bit_cast<float>(place(x[d][image.source] + image.shift[d] * grid.period()[d], d));
+          std::memcpy(item, to.data(), sizeof to);
+        },
+        [&](std::size_t q, const std::byte* item) {
+          std::memcpy(data_.data() + (particles_ + q) * size, item, size * sizeof(float));
+        });
   }
   double unit_ = 1.0;
   std::array<double, 3> middle_{};

@@ -14,6 +14,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/ranks.hpp"
+
 namespace barchan {
 
 /// Where the terms of a sum are cut.
@@ -54,8 +56,17 @@ inline double largest_of(const double* values, std::size_t n) {
 /// Below this no term counts: its parts could not be told from zero.
 inline constexpr double least_term = 1e-250;
 
-/// Sum of f(k) over k < n, the same for any order of the f(k). f is called twice for each k and must give the same.
-/// NaN when a value is not finite. Allocates nothing.
+/// The parts of all ranks: these sums are exact too.
+inline void add_of_ranks(double& high, double& low) {
+  if (!ranks::active()) return;
+  std::array<double, 2> parts{high, low};
+  ranks::active()->reduce(parts.data(), parts.size(), Communicator::Take::sum);
+  high = parts[0];
+  low = parts[1];
+}
+
+/// Sum of f(k) over k < n, of all ranks, the same for any order of the f(k). f is called twice for each k and must give
+/// the same. NaN when a value is not finite. Allocates nothing.
 template <class F>
 double reproducible_sum(std::size_t n, F&& f) {
   constexpr std::size_t block = 256;
@@ -69,20 +80,24 @@ double reproducible_sum(std::size_t n, F&& f) {
   for (std::size_t first = 0; first < n; first += block) {
     const double most = largest_of(values.data(), fill(first));
     if (!(most <= largest)) largest = most;
-    if (std::isnan(largest)) return largest;
+    if (std::isnan(largest)) break;
   }
+  largest = std::bit_cast<double>(ranks::largest(bits_of_size(largest)));
+  const std::size_t all = ranks::total(n);
+  if (std::isnan(largest)) return largest;
   if (largest < least_term) return 0.0;
-  const SumCuts cuts(largest, n);
+  const SumCuts cuts(largest, all);
   double high = 0.0, low = 0.0;
   for (std::size_t first = 0; first < n; first += block) {
     const std::size_t count = fill(first);
 #pragma omp simd reduction(+ : high, low)
     for (std::size_t q = 0; q < count; ++q) cuts.add(values[q], high, low);
   }
+  add_of_ranks(high, low);
   return high + low;
 }
 
-/// Mean of n > 0 values, by all threads; the same for any order of the values and any number of threads.
+/// Mean of n values of each rank, by all threads; the same for any order of the values and any number of threads.
 double reproducible_mean(const double* values, std::size_t n);
 
 }  // namespace barchan

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -84,9 +85,10 @@ double Drive::pull(double mass, double given, double held) const {
 }
 
 void Drive::history(HistoryRow& row, const PhaseParticles& p, double given, double held) const {
-  const double mass = p.mass() * static_cast<double>(p.size());
+  const auto count = static_cast<double>(ranks::total(p.size()));
+  const double mass = p.mass() * count;
   const double mean = in_row_.time > 0.0 ? in_row_.sum / in_row_.time : held;
-  add_pull(row, name_, pull(mass, p.size() > 0 ? given / static_cast<double>(p.size()) : 0.0, mean), density_);
+  add_pull(row, name_, pull(mass, count > 0.0 ? given / count : 0.0, mean), density_);
 }
 
 void Drive::report(double mass, Warnings& warnings) const {

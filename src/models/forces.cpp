@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/ranks.hpp"
 namespace barchan {
 
 namespace {
@@ -83,9 +84,15 @@ void Forces::relax(PhaseParticles& p, double time, double dt) const {
 }
 
 Vec3 Forces::sum(const PhaseParticles& p, double time, double dt) const {
-  Vec3 total = static_cast<double>(p.size()) * uniform();
+  Vec3 total = static_cast<double>(ranks::total(p.size())) * uniform();
+  if (!varies()) return total;
+  ranks::in_turn(total, [&] { add_varying(total, p, time, dt); });
+  return total;
+}
+
+/// Of the forces that differ from place to place, particle by particle.
+void Forces::add_varying(Vec3& total, const PhaseParticles& p, double time, double dt) const {
   for (std::size_t k = 0; k < p.size(); ++k) {
-    if (!varies()) break;
     const Vec3 x = place_of(p, k);
     for (std::size_t d = 0; d < static_cast<std::size_t>(p.dimensions()); ++d) {
       for (const Force& force : forces_)
@@ -97,7 +104,6 @@ Vec3 Forces::sum(const PhaseParticles& p, double time, double dt) const {
                       (zone.velocity[d](x, time) - p.column(Field::velocity, static_cast<int>(d))[k]);
     }
   }
-  return total;
 }
 
 }  // namespace barchan

@@ -33,6 +33,7 @@ class Forces {
     std::array<Formula, 3> acceleration;  // m/s2
     std::optional<BoxShape> box;          // empty: everywhere
   };
+  void add_varying(Vec3& total, const PhaseParticles& p, double time, double dt) const;
   struct Zone {
     std::array<Formula, 3> velocity;  // m/s
     Formula rate;                     // 1/s

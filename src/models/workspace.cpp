@@ -165,8 +165,8 @@ std::size_t Workspace::bytes() const {
   return total;
 }
 
-void Workspace::archive(Archive& a) {
-  neighbours.archive(a, state.phases);
+void Workspace::archive(Archive& a, bool whole) {
+  neighbours.archive(a, state.phases, whole);
   if (!a.loads()) return;
   fit_records();
   must_search = false;
@@ -249,7 +249,7 @@ void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
     if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
-  w_->state.largest_acceleration = largest;
+  w_->state.largest_acceleration = ranks::largest(largest);
 }
 
 }  // namespace barchan

@@ -66,8 +66,8 @@ class Workspace : public Halo {
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;
-  /// The epoch of the lists; loading makes the lists and the records' sizes as they were.
-  void archive(Archive& a);
+  /// The epoch of the lists; loading makes the lists and the records' sizes as they were. `whole`: see Neighbours.
+  void archive(Archive& a, bool whole = false);
 
  private:
   std::vector<std::unique_ptr<PhaseRecords>> records_;  // by phase

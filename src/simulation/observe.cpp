@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "simulation/simulation.hpp"
 
@@ -12,7 +13,7 @@ std::uint64_t Simulation::pairs(const PlanEntry& e) const {
   for (const int direction : {e.forward, e.backward})
     if (direction >= 0) n += work_->list(direction).entries();
   for (const auto& model : models_) n += model->pairs(e);
-  return n;
+  return ranks::total(n);
 }
 
 long Simulation::searches() const {
@@ -28,7 +29,7 @@ std::vector<RestingContact> Simulation::resting_contacts(std::size_t phase) cons
   return all;
 }
 
-std::size_t Simulation::bytes() const { return work_->bytes() + (watch_ ? watch_->bytes() : 0); }
+std::size_t Simulation::bytes() const { return ranks::total(work_->bytes() + (watch_ ? watch_->bytes() : 0)); }
 
 /// Whether outputs have a particle: those in zones beyond sides with a flow belong to the world outside.
 bool Simulation::is_shown(const PhaseParticles& p, std::size_t k) const {
@@ -83,6 +84,7 @@ Frame Simulation::frame(int index) const {
     }
   }
   for (const Field field : frame_fields(scene_)) f.fields.push_back(values_of(field, written, n));
+  if (ranks::active()) gather_frame(f, written);
   return f;
 }
 
@@ -114,7 +116,7 @@ FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& wr
 
 void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   const auto& p = state_.phases[k];
-  const std::size_t n = p.size(), shown = shown_of(k);
+  const std::size_t n = p.size(), shown = ranks::total(shown_of(k));
   std::array<const double*, 3> v{};
   for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
   double fastest = 0.0;
@@ -136,7 +138,7 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
               : p.mass() * total;
     mean[c] = shown > 0 ? total / static_cast<double>(shown) : 0.0;
   }
-  fastest = std::sqrt(fastest);
+  fastest = std::sqrt(ranks::largest(fastest));
   row.raise(HistoryRow::largest_speed, fastest);
   const std::string& name = plan_.phases[k].name;
   row.add(name + "_kinetic_energy [J]", 0.5 * p.mass() * square);

@@ -187,7 +187,7 @@ void Simulation::archive(Archive& a) {
                        " m/s and is now " + brief(p.sound_speed) + " m/s");
   }
   state_.archive(a);
-  work_->archive(a);
+  work_->archive(a, loads_whole_);
   for (const auto& model : models_) model->archive(a);
   watch_->archive(a);
   budget_->archive(a);

@@ -1,6 +1,7 @@
 // A run in progress: the state, the models that act on it, and the schedule of a step.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -92,6 +93,10 @@ class Simulation {
   /// Saves everything that the next step starts from, or loads it into a simulation of the same scene: the run then
   /// goes on with the same bits. Throws SceneError when what is loaded does not fit.
   void archive(Archive& a);
+  /// The same of all particles, as one process has it. On several ranks all call it, and `all` is called on the first
+  /// alone to save, on every one to load: it may name more items, and calls `archive(a)`.
+  void save_whole(const std::function<void()>& save);
+  void load_whole(const std::function<void()>& load);
 
  private:
   double stable_step();
@@ -101,6 +106,7 @@ class Simulation {
   void shuffle();
   void check_columns() const;
   FrameField values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const;
+  void gather_frame(Frame& f, const std::vector<std::size_t>& written) const;
   bool is_shown(const PhaseParticles& p, std::size_t k) const;
   std::size_t shown_of(std::size_t phase) const;
   /// What all phases that move have in a row of history.csv.
@@ -114,6 +120,7 @@ class Simulation {
   Models models_;
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
+  bool loads_whole_ = false;
   std::unique_ptr<Watch> watch_;
   std::optional<Budget> budget_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "engine/integrate.hpp"
 #include "engine/pair_loop.hpp"
 #include "models/drive.hpp"
@@ -115,18 +116,22 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   for (const auto& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const PlanPhase& plan = see_.plan.phases[g.phase];
-    mass_ += p.mass() * static_cast<double>(p.size());
-    start_energy_ += 0.5 * p.mass() * static_cast<double>(p.size()) * std::pow(plan.rules.idle * plan.sound_speed, 2);
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      double v2 = 0.0;
-      for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
-      start_energy_ += 0.5 * p.mass() * v2;
-      start_fastest_ = std::max(start_fastest_, std::sqrt(v2));
-      if (plan.rules.pressure_stores_energy)
-        start_energy_ +=
-            0.5 * p.mass() *
-            std::pow(p.column(Field::pressure)[k] / (see_.scene.phases[g.phase].density * plan.sound_speed), 2);
-    }
+    const auto count = static_cast<double>(ranks::total(p.size()));
+    mass_ += p.mass() * count;
+    start_energy_ += 0.5 * p.mass() * count * std::pow(plan.rules.idle * plan.sound_speed, 2);
+    ranks::in_turn(start_energy_, [&] {
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        double v2 = 0.0;
+        for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
+        start_energy_ += 0.5 * p.mass() * v2;
+        start_fastest_ = std::max(start_fastest_, std::sqrt(v2));
+        if (plan.rules.pressure_stores_energy)
+          start_energy_ +=
+              0.5 * p.mass() *
+              std::pow(p.column(Field::pressure)[k] / (see_.scene.phases[g.phase].density * plan.sound_speed), 2);
+      }
+    });
+    start_fastest_ = ranks::largest(start_fastest_);
   }
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
@@ -165,10 +170,13 @@ void Watch::make_guards() {
         const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
         g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
-      if (plan.phases[other].moves || plan.phases[other].travels || see_.particles[other].size() == 0) continue;
+      if (plan.phases[other].moves || plan.phases[other].travels || ranks::total(see_.particles[other].size()) == 0)
+        continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
       for (std::size_t d = 0; d < 3; ++d) {
+        sides.low[d] = ranks::largest(sides.low[d]);
+        sides.high[d] = ranks::least(sides.high[d]);
         if (sides.low[d] > -Sides::far) g.closed[d][0] = static_cast<int>(other);
         if (sides.high[d] < Sides::far) g.closed[d][1] = static_cast<int>(other);
         // A grain or a body whose centre is beyond the side is half its diameter deep in the wall.
@@ -260,12 +268,13 @@ double Watch::look_at_phases(const Moment& now) {
       all.lightest = std::min(all.lightest, part.lightest);
       all.densest = std::max(all.densest, part.densest);
     }
+    if (ranks::active()) all = of_all_ranks(all);
     energy += 0.5 * p.mass() * all.squares;
     fastest_of_[g.phase] = std::sqrt(all.fastest);
     wrong += all.wrong;
     const PhaseRules& rules = see_.plan.phases[g.phase].rules;
     if (rules.solid) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
-    else if (p.size() > 0)
+    else if (ranks::total(p.size()) > 0)
       note_density(g, std::max(all.densest, 2.0 * g.reference_density - all.lightest) / g.reference_density - 1.0, now);
   }
   energy_ = energy;
@@ -315,7 +324,8 @@ double Watch::nearest_in(const Guard& g, std::size_t k) const {
     } else if (b < all) {
       const Image& image = images[b - n];
       for (std::size_t d = 0; d < Dim; ++d) {
-        const double r = x[d][k] - x[d][image.source] - image.shift[d] * grid.period()[d];
+        const double source = grid.is_shared() ? ghosts_[d][b - n] : x[d][image.source];
+        const double r = x[d][k] - source - image.shift[d] * grid.period()[d];
         r2 += r * r;
       }
     } else {
@@ -347,9 +357,31 @@ double Watch::strongest_force(const Moment& now) const {
       };
       most = std::max(most, norm({at(0), at(1), at(2)}));
     }
-    strongest += most;
+    strongest += ranks::largest(most);
   }
   return strongest;
+}
+
+/// What all ranks see; of one process the same.
+Watch::Part Watch::of_all_ranks(Part part) {
+  Part all;
+  for (const Part& one : ranks::each(part)) {
+    all.squares += one.squares;
+    all.wrong += one.wrong;
+    all.fastest = std::max(all.fastest, one.fastest);
+    all.lightest = std::min(all.lightest, one.lightest);
+    all.densest = std::max(all.densest, one.densest);
+  }
+  return all;
+}
+
+void Watch::take_places_of_ghosts(std::size_t phase) const {
+  const CellGrid& grid = see_.neighbours.grid(phase);
+  if (!grid.is_shared()) return;
+  for (int d = 0; d < see_.plan.dimensions; ++d) {
+    std::vector<double>& places = ghosts_[static_cast<std::size_t>(d)];
+    grid.take_values(see_.particles[phase].column(Field::position, d), places);
+  }
 }
 
 }  // namespace barchan

@@ -120,6 +120,8 @@ class Watch {
   void make_guards();
   void make_pairs();
   double speed_bound(const Guard& g, double dt) const;
+  static Part of_all_ranks(Part part);
+  void take_places_of_ghosts(std::size_t phase) const;
   double look_at_phases(const Moment& now);  // returns the fastest grain or body, m/s
   void look_at_pairs(const Moment& now, double way);
   void look_at_pairing(const Moment& now, bool all) const;
@@ -147,6 +149,7 @@ class Watch {
   std::vector<Guard> guards_;
   std::vector<Apart> pairs_;
   std::vector<Part> parts_;
+  mutable std::array<std::vector<double>, 3> ghosts_;  // m, on several ranks: places of the ghosts of a phase
   std::vector<Force> forces_;
   KeptState good_;
   long next_ = 1, looks_ = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "output/numbers.hpp"
 #include "simulation/watch.hpp"
 
@@ -57,8 +58,17 @@ std::string Watch::most_accelerated(const Moment& now) const {
       particle = k;
     }
   }
+  struct Found {
+    double most;
+    std::int64_t id;
+  } found{most, most < 0.0 ? 0 : see_.particles[phase].id()[particle]};
+  const int rank = ranks::best(
+      found, [](const Found& a, const Found& b) { return a.most > b.most || (a.most == b.most && a.id < b.id); });
+  const bool here = most == found.most && most >= 0.0;
+  most = found.most;
   if (most < 0.0) return "no particle";
-  return who(phase, particle, now) + ", with an acceleration of " + brief(most) + " m/s2";
+  return ranks::text_of(rank, here ? who(phase, particle, now) : "") + ", with an acceleration of " + brief(most) +
+         " m/s2";
 }
 
 /// What is wrong with a particle, and what to do; nothing if it is within its bounds.
@@ -157,6 +167,11 @@ void Watch::tell_worst(const Moment& now) const {
       whom = who(g.phase, k, now);
     }
   }
+  wrong = static_cast<long>(ranks::total(std::int64_t{wrong}));
+  std::int64_t of_all = lowest;
+  const int rank = ranks::best(of_all, [](std::int64_t a, std::int64_t b) { return a >= 0 && (b < 0 || a < b); });
+  whom = ranks::text_of(rank, whom + what);
+  what.clear();
   if (wrong == 0) throw BreakdownError("a sum of accelerations is not finite; " + most_accelerated(now));
   throw BreakdownError(whom + what + (wrong > 1 ? " (" + std::to_string(wrong) + " particles are wrong)" : ""));
 }
@@ -206,14 +221,19 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
 void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const {
   const PhaseParticles& p = see_.particles[g.phase];
   const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.phases[g.phase].spacing, 2);
-  const auto n = static_cast<std::int64_t>(p.size());
+  const auto own = static_cast<std::int64_t>(p.size()), before = static_cast<std::int64_t>(ranks::before(p.size())),
+             n = ranks::total(own);
+  take_places_of_ghosts(g.phase);
   const auto share = [&](std::int64_t first, std::int64_t stride) {
     std::int64_t near = 0, seen = 0;
+    const std::int64_t start = ((first - before) % stride + stride) % stride;
 #pragma omp parallel for schedule(static) reduction(+ : near, seen)
-    for (std::int64_t k = first; k < n; k += stride) {
+    for (std::int64_t k = start; k < own; k += stride) {
       near += nearest(g, static_cast<std::size_t>(k)) < near2 ? 1 : 0;
       ++seen;
     }
+    near = ranks::total(near);
+    seen = ranks::total(seen);
     return seen > 0 ? static_cast<double>(near) / static_cast<double>(seen) : 0.0;
   };
   constexpr std::int64_t least_sample = 128, thinning = 64;
@@ -228,9 +248,12 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
     lowest = p.id()[k];
     first = k;
   }
-  throw BreakdownError(who(g.phase, first, now) + " and " + brief(100.0 * paired) +
-                       " % of its phase stand in pairs, nearer than " + brief(WatchBounds::pair_distance) +
-                       " spacings to another (bound " + brief(100.0 * WatchBounds::paired) + " %); " + unpairing(g));
+  std::int64_t of_all = lowest;
+  const int rank = ranks::best(of_all, [](std::int64_t a, std::int64_t b) { return a >= 0 && (b < 0 || a < b); });
+  throw BreakdownError(ranks::text_of(rank, lowest >= 0 ? who(g.phase, first, now) : "") + " and " +
+                       brief(100.0 * paired) + " % of its phase stand in pairs, nearer than " +
+                       brief(WatchBounds::pair_distance) + " spacings to another (bound " +
+                       brief(100.0 * WatchBounds::paired) + " %); " + unpairing(g));
 }
 
 /// What keeps particles from standing in pairs.
@@ -268,12 +291,12 @@ void Watch::look_at_energy(const Moment& now) {
   for (std::size_t k = 0; k < see_.particles.size(); ++k)
     if (!see_.plan.phases[k].moves && see_.particles[k].size() > 0)
       walls = std::max(walls, size_of(see_.particles[k], 0, Field::velocity));
-  wall_speed_ = std::max(wall_speed_, walls);
+  wall_speed_ = std::max(wall_speed_, ranks::largest(walls));
   speed += wall_speed_;
   note_speed(speed - start_speed_, now);
   double mass = 0.0;  // of more particles than at the start: those that entered have no more than the largest speed
   for (const Guard& g : guards_)
-    mass += see_.particles[g.phase].mass() * static_cast<double>(see_.particles[g.phase].size());
+    mass += see_.particles[g.phase].mass() * static_cast<double>(ranks::total(see_.particles[g.phase].size()));
   const double bound = WatchBounds::energy * 0.5 * std::max(mass, mass_) * speed * speed;
   if (energy_ <= bound) return;
   throw BreakdownError("the kinetic energy of all particles, " + brief(energy_) + " J, is more than " +
@@ -297,6 +320,9 @@ void Watch::note_density(const Guard& g, double error, const Moment& now) {
     found.id = p.id()[k];
     found.place = place_of(p, k);
   }
+  ranks::best(found, [](const Extreme& a, const Extreme& b) {
+    return a.error > b.error || (a.error == b.error && a.id < b.id);
+  });
   extreme_ = found;
 }
 
@@ -317,6 +343,9 @@ void Watch::note_speed(double given, const Moment& now) {
       found.id = p.id()[k];
       found.place = place_of(p, k);
     }
+    ranks::best(found, [](const Extreme& a, const Extreme& b) {
+      return a.value > b.value || (a.value == b.value && a.id < b.id);
+    });
     fastest_ = found;
   }
 }

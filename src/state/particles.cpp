@@ -176,7 +176,7 @@ void PhaseParticles::resize(std::size_t size) {
 void PhaseParticles::archive(Archive& a) {
   std::uint64_t count = size_;
   a.number("particles of " + name_, count);
-  if (count != size_ && !may_change_)
+  if (count != size_ && !may_change_ && !is_part_)
     throw SceneError("the checkpoint does not fit this scene: it has " + std::to_string(count) + " particles of \"" +
                      name_ + "\", the scene has " + std::to_string(size_));
   if (count != size_) {

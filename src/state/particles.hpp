@@ -101,6 +101,17 @@ class PhaseParticles {
   /// Swaps the ids with those of another state, as many as there are particles then; the columns are the caller's.
   void set_ids(std::vector<std::int64_t>& ids);
 
+  // Of a run on several ranks: a phase holds the particles of its rank (engine/cell_ranks.cpp).
+
+  /// From now on it holds those at the places first .. last - 1 alone, and checkpoints may hold other numbers.
+  void keep_range(std::size_t first, std::size_t last);
+  /// Bytes of a particle on its way: id, fields, own columns.
+  std::size_t packed_width() const;
+  void pack(std::size_t k, std::byte* to) const;
+  void unpack(std::size_t k, const std::byte* from);
+  /// The particles of all ranks, one rank after another, on the first rank; none on the others.
+  PhaseParticles gathered() const;
+
   std::size_t bytes() const;  ///< memory of all columns
 
   /// Ids, all fields and the own columns that are kept, in the present order. Throws SceneError where an archive has
@@ -120,7 +131,7 @@ class PhaseParticles {
   std::string name_;
   int dimensions_;
   std::size_t size_;
-  bool may_change_ = false, keeps_places_ = false, in_order_ = false;
+  bool may_change_ = false, is_part_ = false, keeps_places_ = false, in_order_ = false;
   long changes_ = 0;
   std::int64_t first_id_;
   double mass_, mean_radius_ = 1.0;

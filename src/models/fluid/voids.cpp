@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "engine/entry_of_list.hpp"
 
 namespace barchan {
@@ -12,6 +13,7 @@ namespace barchan {
 namespace {
 
 using Seen = VoidFinder::Seen;
+using Ghosts = VoidFinder::Ghosts;
 
 template <std::size_t Dim>
 std::array<const double*, Dim> places(const PhaseParticles& particles) {
@@ -20,9 +22,10 @@ std::array<const double*, Dim> places(const PhaseParticles& particles) {
   return x;
 }
 
-/// Calls f(source, r) for every neighbour of a particle at x_a that is listed; r = x_a - x_b.
+/// Calls f(source, r) for every neighbour of a particle at x_a that is listed; r = x_a - x_b. On several ranks the
+/// source of a ghost is its own place, behind the particles.
 template <std::size_t Dim, class F>
-void each_neighbour(const Seen& seen, std::size_t k, const std::array<double, Dim>& x_a, F&& f) {
+void each_neighbour(const Seen& seen, const Ghosts& ghosts, std::size_t k, const std::array<double, Dim>& x_a, F&& f) {
   const auto x = places<Dim>(*seen.particles);
   const std::size_t n = seen.particles->size(), dummy = n + seen.grid->images();
   const auto row = seen.list->row(k);
@@ -31,6 +34,11 @@ void each_neighbour(const Seen& seen, std::size_t k, const std::array<double, Di
     if (index == dummy) continue;
     const auto entry = look_up<Dim>(index, *seen.grid, n);
     std::array<double, Dim> r;
+    if (index >= n && seen.grid->is_shared()) {
+      for (std::size_t d = 0; d < Dim; ++d) r[d] = x_a[d] - ghosts[d][index - n] - entry.shift[d];
+      f(index, r);
+      continue;
+    }
     for (std::size_t d = 0; d < Dim; ++d) r[d] = x_a[d] - x[d][entry.source] - entry.shift[d];
     f(entry.source, r);
   }
@@ -45,12 +53,12 @@ double squared(const std::array<double, Dim>& r) {
 
 /// Whether a ball without particles lies beside particle k.
 template <std::size_t Dim>
-bool beside_void(const PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
-                 std::size_t k) {
+bool beside_void(const PhaseParticles& fluid, std::span<const Seen> seen, std::span<const Ghosts> ghosts, double radius,
+                 double spacing, std::size_t k) {
   std::array<double, Dim> x{}, out{};
   for (std::size_t d = 0; d < Dim; ++d) x[d] = fluid.column(Field::position, static_cast<int>(d))[k];
-  for (const Seen& s : seen)
-    each_neighbour<Dim>(s, k, x, [&](std::size_t, const std::array<double, Dim>& r) {
+  for (std::size_t s = 0; s < seen.size(); ++s)
+    each_neighbour<Dim>(seen[s], ghosts[s], k, x, [&](std::size_t, const std::array<double, Dim>& r) {
       const double distance = std::sqrt(squared<Dim>(r)), weight = radius / std::max(distance, 1e-3 * radius) - 1.0;
       if (weight > 0.0)
         for (std::size_t d = 0; d < Dim; ++d) out[d] += weight * r[d];
@@ -58,10 +66,10 @@ bool beside_void(const PhaseParticles& fluid, std::span<const Seen> seen, double
   const double length = std::sqrt(squared<Dim>(out));
   if (!(length > 0.0)) return false;
   bool empty = true;
-  for (const Seen& s : seen)
-    each_neighbour<Dim>(s, k, x, [&](std::size_t, std::array<double, Dim> r) {
+  for (std::size_t s = 0; s < seen.size(); ++s)
+    each_neighbour<Dim>(seen[s], ghosts[s], k, x, [&](std::size_t, std::array<double, Dim> r) {
       for (std::size_t d = 0; d < Dim; ++d) r[d] += VoidFinder::outside * spacing / length * out[d];
-      empty = empty && squared<Dim>(r) > s.width * s.width;
+      empty = empty && squared<Dim>(r) > seen[s].width * seen[s].width;
     });
   return empty;
 }
@@ -89,6 +97,7 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
       any |= left[k] > 0.0 ? 1 : 0;
     }
   }
+  take_ghosts(seen);
   const auto count = static_cast<std::int64_t>(loose.count.load(std::memory_order_relaxed));
   loose.count.store(0, std::memory_order_relaxed);
 #pragma omp parallel for schedule(dynamic, 64) reduction(| : any) reduction(+ : broken) if (count > 256)
@@ -96,19 +105,26 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
     const std::uint32_t noted = loose.place[static_cast<std::size_t>(q)];
     const std::size_t k = noted & ~LooseParticles::broken;
     if (is_left_out(fluid, k)) continue;
-    const bool beside = beside_void<dim>(fluid, seen, radius, spacing, k);
+    const bool beside = beside_void<dim>(fluid, seen, ghosts_, radius, spacing, k);
     if ((k == noted || until_ > 0) && !beside) continue;
     if (!beside) ++broken;
     any = 1;
-    const auto mark = [&](std::size_t b) { std::atomic_ref<double>(left[b]).store(memory, std::memory_order_relaxed); };
+    const auto mark = [&](std::size_t b) {
+      if (b < fluid.size()) std::atomic_ref<double>(left[b]).store(memory, std::memory_order_relaxed);
+      else std::atomic_ref<char>(marked_[b - fluid.size()]).store(1, std::memory_order_relaxed);
+    };
     mark(k);
     std::array<double, dim> x{};
     for (std::size_t d = 0; d < dim; ++d) x[d] = fluid.column(Field::position, static_cast<int>(d))[k];
-    each_neighbour<dim>(seen.front(), k, x, [&](std::size_t b, const std::array<double, dim>& r) {
+    each_neighbour<dim>(seen.front(), ghosts_.front(), k, x, [&](std::size_t b, const std::array<double, dim>& r) {
       if (squared<dim>(r) < radius * radius) mark(b);
     });
   }
-  const bool many = broken > 0 && static_cast<double>(broken) >= unresolved_share * static_cast<double>(n);
+  return_marks(*seen.front().grid, left);
+  broken = ranks::total(broken);
+  any = ranks::any(any != 0) ? 1 : 0;
+  const bool many =
+      broken > 0 && static_cast<double>(broken) >= unresolved_share * static_cast<double>(ranks::total(n));
   unresolved_ = std::max<std::int64_t>(unresolved_ + (many ? 1 : -1), 0);
   if (unresolved_ >= unresolved_steps) {
     unresolved_ = unresolved_steps;
@@ -118,10 +134,30 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
   return near_ != 0;
 }
 
+/// On several ranks: the places of the ghosts of each phase, none of which is marked yet.
+void VoidFinder::take_ghosts(std::span<const Seen> seen) {
+  ghosts_.resize(seen.size());
+  if (!seen.front().grid->is_shared()) return;
+  for (std::size_t s = 0; s < seen.size(); ++s)
+    for (int d = 0; d < seen[s].particles->dimensions(); ++d)
+      seen[s].grid->take_values(seen[s].particles->column(Field::position, d), ghosts_[s][static_cast<std::size_t>(d)]);
+  marked_.assign(seen.front().grid->images(), 0);
+}
+
+/// Marked ghosts mark their sources.
+void VoidFinder::return_marks(const CellGrid& grid, double* left) const {
+  if (!grid.is_shared()) return;
+  grid.return_ghosts(
+      1, [&](std::size_t ghost, std::byte* item) { *item = static_cast<std::byte>(marked_[ghost]); },
+      [&](std::size_t source, const std::byte* item) {
+        if (*item != std::byte{0}) left[source] = memory;
+      });
+}
+
 bool VoidFinder::find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
                       LooseParticles& loose) {
   if (until_ > 0) --until_;
-  if (near_ == 0 && loose.count.load(std::memory_order_relaxed) == 0) {
+  if (near_ == 0 && !ranks::any(loose.count.load(std::memory_order_relaxed) != 0)) {
     unresolved_ = std::max<std::int64_t>(unresolved_ - 1, 0);
     return false;
   }

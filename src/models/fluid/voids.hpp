@@ -1,6 +1,7 @@
 // Voids in a fluid that fills its space: which of its particles stand beside one.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,9 @@ class VoidFinder {
     double width;
   };
 
+  /// Of one phase on several ranks: places of the ghosts (m), by axis.
+  using Ghosts = std::array<std::vector<double>, 3>;
+
   /// Places beyond an end of a zone with a flow are not looked at: the last rows of the zone have nothing behind them.
   void leave_out(const FlowEnd& end) { ends_.push_back(end); }
 
@@ -61,6 +65,10 @@ class VoidFinder {
   template <int Dim>
   bool find_in(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing, LooseParticles& loose);
   bool is_left_out(const PhaseParticles& fluid, std::size_t k) const;
+  void take_ghosts(std::span<const Seen> seen);
+  void return_marks(const CellGrid& grid, double* left) const;
+  std::vector<Ghosts> ghosts_;  // by what is seen
+  std::vector<char> marked_;    // of the fluid's ghosts: beside a void
   std::vector<FlowEnd> ends_;
   std::int64_t near_ = 0;  // 1: some particle is beside a void
   std::int64_t unresolved_ = 0;

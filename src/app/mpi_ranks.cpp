@@ -1,0 +1,206 @@
+#include "app/mpi_ranks.hpp"
+
+#include "base/ranks.hpp"
+
+#ifdef BARCHAN_MPI
+
+#define OMPI_SKIP_MPICXX 1
+#include <mpi.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <limits>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "base/errors.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr int tag = 1;
+
+MPI_Op operation(Communicator::Take how) {
+  return how == Communicator::Take::largest ? MPI_MAX : how == Communicator::Take::least ? MPI_MIN : MPI_SUM;
+}
+
+/// Items of so many bytes, so that a count of items may be large.
+class Item {
+ public:
+  explicit Item(std::size_t width) {
+    MPI_Type_contiguous(static_cast<int>(width), MPI_BYTE, &type_);
+    MPI_Type_commit(&type_);
+  }
+  ~Item() { MPI_Type_free(&type_); }
+  Item(const Item&) = delete;
+  Item& operator=(const Item&) = delete;
+  MPI_Datatype type() const { return type_; }
+
+ private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
+int count_of(std::size_t count) {
+  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw OutputError("a message between ranks has " + std::to_string(count) +
+                      " items; expected at most 2147483647: more ranks, so that each has fewer particles");
+  return static_cast<int>(count);
+}
+
+class Mpi final : public Communicator {
+ public:
+  Mpi() {
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  }
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  void reduce(double* values, std::size_t count, Take how) override { all(values, count, how, MPI_DOUBLE); }
+  void reduce(float* values, std::size_t count, Take how) override { all(values, count, how, MPI_FLOAT); }
+  void reduce(std::int64_t* values, std::size_t count, Take how) override { all(values, count, how, MPI_INT64_T); }
+  void all_gather(const void* mine, std::size_t bytes, void* all) override {
+    MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
+  }
+  void broadcast(void* data, std::size_t bytes, int from) override {
+    MPI_Bcast(data, count_of(bytes), MPI_BYTE, from, MPI_COMM_WORLD);
+  }
+  void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
+                const std::vector<std::size_t>& receive_counts, std::size_t width) override {
+    const Item item(width);
+    requests_.clear();
+    const char* from = static_cast<const char*>(send);
+    char* to = static_cast<char*>(receive);
+    const char* own = nullptr;
+    for (int r = 0; r < size_; ++r) {
+      const std::size_t count = receive_counts[static_cast<std::size_t>(r)];
+      if (count > 0 && r != rank_)
+        MPI_Irecv(to, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
+      if (r == rank_) own_to_ = to;
+      to += count * width;
+    }
+    for (int r = 0; r < size_; ++r) {
+      const std::size_t count = send_counts[static_cast<std::size_t>(r)];
+      if (count > 0 && r != rank_)
+        MPI_Isend(from, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
+      if (r == rank_) own = from;
+      from += count * width;
+    }
+    const std::size_t kept = send_counts[static_cast<std::size_t>(rank_)] * width;
+    if (kept > 0) std::memcpy(own_to_, own, kept);
+    MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  }
+  void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
+              std::size_t width) override {
+    std::vector<std::size_t> to(static_cast<std::size_t>(size_), 0), from(static_cast<std::size_t>(size_), 0);
+    to[0] = count;
+    if (rank_ == 0) from = counts;
+    exchange(mine, to, all, from, width);
+  }
+  void send(const void* data, std::size_t bytes, int to) override {
+    MPI_Send(data, count_of(bytes), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+  }
+  void receive(void* data, std::size_t bytes, int from) override {
+    MPI_Recv(data, count_of(bytes), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  }
+
+ private:
+  template <class T>
+  void all(T* values, std::size_t count, Take how, MPI_Datatype type) {
+    MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
+  }
+  int rank_ = 0, size_ = 1;
+  char* own_to_ = nullptr;
+  std::vector<MPI_Request> requests_;
+};
+
+bool joined = false;
+
+/// The text of every rank.
+std::vector<std::string> texts(Mpi& mpi, const std::string& mine) {
+  std::vector<std::string> all;
+  for (int r = 0; r < mpi.size(); ++r) {
+    std::uint64_t size = mine.size();
+    mpi.broadcast(&size, sizeof size, r);
+    std::string text = r == mpi.rank() ? mine : std::string(size, ' ');
+    text.resize(size);
+    mpi.broadcast(text.data(), size, r);
+    all.push_back(text);
+  }
+  return all;
+}
+
+}  // namespace
+
+bool has_mpi() { return true; }
+
+void join_ranks(const Launch& launch, const std::string& command, const std::string& out) {
+  if (!launch.together()) return;
+  int provided = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  joined = true;
+  static Mpi mpi;
+  if (mpi.size() == 1) return refuse_one_folder_for_many(launch, out);  // of a library that does not know this launcher
+  const auto folders = texts(mpi, out), commands = texts(mpi, command);
+  const std::set<std::string> different(folders.begin(), folders.end());
+  const bool apart = different.size() == folders.size() && different.count("") == 0;
+  if (apart) return;
+  if (std::set<std::string>(commands.begin(), commands.end()).size() > 1 || different.size() > 1)
+    throw SceneError(launch.told() +
+                     ", and their commands are neither the same nor are all their --out different; expected one "
+                     "command for all (ranks of one run), or an --out of its own for each (independent runs)");
+  ranks::give(&mpi);
+}
+
+int threads_of_a_rank() {
+  if (!ranks::available()) return 0;
+  MPI_Comm here = MPI_COMM_NULL;
+  int neighbours = 1;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  MPI_Comm_size(here, &neighbours);
+  MPI_Comm_free(&here);
+  // A launcher that binds each rank to cores has shared them out already.
+  const bool bound = omp_get_num_procs() < ::sysconf(_SC_NPROCESSORS_ONLN);
+  return std::max(1, bound ? omp_get_max_threads() : omp_get_max_threads() / neighbours);
+}
+
+int leave_ranks(int status) {
+  if (joined) MPI_Finalize();
+  joined = false;
+  return status;
+}
+
+bool all_failed() {
+  if (!joined || !ranks::available()) return true;
+  MPI_Request together = MPI_REQUEST_NULL;
+  MPI_Ibarrier(MPI_COMM_WORLD, &together);
+  int done = 0;
+  for (int k = 0; k < 300 && done == 0; ++k) {
+    MPI_Test(&together, &done, MPI_STATUS_IGNORE);
+    if (done == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return done != 0;
+}
+
+void abort_ranks(int status) { MPI_Abort(MPI_COMM_WORLD, status); }
+
+}  // namespace barchan
+
+#else
+
+namespace barchan {
+
+bool has_mpi() { return false; }
+void join_ranks(const Launch& launch, const std::string&, const std::string& out) {
+  refuse_one_folder_for_many(launch, out);
+}
+int threads_of_a_rank() { return 0; }
+int leave_ranks(int status) { return status; }
+bool all_failed() { return true; }
+void abort_ranks(int) {}
+
+}  // namespace barchan
+
+#endif

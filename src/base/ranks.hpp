@@ -1,0 +1,134 @@
+// The processes that share one run, its ranks. A run of one process has none of this: available() is null and every
+// function here does nothing. The program brings a communicator (app/mpi_ranks.cpp); the library knows no MPI.
+//
+// Every call is made by all ranks, in the same order: what decides about a call must be the same on all of them.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace barchan {
+
+class Communicator {
+ public:
+  Communicator() = default;
+  virtual ~Communicator() = default;
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  enum class Take { largest, least, sum };
+
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+  /// Each value becomes the largest, the least or the sum of those of all ranks. Sums of doubles have the same bits on
+  /// all ranks; only where all partial sums are exact do they not depend on the ranks.
+  virtual void reduce(double* values, std::size_t count, Take how) = 0;
+  virtual void reduce(float* values, std::size_t count, Take how) = 0;
+  virtual void reduce(std::int64_t* values, std::size_t count, Take how) = 0;
+  /// `bytes` of every rank, one after another.
+  virtual void all_gather(const void* mine, std::size_t bytes, void* all) = 0;
+  virtual void broadcast(void* data, std::size_t bytes, int from) = 0;
+  /// Items of `width` bytes: send_counts[r] of them to rank r, one rank after another; likewise what comes.
+  virtual void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
+                        const std::vector<std::size_t>& receive_counts, std::size_t width) = 0;
+  /// Items of all ranks, one rank after another, on rank 0; `counts` (there): of each rank.
+  virtual void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
+                      std::size_t width) = 0;
+  /// From one rank to the next.
+  virtual void send(const void* data, std::size_t bytes, int to) = 0;
+  virtual void receive(void* data, std::size_t bytes, int from) = 0;
+};
+
+namespace ranks {
+
+namespace detail {
+inline Communicator* given = nullptr;
+inline bool shared = false;
+}  // namespace detail
+
+/// Of the program; null: one process.
+inline Communicator* available() { return detail::given; }
+/// Null as long as every process holds all particles: the particles are shared out when they are sorted first.
+inline Communicator* active() { return detail::shared ? detail::given : nullptr; }
+inline void give(Communicator* communicator) { detail::given = communicator; }
+inline void share() { detail::shared = detail::given != nullptr; }
+
+inline bool is_first() { return !detail::given || detail::given->rank() == 0; }
+
+template <class T>
+T reduced(T value, Communicator::Take how) {
+  if (Communicator* all = active()) all->reduce(&value, 1, how);
+  return value;
+}
+/// Of all ranks.
+inline double largest(double value) { return reduced(value, Communicator::Take::largest); }
+inline double least(double value) { return reduced(value, Communicator::Take::least); }
+inline std::int64_t largest(std::int64_t value) { return reduced(value, Communicator::Take::largest); }
+inline std::int64_t total(std::int64_t value) { return reduced(value, Communicator::Take::sum); }
+inline std::size_t total(std::size_t count) {
+  return static_cast<std::size_t>(total(static_cast<std::int64_t>(count)));
+}
+inline bool any(bool value) { return largest(std::int64_t{value ? 1 : 0}) != 0; }
+
+/// The value of each rank; of one process its own.
+template <class T>
+std::vector<T> each(const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Communicator* const all = active();
+  std::vector<T> values(all ? static_cast<std::size_t>(all->size()) : 1, value);
+  if (all) all->all_gather(&value, sizeof(T), values.data());
+  return values;
+}
+
+/// Where the particles of this rank begin among those of all ranks, in the order of one process.
+inline std::size_t before(std::size_t count) {
+  if (!active()) return 0;
+  const auto counts = each(count);
+  std::size_t sum = 0;
+  for (int r = 0; r < active()->rank(); ++r) sum += counts[static_cast<std::size_t>(r)];
+  return sum;
+}
+
+/// The text of one rank.
+inline std::string text_of(int rank, std::string text) {
+  Communicator* const all = active();
+  if (!all) return text;
+  std::uint64_t size = text.size();
+  all->broadcast(&size, sizeof size, rank);
+  text.resize(size);
+  all->broadcast(text.data(), size, rank);
+  return text;
+}
+
+/// What `candidate` is best by `better`, a strict order; equal ones: the first rank's. Returns the rank.
+template <class T, class Better>
+int best(T& candidate, Better&& better) {
+  const auto all = each(candidate);
+  std::size_t first = 0;
+  for (std::size_t r = 1; r < all.size(); ++r)
+    if (better(all[r], all[first])) first = r;
+  candidate = all[first];
+  return static_cast<int>(first);
+}
+
+/// Sums that go through the particles in the order of one process: each rank takes `value` from the one before it,
+/// calls `add`, and hands it on; at last all have it. For what happens once a run.
+template <class T, class Add>
+void in_turn(T& value, Add&& add) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Communicator* const all = active();
+  if (all && all->rank() > 0) all->receive(&value, sizeof value, all->rank() - 1);
+  add();
+  if (!all) return;
+  if (all->rank() + 1 < all->size()) all->send(&value, sizeof value, all->rank() + 1);
+  all->broadcast(&value, sizeof value, all->size() - 1);
+}
+
+}  // namespace ranks
+
+}  // namespace barchan

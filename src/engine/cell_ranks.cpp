@@ -1,0 +1,342 @@
+// The cells of a grid on several ranks: who owns which, particles that change their rank, ghosts.
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "engine/cell_grid.hpp"
+
+namespace barchan {
+
+namespace {
+
+std::vector<std::size_t> counts_from_others(const std::vector<std::size_t>& mine) {
+  Communicator& all = *ranks::active();
+  const auto size = static_cast<std::size_t>(all.size());
+  std::vector<std::size_t> ones(size, 1), theirs(size, 0);
+  all.exchange(mine.data(), ones, theirs.data(), ones, sizeof(std::size_t));
+  return theirs;
+}
+
+std::size_t sum(const std::vector<std::size_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+}  // namespace
+
+/// Gives each rank rows of about the same number of particles.
+void CellGrid::divide(const std::vector<std::int64_t>& particles_by_row) {
+  SharedCells& s = *shared_;
+  const auto size = static_cast<std::size_t>(ranks::available()->size());
+  const std::int64_t total = std::accumulate(particles_by_row.begin(), particles_by_row.end(), std::int64_t{0});
+  s.first.assign(size + 1, static_cast<std::uint32_t>(walk_.size()));
+  s.first[0] = 0;
+  std::int64_t before = 0;
+  std::size_t rank = 1;
+  for (std::size_t r = 0; r < particles_by_row.size(); ++r) {
+    // A row belongs to the rank in whose share its middle lies.
+    const std::int64_t middle = 2 * before + particles_by_row[r];
+    while (rank < size && middle * static_cast<std::int64_t>(size) >= 2 * total * static_cast<std::int64_t>(rank))
+      s.first[rank++] = row_[r];
+    before += particles_by_row[r];
+  }
+  own_by_first();
+}
+
+void CellGrid::own_by_first() {
+  SharedCells& s = *shared_;
+  s.owner.assign(begin_.size(), -1);
+  for (std::size_t rank = 0; rank + 1 < s.first.size(); ++rank)
+    for (std::size_t w = s.first[rank]; w < s.first[rank + 1]; ++w) s.owner[walk_[w]] = static_cast<std::int32_t>(rank);
+}
+
+void CellGrid::share(PhaseParticles& particles) {
+  shared_ = std::make_unique<SharedCells>();
+  SharedCells& s = *shared_;
+  std::vector<std::int64_t> by_row(row_.size() - 1, 0);
+  for (std::size_t r = 0; r < by_row.size(); ++r)
+    for (std::size_t w = row_[r]; w < row_[r + 1]; ++w) by_row[r] += end_[walk_[w]] - begin_[walk_[w]];
+  divide(by_row);
+  const auto rank = ranks::available()->rank();
+  s.image_begin.assign(1, 0);
+  for (const HaloCell& halo : halo_cells_) {
+    if (s.owner[halo.source] == rank)
+      for (std::size_t d = 0; d < dimensions_; ++d)
+        s.image_search[d].insert(s.image_search[d].end(), search_[d].begin() + begin_[halo.cell],
+                                 search_[d].begin() + end_[halo.cell]);
+    s.image_begin.push_back(static_cast<std::uint32_t>(s.image_search[0].size()));
+  }
+  const auto [from, to] = own_walk();
+  const std::size_t first = from < to ? begin_[walk_[from]] : 0, last = from < to ? end_[walk_[to - 1]] : 0;
+  for (std::size_t w = from; w < to; ++w) {
+    begin_[walk_[w]] -= static_cast<std::uint32_t>(first);
+    end_[walk_[w]] -= static_cast<std::uint32_t>(first);
+  }
+  for (std::size_t d = 0; d < dimensions_; ++d)
+    std::copy(search_[d].begin() + static_cast<std::ptrdiff_t>(first),
+              search_[d].begin() + static_cast<std::ptrdiff_t>(last), search_[d].begin());
+  images_.clear();
+  particles.keep_range(first, last);
+  make_runs();
+}
+
+/// Gives rows away where a rank has too many particles. find_cells() has counted those of each cell.
+void CellGrid::balance() {
+  const auto [from, to] = own_walk();
+  std::int64_t own = 0;
+  for (std::size_t w = from; w < to; ++w) own += end_[walk_[w]];
+  const std::int64_t most = ranks::largest(own), total = ranks::total(own);
+  const auto size = static_cast<double>(ranks::active()->size());
+  if (!(static_cast<double>(most) * size > SharedCells::imbalance * static_cast<double>(total))) return;
+  std::vector<std::int64_t> by_row(row_.size() - 1, 0);
+  for (std::size_t r = 0; r < by_row.size(); ++r)
+    for (std::size_t w = row_[r]; w < row_[r + 1]; ++w) by_row[r] += end_[walk_[w]];
+  ranks::active()->reduce(by_row.data(), by_row.size(), Communicator::Take::sum);
+  divide(by_row);
+}
+
+/// Particles that stand in cells of other ranks go there.
+void CellGrid::migrate(PhaseParticles& particles) {
+  if (cell_of_.size() < particles.size()) {
+    cell_of_.resize(particles.size());
+    order_.resize(particles.size());
+  }
+#pragma omp parallel
+  find_cells(particles);
+  balance();
+  Communicator& all = *ranks::active();
+  const SharedCells& s = *shared_;
+  const std::size_t n = particles.size(), width = particles.packed_width();
+  std::vector<std::size_t> leaving(static_cast<std::size_t>(all.size()), 0);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t to = s.owner[cell_of_[k]];
+    if (to == all.rank()) order_[kept++] = static_cast<std::uint32_t>(k);
+    else ++leaving[static_cast<std::size_t>(to)];
+  }
+  const std::vector<std::size_t> coming = counts_from_others(leaving);
+  std::vector<std::size_t> next(leaving.size(), 0);
+  std::partial_sum(leaving.begin(), leaving.end() - 1, next.begin() + 1);
+  std::vector<std::byte> out((n - kept) * width), in(sum(coming) * width);
+  std::size_t last = kept;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t to = s.owner[cell_of_[k]];
+    if (to == all.rank()) continue;
+    order_[last++] = static_cast<std::uint32_t>(k);
+    particles.pack(k, out.data() + next[static_cast<std::size_t>(to)]++ * width);
+  }
+  all.exchange(out.data(), leaving, in.data(), coming, width);
+  if (kept < n) particles.permute(order_.data());
+  particles.resize(kept + sum(coming));
+  for (std::size_t k = 0; k < sum(coming); ++k) particles.unpack(kept + k, in.data() + k * width);
+}
+
+/// After a sort: search positions of the particles, and of their images beyond periodic sides.
+void CellGrid::make_own_images(const PhaseParticles& particles) {
+  SharedCells& s = *shared_;
+  const std::size_t n = particles.size();
+  const auto rank = ranks::active()->rank();
+  fit_search(n, 0, n);
+  std::array<const double*, 3> x{};
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    x[d] = particles.column(Field::position, static_cast<int>(d));
+    for (std::size_t k = 0; k < n; ++k) search_[d][k] = static_cast<float>(x[d][k] - bounds_.low[d]);
+    s.image_search[d].clear();
+  }
+  s.image_begin.assign(1, 0);
+  for (const HaloCell& halo : halo_cells_) {
+    for (std::uint32_t k = begin_[halo.source]; s.owner[halo.source] == rank && k < end_[halo.source]; ++k)
+      for (std::size_t d = 0; d < dimensions_; ++d)
+        s.image_search[d].push_back(static_cast<float>(x[d][k] - bounds_.low[d] + halo.shift[d] * period_[d]));
+    s.image_begin.push_back(static_cast<std::uint32_t>(s.image_search[0].size()));
+  }
+}
+
+void CellGrid::mark(const CellGrid& about, float reach, std::vector<char>& needed) const {
+  const auto [from, to] = about.own_walk();
+  for (std::size_t w = from; w < to; ++w) {
+    const std::uint32_t cell = about.walk_[w];
+    if (about.begin_[cell] == about.end_[cell]) continue;
+    std::array<int, 3> first{0, 0, 0}, last{0, 0, 0};
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      const float* x = about.search_position(static_cast<int>(d));
+      const auto [low, high] = std::minmax_element(x + about.begin_[cell], x + about.end_[cell]);
+      first[d] = cell_coordinate(*low - reach, d);
+      last[d] = cell_coordinate(*high + reach, d);
+    }
+    for (int z = first[2]; z <= last[2]; ++z)
+      for (int y = first[1]; y <= last[1]; ++y) {
+        const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
+        std::fill(needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(first[0])),
+                  needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(last[0]) + 1), char{1});
+      }
+  }
+}
+
+std::size_t CellGrid::halo_number(std::uint32_t cell) const {
+  const auto found = std::lower_bound(halo_cells_.begin(), halo_cells_.end(), cell,
+                                      [](const HaloCell& halo, std::uint32_t c) { return halo.cell < c; });
+  return static_cast<std::size_t>(found - halo_cells_.begin());
+}
+
+void CellGrid::take_ghosts(const std::vector<char>& needed) {
+  SharedCells& s = *shared_;
+  Communicator& all = *ranks::active();
+  const auto size = static_cast<std::size_t>(all.size());
+  const std::size_t n = [&] {
+    const auto [from, to] = own_walk();
+    return from < to ? std::size_t{end_[walk_[to - 1]]} : 0;
+  }();
+  // Asks the owners: cells by their numbers, those beyond a periodic side too.
+  std::vector<std::vector<std::uint32_t>> from(size);
+  for (std::size_t c = 0; c < begin_.size(); ++c) {
+    if (needed[c] == 0 || s.owner[c] == all.rank()) continue;
+    const auto cell = static_cast<std::uint32_t>(c);
+    const std::int32_t owner = s.owner[c] >= 0 ? s.owner[c] : s.owner[halo_cells_[halo_number(cell)].source];
+    from[static_cast<std::size_t>(owner)].push_back(cell);
+  }
+  std::vector<std::uint32_t> ask;
+  std::vector<std::size_t> ask_counts;
+  for (const auto& cells : from) {
+    ask.insert(ask.end(), cells.begin(), cells.end());
+    ask_counts.push_back(cells.size());
+  }
+  const std::vector<std::size_t> asked_counts = counts_from_others(ask_counts);
+  std::vector<std::uint32_t> asked(sum(asked_counts)), numbers(ask.size());
+  all.exchange(ask.data(), ask_counts, asked.data(), asked_counts, sizeof(std::uint32_t));
+  answer(asked, asked_counts);
+  std::vector<std::uint32_t> answers;
+  for (const std::uint32_t c : asked) {
+    const std::uint32_t source = s.owner[c] >= 0 ? c : halo_cells_[halo_number(c)].source;
+    answers.push_back(end_[source] - begin_[source]);
+  }
+  all.exchange(answers.data(), asked_counts, numbers.data(), ask_counts, sizeof(std::uint32_t));
+  // Own cells keep their places; all others stand behind the particles in the order of their numbers.
+  for (std::size_t c = 0; c < begin_.size(); ++c)
+    if (s.owner[c] != all.rank()) begin_[c] = end_[c] = 0;
+  for (std::size_t q = 0; q < ask.size(); ++q) end_[ask[q]] = numbers[q];
+  std::size_t total = n;
+  for (std::size_t c = 0; c < begin_.size(); ++c) {
+    if (s.owner[c] == all.rank()) continue;
+    begin_[c] = static_cast<std::uint32_t>(total);
+    total += end_[c];
+    end_[c] = static_cast<std::uint32_t>(total);
+  }
+  s.slots.clear();
+  s.receive_counts.assign(size, 0);
+  images_.assign(total - n, {0, {0, 0, 0}});
+  std::size_t q = 0;
+  for (std::size_t r = 0; r < size; ++r)
+    for (std::size_t k = 0; k < ask_counts[r]; ++k, ++q)
+      for (std::uint32_t at = begin_[ask[q]]; at < end_[ask[q]]; ++at) {
+        s.slots.push_back(static_cast<std::uint32_t>(at - n));
+        if (s.owner[ask[q]] < 0) images_[at - n].shift = halo_cells_[halo_number(ask[q])].shift;
+        ++s.receive_counts[r];
+      }
+  fit_search(n, total - n, total);
+  std::vector<std::size_t> begins;  // of the answered search positions: by sent image
+  for (const std::uint32_t c : asked) {
+    const bool beyond = s.owner[c] < 0;
+    const std::size_t first = beyond ? s.image_begin[halo_number(c)] : begin_[c];
+    const std::uint32_t source = beyond ? halo_cells_[halo_number(c)].source : c;
+    for (std::size_t k = 0; k < end_[source] - begin_[source]; ++k) begins.push_back(first + k);
+  }
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    const float* own = search_[d].data();
+    const float* beyond = s.image_search[d].data();
+    const Image* const first = s.sends.data();
+    fill_ghosts(
+        sizeof(float),
+        [&](const Image& image, std::byte* to) {
+          const std::size_t at = begins[static_cast<std::size_t>(&image - first)];
+          std::memcpy(to, (image.shifted() ? beyond : own) + at, sizeof(float));
+        },
+        [&](std::size_t slot, const std::byte* come) { std::memcpy(&search_[d][n + slot], come, sizeof(float)); });
+  }
+}
+
+void CellGrid::take_values(const double* column, std::vector<double>& ghosts) const {
+  ghosts.resize(images_.size());
+  fill_ghosts(
+      sizeof(double),
+      [&](const Image& image, std::byte* to) { std::memcpy(to, column + image.source, sizeof(double)); },
+      [&](std::size_t slot, const std::byte* come) { std::memcpy(&ghosts[slot], come, sizeof(double)); });
+}
+
+/// What other ranks have asked for is what they get from now on when images are filled.
+void CellGrid::answer(const std::vector<std::uint32_t>& asked, const std::vector<std::size_t>& asked_counts) {
+  SharedCells& s = *shared_;
+  s.sends.clear();
+  s.send_counts.assign(asked_counts.size(), 0);
+  std::size_t q = 0;
+  for (std::size_t r = 0; r < asked_counts.size(); ++r)
+    for (std::size_t k = 0; k < asked_counts[r]; ++k, ++q) {
+      Image image{0, {0, 0, 0}};
+      std::uint32_t source = asked[q];
+      if (s.owner[source] < 0) {
+        const HaloCell& halo = halo_cells_[halo_number(source)];
+        source = halo.source;
+        image.shift = halo.shift;
+      }
+      for (image.source = begin_[source]; image.source < end_[source]; ++image.source) s.sends.push_back(image);
+      s.send_counts[r] += end_[source] - begin_[source];
+    }
+}
+
+namespace {
+
+/// Items of all ranks on the first one.
+template <class T>
+std::vector<T> gathered(const T* mine, std::size_t count) {
+  Communicator& all = *ranks::active();
+  const std::vector<std::size_t> counts = ranks::each(count);
+  std::vector<T> together(all.rank() == 0 ? sum(counts) : 0);
+  all.gather(mine, count, together.data(), counts, sizeof(T));
+  return together;
+}
+
+}  // namespace
+
+void CellGrid::gather() {
+  if (!shared_) return;
+  SharedCells& s = *shared_;
+  const auto [from, to] = own_walk();
+  std::vector<std::uint32_t> own;
+  for (std::size_t w = from; w < to; ++w) own.push_back(end_[walk_[w]] - begin_[walk_[w]]);
+  const std::size_t n = from < to ? end_[walk_[to - 1]] : 0;
+  const std::vector<std::uint32_t> by_cell = gathered(own.data(), own.size());
+  std::array<std::vector<float>, 3> search, beyond;
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    search[d] = gathered(search_[d].data(), n);
+    beyond[d] = gathered(s.image_search[d].data(), s.image_search[d].size());
+  }
+  // How many images of each rank's are before those of a halo cell.
+  std::vector<std::size_t> next{0};
+  for (const std::size_t count : ranks::each(s.image_search[0].size())) next.push_back(next.back() + count);
+  if (ranks::active()->rank() != 0) return;
+  SharedCells::Whole whole;
+  whole.begin.assign(begin_.size(), 0);
+  whole.end.assign(begin_.size(), 0);
+  std::uint32_t total = 0;
+  for (std::size_t w = 0; w < walk_.size(); ++w) {
+    whole.begin[walk_[w]] = total;
+    whole.end[walk_[w]] = total += by_cell[w];
+  }
+  const std::size_t particles = total;
+  for (const HaloCell& h : halo_cells_) {
+    whole.begin[h.cell] = total;
+    for (std::uint32_t k = whole.begin[h.source]; k < whole.end[h.source]; ++k) whole.images.push_back({k, h.shift});
+    whole.end[h.cell] = total += whole.end[h.source] - whole.begin[h.source];
+  }
+  const std::size_t images = whole.images.size(), room = std::max(images, particles <= 4096 ? particles : 0);
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    whole.search[d].assign(particles + room + 16, 0.0f);
+    std::copy(search[d].begin(), search[d].end(), whole.search[d].begin());
+    std::vector<std::size_t> at = next;
+    for (const HaloCell& h : halo_cells_)
+      for (std::uint32_t q = whole.begin[h.cell]; q < whole.end[h.cell]; ++q)
+        whole.search[d][q] = beyond[d][at[static_cast<std::size_t>(s.owner[h.source])]++];
+  }
+  whole_ = std::move(whole);
+}
+
+}  // namespace barchan

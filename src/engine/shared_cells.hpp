@@ -1,0 +1,47 @@
+// How the ranks of a run share the cells of one grid. Each rank owns a piece of the walk through the cells, cut between
+// rows of a strip: so the particles of all ranks, one rank after another, stand in the order of one process, and the
+// cells of a row that are contiguous in one process are so here too. Cells of other ranks and beyond periodic sides
+// hold ghosts: images whose sources may stand on any rank, this one too.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned.hpp"
+
+namespace barchan {
+
+/// One periodic image: particle `source` of the phase, moved by `shift` periods.
+struct Image {
+  std::uint32_t source;
+  std::array<std::int8_t, 3> shift;
+  bool shifted() const { return shift[0] != 0 || shift[1] != 0 || shift[2] != 0; }
+};
+
+struct SharedCells {
+  /// A rank that has so many times the mean number of particles gives some away at the next sort.
+  static constexpr double imbalance = 1.1;
+
+  std::vector<std::uint32_t> row;    // where the rows of strips begin in the walk, and its end
+  std::vector<std::uint32_t> first;  // by rank: where its cells begin in the walk, and its end
+  std::vector<std::int32_t> owner;   // by padded cell: rank; of cells beyond periodic sides none
+  // Search positions (m) of the images of own particles beyond periodic sides, by halo cell.
+  std::array<std::vector<float>, 3> image_search;
+  std::vector<std::uint32_t> image_begin;
+  // What this rank sends when images are filled, by rank, and where what comes belongs.
+  std::vector<Image> sends;
+  std::vector<std::size_t> send_counts, receive_counts;  // by rank
+  std::vector<std::uint32_t> slots;
+  std::vector<std::byte> out, in;  // buffers
+
+  /// What a checkpoint holds of the grid of one process; on the first rank.
+  struct Whole {
+    std::vector<std::uint32_t> begin, end;
+    std::vector<Image> images;
+    std::array<AlignedVector<float>, 3> search;
+  };
+};
+
+}  // namespace barchan

@@ -1,0 +1,57 @@
+// What is written of a run on several ranks: the frames and checkpoints of one process.
+#include "base/ranks.hpp"
+#include "simulation/simulation.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// Of each phase the values of all ranks, one rank after another, as one process has them; `counts`: of this rank's
+/// particles of each phase; `width`: values a particle.
+template <class T>
+void gather(std::vector<T>& values, const std::vector<std::size_t>& counts, std::size_t width) {
+  std::vector<T> whole;
+  std::size_t at = 0;
+  for (const std::size_t count : counts) {
+    const std::vector<std::size_t> of_ranks = ranks::each(count);
+    std::size_t total = 0;
+    for (const std::size_t n : of_ranks) total += n;
+    const std::size_t before = whole.size();
+    if (ranks::is_first()) whole.resize(before + total * width);
+    ranks::active()->gather(values.data() + at * width, count, whole.data() + before, of_ranks, width * sizeof(T));
+    at += count;
+  }
+  values = std::move(whole);
+}
+
+}  // namespace
+
+/// The frame of all ranks on the first one; an empty one on the others.
+void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written) const {
+  std::vector<std::size_t> counts;
+  for (const std::size_t k : written) counts.push_back(shown_of(k));
+  gather(f.points, counts, 3);
+  gather(f.id, counts, 1);
+  gather(f.phase, counts, 1);
+  for (FrameField& field : f.fields) gather(field.values, counts, static_cast<std::size_t>(field.components));
+}
+
+void Simulation::save_whole(const std::function<void()>& save) {
+  if (!ranks::active()) return save();
+  std::vector<PhaseParticles> whole;
+  for (const PhaseParticles& p : state_.phases) whole.push_back(p.gathered());
+  work_->neighbours.gather();
+  if (!ranks::is_first()) return;
+  for (std::size_t k = 0; k < whole.size(); ++k) std::swap(state_.phases[k], whole[k]);
+  save();
+  for (std::size_t k = 0; k < whole.size(); ++k) std::swap(state_.phases[k], whole[k]);
+  work_->neighbours.forget_gathered();
+}
+
+void Simulation::load_whole(const std::function<void()>& load) {
+  loads_whole_ = true;
+  load();
+  loads_whole_ = false;
+}
+
+}  // namespace barchan

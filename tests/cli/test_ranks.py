@@ -1,0 +1,206 @@
+#!/usr/bin/python3
+"""A run on several ranks writes the bytes of one process: frames, history and checkpoint; what cannot run so is refused by name.
+
+    test_ranks.py PROGRAM SOURCE_DIR
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+LAUNCHERS = ("OMPI_", "PMI", "PMIX", "SLURM_")
+
+
+def has_mpi():
+    """Whether mpirun is there and the program knows MPI."""
+    if not shutil.which("mpirun"):
+        return False
+    return "libmpi" in subprocess.run(["ldd", PROGRAM], capture_output=True, text=True).stdout
+
+
+# A vortex in a fluid whose sides are all periodic; {} is the scheme.
+PERIODIC = """
+dimensions = 2
+spacing = 0.02
+{precision}
+[domain]
+size = [1, 1]
+periodic = ["x", "y"]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-3
+sound-speed = 10
+scheme = "{scheme}"
+[interactions]
+water-water = 2.6
+[[fill]]
+phase = "water"
+shape = "the-rest"
+perturb = 0.1
+velocity = ["sin(2*pi*x)*cos(2*pi*y)", "-cos(2*pi*x)*sin(2*pi*y)"]
+[time]
+end = 0.06
+largest-speed = 1
+[output]
+every = 0.03
+history-every = 0.01
+"""
+
+# Between a floor and a lid that slides, pulled along; three phases.
+CHANNEL = """
+dimensions = {dimensions}
+spacing = {spacing}
+[domain]
+size = {size}
+periodic = {periodic}
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-6
+sound-speed = 1.25e-4
+scheme = "{scheme}"
+[phases.floor]
+kind = "wall"
+[phases.lid]
+kind = "wall"
+velocity = {velocity}
+[interactions]
+water-water = 2.6
+water-floor = 2.6
+water-lid = 2.6
+[[fill]]
+phase = "floor"
+shape = {{ sides = ["bottom"] }}
+[[fill]]
+phase = "lid"
+shape = {{ sides = ["top"] }}
+[[fill]]
+phase = "water"
+shape = "the-rest"
+[[forcing]]
+phase = "water"
+acceleration = {acceleration}
+[time]
+end = {end}
+largest-speed = 1.25e-5
+[output]
+every = 0.05
+history-every = 0.01
+"""
+
+
+def channel(scheme, solid=False):
+    if solid:
+        return CHANNEL.format(dimensions=3, spacing=1e-4, size="[6e-4, 1e-3, 7e-4]", periodic='["x", "z"]', scheme=scheme,
+                              velocity="[1.25e-5, 0, 0]", acceleration="[1e-5, 0, 0]", end=0.1)
+    return CHANNEL.format(dimensions=2, spacing=4e-5, size="[6.4e-4, 1e-3]", periodic='["x"]', scheme=scheme,
+                          velocity="[1.25e-5, 0]", acceleration="[1e-5, 0]", end=0.15)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.at = pathlib.Path(folder.name)
+        self.addCleanup(folder.cleanup)
+
+    def start(self, ranks, text, out, *options, threads=1):
+        (self.at / "scene.toml").write_text(text)
+        alone = {k: v for k, v in os.environ.items() if not k.startswith(LAUNCHERS)}
+        before = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks else []
+        return subprocess.run([*before, PROGRAM, "run", "scene.toml", "--quiet", "--threads", str(threads), "--out", out, *options],
+                              cwd=self.at, env=alone, capture_output=True, text=True, timeout=600)
+
+    def run_on(self, ranks, text, out, *options, threads=1):
+        ended = self.start(ranks, text, out, *options, threads=threads)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        return ended
+
+    def same(self, one, other):
+        """All that has the bits of the run."""
+        names = {f.name for f in (self.at / one).iterdir()} - {"run.json"}
+        self.assertEqual(names, {f.name for f in (self.at / other).iterdir()} - {"run.json"})
+        self.assertTrue(any(name.endswith(".checkpoint") for name in names))
+        for name in sorted(names):
+            self.assertEqual((self.at / one / name).read_bytes(), (self.at / other / name).read_bytes(), f"{name} of {other}")
+
+
+@unittest.skipUnless(has_mpi(), "no MPI here")
+class Ranks(Folder):
+    def compare(self, text, *ranks):
+        self.run_on(0, text, "one")
+        for n in ranks:
+            self.run_on(n, text, f"of-{n}")
+            self.same("one", f"of-{n}")
+
+    def test_plain_fluid_in_a_periodic_domain(self):
+        self.compare(PERIODIC.format(scheme="plain", precision=""), 2, 3)
+
+    def test_consistent_fluid_in_a_periodic_domain(self):
+        self.compare(PERIODIC.format(scheme="consistent", precision=""), 2, 3)
+
+    def test_in_double_precision(self):
+        self.compare(PERIODIC.format(scheme="consistent", precision='precision = "double"'), 3)
+
+    def test_fluid_with_voids(self):
+        text = PERIODIC.format(scheme="consistent", precision="").replace("perturb = 0.1", "perturb = 0.45")
+        self.compare(text, 2, 3)
+
+    def test_plain_fluid_between_walls(self):
+        self.compare(channel("plain"), 2, 3)
+
+    def test_consistent_fluid_between_walls(self):
+        self.compare(channel("consistent"), 2, 3)
+
+    def test_three_dimensions(self):
+        self.compare(channel("consistent", solid=True), 2, 3)
+
+    def test_threads_beside_ranks(self):
+        text = PERIODIC.format(scheme="plain", precision="")
+        self.run_on(0, text, "one")
+        self.run_on(2, text, "of-2", threads=2)
+        self.same("one", "of-2")
+
+    def test_more_ranks_than_rows_of_cells_of_a_wall(self):
+        self.compare(channel("plain"), 7)
+
+    def test_a_checkpoint_goes_on_on_any_number_of_ranks(self):
+        text = PERIODIC.format(scheme="consistent", precision="")
+        self.run_on(0, text, "one")
+        for before, after in ((0, 3), (3, 0), (2, 3)):
+            out = f"{before}-{after}"
+            self.run_on(before, text, out, "--set", "time.end=0.03")
+            self.run_on(after, text, out, "--restart", "latest")
+            for name in ("scene_000002.vtp", "scene.checkpoint"):
+                self.assertEqual((self.at / "one" / name).read_bytes(), (self.at / out / name).read_bytes(), f"{name} of {out}")
+
+    def test_a_breakdown_is_told_once_and_the_same(self):
+        text = PERIODIC.format(scheme="plain", precision="").replace("end = 0.06", "step = 0.02\nend = 0.4")
+        one, many = self.start(0, text, "one"), self.start(3, text, "of-3")
+        self.assertEqual((one.returncode, many.returncode), (3, 3), many.stderr)
+        self.assertIn(one.stderr.splitlines()[-1], many.stderr)
+        self.assertEqual(many.stderr.count("first bad state"), 1)
+
+    def test_what_cannot_run_is_refused_by_name_and_writes_nothing(self):
+        text = channel("consistent").replace("viscosity = 1e-6", 'viscosity = 1e-6\nturbulence = "smagorinsky"')
+        ended = self.start(2, text, "out")
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertIn("phases.water: a fluid with turbulence cannot run on several ranks yet", ended.stderr)
+        self.assertEqual(ended.stderr.count("cannot run on several ranks"), 1)
+        self.assertFalse((self.at / "out").exists())
+
+    def test_a_folder_that_cannot_be_written_ends_all_ranks(self):
+        (self.at / "file").write_text("")
+        ended = self.start(2, PERIODIC.format(scheme="plain", precision=""), "file/out")
+        self.assertEqual(ended.returncode, 4, ended.stderr)
+        self.assertIn("file/out", ended.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
