@@ -188,6 +188,9 @@ class CellGrid {
   void balance();
   void make_own_images(const PhaseParticles& particles);
   std::size_t halo_number(std::uint32_t cell) const;
+  SharedCells::Question ask_owners(const std::vector<char>& needed);
+  std::size_t place_ghosts(const SharedCells::Question& question);
+  void bring_search_positions(const SharedCells::Question& question, std::size_t n);
   void answer(const std::vector<std::uint32_t>& asked, const std::vector<std::size_t>& asked_counts);
   std::array<std::size_t, 2> own_walk() const;
 

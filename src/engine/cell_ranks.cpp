@@ -179,62 +179,80 @@ std::size_t CellGrid::halo_number(std::uint32_t cell) const {
 }
 
 void CellGrid::take_ghosts(const std::vector<char>& needed) {
-  SharedCells& s = *shared_;
+  const SharedCells::Question question = ask_owners(needed);
+  const std::size_t n = place_ghosts(question);
+  bring_search_positions(question, n);
+}
+
+/// Asks the owners for needed cells, by their numbers, those beyond a periodic side too: how many are in them.
+SharedCells::Question CellGrid::ask_owners(const std::vector<char>& needed) {
+  const SharedCells& s = *shared_;
   Communicator& all = *ranks::active();
-  const auto size = static_cast<std::size_t>(all.size());
-  const std::size_t n = [&] {
-    const auto [from, to] = own_walk();
-    return from < to ? std::size_t{end_[walk_[to - 1]]} : 0;
-  }();
-  // Asks the owners: cells by their numbers, those beyond a periodic side too.
-  std::vector<std::vector<std::uint32_t>> from(size);
+  SharedCells::Question q;
+  std::vector<std::vector<std::uint32_t>> from(static_cast<std::size_t>(all.size()));
   for (std::size_t c = 0; c < begin_.size(); ++c) {
     if (needed[c] == 0 || s.owner[c] == all.rank()) continue;
     const auto cell = static_cast<std::uint32_t>(c);
     const std::int32_t owner = s.owner[c] >= 0 ? s.owner[c] : s.owner[halo_cells_[halo_number(cell)].source];
     from[static_cast<std::size_t>(owner)].push_back(cell);
   }
-  std::vector<std::uint32_t> ask;
-  std::vector<std::size_t> ask_counts;
   for (const auto& cells : from) {
-    ask.insert(ask.end(), cells.begin(), cells.end());
-    ask_counts.push_back(cells.size());
+    q.ask.insert(q.ask.end(), cells.begin(), cells.end());
+    q.ask_counts.push_back(cells.size());
   }
-  const std::vector<std::size_t> asked_counts = counts_from_others(ask_counts);
-  std::vector<std::uint32_t> asked(sum(asked_counts)), numbers(ask.size());
-  all.exchange(ask.data(), ask_counts, asked.data(), asked_counts, sizeof(std::uint32_t));
-  answer(asked, asked_counts);
+  q.asked_counts = counts_from_others(q.ask_counts);
+  q.asked.resize(sum(q.asked_counts));
+  q.numbers.resize(q.ask.size());
+  all.exchange(q.ask.data(), q.ask_counts, q.asked.data(), q.asked_counts, sizeof(std::uint32_t));
+  answer(q.asked, q.asked_counts);
   std::vector<std::uint32_t> answers;
-  for (const std::uint32_t c : asked) {
+  for (const std::uint32_t c : q.asked) {
     const std::uint32_t source = s.owner[c] >= 0 ? c : halo_cells_[halo_number(c)].source;
     answers.push_back(end_[source] - begin_[source]);
   }
-  all.exchange(answers.data(), asked_counts, numbers.data(), ask_counts, sizeof(std::uint32_t));
-  // Own cells keep their places; all others stand behind the particles in the order of their numbers.
+  all.exchange(answers.data(), q.asked_counts, q.numbers.data(), q.ask_counts, sizeof(std::uint32_t));
+  return q;
+}
+
+/// Own cells keep their places; all others stand behind the particles in the order of their numbers. Returns the number
+/// of own particles.
+std::size_t CellGrid::place_ghosts(const SharedCells::Question& question) {
+  SharedCells& s = *shared_;
+  const int rank = ranks::active()->rank();
+  const auto [from, to] = own_walk();
+  const std::size_t n = from < to ? std::size_t{end_[walk_[to - 1]]} : 0;
   for (std::size_t c = 0; c < begin_.size(); ++c)
-    if (s.owner[c] != all.rank()) begin_[c] = end_[c] = 0;
-  for (std::size_t q = 0; q < ask.size(); ++q) end_[ask[q]] = numbers[q];
+    if (s.owner[c] != rank) begin_[c] = end_[c] = 0;
+  for (std::size_t q = 0; q < question.ask.size(); ++q) end_[question.ask[q]] = question.numbers[q];
   std::size_t total = n;
   for (std::size_t c = 0; c < begin_.size(); ++c) {
-    if (s.owner[c] == all.rank()) continue;
+    if (s.owner[c] == rank) continue;
     begin_[c] = static_cast<std::uint32_t>(total);
     total += end_[c];
     end_[c] = static_cast<std::uint32_t>(total);
   }
   s.slots.clear();
-  s.receive_counts.assign(size, 0);
+  s.receive_counts.assign(question.ask_counts.size(), 0);
   images_.assign(total - n, {0, {0, 0, 0}});
   std::size_t q = 0;
-  for (std::size_t r = 0; r < size; ++r)
-    for (std::size_t k = 0; k < ask_counts[r]; ++k, ++q)
-      for (std::uint32_t at = begin_[ask[q]]; at < end_[ask[q]]; ++at) {
+  for (std::size_t r = 0; r < question.ask_counts.size(); ++r)
+    for (std::size_t k = 0; k < question.ask_counts[r]; ++k, ++q) {
+      const std::uint32_t cell = question.ask[q];
+      for (std::uint32_t at = begin_[cell]; at < end_[cell]; ++at) {
         s.slots.push_back(static_cast<std::uint32_t>(at - n));
-        if (s.owner[ask[q]] < 0) images_[at - n].shift = halo_cells_[halo_number(ask[q])].shift;
+        if (s.owner[cell] < 0) images_[at - n].shift = halo_cells_[halo_number(cell)].shift;
         ++s.receive_counts[r];
       }
+    }
   fit_search(n, total - n, total);
+  return n;
+}
+
+/// Behind the n of the own particles.
+void CellGrid::bring_search_positions(const SharedCells::Question& question, std::size_t n) {
+  const SharedCells& s = *shared_;
   std::vector<std::size_t> begins;  // of the answered search positions: by sent image
-  for (const std::uint32_t c : asked) {
+  for (const std::uint32_t c : question.asked) {
     const bool beyond = s.owner[c] < 0;
     const std::size_t first = beyond ? s.image_begin[halo_number(c)] : begin_[c];
     const std::uint32_t source = beyond ? halo_cells_[halo_number(c)].source : c;

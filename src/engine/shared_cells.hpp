@@ -36,6 +36,13 @@ struct SharedCells {
   std::vector<std::uint32_t> slots;
   std::vector<std::byte> out, in;  // buffers
 
+  /// Cells that this rank asks others for, and cells that others ask of it.
+  struct Question {
+    std::vector<std::uint32_t> ask, asked;              // cells, by the rank that is asked, that asks
+    std::vector<std::size_t> ask_counts, asked_counts;  // by rank
+    std::vector<std::uint32_t> numbers;                 // of particles in the cells of `ask`
+  };
+
   /// What a checkpoint holds of the grid of one process; on the first rank.
   struct Whole {
     std::vector<std::uint32_t> begin, end;

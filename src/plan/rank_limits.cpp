@@ -20,7 +20,7 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const PlanPhase& p = plan.phases[number];
   const std::string where = scene.file + ": phases." + p.name;
   const auto has = [&](Field f) { return std::find(p.fields.begin(), p.fields.end(), f) != p.fields.end(); };
-  const bool still = !p.moves && p.kind == "wall";
+  const bool still = !p.moves && p.takes_momentum;  // a wall
   if (!p.flows && !still) refuse(where, "a phase of kind \"" + p.kind + "\"");
   if (p.travels) refuse(where, "a wall that moves by a [[motion]]");
   if (p.eddies) refuse(where, "a fluid with turbulence");
