@@ -1,10 +1,11 @@
-"""What moves in water: a wave maker, and a sphere that sinks in a tube."""
+"""What moves in water: a wave maker, a sphere that sinks in a tube, a cylinder that floats."""
 
 import math
 import pathlib
 
 import numpy
 
+import heave_reference
 from harness import attempt, options, report, run, tell
 
 # ---- wave maker ------------------------------------------------------------------------------------------------------
@@ -131,7 +132,43 @@ def sinking_sphere(n):
     report("sphere sinks in a tube, Re 0.06", "consistent", n, f"speed over Faxen's, {excess:+.3f}: error", abs(excess), .05 if n > 8 else None, seconds)
 
 
+# ---- a floating cylinder ---------------------------------------------------------------------------------------------
+
+RADIUS = .0762  # m
+
+
+def turns(t, y):
+    """Where y turns: times and values, by the parabola through three samples."""
+    found = []
+    for k in range(1, len(y) - 1):
+        if (y[k] - y[k - 1]) * (y[k + 1] - y[k]) < 0:
+            bend = y[k + 1] - 2 * y[k] + y[k - 1]
+            at = .5 * (y[k - 1] - y[k + 1]) / bend
+            found.append((t[k] + at * (t[k + 1] - t[k]), y[k] - .25 * (y[k - 1] - y[k + 1]) * at))
+    return found
+
+
+def heaving_cylinder(n, lift=1 / 3):
+    """Place of a floating cylinder that was lifted, over the lift, against linear theory (heave_reference.py)."""
+    name = f"floating cylinder heaves, lifted by {lift:.2g} radii"
+
+    def measure():
+        (h,), seconds = run("heaving_cylinder", [f"constants.across={n}", f"constants.lift={lift!r}*a"], files=("history.csv",))
+        t = h["time [s]"] * math.sqrt(GRAVITY / RADIUS)
+        y = (h["cylinder_y [m]"] - 10 * RADIUS) / (lift * RADIUS)
+        exact_t, exact_y, _ = heave_reference.free_heave(around=32, step=.02, end=12.5, reach=50)
+        off = numpy.abs(y - numpy.interp(t, exact_t, exact_y))
+        for number, ((at, value), (exact_at, exact_value)) in enumerate(zip(turns(t, y), turns(exact_t, exact_y)), 1):
+            report(name, "consistent", n, f"time of turn {number}, {at:.2f} of {exact_at:.2f}: error", abs(at / exact_at - 1), .05, seconds)
+            report(name, "consistent", n, f"turn {number}, {value:+.3f} of {exact_value:+.3f}: error over the lift", abs(value - exact_value), .05,
+                   seconds)
+        report(name, "consistent", n, "place over the lift, rms of the difference", math.sqrt((off**2).mean()), .05, seconds)
+    attempt(name, "consistent", n, measure)
+
+
 CASES = {
+    "heaving-cylinder": (lambda: [heaving_cylinder(n) for n in (10, 20)],
+                         "A floating cylinder that was lifted (Ito 1977; Maskell & Ursell 1970)"),
     "wave-maker": (lambda: [wave_maker(kh, n) for kh in TANKS for n in (25, 40)],
                    "Wave maker: a piston, height of the waves over the stroke (Havelock 1929)"),
     "sinking-sphere": (lambda: [sinking_sphere(n) for n in (8, 14)], "A sphere that sinks in a tube of water, in three dimensions (Faxen)"),

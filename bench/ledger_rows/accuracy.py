@@ -27,6 +27,7 @@ SOURCES = {
 LONG = {
     "open-cylinder": "Dennis & Chang 1970, J. Fluid Mech. 42, 471 (Re 20); Park et al. 1998, Phys. Fluids 10, 345; Williamson 1989",
     "sinking-sphere": "Faxen's series for a sphere in a tube: Happel & Brenner 1983, section 7-3",
+    "heaving-cylinder": "Ito 1977, thesis, MIT; linear theory: Maskell & Ursell 1970, J. Fluid Mech. 44, 303; Yeung 1982, J. Eng. Math. 16, 97",
     "wave-maker": "linear theory of the piston: Havelock 1929, Phil. Mag. 8, 569; Dean & Dalrymple 1991, section 6.3",
     "open-step": "bench/accuracy/step_reference.py, finite differences; for an expansion of 2 within 0.7 % of Erturk 2008, Computers & Fluids 37, 633",
 }

@@ -32,15 +32,10 @@ BorderLoad::BorderLoad(const Scene& scene, const Layout& layout, const PlanEntry
       layout_(layout),
       fluid_(entry.fluid),
       solid_(entry.other),
+      free_surface_(layout.phases[fluid_].free_surface),
       spacing_(layout.phases[fluid_].spacing),
       radius_(fit_radius * spacing_),
       viscosity_(pair_viscosity(scene, layout, solid_, fluid_)) {
-  if (layout.phases[fluid_].free_surface)
-    throw SceneError(
-        located(scene, "interactions." + entry.name) + ": \"" + layout.phases[fluid_].name +
-        "\" has the consistent scheme and a free surface, where a rigid body would float too low; expected "
-        "a fluid that is shut in, or phases." +
-        layout.phases[fluid_].name + ".scheme = \"plain\"");
   for (const PlanEntry& e : layout.entries)
     if (e.searched) slack_ = std::max(slack_, layout.skin * e.radius);
 }
@@ -187,6 +182,7 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
   const auto along = along_border(normal, Dim);
   const double* pressure = fluid.column(Field::pressure);
   BorderSample<Dim> sample;
+  double lowest = 0.0;
   const auto look = [&](std::size_t b, const Vec3& at) {
     Vec3 r{};
     for (std::size_t d = 0; d < Dim; ++d) r[d] = fluid.column(Field::position, static_cast<int>(d))[b] - at[d];
@@ -202,6 +198,7 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
       u[c] = fluid.column(Field::velocity, static_cast<int>(d))[b] - carried[d];
     }
     const double w = share * share;
+    lowest = std::min(lowest, pressure[b]);
     sample.press(scaled, w, pressure[b] - scene_.phases[fluid_].density * dot(scene_.domain.gravity, r));
     if (!(gap->distance > 0.0) || !(dot(normal, r) > 0.0)) return;
     Eigen::Matrix<double, Dim - 1, 1> beside;
@@ -211,6 +208,7 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
   each_near<Dim>(border.anchors[number], axes, look);
   if (!sample.any()) return {};
   Stress s{true, sample.pressure(), {}};
+  if (free_surface_) s.pressure = std::max(s.pressure, lowest);
   const Vector rise = sample.rise();
   for (std::size_t d = 0; d < Dim; ++d) s.friction[d] = viscosity_ / spacing_ * rise[static_cast<Eigen::Index>(d)];
   s.friction = s.friction - dot(s.friction, normal) * normal;
@@ -228,7 +226,7 @@ void BorderLoad::sum(RigidBody& body, const Border& border) const {
     mean += pieces[q].content * stress_[q].pressure;
   }
   if (!(wet > 0.0)) return;
-  mean /= wet;
+  mean = free_surface_ ? 0.0 : mean / wet;
   const OwnAxes axes(body);
   Vec3 force{}, torque{};
   for (std::size_t q = 0; q < pieces.size(); ++q) {

@@ -50,6 +50,7 @@ class BorderLoad : public Model {
   const Scene& scene_;
   const Layout& layout_;
   std::size_t fluid_, solid_, first_body_ = 0;
+  bool free_surface_;                                  // beyond which nothing presses
   double spacing_, radius_, viscosity_, slack_ = 0.0;  // m, m, Pa s, m
   std::vector<Border> borders_;                        // by body
   std::vector<Stress> stress_;                         // by piece, of the body that is looked at

@@ -15,7 +15,13 @@ SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t
       layout_(layout),
       solid_(solid),
       by_borders_(by_borders),
-      separate_(layout.phases[solid].separate) {}
+      separate_(layout.phases[solid].separate),
+      rule_{Slip::no_slip, !separate_, separate_} {
+  if (separate_) return;
+  rule_.rub = wall_rub(scene, layout, solid);
+  for (const PlanEntry& e : layout.entries)
+    if (e.extends && e.other == solid && e.corrected && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
+}
 
 void SolidInFluid::attach(Workspace& w) {
   w_ = &w;
@@ -44,7 +50,7 @@ void SolidInFluid::schedule(Schedule& s) {
 void SolidInFluid::extend() {
   // The acceleration of the last step: the one of this step is computed later.
   extend_into_solid(w_->particles(solid_), w_->to_write(solid_, Record::extended), sources_, scene_.domain.gravity,
-                    ExtensionRule{Slip::no_slip, !separate_, separate_});
+                    rule_);
   share_extended(*w_, solid_);
 }
 

@@ -28,6 +28,7 @@ class SolidInFluid : public Model {
   std::size_t solid_;
   bool by_borders_;
   bool separate_;  // its particles move one by one (PlanPhase::separate)
+  ExtensionRule rule_;
   Workspace* w_ = nullptr;
   std::vector<ExtensionSource> sources_;
   std::vector<FluidNeighbour> felt_;  // by fluid

@@ -131,6 +131,16 @@ PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t f
           keys.background_pressure * density * c * c};
 }
 
+namespace {
+
+/// rho0 h sqrt(g h) (Pa s): what friction of the rows beside a heavy free surface is measured in (fluid_surface.hpp).
+double viscosity_of_rows(const Scene& scene, const Layout& layout, std::size_t fluid) {
+  const double h = layout.phases[fluid].smoothing_length;
+  return scene.phases[fluid].density * h * std::sqrt(norm(scene.domain.gravity) * h);
+}
+
+}  // namespace
+
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b) {
   const auto of = [&](std::size_t k) {
     const FluidKeys& keys = scene.phases[k].fluid();
@@ -142,6 +152,18 @@ double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, s
   const bool a_fluid = layout.phases[a].flows, b_fluid = layout.phases[b].flows;
   if (a_fluid && b_fluid) return a == b ? of(a) : 2.0 * of(a) * of(b) / std::max(of(a) + of(b), 1e-300);
   return of(a_fluid ? a : b);
+}
+
+double wall_rub(const Scene& scene, const Layout& layout, std::size_t solid) {
+  double rub = 0.0;
+  for (const PlanEntry& e : layout.entries) {
+    if (!e.extends || e.other != solid) continue;
+    const PlanPhase& fluid = layout.phases[e.fluid];
+    const bool calmed = e.corrected && fluid.free_surface && !fluid.eddies;
+    const double least = calmed ? bulk_friction * viscosity_of_rows(scene, layout, e.fluid) : 0.0;
+    rub = std::max(rub, least > 0.0 ? std::min(pair_viscosity(scene, layout, solid, e.fluid) / least, 1.0) : 1.0);
+  }
+  return rub > 0.0 ? rub : 1.0;
 }
 
 void FluidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
@@ -240,9 +262,7 @@ void FluidPhase::attach(Workspace& w) {
   q.lattice_moment = lattice_moment(layout_, number_);
   if (plan_.free_surface) {
     surface_ = std::make_unique<SurfaceFinder>();
-    if (!plan_.eddies)
-      q.least_viscosity =
-          phase_.density * q.smoothing_length * std::sqrt(norm(scene_.domain.gravity) * q.smoothing_length);
+    if (!plan_.eddies) q.least_viscosity = viscosity_of_rows(scene_, layout_, number_);
     q.surface_depth = 0.5 * plan_.spacing;
     q.loosening = 4.0 * q.sound_speed / q.smoothing_length;
     q.void_pressure = pressure_(phase_.density);

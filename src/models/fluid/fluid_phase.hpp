@@ -111,6 +111,12 @@ class FluidPhase : public Model {
 /// the artificial one; of two fluids the harmonic mean.
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
 
+/// The share of no slip that a solid keeps (ExtensionRule::rub). A heavy free surface has friction that no fluid has
+/// (least_viscosity, fluid_surface.hpp). It acts within the fluid alone: along a wall the fluid rubs with its own
+/// viscosity. 1 beside every other fluid, and where its own viscosity is not the smaller one. The layout must know
+/// which fluids have a free surface.
+double wall_rub(const Scene& scene, const Layout& layout, std::size_t solid);
+
 /// The equation of state of a fluid phase.
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid);
 

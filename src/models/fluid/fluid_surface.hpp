@@ -55,13 +55,6 @@ BARCHAN_SIMD_INLINE V loosen(V rho, V trace, V lopsided, const FluidParameters& 
          simd::max(rho - V(q.reference_density), V(0.0));
 }
 
-/// Without friction, the rows beside a heavy free surface rock each other up, at the rate of gravity over a spacing,
-/// and the disorder of an inviscid interior swells it by a tenth of a per cent in a period of a wave. So a heavy fluid
-/// with a free surface has at least these viscosities, in rho0 h sqrt(g h): everywhere; more near the surface, where
-/// the operators are plain. Friction beside the surface where they are corrected is none of these: with 6.4 there a
-/// wave 25 rows deep was 0.15 % slower and lost 1.8 % more. Without weight a surface needs none.
-constexpr double bulk_friction = 0.08, plain_friction = 5.0;
-
 template <int Dim, class V>
 BARCHAN_SIMD_INLINE V least_viscosity(V mu, V outer, const std::array<V, Dim>& normal, const FluidParameters& q) {
   V square(0.0);

@@ -78,6 +78,7 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   const WallKeys& keys = phase_.wall();
   rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
   rule_.accelerates = plan_.travels;
+  rule_.rub = wall_rub(scene, layout, number);
   for (const auto& e : layout.entries)
     if (plan_.travels && e.extends && e.other == number && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
 }

@@ -59,6 +59,10 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
     }
     const auto stuck = rule.own_velocity ? state.grain(alone) : state.no_slip();
     auto v = rule.slip == Slip::no_slip ? stuck : state.free_slip(stuck);
+    if (rule.slip == Slip::no_slip && rule.rub < 1.0 && state.depth > 0.0) {
+      const auto slid = state.free_slip(stuck);
+      for (std::size_t d = 0; d < Dim; ++d) v[d] = slid[d] + rule.rub * (stuck[d] - slid[d]);
+    }
     if (rule.lets_go) state.let_go(record[R::pressure], v);
     for (std::size_t d = 0; d < Dim; ++d) record[R::velocity + d] = v[d];
   };
