@@ -85,6 +85,39 @@ std::vector<T> each(const T& value) {
   return values;
 }
 
+/// The value of the first rank that has one; where none has, this rank's. Of one process its own.
+template <class T>
+T of_first(bool has, const T& value) {
+  struct Offer {
+    bool has;
+    T value;
+  };
+  if (!active()) return value;
+  for (const Offer& offer : each(Offer{has, value}))
+    if (offer.has) return offer.value;
+  return value;
+}
+
+/// The values of all ranks, one rank after another, on every one of them.
+template <class T>
+void join(std::vector<T>& values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Communicator* const all = active();
+  if (!all) return;
+  const auto counts = each(values.size());
+  std::size_t total = 0, own = 0;
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    if (static_cast<int>(r) == all->rank()) own = total;
+    total += counts[r];
+  }
+  std::vector<T> together(total);
+  std::copy(values.begin(), values.end(), together.begin() + static_cast<std::ptrdiff_t>(own));
+  std::size_t at = 0;
+  for (std::size_t r = 0; r < counts.size(); at += counts[r++])
+    if (counts[r] > 0) all->broadcast(together.data() + at, counts[r] * sizeof(T), static_cast<int>(r));
+  values = std::move(together);
+}
+
 /// Where the particles of this rank begin among those of all ranks, in the order of one process.
 inline std::size_t before(std::size_t count) {
   if (!active()) return 0;

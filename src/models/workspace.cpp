@@ -207,10 +207,13 @@ void CommonWork::find_neighbours() {
   long changes = 0;
   for (const auto& p : w_->state.phases) changes += p.changes();
   const bool others = w_->must_search || changes != w_->changes_of_lists;  // particles than the lists are of
-  const bool sorted = w_->neighbours.update(w_->state.phases, others, beside);
+  const bool shared = ranks::available() != nullptr;  // then who is called may ask other ranks: not beside the search
+  const bool sorted = shared ? w_->neighbours.update(w_->state.phases, others)
+                             : w_->neighbours.update(w_->state.phases, others, beside);
   w_->changes_of_lists = changes;
   w_->must_search = false;
   if (sorted) w_->fit_records();
+  if (sorted && shared) beside();
 }
 
 void CommonWork::pack() {

@@ -12,7 +12,7 @@ namespace {
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
   throw SceneError(where + ": " + what +
                    " cannot run on several ranks yet; expected barchan without mpirun (it uses all cores of a "
-                   "machine), or one laminar fluid that fills its space, with periodic sides or walls "
+                   "machine), or one fluid that fills its space, with periodic sides or walls "
                    "(docs/ranks.md)");
 }
 
@@ -23,7 +23,6 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const bool still = !p.moves && p.takes_momentum;  // a wall
   if (!p.flows && !still) refuse(where, "a phase of kind \"" + p.kind + "\"");
   if (p.travels) refuse(where, "a wall that moves by a [[motion]]");
-  if (p.eddies) refuse(where, "a fluid with turbulence");
   if (p.free_surface) refuse(where, "a fluid with a free surface");
   if (!p.flow_ends.empty()) refuse(where, "a fluid with an [[inflow]] or [[outflow]]");
   if (has(Field::energy)) refuse(where, "a fluid with energy");
