@@ -35,11 +35,7 @@ void check_sections(const Scene& scene, const Plan& plan) {
     if (there) refuse(located(scene, key), what);
   };
   none(!scene.motions.empty(), "motion", "a [[motion]]");
-  none(!scene.force_meters.empty(), "force", "a [[force]]");
-  none(!scene.markers.empty(), "marker", "a [[marker]]");
   none(!scene.influxes.empty(), "influx", "an [[influx]]");
-  if (!plan.instruments.empty())
-    refuse(scene.file, "the instrument \"" + plan.instruments.front().name + "\" (what a scene measures)");
   for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
     const Forcing& f = scene.forcings[k];
     const std::string where = scene.file + ": forcing." + std::to_string(k);
