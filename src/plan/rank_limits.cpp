@@ -20,10 +20,8 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const PlanPhase& p = plan.phases[number];
   const std::string where = scene.file + ": phases." + p.name;
   const auto has = [&](Field f) { return std::find(p.fields.begin(), p.fields.end(), f) != p.fields.end(); };
-  const bool still = !p.moves && p.takes_momentum;  // a wall
-  if (!p.flows && !still) refuse(where, "a phase of kind \"" + p.kind + "\"");
-  if (p.travels) refuse(where, "a wall that moves by a [[motion]]");
-  if (p.free_surface) refuse(where, "a fluid with a free surface");
+  const bool wall = !p.moves && p.takes_momentum;
+  if (!p.flows && !wall) refuse(where, "a phase of kind \"" + p.kind + "\"");
   if (!p.flow_ends.empty()) refuse(where, "a fluid with an [[inflow]] or [[outflow]]");
   if (has(Field::energy)) refuse(where, "a fluid with energy");
   if (std::none_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.has(number); }))
@@ -34,7 +32,6 @@ void check_sections(const Scene& scene, const Plan& plan) {
   const auto none = [&](bool there, const char* key, const char* what) {
     if (there) refuse(located(scene, key), what);
   };
-  none(!scene.motions.empty(), "motion", "a [[motion]]");
   none(!scene.influxes.empty(), "influx", "an [[influx]]");
   for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
     const Forcing& f = scene.forcings[k];
@@ -49,8 +46,6 @@ void check_sections(const Scene& scene, const Plan& plan) {
 
 void check_for_ranks(const Scene& scene, const Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) check_phase(scene, plan, k);
-  if (std::count_if(plan.phases.begin(), plan.phases.end(), [](const PlanPhase& p) { return p.flows; }) > 1)
-    refuse(scene.file + ": phases", "a scene with several fluids");
   for (const PlanEntry& e : plan.entries)
     if (!e.continues_fluid || e.law != (e.extends ? "boundary" : "fluid"))
       refuse(scene.file + ": interactions." + e.name, "an entry with the law \"" + e.law + "\"");

@@ -289,9 +289,11 @@ void Watch::look_at_energy(const Moment& now) {
   }
   double walls = 0.0;
   for (std::size_t k = 0; k < see_.particles.size(); ++k)
-    if (!see_.plan.phases[k].moves && see_.particles[k].size() > 0)
-      walls = std::max(walls, size_of(see_.particles[k], 0, Field::velocity));
-  wall_speed_ = std::max(wall_speed_, ranks::largest(walls));
+    if (!see_.plan.phases[k].moves) {
+      const bool here = see_.particles[k].size() > 0;
+      walls = std::max(walls, ranks::of_first(here, here ? size_of(see_.particles[k], 0, Field::velocity) : 0.0));
+    }
+  wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
   note_speed(speed - start_speed_, now);
   double mass = 0.0;  // of more particles than at the start: those that entered have no more than the largest speed
