@@ -85,6 +85,9 @@ std::vector<T> each(const T& value) {
   return values;
 }
 
+/// Whether particles that enter are made here: on the first rank, before the next sort brings them to theirs.
+inline bool makes_particles() { return !active() || active()->rank() == 0; }
+
 /// The value of the first rank that has one; where none has, this rank's. Of one process its own.
 template <class T>
 T of_first(bool has, const T& value) {

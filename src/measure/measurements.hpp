@@ -80,8 +80,8 @@ class Measurements {
   std::vector<std::size_t> due_;          // the instruments at hand
   std::vector<PhaseParticles> gathered_;  // by phase, on several ranks
   std::vector<Searched> lookups_;         // one a phase and radius
-  std::vector<double> sums_;       // of the saltation at hand, by slice
-  std::vector<Reading> readings_;  // of the instrument at hand, by point; then by row
+  std::vector<double> sums_;              // of the saltation at hand, by slice
+  std::vector<Reading> readings_;         // of the instrument at hand, by point; then by row
   std::vector<History> probes_;
   double seconds_ = 0;
 };

@@ -55,8 +55,8 @@ void Measurements::gather(const State& state) {
       wall = wall || (i.kind == InstrumentKind::wall_shear && i.wall == phase);
     }
     gathered_.push_back(p.gathered(fields, [&](std::size_t k) {
-      return (wall && k == 0) || std::any_of(rooms.begin(), rooms.end(),
-                                             [&](const Room& room) { return room.holds(p, k, bounds_); });
+      return (wall && k == 0) ||
+             std::any_of(rooms.begin(), rooms.end(), [&](const Room& room) { return room.holds(p, k, bounds_); });
     }));
   }
   for (Searched& searched : lookups_) searched.step = -1;

@@ -12,18 +12,14 @@ namespace {
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
   throw SceneError(where + ": " + what +
                    " cannot run on several ranks yet; expected barchan without mpirun (it uses all cores of a "
-                   "machine), or one fluid that fills its space, with periodic sides or walls "
-                   "(docs/ranks.md)");
+                   "machine), or a scene of fluids and walls alone (docs/ranks.md)");
 }
 
 void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const PlanPhase& p = plan.phases[number];
   const std::string where = scene.file + ": phases." + p.name;
-  const auto has = [&](Field f) { return std::find(p.fields.begin(), p.fields.end(), f) != p.fields.end(); };
   const bool wall = !p.moves && p.takes_momentum;
   if (!p.flows && !wall) refuse(where, "a phase of kind \"" + p.kind + "\"");
-  if (!p.flow_ends.empty()) refuse(where, "a fluid with an [[inflow]] or [[outflow]]");
-  if (has(Field::energy)) refuse(where, "a fluid with energy");
   if (std::none_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.has(number); }))
     refuse(where, "a phase without any entry in [interactions]");
 }

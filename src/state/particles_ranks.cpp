@@ -71,8 +71,7 @@ PhaseParticles PhaseParticles::gathered() const {
   return whole;
 }
 
-PhaseParticles PhaseParticles::gathered(const FieldSet& fields,
-                                        const std::function<bool(std::size_t)>& wanted) const {
+PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const {
   std::vector<std::size_t> from;
   for (std::size_t k = 0; k < size_; ++k)
     if (wanted(k)) from.push_back(k);

@@ -84,7 +84,8 @@ void GroundDistance::refresh(std::span<const Ground> phases) {
 template <class F>
 void GroundDistance::each_piece(const Ground& phase, F&& f) const {
   const PhaseParticles& p = *phase.particles;
-  const bool wall = p.has(Field::wall_depth), loose = !wall && !p.has(Field::stress);  // grains: neither walls nor bodies
+  const bool wall = p.has(Field::wall_depth),
+             loose = !wall && !p.has(Field::stress);  // grains: neither walls nor bodies
   for (std::size_t k = 0; k < p.size(); ++k) {
     if (wall && behind_a_side(p, k, bounds_, phase.spacing)) continue;
     const double depth = wall ? p.column(Field::wall_depth)[k] : 0.0;
