@@ -9,6 +9,7 @@
 #include "engine/integrate.hpp"
 #include "models/bodies/artificial_stress.hpp"
 #include "models/bodies/updated_lagrangian.hpp"
+#include "scene/formula.hpp"
 
 namespace barchan {
 
@@ -253,8 +254,8 @@ void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
     if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
-  if (ranks::active() && !std::isfinite(largest))
-    largest = std::numeric_limits<double>::infinity();  // NaN has no order
+  if (ranks::active() && (!std::isfinite(largest) || formula_fault()))
+    largest = std::numeric_limits<double>::infinity();  // NaN has no order, and all ranks must know
   w_->state.largest_acceleration = ranks::largest(largest);
 }
 

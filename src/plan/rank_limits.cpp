@@ -29,13 +29,6 @@ void check_sections(const Scene& scene, const Plan& plan) {
     if (there) refuse(located(scene, key), what);
   };
   none(!scene.influxes.empty(), "influx", "an [[influx]]");
-  for (std::size_t k = 0; k < scene.forcings.size(); ++k) {
-    const Forcing& f = scene.forcings[k];
-    const std::string where = scene.file + ": forcing." + std::to_string(k);
-    if (f.relaxes()) refuse(where, "a [[forcing]] with a rate");
-    for (const Expression& e : f.acceleration)
-      if (e.is_formula()) refuse(where + ".acceleration", "a formula of place and time");
-  }
 }
 
 }  // namespace

@@ -151,7 +151,10 @@ std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
 }
 
 void Watch::tell_worst(const Moment& now) const {
-  if (const auto formula = formula_to_blame(now)) throw LastingBreakdown(*formula);
+  const auto formula = formula_to_blame(now);
+  int blamed = formula ? 1 : 0;
+  const int first_to_blame = ranks::best(blamed, [](int a, int b) { return a > b; });
+  if (blamed != 0) throw LastingBreakdown(ranks::text_of(first_to_blame, formula.value_or("")));
   std::int64_t lowest = -1;
   long wrong = 0;
   std::string what, whom;
