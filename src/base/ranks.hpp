@@ -39,14 +39,14 @@ class Communicator {
   /// Items of all ranks, one rank after another, on rank 0; `counts` (there): of each rank.
   virtual void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
                       std::size_t width) = 0;
+  /// From one rank to the next.
+  virtual void send(const void* data, std::size_t bytes, int to) = 0;
+  virtual void receive(void* data, std::size_t bytes, int from) = 0;
   /// What this rank has sent to others so far; reductions, broadcasts and the like count once.
   struct Traffic {
     std::int64_t messages = 0, bytes = 0, collectives = 0;
   };
   virtual Traffic traffic() const { return {}; }
-  /// From one rank to the next.
-  virtual void send(const void* data, std::size_t bytes, int to) = 0;
-  virtual void receive(void* data, std::size_t bytes, int from) = 0;
 };
 
 namespace ranks {

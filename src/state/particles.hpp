@@ -84,7 +84,7 @@ class PhaseParticles {
   /// where it is another rank's.
   const std::uint32_t* places() const { return places_.data(); }
   static constexpr std::uint32_t elsewhere = 0xffffffffu;
-  long arrangements() const { return arrangements_; }  ///< how often places() became others
+  std::uint32_t arrangements() const { return arrangements_; }  ///< how often places() became others
   bool in_order() const { return in_order_; }  ///< every particle stands at the place of its id; after keep_places()
 
   /// In Model::begin: particles will be made or removed, so that checkpoints have other numbers than the start.
@@ -137,7 +137,8 @@ class PhaseParticles {
   int dimensions_;
   std::size_t size_;
   bool may_change_ = false, is_part_ = false, keeps_places_ = false, in_order_ = false;
-  long changes_ = 0, arrangements_ = 0;
+  std::uint32_t arrangements_ = 0;
+  long changes_ = 0;
   std::int64_t first_id_;
   double mass_, mean_radius_ = 1.0;
   std::vector<std::int64_t> id_, id_scratch_;

@@ -1,6 +1,7 @@
 // Sets of particles of bodies, by their places at the start: clamped, driven, or followed.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "models/forces.hpp"
@@ -30,9 +31,9 @@ class SetOfBody {
   const BodySet& set_;
   std::size_t phase_ = 0;
   const std::vector<std::uint32_t>& here() const;
-  std::vector<std::uint32_t> ids_;           // from the phase's first
-  mutable std::vector<std::uint32_t> here_;  // places
-  mutable long arrangement_ = -1;            // of the phase, for which here_ was made
+  std::vector<std::uint32_t> ids_;                    // from the phase's first
+  mutable std::vector<std::uint32_t> here_;           // places
+  mutable std::optional<std::uint32_t> arrangement_;  // of the phase, for which here_ was made
   Workspace* w_ = nullptr;
 };
 
