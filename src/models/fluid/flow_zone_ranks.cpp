@@ -16,7 +16,7 @@ void add_ranks(std::vector<T>& sums) {
   std::vector<std::int64_t> numbers(sums.size() * sizeof(T) / sizeof(std::int64_t));
   std::memcpy(numbers.data(), sums.data(), sums.size() * sizeof(T));
   ranks::active()->reduce(numbers.data(), numbers.size(), Communicator::Take::sum);
-  std::memcpy(sums.data(), numbers.data(), sums.size() * sizeof(T));
+  std::memcpy(static_cast<void*>(sums.data()), numbers.data(), sums.size() * sizeof(T));
 }
 
 }  // namespace
