@@ -149,6 +149,7 @@ inline std::string text_of(int rank, std::string text) {
 /// What `candidate` is best by `better`, a strict order; equal ones: the first rank's. Returns the rank.
 template <class T, class Better>
 int best(T& candidate, Better&& better) {
+  if (!active()) return 0;
   const auto all = each(candidate);
   std::size_t first = 0;
   for (std::size_t r = 1; r < all.size(); ++r)

@@ -9,7 +9,7 @@ namespace barchan {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
+[[noreturn]] void cannot_run(const std::string& where, const std::string& what) {
   throw SceneError(where + ": " + what +
                    " cannot run on several ranks yet; expected barchan without mpirun (it uses all cores of a "
                    "machine), or a scene of fluids and walls alone (docs/ranks.md)");
@@ -19,16 +19,9 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const PlanPhase& p = plan.phases[number];
   const std::string where = scene.file + ": phases." + p.name;
   const bool wall = !p.moves && p.takes_momentum;
-  if (!p.flows && !wall) refuse(where, "a phase of kind \"" + p.kind + "\"");
+  if (!p.flows && !wall) cannot_run(where, "a phase of kind \"" + p.kind + "\"");
   if (std::none_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.has(number); }))
-    refuse(where, "a phase without any entry in [interactions]");
-}
-
-void check_sections(const Scene& scene, const Plan& plan) {
-  const auto none = [&](bool there, const char* key, const char* what) {
-    if (there) refuse(located(scene, key), what);
-  };
-  none(!scene.influxes.empty(), "influx", "an [[influx]]");
+    cannot_run(where, "a phase without any entry in [interactions]");
 }
 
 }  // namespace
@@ -37,8 +30,8 @@ void check_for_ranks(const Scene& scene, const Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) check_phase(scene, plan, k);
   for (const PlanEntry& e : plan.entries)
     if (!e.continues_fluid || e.law != (e.extends ? "boundary" : "fluid"))
-      refuse(scene.file + ": interactions." + e.name, "an entry with the law \"" + e.law + "\"");
-  check_sections(scene, plan);
+      cannot_run(scene.file + ": interactions." + e.name, "an entry with the law \"" + e.law + "\"");
+  if (!scene.influxes.empty()) cannot_run(located(scene, "influx"), "an [[influx]]");
 }
 
 }  // namespace barchan

@@ -46,6 +46,9 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
   schedule_.run(stage::walls, stage::energy);  // the weights of the consistent Laplacian are those of the pass before
   for (const auto& model : models_)
     if (const StepLimit* l = model->moving_limit()) state_.limit_counts[l->name] = 0;
+  std::size_t longest = 0;
+  for (const auto& [name, steps] : state_.limit_counts) longest = std::max(longest, name.size());
+  state_.ruling_limit.reserve(longest);  // so that no step allocates for a name
   watch_ = std::make_unique<Watch>(Watch::Sight{scene_, plan_, state_.phases, work_->neighbours, *work_});
   budget_.emplace(scene_, plan_, state_);
   Touches seen;

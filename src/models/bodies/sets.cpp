@@ -59,6 +59,7 @@ void SetOfBody::attach(Workspace& w, const std::string& section) {
     throw SceneError(located(w.scene, section) + ": no particle of phase \"" + set_.phase +
                      "\" stands in the box at the start; expected a box that holds some");
   particles().keep_places();
+  here_.reserve(ids_.size());
 }
 
 const std::vector<std::uint32_t>& SetOfBody::here() const {
@@ -66,7 +67,6 @@ const std::vector<std::uint32_t>& SetOfBody::here() const {
   if (arrangement_ == p.arrangements()) return here_;
   arrangement_ = p.arrangements();
   here_.clear();
-  here_.reserve(ids_.size());
   for (const std::uint32_t id : ids_)
     if (const std::uint32_t place = p.places()[id]; place != PhaseParticles::elsewhere) here_.push_back(place);
   return here_;

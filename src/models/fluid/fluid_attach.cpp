@@ -312,6 +312,7 @@ void FluidPhase::look_for_voids() {
                                 VoidFinder::ball * std::max(plan_.spacing, layout_.phases[other].spacing)};
     seen_.insert(other == number_ ? seen_.begin() : seen_.end(), seen);
   }
+  voids_.look_at(seen_.size());
 }
 
 /// Its entries again with the friction of each, and the ground under it.

@@ -134,9 +134,9 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
   return near_ != 0;
 }
 
-/// On several ranks: the places of the ghosts of each phase, none of which is marked yet.
+/// On several ranks: the places of the ghosts of each phase that is seen, none of which is marked yet.
 void VoidFinder::take_ghosts(std::span<const Seen> seen) {
-  ghosts_.resize(seen.size());
+  if (ghosts_.size() < seen.size()) ghosts_.resize(seen.size());
   if (!seen.front().grid->is_shared()) return;
   for (std::size_t s = 0; s < seen.size(); ++s)
     for (int d = 0; d < seen[s].particles->dimensions(); ++d)

@@ -49,6 +49,8 @@ class VoidFinder {
 
   /// Places beyond an end of a zone with a flow are not looked at: the last rows of the zone have nothing behind them.
   void leave_out(const FlowEnd& end) { ends_.push_back(end); }
+  /// So many phases are seen, at most: then the first find() allocates nothing either.
+  void look_at(std::size_t phases) { ghosts_.resize(phases); }
 
   /// `seen`: the fluid's own entry first. `radius`: of that (m). `spacing`: of the fluid (m). `loose`: what the pass
   /// over the rates noted; emptied. Returns whether any particle is beside a void.
