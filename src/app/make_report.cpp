@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "base/version.hpp"
 #include "output/folder_lock.hpp"
 
@@ -85,6 +86,23 @@ RunReport start_report(const Scene& scene) {
   return r;
 }
 
+namespace {
+
+/// What the ranks have sent to each other; all of them call it.
+RunReport::Ranks traffic() {
+  RunReport::Ranks r;
+  Communicator* const all = ranks::active();
+  if (!all) return r;
+  const Communicator::Traffic mine = all->traffic();
+  r.count = all->size();
+  r.collectives = mine.collectives;
+  r.messages = ranks::total(mine.messages);
+  r.bytes = ranks::total(mine.bytes);
+  return r;
+}
+
+}  // namespace
+
 RunReport make_report(const Simulation& simulation, const SeriesWriter* series, const Measurements* measurements,
                       const Progress& progress) {
   RunReport r = start_report(simulation.scene());
@@ -105,6 +123,7 @@ RunReport make_report(const Simulation& simulation, const SeriesWriter* series, 
   for (const auto& [limit, count] : simulation.limit_counts())
     if (count > 0) r.time_step_limits[limit] = count;
   add_budgets(r, simulation);
+  r.ranks = traffic();
   r.warnings = simulation.plan().warnings;
   for (const std::string& warning : simulation.warnings().texts()) r.warnings.push_back(warning);
   return r;

@@ -61,10 +61,13 @@ class Mpi final : public Communicator {
   void reduce(double* values, std::size_t count, Take how) override { all(values, count, how, MPI_DOUBLE); }
   void reduce(float* values, std::size_t count, Take how) override { all(values, count, how, MPI_FLOAT); }
   void reduce(std::int64_t* values, std::size_t count, Take how) override { all(values, count, how, MPI_INT64_T); }
+  Traffic traffic() const override { return traffic_; }
   void all_gather(const void* mine, std::size_t bytes, void* all) override {
+    ++traffic_.collectives;
     MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
   }
   void broadcast(void* data, std::size_t bytes, int from) override {
+    ++traffic_.collectives;
     MPI_Bcast(data, count_of(bytes), MPI_BYTE, from, MPI_COMM_WORLD);
   }
   void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
@@ -83,6 +86,7 @@ class Mpi final : public Communicator {
     }
     for (int r = 0; r < size_; ++r) {
       const std::size_t count = send_counts[static_cast<std::size_t>(r)];
+      if (count > 0 && r != rank_) note(count * width);
       if (count > 0 && r != rank_)
         MPI_Isend(from, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
       if (r == rank_) own = from;
@@ -100,6 +104,7 @@ class Mpi final : public Communicator {
     exchange(mine, to, all, from, width);
   }
   void send(const void* data, std::size_t bytes, int to) override {
+    note(bytes);
     MPI_Send(data, count_of(bytes), MPI_BYTE, to, tag, MPI_COMM_WORLD);
   }
   void receive(void* data, std::size_t bytes, int from) override {
@@ -109,8 +114,14 @@ class Mpi final : public Communicator {
  private:
   template <class T>
   void all(T* values, std::size_t count, Take how, MPI_Datatype type) {
+    ++traffic_.collectives;
     MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
   }
+  void note(std::size_t bytes) {
+    ++traffic_.messages;
+    traffic_.bytes += static_cast<std::int64_t>(bytes);
+  }
+  Traffic traffic_;
   int rank_ = 0, size_ = 1;
   char* own_to_ = nullptr;
   std::vector<MPI_Request> requests_;

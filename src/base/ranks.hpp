@@ -42,6 +42,11 @@ class Communicator {
   /// From one rank to the next.
   virtual void send(const void* data, std::size_t bytes, int to) = 0;
   virtual void receive(void* data, std::size_t bytes, int from) = 0;
+  /// What this rank has sent to others so far; reductions, broadcasts and the like count once.
+  struct Traffic {
+    std::int64_t messages = 0, bytes = 0, collectives = 0;
+  };
+  virtual Traffic traffic() const { return {}; }
 };
 
 namespace ranks {
@@ -83,6 +88,42 @@ std::vector<T> each(const T& value) {
   std::vector<T> values(all ? static_cast<std::size_t>(all->size()) : 1, value);
   if (all) all->all_gather(&value, sizeof(T), values.data());
   return values;
+}
+
+/// Whether particles that enter are made here: on the first rank, before the next sort brings them to theirs.
+inline bool makes_particles() { return !active() || active()->rank() == 0; }
+
+/// The value of the first rank that has one; where none has, this rank's. Of one process its own.
+template <class T>
+T of_first(bool has, const T& value) {
+  struct Offer {
+    bool has;
+    T value;
+  };
+  if (!active()) return value;
+  for (const Offer& offer : each(Offer{has, value}))
+    if (offer.has) return offer.value;
+  return value;
+}
+
+/// The values of all ranks, one rank after another, on every one of them.
+template <class T>
+void join(std::vector<T>& values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Communicator* const all = active();
+  if (!all) return;
+  const auto counts = each(values.size());
+  std::size_t total = 0, own = 0;
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    if (static_cast<int>(r) == all->rank()) own = total;
+    total += counts[r];
+  }
+  std::vector<T> together(total);
+  std::copy(values.begin(), values.end(), together.begin() + static_cast<std::ptrdiff_t>(own));
+  std::size_t at = 0;
+  for (std::size_t r = 0; r < counts.size(); at += counts[r++])
+    if (counts[r] > 0) all->broadcast(together.data() + at, counts[r] * sizeof(T), static_cast<int>(r));
+  values = std::move(together);
 }
 
 /// Where the particles of this rank begin among those of all ranks, in the order of one process.

@@ -28,6 +28,7 @@ void EddyRecords::resize(std::size_t particles, std::size_t images) {
 }
 
 void EddyRecords::fill_images(std::size_t particles, const CellGrid& grid) {
+  if (grid.is_shared()) return take_ghosts(particles, grid);
   const auto& images = grid.image_list();
   const auto n = static_cast<std::int64_t>(images.size());
 #pragma omp parallel for schedule(static)
@@ -36,6 +37,19 @@ void EddyRecords::fill_images(std::size_t particles, const CellGrid& grid) {
     root[particles + k] = root[images[k].source];
     touch[particles + k] = touch[images[k].source];
   }
+}
+
+void EddyRecords::take_ghosts(std::size_t particles, const CellGrid& grid) {
+  grid.fill_ghosts(
+      2 * sizeof(double),
+      [&](const Image& image, std::byte* item) {
+        const std::array<double, 2> values{root[image.source], touch[image.source]};
+        std::memcpy(item, values.data(), sizeof values);
+      },
+      [&](std::size_t q, const std::byte* item) {
+        std::memcpy(&root[particles + q], item, sizeof(double));
+        std::memcpy(&touch[particles + q], item + sizeof(double), sizeof(double));
+      });
 }
 
 namespace {

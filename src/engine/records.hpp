@@ -254,6 +254,10 @@ struct EddyRecords {
   void give_roots(RecordArray& records, std::size_t count) const;
   void give_roots(CompactRecords& records, std::size_t count) const;
   std::size_t bytes() const;
+
+ private:
+  /// The images on several ranks.
+  void take_ghosts(std::size_t particles, const CellGrid& grid);
 };
 
 }  // namespace barchan

@@ -17,6 +17,7 @@ namespace barchan {
 struct Image {
   std::uint32_t source;
   std::array<std::int8_t, 3> shift;
+  std::int8_t none = 0;  // a checkpoint has every byte: none is without a value
   bool shifted() const { return shift[0] != 0 || shift[1] != 0 || shift[2] != 0; }
 };
 

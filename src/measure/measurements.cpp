@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/ranks.hpp"
+
 namespace barchan {
 namespace {
 
@@ -116,11 +118,16 @@ void Measurements::archive(Archive& a) {
 
 void Measurements::sample(const State& state) {
   const Stopwatch stopwatch(seconds_);
-  for (std::size_t k = 0; k < instruments_.size(); ++k) {
-    if (!due(k, state.time)) continue;
+  due_.clear();
+  for (std::size_t k = 0; k < instruments_.size(); ++k)
+    if (due(k, state.time)) due_.push_back(k);
+  if (due_.empty()) return;
+  if (ranks::active()) gather(state);
+  for (const std::size_t k : due_) {
     const Instrument& i = instruments_[k];
     const bool averaged = state.time >= i.start * (1.0 - 1e-12);
     if (averaged) ++memory_.moments[k];
+    if (!ranks::is_first()) continue;  // the first one samples
     if (i.points.empty()) {
       if (i.over_sand()) take_ground(k, state);
       else i.kind == InstrumentKind::slices ? take_slices(k, state) : take_layers(k, state);
@@ -153,7 +160,7 @@ Lookup& Measurements::lookup(std::size_t k, const State& state) {
   const Instrument& i = instruments_[k];
   auto& searched = *std::find_if(lookups_.begin(), lookups_.end(),
                                  [&](const Searched& s) { return s.phase == i.phase && s.radius == i.radius; });
-  if (searched.step != state.steps) searched.lookup.build(state.phases[i.phase]);
+  if (searched.step != state.steps) searched.lookup.build(seen(state, i.phase));
   searched.step = state.steps;
   return searched.lookup;
 }
@@ -161,10 +168,10 @@ Lookup& Measurements::lookup(std::size_t k, const State& state) {
 void Measurements::read_points(std::size_t k, const State& state) {
   const Instrument& i = instruments_[k];
   const Lookup& near = lookup(k, state);
-  const FluidView fluid(state.phases[i.phase]);
+  const FluidView fluid(seen(state, i.phase));
   const ReadyKernel kernel(i.kernel, i.radius, i.dimensions);
   const bool wall = i.kind == InstrumentKind::wall_shear;
-  const Vec3 velocity = wall ? wall_velocity(state.phases[i.wall]) : Vec3{};
+  const Vec3 velocity = wall ? wall_velocity(seen(state, i.wall)) : Vec3{};
   readings_.resize(i.points.size());
   const auto n = static_cast<std::int64_t>(i.points.size());
   const RoughWall rough{i.density, i.roughness, i.spacing};
@@ -205,7 +212,7 @@ void Measurements::take_points(std::size_t k) {
 
 void Measurements::take_slices(std::size_t k, const State& state) {
   const Instrument& i = instruments_[k];
-  const PhaseParticles& p = state.phases[i.phase];
+  const PhaseParticles& p = seen(state, i.phase);
   const double reference = densities_[i.phase];
   const double* density = p.has(Field::density) ? p.column(Field::density) : nullptr;
   const double* pressure = i.has_pressure ? p.column(Field::pressure) : nullptr;

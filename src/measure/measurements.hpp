@@ -48,6 +48,11 @@ class Measurements {
   Average average(std::size_t instrument, std::size_t row);
   bool due(std::size_t instrument, double time);
   Lookup& lookup(std::size_t instrument, const State& state);
+  void gather(const State& state);
+  /// The particles of a phase: on several ranks those of all of them that the instruments at hand look at.
+  const PhaseParticles& seen(const State& state, std::size_t phase) const {
+    return gathered_.empty() ? state.phases[phase] : gathered_[phase];
+  }
   void read_points(std::size_t instrument, const State& state);
   void take_points(std::size_t instrument);
   void take_slices(std::size_t instrument, const State& state);
@@ -72,9 +77,11 @@ class Measurements {
     Lookup lookup;
     long step;  // for which it was made
   };
-  std::vector<Searched> lookups_;  // one a phase and radius
-  std::vector<double> sums_;       // of the saltation at hand, by slice
-  std::vector<Reading> readings_;  // of the instrument at hand, by point; then by row
+  std::vector<std::size_t> due_;          // the instruments at hand
+  std::vector<PhaseParticles> gathered_;  // by phase, on several ranks
+  std::vector<Searched> lookups_;         // one a phase and radius
+  std::vector<double> sums_;              // of the saltation at hand, by slice
+  std::vector<Reading> readings_;         // of the instrument at hand, by point; then by row
   std::vector<History> probes_;
   double seconds_ = 0;
 };

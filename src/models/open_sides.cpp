@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -173,20 +174,28 @@ void OpenSides::book(const PhaseParticles& p, std::size_t k, Departed& departed)
 
 void OpenSides::leave() {
   PhaseParticles& p = w_->particles(phase_);
-  if (!any_beyond(p)) return;
-  Departed& departed = w_->state.departed[place_];
+  if (!ranks::any(any_beyond(p))) return;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;
-  if (kept == 0 && !plan_.own_steps) {
+  if (ranks::total(kept) == 0 && !plan_.own_steps) {
     trouble_ = "all particles of \"" + plan_.name + "\" are beyond " + sides_text() +
                ": nothing is left to compute; close a side with a wall, or enlarge domain.size";
     return;
   }
-  p.remove_if([&](std::size_t k) {
-    const bool leaves = is_beyond(p, k);
-    if (leaves) book(p, k, departed);
-    return leaves;
+  struct Booked {
+    Departed departed;
+    std::array<std::array<PassedSide, 2>, 3> passed;
+  } booked{w_->state.departed[place_], passed_};
+  ranks::in_turn(booked, [&] {
+    passed_ = booked.passed;
+    for (std::size_t k = 0; k < p.size(); ++k)
+      if (is_beyond(p, k)) book(p, k, booked.departed);
+    booked.passed = passed_;
   });
+  w_->state.departed[place_] = booked.departed;
+  passed_ = booked.passed;
+  p.remove_if([&](std::size_t k) { return is_beyond(p, k); });
+  w_->must_search = true;  // on all ranks
 }
 
 std::string OpenSides::sides_text() const {

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "engine/integrate.hpp"
 #include "models/bodies/artificial_stress.hpp"
 #include "models/bodies/updated_lagrangian.hpp"
+#include "scene/formula.hpp"
 
 namespace barchan {
 
@@ -207,10 +209,13 @@ void CommonWork::find_neighbours() {
   long changes = 0;
   for (const auto& p : w_->state.phases) changes += p.changes();
   const bool others = w_->must_search || changes != w_->changes_of_lists;  // particles than the lists are of
-  const bool sorted = w_->neighbours.update(w_->state.phases, others, beside);
+  const bool shared = ranks::available() != nullptr;  // then who is called may ask other ranks: not beside the search
+  const bool sorted = shared ? w_->neighbours.update(w_->state.phases, others)
+                             : w_->neighbours.update(w_->state.phases, others, beside);
   w_->changes_of_lists = changes;
   w_->must_search = false;
   if (sorted) w_->fit_records();
+  if (sorted && shared) beside();
 }
 
 void CommonWork::pack() {
@@ -249,6 +254,8 @@ void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
     if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
+  if (ranks::active() && (!std::isfinite(largest) || formula_fault()))
+    largest = std::numeric_limits<double>::infinity();  // NaN has no order, and all ranks must know
   w_->state.largest_acceleration = ranks::largest(largest);
 }
 

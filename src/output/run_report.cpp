@@ -55,6 +55,11 @@ std::string to_json(const RunReport& r) {
   for (const auto& use : r.thread_uses)
     json["threads_used"].push_back({{"threads", use.threads}, {"steps", use.steps}, {"seconds", use.seconds}});
   json["thread_switches"] = r.thread_switches;
+  if (r.ranks.count > 1)
+    json["ranks"] = {{"count", r.ranks.count},
+                     {"messages", r.ranks.messages},
+                     {"bytes", r.ranks.bytes},
+                     {"collectives", r.ranks.collectives}};
   for (const auto& m : r.measured)
     json["measured"].push_back({{"kind", m.kind}, {"name", m.name}, {"files", m.files}, {"samples", m.samples}});
   // A title that is not UTF-8 must not lose the report of a whole run.

@@ -1,6 +1,7 @@
 // run.json: what ran, how fast, and how well the conserved quantities were kept.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -18,6 +19,11 @@ struct RunReport {
   int threads = 1;                              // at most
   std::vector<ThreadChooser::Use> thread_uses;  // by number of threads
   long thread_switches = 0;                     // how often the number changed
+  struct Ranks {
+    int count = 1;
+    std::int64_t messages = 0, bytes = 0;  // from rank to rank, of all
+    std::int64_t collectives = 0;          // reductions, broadcasts and the like, once for all
+  } ranks;
 
   // the scene and the plan
   std::string scene_title, scene_file, scene_state;

@@ -347,9 +347,10 @@ double Watch::strongest_force(const Moment& now) const {
     const PhaseParticles& p = see_.particles[f.phase];
     const bool constant =
         f.acceleration[0].is_constant() && f.acceleration[1].is_constant() && f.acceleration[2].is_constant();
-    const std::size_t stride = constant ? p.size() : std::max<std::size_t>(1, p.size() / sample);
+    const std::size_t stride = constant ? p.size() : std::max<std::size_t>(1, ranks::total(p.size()) / sample);
     double most = 0.0;
-    for (std::size_t k = 0; k < p.size(); k += stride) {
+    for (std::size_t k = constant ? 0 : (stride - ranks::before(p.size()) % stride) % stride; k < p.size();
+         k += stride) {
       Vec3 x{};
       for (int d = 0; d < p.dimensions(); ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
       const auto at = [&](std::size_t d) {

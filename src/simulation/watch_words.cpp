@@ -151,7 +151,10 @@ std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
 }
 
 void Watch::tell_worst(const Moment& now) const {
-  if (const auto formula = formula_to_blame(now)) throw LastingBreakdown(*formula);
+  const auto formula = formula_to_blame(now);
+  int blamed = formula ? 1 : 0;
+  const int first_to_blame = ranks::best(blamed, [](int a, int b) { return a > b; });
+  if (blamed != 0) throw LastingBreakdown(ranks::text_of(first_to_blame, formula.value_or("")));
   std::int64_t lowest = -1;
   long wrong = 0;
   std::string what, whom;
@@ -289,9 +292,11 @@ void Watch::look_at_energy(const Moment& now) {
   }
   double walls = 0.0;
   for (std::size_t k = 0; k < see_.particles.size(); ++k)
-    if (!see_.plan.phases[k].moves && see_.particles[k].size() > 0)
-      walls = std::max(walls, size_of(see_.particles[k], 0, Field::velocity));
-  wall_speed_ = std::max(wall_speed_, ranks::largest(walls));
+    if (!see_.plan.phases[k].moves) {
+      const bool here = see_.particles[k].size() > 0;
+      walls = std::max(walls, ranks::of_first(here, here ? size_of(see_.particles[k], 0, Field::velocity) : 0.0));
+    }
+  wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
   note_speed(speed - start_speed_, now);
   double mass = 0.0;  // of more particles than at the start: those that entered have no more than the largest speed

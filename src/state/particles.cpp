@@ -112,8 +112,10 @@ void PhaseParticles::keep_places() {
 
 void PhaseParticles::find_places() {
   if (!keeps_places_) return;
+  ++arrangements_;
   const auto n = static_cast<std::int64_t>(size_);
   bool in_order = true;
+  if (is_part_) std::fill(places_.begin(), places_.end(), elsewhere);
 #pragma omp parallel for schedule(static) reduction(&& : in_order)
   for (std::int64_t k = 0; k < n; ++k) {
     const std::int64_t number = id_[static_cast<std::size_t>(k)] - first_id_;

@@ -80,8 +80,11 @@ class PhaseParticles {
   /// From now on the phase knows where each of its particles stands. Throws std::logic_error of a phase whose number of
   /// particles may change: its ids have gaps.
   void keep_places();
-  /// Where the particle with the id first_id() + n stands, by n; after keep_places().
+  /// Where the particle with the id first_id() + n stands, by n; after keep_places(). On several ranks `elsewhere`
+  /// where it is another rank's.
   const std::uint32_t* places() const { return places_.data(); }
+  static constexpr std::uint32_t elsewhere = 0xffffffffu;
+  std::uint32_t arrangements() const { return arrangements_; }  ///< how often places() became others
   bool in_order() const { return in_order_; }  ///< every particle stands at the place of its id; after keep_places()
 
   /// In Model::begin: particles will be made or removed, so that checkpoints have other numbers than the start.
@@ -111,6 +114,8 @@ class PhaseParticles {
   void unpack(std::size_t k, const std::byte* from);
   /// The particles of all ranks, one rank after another, on the first rank; none on the others.
   PhaseParticles gathered() const;
+  /// The same of those at the places for which `wanted` is true, with these fields, no own columns.
+  PhaseParticles gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const;
 
   std::size_t bytes() const;  ///< memory of all columns
 
@@ -132,6 +137,7 @@ class PhaseParticles {
   int dimensions_;
   std::size_t size_;
   bool may_change_ = false, is_part_ = false, keeps_places_ = false, in_order_ = false;
+  std::uint32_t arrangements_ = 0;
   long changes_ = 0;
   std::int64_t first_id_;
   double mass_, mean_radius_ = 1.0;

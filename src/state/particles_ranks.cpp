@@ -18,6 +18,7 @@ void PhaseParticles::keep_range(std::size_t first, std::size_t last) {
   for (OwnValues& v : own_) move(v.values, v.width);
   is_part_ = true;
   resize(last - first);
+  find_places();
 }
 
 std::size_t PhaseParticles::packed_width() const {
@@ -68,6 +69,22 @@ PhaseParticles PhaseParticles::gathered() const {
   whole.resize(total);
   for (std::size_t k = 0; k < total; ++k) whole.unpack(k, together.data() + k * width);
   return whole;
+}
+
+PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const {
+  std::vector<std::size_t> from;
+  for (std::size_t k = 0; k < size_; ++k)
+    if (wanted(k)) from.push_back(k);
+  PhaseParticles part(name_, dimensions_, from.size(), mass_, first_id_);
+  for (std::size_t k = 0; k < from.size(); ++k) part.id_[k] = id_[from[k]];
+  for (std::size_t f = 0; f < field_count; ++f) {
+    const auto field = static_cast<Field>(f);
+    if (!fields.has(field) || !has(field)) continue;
+    part.add(field);
+    for (int c = 0; c < components(field); ++c)
+      for (std::size_t k = 0; k < from.size(); ++k) part.column(field, c)[k] = column(field, c)[from[k]];
+  }
+  return part.gathered();
 }
 
 }  // namespace barchan

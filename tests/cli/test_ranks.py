@@ -96,6 +96,31 @@ history-every = 0.01
 """
 
 
+# Scenes of scenes/, shortened, by what they show: file, end (s), overrides. Frames at the middle and the end.
+SCENES = {
+    "eddies over rough, fitted ground": ("verification/rough_hill", 0.016, "spacing=0.05"),
+    "eddies under a lid that pulls": ("verification/logarithmic_layer", 0.004),
+    "eddies of Smagorinsky": ("verification/logarithmic_layer", 0.004, "phases.air.turbulence=smagorinsky"),
+    "eddies of two equations": ("verification/logarithmic_layer", 0.004, "phases.air.turbulence=k-omega"),
+    "instruments": ("verification/poiseuille", 0.04, "probe.0.every=0.004", "profile.0.start=0", "profile.1.start=0.01", "grid.0.start=0",
+                    "wall-shear.0.start=0", "wall-shear.1.start=0"),
+    "instruments of eddies": ("verification/rough_hill", 0.016, "spacing=0.05", "wall-shear.0.start=0"),
+    "a force by a control volume, a forcing of place": ("verification/cylinder", 0.1),
+    "a free surface, consistent": ("verification/dam_break", 0.03, "spacing=5.715e-3"),
+    "a free surface, plain": ("verification/dam_break", 0.03, "spacing=5.715e-3", "phases.water.scheme=plain"),
+    "a free surface in three dimensions": ("verification/dam_break_3d", 0.004, "spacing=1.143e-2"),
+    "a patch without walls": ("verification/square_patch", 0.1, "spacing=0.1"),
+    "water under air": ("verification/two_phase_column", 0.006),
+    "two spacings": ("verification/two_spacings", 0.06),
+    "a wall that is pushed, its force": ("verification/piston", 0.02),
+    "a gate that is drawn out of water": ("dam_gate", 0.05, "spacing=0.015"),
+    "a wave maker": ("verification/wave_maker", 0.2, "constants.rows=10"),
+    "a flow through open ends": ("verification/open_channel", 0.4),
+    "a flow past a cylinder through open ends": ("verification/cylinder_open", 0.1),
+    "borders of spacings, eddies and open ends": ("verification/joined_wind", 0.002),
+}
+
+
 def channel(scheme, solid=False):
     if solid:
         return CHANNEL.format(dimensions=3, spacing=1e-4, size="[6e-4, 1e-3, 7e-4]", periodic='["x", "z"]', scheme=scheme,
@@ -112,9 +137,12 @@ class Folder(unittest.TestCase):
 
     def start(self, ranks, text, out, *options, threads=1):
         (self.at / "scene.toml").write_text(text)
+        return self.start_file(ranks, "scene.toml", out, *options, threads=threads)
+
+    def start_file(self, ranks, scene, out, *options, threads=1):
         alone = {k: v for k, v in os.environ.items() if not k.startswith(LAUNCHERS)}
         before = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks else []
-        return subprocess.run([*before, PROGRAM, "run", "scene.toml", "--quiet", "--threads", str(threads), "--out", out, *options],
+        return subprocess.run([*before, PROGRAM, "run", str(scene), "--quiet", "--threads", str(threads), "--out", out, *options],
                               cwd=self.at, env=alone, capture_output=True, text=True, timeout=600)
 
     def run_on(self, ranks, text, out, *options, threads=1):
@@ -124,8 +152,11 @@ class Folder(unittest.TestCase):
 
     def same(self, one, other):
         """All that has the bits of the run."""
-        names = {f.name for f in (self.at / one).iterdir()} - {"run.json"}
-        self.assertEqual(names, {f.name for f in (self.at / other).iterdir()} - {"run.json"})
+        def names_of(folder):  # the checkpoint before the last one is that of a run that was continued
+            return {f.name for f in (self.at / folder).iterdir() if not f.name.endswith(".older")} - {"run.json"}
+
+        names = names_of(one)
+        self.assertEqual(names, names_of(other))
         self.assertTrue(any(name.endswith(".checkpoint") for name in names))
         for name in sorted(names):
             self.assertEqual((self.at / one / name).read_bytes(), (self.at / other / name).read_bytes(), f"{name} of {other}")
@@ -138,6 +169,27 @@ class Ranks(Folder):
         for n in ranks:
             self.run_on(n, text, f"of-{n}")
             self.same("one", f"of-{n}")
+
+    def test_scenes(self):
+        for name, (file, end, *overrides) in SCENES.items():
+            with self.subTest(name):
+                out = name.replace(" ", "_").replace(",", "")
+                sets = [f"output.every={end / 2!r}", f"output.history-every={end / 4!r}", *overrides]
+                self.compare_file(SOURCE / "scenes" / (file + ".toml"), end, out, [word for s in sets for word in ("--set", s)])
+
+    def compare_file(self, scene, end, out, sets):
+        def run(ranks, to, *options):
+            ended = self.start_file(ranks, scene, to, *sets, *options)
+            self.assertEqual(ended.returncode, 0, f"{to}: {ended.stderr}")
+
+        whole, half = ("--set", f"time.end={end!r}"), ("--set", f"time.end={end / 2!r}")
+        run(0, out, *whole)
+        for n in (2, 3):
+            run(n, f"{out}-{n}", *whole)
+            self.same(out, f"{out}-{n}")
+        run(3, f"{out}-3-2", *half)
+        run(2, f"{out}-3-2", *whole, "--restart", "latest")
+        self.same(out, f"{out}-3-2")
 
     def test_plain_fluid_in_a_periodic_domain(self):
         self.compare(PERIODIC.format(scheme="plain", precision=""), 2, 3)
@@ -188,10 +240,9 @@ class Ranks(Folder):
         self.assertEqual(many.stderr.count("first bad state"), 1)
 
     def test_what_cannot_run_is_refused_by_name_and_writes_nothing(self):
-        text = channel("consistent").replace("viscosity = 1e-6", 'viscosity = 1e-6\nturbulence = "smagorinsky"')
-        ended = self.start(2, text, "out")
+        ended = self.start_file(2, SOURCE / "scenes/verification/hertz_spheres.toml", "out")
         self.assertEqual(ended.returncode, 2, ended.stderr)
-        self.assertIn("phases.water: a fluid with turbulence cannot run on several ranks yet", ended.stderr)
+        self.assertIn('a phase of kind "grains" cannot run on several ranks yet', ended.stderr)
         self.assertEqual(ended.stderr.count("cannot run on several ranks"), 1)
         self.assertFalse((self.at / "out").exists())
 

@@ -59,6 +59,17 @@ void SetOfBody::attach(Workspace& w, const std::string& section) {
     throw SceneError(located(w.scene, section) + ": no particle of phase \"" + set_.phase +
                      "\" stands in the box at the start; expected a box that holds some");
   particles().keep_places();
+  here_.reserve(ids_.size());
+}
+
+const std::vector<std::uint32_t>& SetOfBody::here() const {
+  const PhaseParticles& p = particles();
+  if (arrangement_ == p.arrangements()) return here_;
+  arrangement_ = p.arrangements();
+  here_.clear();
+  for (const std::uint32_t id : ids_)
+    if (const std::uint32_t place = p.places()[id]; place != PhaseParticles::elsewhere) here_.push_back(place);
+  return here_;
 }
 
 DrivenSet::DrivenSet(const Scene& scene, const Layout& layout, std::size_t number)
@@ -135,7 +146,7 @@ void DrivenSet::history(HistoryRow& row) const {
 /// The drive gives the set what its motion gains, less what the rest of the body and the weight give it.
 double DrivenSet::budget_energy() {
   const Vec3 now = velocity_at(w_->state.time), start = velocity_at(0.0);
-  const double mass = set_.particles().mass() * static_cast<double>(set_.size());
+  const double mass = set_.particles().mass() * static_cast<double>(set_.count());
   return taken_ - 0.5 * mass * (dot(now, now) - dot(start, start));
 }
 
@@ -154,7 +165,7 @@ void MarkedSet::attach(Workspace& w) { set_.attach(w, "marker." + std::to_string
 
 void MarkedSet::history(HistoryRow& row) const {
   const PhaseParticles& p = set_.particles();
-  const auto n = static_cast<double>(set_.size());
+  const auto n = static_cast<double>(set_.count());
   for (int d = 0; d < std::min(layout_.dimensions, 3); ++d) {
     const double* x = p.column(Field::position, d);
     row.add(marker_.name + "_" + axes[d] + " [m]",

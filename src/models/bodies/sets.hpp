@@ -1,6 +1,7 @@
 // Sets of particles of bodies, by their places at the start: clamped, driven, or followed.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "models/forces.hpp"
@@ -18,16 +19,21 @@ class SetOfBody {
   void attach(Workspace& w, const std::string& section);
   /// Where they stand after a sort or a load.
   std::size_t phase() const { return phase_; }
-  std::size_t size() const { return ids_.size(); }
+  /// How many they are; how many of them are here: of one process all, of several ranks those of this one.
+  std::size_t count() const { return ids_.size(); }
+  std::size_t size() const { return here().size(); }
   /// Where its particle number q stands, q below size().
-  std::uint32_t place(std::size_t q) const { return particles().places()[ids_[q]]; }
+  std::uint32_t place(std::size_t q) const { return here_[q]; }
   PhaseParticles& particles() const { return w_->particles(phase_); }
 
  private:
   const Layout& layout_;
   const BodySet& set_;
   std::size_t phase_ = 0;
-  std::vector<std::uint32_t> ids_;  // from the phase's first
+  const std::vector<std::uint32_t>& here() const;
+  std::vector<std::uint32_t> ids_;                    // from the phase's first
+  mutable std::vector<std::uint32_t> here_;           // places
+  mutable std::optional<std::uint32_t> arrangement_;  // of the phase, for which here_ was made
   Workspace* w_ = nullptr;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "models/workspace.hpp"
 
@@ -128,9 +129,9 @@ void FlowZone::sort_out() {
     }
     if (now == beyond) fastest = std::max(fastest, std::abs(v[k]));
   }
-  entered_ += p.mass() * static_cast<double>(in);
-  left_ += p.mass() * static_cast<double>(out);
-  gone_ += fastest * w_->state.dt / dx_;
+  entered_ += p.mass() * static_cast<double>(ranks::total(in));
+  left_ += p.mass() * static_cast<double>(ranks::total(out));
+  gone_ += ranks::largest(fastest) * w_->state.dt / dx_;
   members_.clear();
   for (std::int64_t k = 0; k < n; ++k)
     if (where[k] != away) members_.push_back(static_cast<std::uint32_t>(k));
@@ -167,6 +168,7 @@ void FlowZone::gather() {
     sum.depth2.add(depth * depth);
     sum.sloped.add(depth * level);
   }
+  if (ranks::active()) gather_ranks();
 }
 
 /// The pressure where the velocity of the scene begins, and its slope, by lane.
@@ -237,14 +239,14 @@ void FlowZone::learn_layer() {
 bool FlowZone::has_room(const Vec3& x) const {
   const PhaseParticles& p = w_->particles(fluid_);
   const std::size_t axis = end_.axis();
-  return std::none_of(members_.begin(), members_.end(), [&](std::uint32_t k) {
+  return !ranks::any(std::any_of(members_.begin(), members_.end(), [&](std::uint32_t k) {
     if (std::abs(p.column(Field::position, static_cast<int>(axis))[k] - x[axis]) > dx_) return false;
     Vec3 r = place_of(p, k) - x;
     for (std::size_t d = 0; d < 3; ++d)
       if (domain_.periodic[d])
         r[d] -= (domain_.high[d] - domain_.low[d]) * std::round(r[d] / (domain_.high[d] - domain_.low[d]));
     return norm(r) < room * dx_;
-  });
+  }));
 }
 
 /// m, between a row at `d` and the next one: so far apart that their mass fills the lane with the density there.
@@ -262,6 +264,7 @@ void FlowZone::remove_and_create() {
   const auto axis = static_cast<int>(end_.axis());
   const double* x = p.column(Field::position, axis);
   const auto leaves = [&](std::size_t k) { return end_.beyond(x[k]) > end_.length; };
+  const long changes = p.changes();
   if (std::any_of(members_.begin(), members_.end(), leaves)) {
     p.remove_if(leaves);
     members_.clear();
@@ -278,12 +281,10 @@ void FlowZone::remove_and_create() {
       Vec3 at = lanes_.place(lane);
       at[end_.axis()] = end_.at(last);
       if (end_.outflow && !has_room(at)) break;
-      const std::size_t k = p.create(1, w_->state.ids);
-      for (int d = 0; d < p.dimensions(); ++d) p.column(Field::position, d)[k] = at[static_cast<std::size_t>(d)];
-      p.own(where_)[k] = beyond;
-      members_.push_back(static_cast<std::uint32_t>(k));
+      make_at(at);
     }
   }
+  if (ranks::any(p.changes() != changes)) w_->must_search = true;  // on all ranks
 }
 
 // ---- what the scene gives -------------------------------------------------------------------------------------------

@@ -74,6 +74,7 @@ class FlowZone : public Model {
   void renew();
   void sort_out();
   void gather();
+  void gather_ranks();
   void learn_inflow(double mean_share);
   void learn_outflow(double share);
   void learn_layer();
@@ -81,6 +82,7 @@ class FlowZone : public Model {
   void remember_pressures(double dt);
   double row_spacing(std::size_t lane, double d) const;
   void remove_and_create();
+  void make_at(const Vec3& x);
   bool has_room(const Vec3& x) const;
   void prescribe();
   void prescribe_inflow(PhaseParticles& p, std::size_t k, const Vec3& x, std::size_t lane, double d);

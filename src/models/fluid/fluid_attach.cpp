@@ -387,7 +387,7 @@ void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides
     eddies_.grain_reach = std::max(eddies_.grain_reach, e.pair.radius);
   }
   if (e.friction != Friction::rough && e.friction != Friction::smooth && e.friction != Friction::grains) return;
-  ground_phases_.push_back({&w_->particles(other), o.spacing});
+  ground_phases_.push_back({&w_->particles(other), o.spacing, o.moves || o.travels});
   if (o.moves) {
     particles = true;
     return;

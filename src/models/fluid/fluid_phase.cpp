@@ -128,14 +128,18 @@ void FluidPhase::find_eddies() {
     if (w_->state.steps == 0) largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
     largest_viscosity_ = std::max(largest_viscosity_, diffusivity);
   }
+  largest_viscosity_ = ranks::largest(largest_viscosity_);
   if (layout_.dimensions == 2) {
     if (CompactRecords* compact = w_->compact_to_write(number_)) records.give_roots(*compact, particles_->size());
     else records.give_roots(w_->to_write(number_, Record::motion), particles_->size());
   }
-  for (auto& e : eddy_neighbours_)
-    if (e.wall && e.wall->size() > 0)
-      for (int d = 0; d < layout_.dimensions; ++d)
-        e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
+  for (auto& e : eddy_neighbours_) {
+    if (!e.wall) continue;
+    const bool here = e.wall->size() > 0;
+    for (int d = 0; here && d < layout_.dimensions; ++d)
+      e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
+    e.wall_velocity = ranks::of_first(here, e.wall_velocity);
+  }
 }
 
 void FluidPhase::rate() {

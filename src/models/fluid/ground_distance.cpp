@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "models/walls/sides.hpp"
 
 namespace barchan {
@@ -79,8 +80,44 @@ void GroundDistance::refresh(std::span<const Ground> phases) {
   bounds_.dimensions == 2 ? refresh<2>(phases) : refresh<3>(phases);
 }
 
+/// Calls f with the particles of a phase that may be ground.
+template <class F>
+void GroundDistance::each_piece(const Ground& phase, F&& f) const {
+  const PhaseParticles& p = *phase.particles;
+  const bool wall = p.has(Field::wall_depth),
+             loose = !wall && !p.has(Field::stress);  // grains: neither walls nor bodies
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    if (wall && behind_a_side(p, k, bounds_, phase.spacing)) continue;
+    const double depth = wall ? p.column(Field::wall_depth)[k] : 0.0;
+    if (depth > 0.8 * phase.spacing) continue;  // the first row has the surface
+    Vec3 x{}, normal{};
+    for (int d = 0; d < p.dimensions(); ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      x[c] = p.column(Field::position, d)[k];
+      if (depth > 0.0) normal[c] = p.column(Field::wall_normal, d)[k];
+      x[c] += depth * normal[c];
+    }
+    f(Piece{x, normal, 0.5 * phase.spacing, loose});
+  }
+}
+
+/// On several ranks: whether the pieces are those of before, since nothing moves; else takes those of all ranks.
+bool GroundDistance::are_known(std::span<const Ground> phases) {
+  const bool still = std::none_of(phases.begin(), phases.end(), [](const Ground& phase) { return phase.moves; });
+  if (still && !seeds_.empty()) return true;
+  of_ranks_.clear();
+  for (const Ground& phase : phases) {
+    std::vector<Piece> pieces;
+    each_piece(phase, [&](const Piece& piece) { pieces.push_back(piece); });
+    ranks::join(pieces);
+    of_ranks_.insert(of_ranks_.end(), pieces.begin(), pieces.end());
+  }
+  return false;
+}
+
 template <int Dim>
 void GroundDistance::refresh(std::span<const Ground> phases) {
+  if (ranks::active() && are_known(phases)) return;
   const bool known = !seeds_.empty();
   std::swap(seeds_, last_.seeds);
   std::swap(normals_, last_.normals);
@@ -92,38 +129,26 @@ void GroundDistance::refresh(std::span<const Ground> phases) {
   half_.clear();
   Place at{};
   const auto each = [&](auto&& f) {
-    for (const auto& [p, spacing] : phases)
-      for (std::size_t k = 0; k < p->size(); ++k) {
-        const bool wall = p->has(Field::wall_depth);
-        if (wall && behind_a_side(*p, k, bounds_, spacing)) continue;
-        const double depth = wall ? p->column(Field::wall_depth)[k] : 0.0;
-        if (depth > 0.8 * spacing) continue;  // the first row has the surface
-        Vec3 x{}, normal{};
-        for (int d = 0; d < p->dimensions(); ++d) {
-          const auto c = static_cast<std::size_t>(d);
-          x[c] = p->column(Field::position, d)[k];
-          if (depth > 0.0) normal[c] = p->column(Field::wall_normal, d)[k];
-          x[c] += depth * normal[c];
-        }
-        f(*p, x, normal, 0.5 * spacing);
-      }
+    if (ranks::active()) std::for_each(of_ranks_.begin(), of_ranks_.end(), f);
+    else
+      for (const Ground& phase : phases) each_piece(phase, f);
   };
-  each([&](const PhaseParticles&, const Vec3& x, const Vec3&, double) {
-    auto& n = crowd_[cell_of<Dim>(x, at)];
+  each([&](const Piece& piece) {
+    auto& n = crowd_[cell_of<Dim>(piece.x, at)];
     n = static_cast<std::uint8_t>(std::min(n + 1, 255));
     images(at, [&](std::size_t image) { crowd_[image] = n; });
   });
-  each([&](const PhaseParticles& p, const Vec3& x, const Vec3& normal, double half) {
-    const std::size_t cell = cell_of<Dim>(x, at);
-    if (!p.has(Field::wall_depth) && !p.has(Field::stress)) {  // grains: neither walls nor bodies
+  each([&](const Piece& piece) {
+    const std::size_t cell = cell_of<Dim>(piece.x, at);
+    if (piece.loose) {
       int crowd = 0;
       for (const std::ptrdiff_t step : around_) crowd += crowd_[cell + static_cast<std::size_t>(step)];
       if (crowd < 4) return;
     }
-    seeds_.push_back(x);
-    normals_.push_back(normal);
-    half_.push_back(half);
-    surfaces_ = surfaces_ || dot(normal, normal) > 0.0;
+    seeds_.push_back(piece.x);
+    normals_.push_back(piece.normal);
+    half_.push_back(piece.half);
+    surfaces_ = surfaces_ || dot(piece.normal, piece.normal) > 0.0;
   });
   alike_ = half_.empty() || std::all_of(half_.begin(), half_.end(), [&](double h) { return h == half_[0]; });
   if (known && seeds_ == last_.seeds && normals_ == last_.normals && half_ == last_.half) return;  // the same nearest

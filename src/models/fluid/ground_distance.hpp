@@ -21,6 +21,7 @@ class GroundDistance {
   struct Ground {
     const PhaseParticles* particles = nullptr;
     double spacing = 0.0;  // m
+    bool moves = false;    // its particles do, or a [[motion]] carries it
   };
 
   /// `sides`: the planes that count. `spacing` (m): of the cells, no smaller than that of any ground.
@@ -38,9 +39,18 @@ class GroundDistance {
 
  private:
   using Place = std::array<int, 3>;  // of a cell, by axis
+  /// A particle that may be ground.
+  struct Piece {
+    Vec3 x, normal;  // x (m): of a wall whose surface is known on it
+    double half;     // m, of the spacing
+    bool loose;      // of grains: ground where others surround it
+  };
 
   template <int Dim>
   void refresh(std::span<const Ground> phases);
+  template <class F>
+  void each_piece(const Ground& phase, F&& f) const;
+  bool are_known(std::span<const Ground> phases);
   template <int Dim>
   double distance(const Vec3& x) const;
   template <int Dim>
@@ -71,6 +81,7 @@ class GroundDistance {
   std::vector<std::int32_t> nearest_;   // by cell: number of a seed, -1: none
   std::vector<std::uint8_t> crowd_;     // by cell: particles in it
   std::vector<std::uint8_t> stale_;     // by cell, from margin() on: to be visited by the next sweep
+  std::vector<Piece> of_ranks_;         // on several ranks: of all of them
   std::vector<Vec3> seeds_;
   std::vector<double> half_;  // by seed: half the spacing of its phase, m
   bool alike_ = true;         // all have the same

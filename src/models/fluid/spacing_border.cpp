@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
@@ -87,6 +88,7 @@ bool SpacingBorder::is_due() {
       most = std::max(most, speed2);
     }
   }
+  most = ranks::largest(most);
   gone_ += std::sqrt(most) * w_->state.dt / fine_spacing_;
   return gone_ >= often;
 }
@@ -145,8 +147,11 @@ bool SpacingBorder::find_members() {
       if (m.coarse ? m.distance < -over : m.distance > over) deepest = std::max(deepest, std::abs(m.distance));
     }
   }
+  deepest = ranks::largest(deepest);
   if (deepest == 0.0) return false;
   std::erase_if(members_, [&](const Member& m) { return std::abs(m.distance) > deepest + 3.0 * coarse_spacing_; });
+  details_.clear();
+  if (ranks::active()) join_ranks();
   return true;
 }
 
@@ -171,24 +176,27 @@ void SpacingBorder::sort_members() {
 
 // ---- the particles --------------------------------------------------------------------------------------------------
 
-void SpacingBorder::book(std::size_t phase, std::size_t place, double sign) {
-  const PhaseParticles& p = w_->particles(phase);
-  const double m = sign * p.mass();
+void SpacingBorder::book(std::size_t phase, const Vec3& x, const Values& values, double sign) {
+  const double m = sign * w_->particles(phase).mass();
   Departed& departed = w_->state.departed[place_];
-  for (int d = 0; d < p.dimensions(); ++d) {
-    const auto c = static_cast<std::size_t>(d);
-    const double v = p.column(Field::velocity, d)[place];
-    departed.momentum[c] += m * v;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    const double v = values[d];
+    departed.momentum[d] += m * v;
     departed.kinetic += 0.5 * m * v * v;
     passed_.loss += 0.5 * m * v * v;
-    departed.potential -= m * scene_.domain.gravity[c] * p.column(Field::position, d)[place];
+    departed.potential -= m * scene_.domain.gravity[d] * x[d];
   }
-  const double strain = p.column(Field::density)[place] / scene_.phases[phase].density - 1.0;
+  const double strain = values[3] / scene_.phases[phase].density - 1.0;
   departed.stored += 0.5 * m * std::pow(layout_.phases[phase].sound_speed * strain, 2);
 }
 
 void SpacingBorder::create(std::size_t phase, const std::vector<Made>& made) {
   if (made.empty()) return;
+  for (const Made& one : made) book(phase, one.x, one.values, -1.0);
+  if (!ranks::makes_particles()) {
+    w_->state.ids.next += static_cast<std::int64_t>(made.size());
+    return;
+  }
   PhaseParticles& p = w_->particles(phase);
   const PressureLaw law = pressure_law(scene_, layout_, phase);
   const std::size_t first = p.create(made.size(), w_->state.ids);
@@ -212,32 +220,34 @@ void SpacingBorder::create(std::size_t phase, const std::vector<Made>& made) {
       for (int d = 0; d < p.dimensions(); ++d)
         p.column(Field::drag_acceleration, d)[k] = one.drag[static_cast<std::size_t>(d)];
     if (p.has(Field::near_void)) p.column(Field::near_void)[k] = one.near_void;
-    book(phase, k, -1.0);
   }
 }
 
-void SpacingBorder::apply() {
-  for (const std::size_t phase : {fine_, coarse_}) {
-    PhaseParticles& p = w_->particles(phase);
-    leaves_.assign(p.size(), 0);
-    bool any = false;
-    for (const Member& m : members_) {
-      if (!m.taken || m.coarse != (phase == coarse_)) continue;
-      leaves_[m.place] = 1;
-      any = true;
-    }
-    if (!any) continue;
-    seeds_.clear();
-    for (std::size_t k = 0; k < p.size(); ++k)
-      if (leaves_[k]) seeds_.push_back(k);
-    std::sort(seeds_.begin(), seeds_.end(), [&](std::size_t a, std::size_t b) { return p.id()[a] < p.id()[b]; });
-    for (const std::size_t k : seeds_) book(phase, k, 1.0);
-    const double mass = p.mass() * static_cast<double>(seeds_.size());
-    (phase == fine_ ? passed_.to_coarse : passed_.to_fine) += mass;
-    p.remove_if([&](std::size_t k) { return leaves_[k] != 0; });
+/// The taken ones of a phase go, in the order of their ids.
+void SpacingBorder::take_away(std::size_t phase) {
+  PhaseParticles& p = w_->particles(phase);
+  seeds_.clear();
+  for (std::size_t k = 0; k < members_.size(); ++k)
+    if (members_[k].taken && members_[k].coarse == (phase == coarse_)) seeds_.push_back(k);
+  if (seeds_.empty()) return;
+  std::sort(seeds_.begin(), seeds_.end(),
+            [&](std::size_t a, std::size_t b) { return members_[a].id < members_[b].id; });
+  leaves_.assign(p.size(), 0);
+  for (const std::size_t k : seeds_) {
+    const Member& m = members_[k];
+    book(phase, stands_at(m), values_of(m), 1.0);
+    if (const auto place = place_here(m)) leaves_[*place] = 1;
   }
+  const double mass = p.mass() * static_cast<double>(seeds_.size());
+  (phase == fine_ ? passed_.to_coarse : passed_.to_fine) += mass;
+  p.remove_if([&](std::size_t k) { return leaves_[k] != 0; });
+}
+
+void SpacingBorder::apply() {
+  for (const std::size_t phase : {fine_, coarse_}) take_away(phase);
   create(fine_, made_fine_);
   create(coarse_, made_coarse_);
+  if (!made_fine_.empty() || !made_coarse_.empty()) w_->must_search = true;  // on all ranks
 }
 
 void SpacingBorder::history(HistoryRow& row) const {

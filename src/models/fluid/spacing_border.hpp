@@ -23,6 +23,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,13 @@ class SpacingBorder : public Model {
     double near_void = 0.0;
     Vec3 sharper{};  // m/s, what the curvature of the velocity adds
   };
+  /// On several ranks: what a member is made of, wherever it stands.
+  struct Detail {
+    Values values{};
+    Made kept;  // what parts and groups take over
+    Vec3 x{};   // m, as it stands
+    std::int64_t rank = 0, place = 0;
+  };
   struct Passed {
     double to_fine = 0.0, to_coarse = 0.0, loss = 0.0;  // kg, kg, J
   };
@@ -82,7 +90,12 @@ class SpacingBorder : public Model {
   double squared(const Vec3& r) const;
   template <class F>
   void around(const Vec3& x, double radius, F&& f) const;
+  void join_ranks();
   Values values_of(const Member& m) const;
+  Made kept_of(const Member& m) const;
+  Vec3 stands_at(const Member& m) const;
+  /// Where it stands among the particles of this rank; nothing: it is another rank's.
+  std::optional<std::size_t> place_here(const Member& m) const;
   Made mean_of_group() const;
   std::array<Values, 3> gradient(const Vec3& x, const Values& own) const;
   Vec3 curvature(const Vec3& x, const Values& own, const std::array<Values, 3>& slope) const;
@@ -91,8 +104,9 @@ class SpacingBorder : public Model {
   bool gather_group(std::size_t seed, double radius);
   std::size_t parts() const { return std::size_t{1} << layout_.dimensions; }
   void create(std::size_t phase, const std::vector<Made>& made);
-  /// Adds `sign` times what the particles at these places of a phase have.
-  void book(std::size_t phase, std::size_t place, double sign);
+  void take_away(std::size_t phase);
+  /// Adds `sign` times what a particle of a phase with these values has that stands at x.
+  void book(std::size_t phase, const Vec3& x, const Values& values, double sign);
 
   const Scene& scene_;
   const Layout& layout_;
@@ -108,6 +122,7 @@ class SpacingBorder : public Model {
   std::array<std::size_t, 3> cells_{1, 1, 1};
   Vec3 cell_{1, 1, 1};  // m
   std::vector<Member> members_;
+  std::vector<Detail> details_;       // on several ranks, by Member::place; else empty
   std::vector<std::uint32_t> begin_;  // by cell, of members_
   std::vector<std::size_t> seeds_, group_, near_;
   std::vector<Made> made_fine_, made_coarse_;

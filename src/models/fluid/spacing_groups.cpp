@@ -38,6 +38,7 @@ void SpacingBorder::around(const Vec3& x, double radius, F&& f) const {
 }
 
 SpacingBorder::Values SpacingBorder::values_of(const Member& m) const {
+  if (!details_.empty()) return details_[m.place].values;
   const PhaseParticles& p = w_->particles(m.coarse ? coarse_ : fine_);
   Values v{};
   for (int d = 0; d < p.dimensions(); ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d)[m.place];
@@ -48,6 +49,20 @@ SpacingBorder::Values SpacingBorder::values_of(const Member& m) const {
     v[6] = std::log(std::max(p.column(Field::specific_dissipation_rate)[m.place], 1e-30));
   }
   return v;
+}
+
+/// What its parts, or the particle that its group becomes, take over.
+SpacingBorder::Made SpacingBorder::kept_of(const Member& m) const {
+  if (!details_.empty()) return details_[m.place].kept;
+  const PhaseParticles& p = w_->particles(m.coarse ? coarse_ : fine_);
+  Made kept;
+  for (int c = 0; c < p.components(Field::anisotropy); ++c)
+    kept.skew[static_cast<std::size_t>(c)] = p.column(Field::anisotropy, c)[m.place];
+  if (p.has(Field::drag_acceleration))
+    for (int d = 0; d < p.dimensions(); ++d)
+      kept.drag[static_cast<std::size_t>(d)] = p.column(Field::drag_acceleration, d)[m.place];
+  if (p.has(Field::near_void)) kept.near_void = p.column(Field::near_void)[m.place];
+  return kept;
 }
 
 // ---- split ----------------------------------------------------------------------------------------------------------
@@ -153,20 +168,13 @@ void SpacingBorder::split() {
     if (members_[k].coarse && members_[k].distance < -play * coarse_spacing_) seeds_.push_back(k);
   std::sort(seeds_.begin(), seeds_.end(),
             [&](std::size_t a, std::size_t b) { return members_[a].id < members_[b].id; });
-  const PhaseParticles& coarse = w_->particles(coarse_);
   for (const std::size_t seed : seeds_) {
     Member& m = members_[seed];
     const Values own = values_of(m);
     const auto slope = gradient(m.x, own);
     const Vec3 k = curvature(m.x, own, slope);
     const auto places = corners(m);
-    Made one;
-    for (int c = 0; c < coarse.components(Field::anisotropy); ++c)
-      one.skew[static_cast<std::size_t>(c)] = coarse.column(Field::anisotropy, c)[m.place];
-    if (coarse.has(Field::drag_acceleration))
-      for (int d = 0; d < coarse.dimensions(); ++d)
-        one.drag[static_cast<std::size_t>(d)] = coarse.column(Field::drag_acceleration, d)[m.place];
-    if (coarse.has(Field::near_void)) one.near_void = coarse.column(Field::near_void)[m.place];
+    Made one = kept_of(m);
     for (std::size_t part = 0; part < parts(); ++part) {
       const Vec3& r = places[part];
       one.x = m.x + r;
@@ -216,7 +224,6 @@ bool SpacingBorder::gather_group(std::size_t seed, double radius) {
 }
 
 SpacingBorder::Made SpacingBorder::mean_of_group() const {
-  const PhaseParticles& fine = w_->particles(fine_);
   const double share = 1.0 / static_cast<double>(parts());
   const Vec3& first = members_[group_.front()].x;
   Made one;
@@ -226,12 +233,10 @@ SpacingBorder::Made SpacingBorder::mean_of_group() const {
     away = away + apart(m.x, first);
     const Values values = values_of(m);
     for (std::size_t c = 0; c < count_; ++c) one.values[c] += share * values[c];
-    for (int c = 0; c < fine.components(Field::anisotropy); ++c)
-      one.skew[static_cast<std::size_t>(c)] += share * fine.column(Field::anisotropy, c)[m.place];
-    if (fine.has(Field::drag_acceleration))
-      for (int d = 0; d < fine.dimensions(); ++d)
-        one.drag[static_cast<std::size_t>(d)] += share * fine.column(Field::drag_acceleration, d)[m.place];
-    if (fine.has(Field::near_void)) one.near_void = std::max(one.near_void, fine.column(Field::near_void)[m.place]);
+    const Made kept = kept_of(m);
+    for (std::size_t c = 0; c < one.skew.size(); ++c) one.skew[c] += share * kept.skew[c];
+    for (std::size_t d = 0; d < 3; ++d) one.drag[d] += share * kept.drag[d];
+    one.near_void = std::max(one.near_void, kept.near_void);
   }
   one.x = first + share * away;
   Values low = values_of(members_[group_.front()]), high = low;

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "engine/entry_of_list.hpp"
 
@@ -11,12 +12,13 @@ namespace barchan {
 
 namespace {
 
-/// Square distance of a listed particle from particle `from`.
-template <std::size_t Dim>
-double distance2(const ListedParticle<Dim>& entry, const std::array<const double*, Dim>& x, std::size_t from) {
+/// Square distance of a listed particle from particle `from`; there: gives the place of its source, by axis.
+template <std::size_t Dim, class Place>
+double distance2(const ListedParticle<Dim>& entry, const std::array<const double*, Dim>& x, std::size_t from,
+                 const Place& there) {
   double sum = 0.0;
   for (std::size_t d = 0; d < Dim; ++d) {
-    const double r = x[d][from] - x[d][entry.source] - entry.shift[d];
+    const double r = x[d][from] - there(d) - entry.shift[d];
     sum += r * r;
   }
   return sum;
@@ -25,16 +27,49 @@ double distance2(const ListedParticle<Dim>& entry, const std::array<const double
 }  // namespace
 
 /// The particles whose wholeness is below the threshold; nobody is near them yet.
-void SurfaceFinder::take_members(const double* chi, std::size_t n, std::size_t dimensions, double threshold) {
-  if (near_.size() < n) {
-    near_.resize(n);
+void SurfaceFinder::take_members(const double* chi, std::size_t n, std::size_t ghosts, std::size_t dimensions,
+                                 double threshold) {
+  if (near_.size() < n + ghosts) {
+    near_.resize(n + ghosts);
     members_.reserve(n);
-    inwards_.resize(n * dimensions);
+    inwards_.resize((n + ghosts) * dimensions);
   }
-  std::fill_n(near_.begin(), n, std::uint8_t{0});
+  std::fill_n(near_.begin(), n + ghosts, std::uint8_t{0});
   members_.clear();
   for (std::size_t k = 0; k < n; ++k)
     if (chi[k] < threshold) members_.push_back(static_cast<std::uint32_t>(k));
+}
+
+/// On several ranks: what the walks read of ghosts.
+template <int Dim>
+void SurfaceFinder::take_ghosts(const PhaseParticles& fluid, const CellGrid& grid) {
+  constexpr std::size_t dim = Dim, width = 2 * dim + 1;
+  std::array<const double*, width> columns{};
+  columns[dim] = fluid.column(Field::wholeness);
+  for (std::size_t d = 0; d < dim; ++d) {
+    columns[d] = fluid.column(Field::position, static_cast<int>(d));
+    columns[dim + 1 + d] = fluid.column(Field::surface_normal, static_cast<int>(d));
+  }
+  if (ghosts_.size() < grid.images() * width) ghosts_.resize(grid.images() * width);
+  grid.fill_ghosts(
+      width * sizeof(double),
+      [&](const Image& image, std::byte* item) {
+        std::array<double, width> values{};
+        for (std::size_t c = 0; c < width; ++c) values[c] = columns[c][image.source];
+        std::memcpy(item, values.data(), sizeof values);
+      },
+      [&](std::size_t ghost, const std::byte* item) {
+        std::memcpy(ghosts_.data() + ghost * width, item, width * sizeof(double));
+      });
+}
+
+/// Marked ghosts mark their sources.
+void SurfaceFinder::return_marks(const CellGrid& grid, std::size_t n) {
+  grid.return_ghosts(
+      1, [&](std::size_t ghost, std::byte* item) { *item = static_cast<std::byte>(near_[n + ghost]); },
+      [&](std::size_t source, const std::byte* item) {
+        if (*item != std::byte{0}) near_[source] = 1;
+      });
 }
 
 template <int Dim>
@@ -50,14 +85,23 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     normal[d] = fluid.column(Field::surface_normal, static_cast<int>(d));
   }
   const double within2 = reach * reach * radius * radius;
-  take_members(chi, n, dim, threshold);
+  const bool shared = grid.is_shared();
+  if (shared) take_ghosts<Dim>(fluid, grid);
+  take_members(chi, n, shared ? grid.images() : 0, dim, threshold);
+  const double* const ghosts = ghosts_.data();
+  // Calls f with the place of each neighbour, or of its ghost.
   const auto each_near = [&](std::size_t k, auto&& f) {
     const auto row = own.row(k);
     for (const std::uint32_t* q = row.begin; q != row.end; ++q) {
       const std::size_t index = *q / PairList::stride;
       if (index == dummy) continue;
       const auto entry = look_up<dim>(index, grid, n);
-      if (distance2<dim>(entry, x, k) < within2) f(entry.source);
+      if (shared && index >= n) {
+        const double* const ghost = ghosts + (index - n) * (2 * dim + 1);
+        if (distance2<dim>(entry, x, k, [&](std::size_t d) { return ghost[d]; }) < within2) f(index);
+      } else if (distance2<dim>(entry, x, k, [&](std::size_t d) { return x[d][entry.source]; }) < within2) {
+        f(entry.source);
+      }
     }
   };
   const auto count = static_cast<std::int64_t>(members_.size());
@@ -70,6 +114,7 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     mark(k);
     each_near(k, mark);
   }
+  if (shared) return_marks(grid, n);
   const auto all = static_cast<std::int64_t>(n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < all; ++i) {
@@ -77,8 +122,13 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     if (near_[k] == 0) continue;
     std::array<double, dim> sum{};
     const auto add = [&](std::size_t b) {
-      if (chi[b] < threshold)
+      if (shared && b >= n) {
+        const double* const ghost = ghosts + (b - n) * (2 * dim + 1) + dim;
+        if (ghost[0] < threshold)
+          for (std::size_t d = 0; d < dim; ++d) sum[d] += ghost[1 + d];
+      } else if (chi[b] < threshold) {
         for (std::size_t d = 0; d < dim; ++d) sum[d] += normal[d][b];
+      }
     };
     add(k);
     each_near(k, add);

@@ -26,12 +26,16 @@ class SurfaceFinder {
   void find(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
 
  private:
-  void take_members(const double* chi, std::size_t n, std::size_t dimensions, double threshold);
+  void take_members(const double* chi, std::size_t n, std::size_t ghosts, std::size_t dimensions, double threshold);
+  template <int Dim>
+  void take_ghosts(const PhaseParticles& fluid, const CellGrid& grid);
+  void return_marks(const CellGrid& grid, std::size_t n);
   template <int Dim>
   void find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
-  std::vector<std::uint8_t> near_;      // by particle
+  std::vector<std::uint8_t> near_;      // by particle; on several ranks ghosts follow
   std::vector<std::uint32_t> members_;  // particles of the surface
   std::vector<double> inwards_;         // by particle and component
+  std::vector<double> ghosts_;          // on several ranks, by ghost: place of its source, wholeness, B
 };
 
 /// Particles of the surface feel no tension: where the pressure is below that of the void, it becomes that, and the
