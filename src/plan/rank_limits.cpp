@@ -27,6 +27,7 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   if (p.free_surface) refuse(where, "a fluid with a free surface");
   if (!p.flow_ends.empty()) refuse(where, "a fluid with an [[inflow]] or [[outflow]]");
   if (has(Field::energy)) refuse(where, "a fluid with energy");
+  if (p.flows && scene.phases[number].fluid().energy_budget) refuse(where, "a fluid with an energy-budget");
   if (std::none_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.has(number); }))
     refuse(where, "a phase without any entry in [interactions]");
 }
