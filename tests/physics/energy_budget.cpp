@@ -75,8 +75,9 @@ void expect_closed(const std::string& what, const Books& books) {
   EXPECT_LT(books.unexplained, 0.005 * books.exchanged);
   // Every name that took as much as the bound is missed if it is left out.
   for (const auto& [name, value] : books.end)
-    if (name.starts_with("taken_by_") && std::abs(value) > 0.01 * books.exchanged)
+    if (name.starts_with("taken_by_") && std::abs(value) > 0.01 * books.exchanged) {
       EXPECT_GT(std::abs(sum_of(books.end, name) - sum_of(books.start)), 0.005 * books.exchanged) << name;
+    }
 }
 
 TEST(EnergyBudget, OfAStandingWave) {
@@ -104,27 +105,33 @@ TEST(EnergyBudget, OfABrokenDamInThreeDimensions) {
 
 /// Forces do the work that the fluid gets; gravity along a periodic axis is such a force.
 TEST(EnergyBudget, OfWhatDrivesAFluid) {
+  const std::vector<std::vector<std::string>> drives{
+      {},
+      {"forcing=[{phase=\"water\",hold=\"bulk-speed\"}]", "fill.1.velocity=[\"50*y*(1e-3 - y)\",0]"},
+      {"forcing=[]", "domain.gravity=[1e-4,0]"}};
   for (const char* scheme : {"consistent", "plain"})
-    for (const bool held : {false, true}) {
-      const Books books = run(
-          "verification/poiseuille", "water",
-          {std::string("phases.water.scheme=") + scheme, held ? "forcing=[{phase=\"water\",hold=\"bulk-speed\"}]" : ""},
-          0.5, 5);
+    for (const auto& drive : drives) {
+      const Books books =
+          run("verification/poiseuille", "water", with({std::string("phases.water.scheme=") + scheme}, drive), 0.1, 5);
       expect_closed(std::string("channel, ") + scheme, books);
+      EXPECT_LT(books.end.at("taken_by_forcing"), -0.1 * books.exchanged);
     }
 }
 
-/// Taylor-Green vortices: K(t) = K(0) exp(-16 pi^2 nu t), and viscosity takes what is missing.
+/// Taylor-Green vortices: K(t) = K(0) exp(-16 pi^2 nu t), and viscosity takes what is missing. The plain sums of the
+/// friction need a larger radius and half of the spacing for that: with 2.1 spacings they are 2.6 % too weak.
 TEST(EnergyBudget, ViscosityTakesTheExactDecayOfVortices) {
-  for (const char* scheme : {"consistent", "plain"}) {
-    const Books books =
-        run("verification/taylor_green", "fluid", {std::string("phases.fluid.scheme=") + scheme}, 1.0, 10);
-    expect_closed(std::string("vortices, ") + scheme, books);
+  for (const bool plain : {false, true}) {
+    const std::string words = plain ? "plain" : "consistent";
+    std::vector<std::string> overrides{"phases.fluid.scheme=" + words};
+    if (plain) overrides = with(overrides, {"interactions.fluid-fluid=3.0", "spacing=0.01"});
+    const Books books = run("verification/taylor_green", "fluid", overrides, 1.0, 10);
+    expect_closed("vortices, " + words, books);
     const double start = 0.25;  // J/m: rho U^2/4 by area
     const double exact = start * (1.0 - std::exp(-16.0 * std::numbers::pi * std::numbers::pi * 0.01));
     const double error = books.end.at("taken_by_viscosity") / exact - 1.0;
-    report(std::string("taken by viscosity over the exact, ") + scheme, error, 0.01);
-    EXPECT_LT(std::abs(error), 0.01) << scheme;
+    report("taken by viscosity over the exact, less 1, " + words, error, 0.01);
+    EXPECT_LT(std::abs(error), 0.01) << words;
   }
 }
 

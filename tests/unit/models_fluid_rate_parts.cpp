@@ -127,12 +127,12 @@ TEST_P(RatePartsOf, FollowTheirNumbers) {
   less = q;
   less.shift_speed = 0.0;
   const PartColumns unshifted = parts_of(less, 0.9);
-  if (GetParam().scheme == FluidScheme::consistent) EXPECT_NE(all.moved, unshifted.moved);
+  if (GetParam().scheme == FluidScheme::consistent) { EXPECT_NE(all.moved, unshifted.moved); }
   EXPECT_EQ(unshifted.moved, std::vector<double>(all.moved.size(), 0.0));
   less = q;
   less.loosening = less.calming = 0.0;
   const PartColumns kept = parts_of(less, 0.9);
-  if (GetParam().surface || GetParam().scheme == FluidScheme::consistent) EXPECT_NE(all.renewed, kept.renewed);
+  if (GetParam().surface || GetParam().scheme == FluidScheme::consistent) { EXPECT_NE(all.renewed, kept.renewed); }
   EXPECT_EQ(kept.renewed, std::vector<double>(all.renewed.size(), 0.0));
   less = q;
   less.least_viscosity = 0.0;
