@@ -188,12 +188,13 @@ class Ranks(Folder):
         self.assertEqual(many.stderr.count("first bad state"), 1)
 
     def test_what_cannot_run_is_refused_by_name_and_writes_nothing(self):
-        text = channel("consistent").replace("viscosity = 1e-6", 'viscosity = 1e-6\nturbulence = "smagorinsky"')
-        ended = self.start(2, text, "out")
-        self.assertEqual(ended.returncode, 2, ended.stderr)
-        self.assertIn("phases.water: a fluid with turbulence cannot run on several ranks yet", ended.stderr)
-        self.assertEqual(ended.stderr.count("cannot run on several ranks"), 1)
-        self.assertFalse((self.at / "out").exists())
+        for key, what in (('turbulence = "smagorinsky"', "turbulence"), ("energy-budget = true", "an energy-budget")):
+            text = channel("consistent").replace("viscosity = 1e-6", "viscosity = 1e-6\n" + key)
+            ended = self.start(2, text, "out")
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertIn(f"phases.water: a fluid with {what} cannot run on several ranks yet", ended.stderr)
+            self.assertEqual(ended.stderr.count("cannot run on several ranks"), 1)
+            self.assertFalse((self.at / "out").exists())
 
     def test_a_folder_that_cannot_be_written_ends_all_ranks(self):
         (self.at / "file").write_text("")

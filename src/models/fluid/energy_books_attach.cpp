@@ -32,4 +32,13 @@ void FluidPhase::open_books() {
   books_ = std::make_unique<EnergyBooks>(std::move(fluid), *particles_);
 }
 
+/// When all accelerations are whole.
+void FluidPhase::schedule_books(Schedule& s) {
+  using enum Field;
+  const FieldSet read{position, velocity, density, acceleration, density_rate, shift_velocity};
+  s.add({stage::energy, plan_.name, {{plan_.name, read, {}}}, [this] {
+           books_->take(w_->kick_time, w_->state.steps == 0);
+         }});
+}
+
 }  // namespace barchan

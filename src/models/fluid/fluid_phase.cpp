@@ -89,10 +89,7 @@ void FluidPhase::schedule(Schedule& s) {
            [this] { advance_energy(*particles_, w_->kick_time); }});
   }
   if (plan_.held) s.add({stage::hold, plan_.name, own({velocity}, {acceleration}), [this] { hold(); }});
-  if (keys_.energy_budget) {
-    const FieldSet booked{position, velocity, density, acceleration, density_rate, shift_velocity};
-    s.add({stage::energy, plan_.name, own(booked, {}), [this] { books_->take(w_->kick_time, w_->state.steps == 0); }});
-  }
+  if (keys_.energy_budget) schedule_books(s);
 }
 
 /// After all other forces: what keeps the mean velocity, or what is missing of the force on the ground.

@@ -61,6 +61,7 @@ class FluidPhase : public Model {
   void find_surface();
   void hold();
   void open_books();
+  void schedule_books(Schedule& s);
   void bind_entries();
   void look_for_voids();
   void bind_eddies();

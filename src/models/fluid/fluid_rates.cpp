@@ -88,8 +88,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
     auto place = columns.template place<beside>(at, company);
     const Four rho = load_four(columns.rho, at.first, at.count);
     if constexpr (Keep::asked) {
-      RateParts<Dim, Four> parts;
-      parts.centring = keep.centring;
+      auto parts = keep.template of<Dim>();
       finish<Dim, beside, Four>(s, mu, rho, q, anisotropy, place, parts);
       keep.store(parts, at.first, at.count);
     } else {

@@ -41,6 +41,13 @@ struct PartColumns {
     for (auto* column : {&viscosity, &squeezed, &diffused, &moved, &renewed}) column->resize(n);
   }
 
+  /// For four particles, still without numbers.
+  template <int Dim>
+  RateParts<Dim, Four> of() const {
+    RateParts<Dim, Four> parts;
+    parts.centring = centring;
+    return parts;
+  }
   /// Takes four particles from k on, of which `count` exist.
   template <int Dim>
   BARCHAN_SIMD_INLINE void store(const RateParts<Dim, Four>& r, std::size_t k, std::size_t count) {
