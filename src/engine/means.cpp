@@ -20,7 +20,7 @@ void add_everywhere(double* values, std::size_t size, double amount) {
 
 }  // namespace
 
-double reproducible_mean(const double* values, std::size_t size) {
+double reproducible_total(const double* values, std::size_t size) {
   const auto n = static_cast<std::int64_t>(size);
   double high = 0.0, low = 0.0;
   std::int64_t most = 0;
@@ -35,7 +35,12 @@ double reproducible_mean(const double* values, std::size_t size) {
 #pragma omp parallel for simd schedule(static) reduction(+ : high, low)
   for (std::int64_t k = 0; k < n; ++k) cuts.add(values[k], high, low);
   add_of_ranks(high, low);
-  return (high + low) / static_cast<double>(all);
+  return high + low;
+}
+
+double reproducible_mean(const double* values, std::size_t size) {
+  const std::size_t all = ranks::total(size);
+  return all > 0 ? reproducible_total(values, size) / static_cast<double>(all) : 0.0;
 }
 
 void keep_mean_density(PhaseParticles& fluid) {

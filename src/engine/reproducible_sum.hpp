@@ -97,7 +97,9 @@ double reproducible_sum(std::size_t n, F&& f) {
   return high + low;
 }
 
-/// Mean of n values of each rank, by all threads; the same for any order of the values and any number of threads.
+/// Sum and mean of n values of each rank, by all threads; the same for any order of the values and any number of
+/// threads.
+double reproducible_total(const double* values, std::size_t n);
 double reproducible_mean(const double* values, std::size_t n);
 
 }  // namespace barchan

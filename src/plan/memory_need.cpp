@@ -98,6 +98,8 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
         all * wide *
         (motion * (plan.is_extended(k) ? 2.0 : 1.0) + (p.heats ? carried : 0.0) +
          (p.stress_records ? stress + (pulled ? ArtificialStressRecord::size : 0) : 0.0) + (p.eddies ? 4.0 : 0.0));
+    if (p.flows && scene.phases[k].fluid().energy_budget)  // models/fluid/energy_books.hpp
+      records += n * wide * (5.0 * dimensions + 10.0);
     if (p.fixed_neighbours) {  // models/bodies/reference_body.hpp: constants and sums of a particle; the search before
       const double numbers = dimensions == 2 ? 11.0 : 24.0, gradient = dimensions == 2 ? 5.0 : 10.0;
       const double number = scene.precision == Precision::mixed ? index : wide;

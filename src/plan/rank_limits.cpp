@@ -20,6 +20,7 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const std::string where = scene.file + ": phases." + p.name;
   const bool wall = !p.moves && p.takes_momentum;
   if (!p.flows && !wall) cannot_run(where, "a phase of kind \"" + p.kind + "\"");
+  if (p.flows && scene.phases[number].fluid().energy_budget) cannot_run(where, "a fluid with an energy-budget");
   if (std::none_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& e) { return e.has(number); }))
     cannot_run(where, "a phase without any entry in [interactions]");
 }

@@ -70,6 +70,7 @@ struct FluidKeys {
   Turbulence turbulence{};
   double smagorinsky{};  // C_s of nu_t = (C_s dx)^2 |S|
   bool energy{};         // integrate the internal energy (eq. 13)
+  bool energy_budget{};  // history.csv has what took its energy, by name
 };
 
 struct ElasticKeys {

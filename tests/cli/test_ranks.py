@@ -245,6 +245,11 @@ class Ranks(Folder):
         self.assertIn('a phase of kind "grains" cannot run on several ranks yet', ended.stderr)
         self.assertEqual(ended.stderr.count("cannot run on several ranks"), 1)
         self.assertFalse((self.at / "out").exists())
+        text = channel("consistent").replace("viscosity = 1e-6", "viscosity = 1e-6\nenergy-budget = true")
+        ended = self.start(2, text, "out")
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertIn("phases.water: a fluid with an energy-budget cannot run on several ranks yet", ended.stderr)
+        self.assertFalse((self.at / "out").exists())
 
     def test_a_folder_that_cannot_be_written_ends_all_ranks(self):
         (self.at / "file").write_text("")

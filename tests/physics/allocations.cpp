@@ -89,6 +89,18 @@ TEST(StepsOfSpheres, AllocateNothingOnABodyInSpace) {
   }
 }
 
+TEST(StepsWithBooksOfEnergy, AllocateNothing) {
+  for (const auto* text : {&small::dam, &small::plain_dam}) {
+    const auto run = small::simulation(*text, {"phases.water.energy-budget=true"});
+    for (int k = 0; k < 300; ++k) run->step(1.0);
+    const long before = allocations;
+    for (int k = 0; k < 200; ++k) {
+      run->step(1.0);
+      ASSERT_EQ(allocations, before) << "in step " << k;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Steps,
     testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},

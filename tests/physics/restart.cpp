@@ -75,6 +75,23 @@ TEST(Restart, BetweenAnyTwoOfManySteps) {
   }
 }
 
+/// The books of a fluid's energy, with a free surface and in a fluid that is shut in.
+TEST(Restart, OfTheBooksOfEnergy) {
+  const int threads = omp_get_max_threads();
+  for (const char* scheme : {"plain", "consistent"}) {
+    const std::vector<std::string> overrides{std::string("phases.water.scheme=") + scheme, "spacing=5.715e-3",
+                                             "phases.water.energy-budget=true"};
+    testing::Drive run("verification/dam_break", overrides), other("verification/dam_break", overrides);
+    run.to(0.2);
+    expect_restarts(run.simulation(), other.simulation(), 60, 7, {1, 2});
+    const std::vector<std::string> shut{std::string("phases.water.scheme=") + scheme,
+                                        "phases.water.energy-budget=true"};
+    testing::Drive whole("verification/poiseuille", shut), again("verification/poiseuille", shut);
+    expect_restarts(whole.simulation(), again.simulation(), 30, 7, {2, 1});
+  }
+  omp_set_num_threads(threads);
+}
+
 /// Air with two equations of turbulence: over a hill; through borders of spacings and open ends.
 TEST(Restart, OfTwoEquationsOfTurbulence) {
   const std::string two = "phases.air.turbulence=k-omega";

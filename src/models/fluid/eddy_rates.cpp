@@ -162,7 +162,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
     auto place = columns.template place<beside>(at, company);
     typename EddyFluid<Dim>::template Stress<Four> stress{s};
     const Four rho = load_four(columns.rho, at.first, at.count);
-    auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress);
+    auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress, no_parts);
     if (eddy_columns.shear) carry_by_flux<Dim>(r, stress, load_four(eddy_columns.root, at.first, at.count));
     renew_viscosity<Dim>(eddy_columns, stress, at, p);
     columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);

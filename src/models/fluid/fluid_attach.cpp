@@ -118,7 +118,8 @@ std::string correction_of(const Scene& scene, std::size_t fluid) {
   return scene.phases[fluid].fluid().scheme == FluidScheme::consistent ? "by the consistent scheme" : "";
 }
 
-void describe_fluids(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {
+void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
+  if (e.a == e.b) check_energy_budget(scene, e.a, layout);
   e.law = "fluid";
   e.continues_fluid = e.compact_only = true;
   describe_approximation(pair, scene.dimensions, correction_of(scene, e.fluid), e);
@@ -290,6 +291,7 @@ void FluidPhase::attach(Workspace& w) {
   }
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
+  if (keys_.energy_budget) open_books();
   if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
 }
 

@@ -9,6 +9,7 @@
 #include "laws/plain_fluid.hpp"
 #include "models/fluid/fluid_rates.hpp"
 #include "models/fluid/fluid_surface.hpp"
+#include "models/fluid/rate_parts.hpp"
 
 namespace barchan {
 
@@ -76,9 +77,26 @@ BARCHAN_SIMD_INLINE std::array<V, Dim> shift_of(const std::array<V, Dim>& concen
   return du;
 }
 
-template <int Dim, Beside, class V>
-BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::template Sums<V>& s, double, V rho,
-                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>&, Place<Dim, V>&) {
+/// Of the plain scheme; see RateParts.
+template <int Dim, class V>
+BARCHAN_SIMD_INLINE void note_parts(RateParts<Dim, V>& parts, const typename PlainFluid<Dim>::template Sums<V>& s,
+                                    double mu, V rho, V specific, const FluidParameters& q) {
+  for (std::size_t d = 0; d < Dim; ++d) {
+    parts.pressure[d] = -s.pressure[d] * specific;
+    parts.friction[d] = V(2.0) * s.viscous[d] * specific;
+    parts.carried[d] = V(0.0);
+  }
+  parts.viscosity = V(mu);
+  parts.squeezed = rho * s.divergence + V(2.0 * parts.centring) * s.diffusion;
+  parts.diffused = V(2.0 * (q.diffusivity / (q.sound_speed * q.sound_speed) - parts.centring)) * s.diffusion;
+  parts.moved = parts.renewed = V(0.0);
+}
+
+template <int Dim, Beside, class V, class Parts>
+BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::template Sums<V>& s,
+                                         [[maybe_unused]] double mu, V rho, const FluidParameters& q,
+                                         std::array<V, Dim*(Dim + 1) / 2>&, Place<Dim, V>&,
+                                         [[maybe_unused]] Parts& parts) {
   Rates<Dim, V> r;
   r.shift = shift_of<Dim, V>(s.concentration, q);
   const V specific = V(1.0) / rho;
@@ -89,22 +107,25 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::templat
     r.acceleration[d] = simd::fma(push, specific, V(q.gravity[d] + q.acceleration[d]));
   }
   r.density = simd::fma(rho, s.divergence, diffusivity * s.diffusion);
+  if constexpr (Parts::asked) note_parts<Dim, V>(parts, s, mu, rho, specific, q);
   return r;
 }
 
 /// A plain fluid with a free surface: chi = -tr M/Dim - h|B|/2 is 1 inside and about a half on a straight surface.
-template <int Dim, Beside beside, class V>
+template <int Dim, Beside beside, class V, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainSurface<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
-                                         Place<Dim, V>& place) {
+                                         Place<Dim, V>& place, Parts& parts) {
   const typename PlainFluid<Dim>::template Sums<V>& plain = s;
-  Rates<Dim, V> r = finish<Dim, beside, V>(plain, mu, rho, q, anisotropy, place);
+  Rates<Dim, V> r = finish<Dim, beside, V>(plain, mu, rho, q, anisotropy, place, parts);
   keep_inside<Dim, V>(r.shift, place.normal);
   // Records hold the volume m/rho: the density takes out what compression does to it.
   const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration),
           compressed = rho * V(1.0 / q.reference_density);
   place.wholeness = V(-1.0 / Dim) * s.trace - V(0.5) * lopsided;
-  r.density += loosen<Dim, V>(rho, s.trace * compressed, lopsided * compressed, q);
+  const V loosened = loosen<Dim, V>(rho, s.trace * compressed, lopsided * compressed, q);
+  if constexpr (Parts::asked) parts.renewed = loosened;
+  r.density += loosened;
   return r;
 }
 
@@ -175,11 +196,11 @@ BARCHAN_SIMD_INLINE V calm(V rate, V rho, const FluidParameters& q) {
 
 /// `friction` gives, from M^-1 and grad v, the viscous sum less what a linear field makes of it: of the term
 /// laplace_v mu friction.
-template <int Dim, Beside beside, class V, class Friction>
+template <int Dim, Beside beside, class V, class Friction, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu,
                                                     V rho, const FluidParameters& q,
                                                     std::array<V, Dim*(Dim + 1) / 2>& anisotropy, Place<Dim, V>& place,
-                                                    Friction&& friction) {
+                                                    Friction&& friction, [[maybe_unused]] Parts& parts) {
   Rates<Dim, V> r;
   constexpr bool ends = beside == Beside::ends;
   r.shift = shift_of<Dim, V>(s.concentration, q);
@@ -242,6 +263,11 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       squared += grad_v[d][e] * grad_v[e][d];
     }
     r.acceleration[d] = laplace_v * rubbed[d] - force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
+    if constexpr (Parts::asked) {
+      parts.pressure[d] = -force[d] * specific;
+      parts.friction[d] = laplace_v * rubbed[d];
+      parts.carried[d] = transported;
+    }
   }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
   V laplacian = laplace_p * dynamic, carried = along_p * V(1.0 / c2);
@@ -251,6 +277,15 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   }
   r.density = -rho * divergence + V(q.diffusivity / c2) * laplacian +
               V(q.source_diffusivity / c2 * q.reference_density) * squared + carried;
+  if constexpr (Parts::asked) {
+    const V centred = V(parts.centring) * (laplacian + V(0.5 * q.reference_density) * squared);
+    parts.viscosity = viscosity;
+    parts.squeezed = centred - rho * divergence;
+    parts.diffused =
+        V(q.diffusivity / c2) * laplacian + V(q.source_diffusivity / c2 * q.reference_density) * squared - centred;
+    parts.moved = carried;
+    parts.renewed = V(0.0) - r.density;
+  }
   if (ends && q.pores > 0.0) {
     const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
     r.density = counts * r.density - rate * (rho - V(q.reference_density));
@@ -261,6 +296,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   }
   if (ends && q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_of<Dim, V>(s.moment), lopsided, q);
   if (q.calming > 0.0) r.density = calm<V>(r.density, rho, q);
+  if constexpr (Parts::asked) parts.renewed += r.density;
   // The next step's weights; they stay positive: no entry of A beyond a half, save at a heavy surface.
   const V scale = V(-0.5 * (Dim + 2) * Dim) * per_trace;
   auto a = moment;
@@ -277,17 +313,19 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   return r;
 }
 
-template <int Dim, Beside beside, class V>
+template <int Dim, Beside beside, class V, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
-                                         Place<Dim, V>& place) {
+                                         Place<Dim, V>& place, Parts& parts) {
   return finish_consistent<Dim, beside, V>(
-      s, mu, rho, q, anisotropy, place, [&](const auto&, const auto& grad_v) __attribute__((always_inline)) {
+      s, mu, rho, q, anisotropy, place,
+      [&](const auto&, const auto& grad_v) __attribute__((always_inline)) {
         std::array<V, Dim> friction = s.viscous;
         for (std::size_t d = 0; d < Dim; ++d)
           for (std::size_t e = 0; e < Dim; ++e) friction[d] -= grad_v[d][e] * s.weighted[e];
         return friction;
-      });
+      },
+      parts);
 }
 
 /// The sums over the lanes of every member of one particle's sums.

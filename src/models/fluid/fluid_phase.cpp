@@ -89,6 +89,7 @@ void FluidPhase::schedule(Schedule& s) {
            [this] { advance_energy(*particles_, w_->kick_time); }});
   }
   if (plan_.held) s.add({stage::hold, plan_.name, own({velocity}, {acceleration}), [this] { hold(); }});
+  if (keys_.energy_budget) schedule_books(s);
 }
 
 /// After all other forces: what keeps the mean velocity, or what is missing of the force on the ground.
@@ -105,13 +106,17 @@ void FluidPhase::hold() {
 
 void FluidPhase::kick_and_drift() {
   const double dt = w_->state.dt;
+  if (books_) books_->begin_step(dt);
   barchan::kick_and_drift(*particles_, 0.5 * dt, dt, &pressure_);
   if (keys_.energy) advance_energy(*particles_, 0.5 * dt);
+  if (books_) books_->drifted();
   if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
+  if (books_) books_->released();
   if (keeps_inside_) hold_inside(*particles_, held_);
   if (!boxes_.empty()) hold_outside(*particles_, boxes_, layout_.bounds);
   for (const MovingBox& box : moving_boxes_) hold_outside(*particles_, box, layout_.bounds, w_->state.time + 0.5 * dt);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
+  if (books_) books_->held();
 }
 
 void FluidPhase::step_k_omega() {
@@ -150,7 +155,12 @@ void FluidPhase::rate() {
   const double delta = keys_.density_diffusion * q.smoothing_length * q.sound_speed;
   q.diffusivity = StepConstants::theta * centring + delta;
   q.source_diffusivity = (StepConstants::theta - 0.5) * centring + delta;
+  if (books_) {
+    books_->find_left();
+    books_->parts().centring = w_->state.dt;
+  }
   const auto rates = [&](const auto& own) {
+    if (books_) fluid_rate_parts(*particles_, own, neighbours_, q, keys_.scheme, books_->parts());
     if (eddy_neighbours_.empty()) fluid_rates(*particles_, own, neighbours_, q, keys_.scheme);
     else eddy_rates(*particles_, own, w_->eddies(number_), eddy_neighbours_, q, eddies_);
   };
@@ -216,6 +226,7 @@ void FluidPhase::history(HistoryRow& row) const {
     row.add(plan_.name + "_internal_energy [J]",
             particles_->mass() * reproducible_sum(n, [&](std::size_t i) { return e[i]; }));
   }
+  if (books_) books_->history(row);
   if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
   if (drive_)
     drive_->history(row, *particles_, forces_.sum(*particles_, w_->state.time, w_->state.dt)[0], hold_.acceleration[0]);
@@ -228,6 +239,7 @@ void FluidPhase::report(Warnings& warnings) const {
 void FluidPhase::archive(Archive& a) {
   a.number(plan_.name + ": largest viscosity", largest_viscosity_);
   a.number(plan_.name + ": bulk hold", hold_);
+  if (books_) books_->archive(a);
   if (parameters_.loose) {
     voids_.archive(a);
     parameters_.ends = voids_.any();

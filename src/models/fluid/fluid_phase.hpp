@@ -12,6 +12,7 @@
 #include "engine/pressure_law.hpp"
 #include "models/drive.hpp"
 #include "models/fluid/energy.hpp"
+#include "models/fluid/energy_books.hpp"
 #include "models/fluid/held_boxes.hpp"
 #include "models/fluid/moving_boxes.hpp"
 #include "models/fluid/relief.hpp"
@@ -59,6 +60,8 @@ class FluidPhase : public Model {
   void rate();
   void find_surface();
   void hold();
+  void open_books();
+  void schedule_books(Schedule& s);
   void bind_entries();
   void look_for_voids();
   void bind_eddies();
@@ -91,7 +94,8 @@ class FluidPhase : public Model {
   VoidFinder voids_;
   std::vector<VoidFinder::Seen> seen_;
   BulkHold hold_;
-  std::optional<Drive> drive_;  // where something drives it along x
+  std::optional<Drive> drive_;          // where something drives it along x
+  std::unique_ptr<EnergyBooks> books_;  // null: the scene asks for none
   bool keeps_inside_ = false;
   std::vector<HeldBox> boxes_;
   std::vector<MovingBox> moving_boxes_;  // the same of walls that move

@@ -36,9 +36,10 @@ BARCHAN_SIMD_INLINE void lift(Sums& s, const FluidParameters& q) {
     s.pressure[d] = simd::fma(Four(-2.0 * q.void_pressure), s.concentration[d], s.pressure[d]);
 }
 
-template <int Dim, template <int> class Law, class T, Beside beside, bool Joined = false>
+/// Keep: where the parts of the rates go in place of the rates; NoParts: the rates go to their columns.
+template <int Dim, template <int> class Law, class T, Beside beside, bool Joined = false, class Keep = const NoParts>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
-           const FluidParameters& q) {
+           const FluidParameters& q, [[maybe_unused]] Keep& keep) {
   using L = Law<Dim>;
   using V = LanesOf<T>;
   constexpr auto record_size = static_cast<std::size_t>(MotionRecord<Dim>::size);
@@ -85,8 +86,15 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
     if constexpr (!L::corrected) lift<Dim>(s, q);
     auto anisotropy = columns.anisotropy(at);
     auto place = columns.template place<beside>(at, company);
-    const auto r = finish<Dim, beside, Four>(s, mu, load_four(columns.rho, at.first, at.count), q, anisotropy, place);
-    columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
+    const Four rho = load_four(columns.rho, at.first, at.count);
+    if constexpr (Keep::asked) {
+      auto parts = keep.template of<Dim>();
+      finish<Dim, beside, Four>(s, mu, rho, q, anisotropy, place, parts);
+      keep.store(parts, at.first, at.count);
+    } else {
+      const auto r = finish<Dim, beside, Four>(s, mu, rho, q, anisotropy, place, keep);
+      columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
+    }
   }
 }
 
@@ -116,35 +124,48 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   }
 }
 
-template <class T>
+template <class T, class Keep>
 void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
-              const FluidParameters& q, FluidScheme scheme) {
+              const FluidParameters& q, FluidScheme scheme, Keep& keep) {
   const bool plain = scheme == FluidScheme::plain, flat = fluid.dimensions() == 2;
   const bool joined = std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
   const bool surface = plain && fluid.has(Field::wholeness);
   constexpr Beside nothing = Beside::nothing, ends = Beside::ends;
-  if (joined && flat) rates<2, ConsistentFluid, T, ends, true>(fluid, own, unit, neighbours, q);
-  else if (joined) rates<3, ConsistentFluid, T, ends, true>(fluid, own, unit, neighbours, q);
-  else if (flat && surface) rates<2, PlainSurface, T, ends>(fluid, own, unit, neighbours, q);
-  else if (flat && plain) rates<2, PlainFluid, T, nothing>(fluid, own, unit, neighbours, q);
-  else if (flat && q.ends) rates<2, ConsistentFluid, T, ends>(fluid, own, unit, neighbours, q);
-  else if (flat) rates<2, ConsistentFluid, T, nothing>(fluid, own, unit, neighbours, q);
-  else if (surface) rates<3, PlainSurface, T, ends>(fluid, own, unit, neighbours, q);
-  else if (plain) rates<3, PlainFluid, T, nothing>(fluid, own, unit, neighbours, q);
-  else if (q.ends) rates<3, ConsistentFluid, T, ends>(fluid, own, unit, neighbours, q);
-  else rates<3, ConsistentFluid, T, nothing>(fluid, own, unit, neighbours, q);
+  const auto call = [&](auto* run) { run(fluid, own, unit, neighbours, q, keep); };
+  if constexpr (!Keep::asked)
+    if (joined)
+      return call(flat ? rates<2, ConsistentFluid, T, ends, true, Keep>
+                       : rates<3, ConsistentFluid, T, ends, true, Keep>);
+  if (flat && surface) call(rates<2, PlainSurface, T, ends, false, Keep>);
+  else if (flat && plain) call(rates<2, PlainFluid, T, nothing, false, Keep>);
+  else if (flat && q.ends) call(rates<2, ConsistentFluid, T, ends, false, Keep>);
+  else if (flat) call(rates<2, ConsistentFluid, T, nothing, false, Keep>);
+  else if (surface) call(rates<3, PlainSurface, T, ends, false, Keep>);
+  else if (plain) call(rates<3, PlainFluid, T, nothing, false, Keep>);
+  else if (q.ends) call(rates<3, ConsistentFluid, T, ends, false, Keep>);
+  else call(rates<3, ConsistentFluid, T, nothing, false, Keep>);
 }
 
 }  // namespace
 
 void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& q, FluidScheme scheme) {
-  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme);
+  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme, no_parts);
 }
 
 void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& q, FluidScheme scheme) {
-  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme);
+  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme, no_parts);
+}
+
+void fluid_rate_parts(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
+                      const FluidParameters& q, FluidScheme scheme, PartColumns& parts) {
+  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme, parts);
+}
+
+void fluid_rate_parts(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
+                      const FluidParameters& q, FluidScheme scheme, PartColumns& parts) {
+  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme, parts);
 }
 
 void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores) {
