@@ -17,6 +17,12 @@ namespace barchan {
 
 namespace {
 
+/// rho0 h sqrt(g h) (Pa s): what friction of the rows beside a heavy free surface is measured in (fluid_surface.hpp).
+double viscosity_of_rows(const Scene& scene, const Layout& layout, std::size_t fluid) {
+  const double h = layout.phases[fluid].smoothing_length;
+  return scene.phases[fluid].density * h * std::sqrt(norm(scene.domain.gravity) * h);
+}
+
 /// Enclosed as the scene says, or else as the particles show; a fluid that is neither and ends somewhere has a free
 /// surface.
 void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid, Layout& layout,
@@ -131,16 +137,6 @@ PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t f
   return {density, c, keys.equation_of_state == EquationOfState::linear ? 1.0 : keys.tait_exponent,
           keys.background_pressure * density * c * c};
 }
-
-namespace {
-
-/// rho0 h sqrt(g h) (Pa s): what friction of the rows beside a heavy free surface is measured in (fluid_surface.hpp).
-double viscosity_of_rows(const Scene& scene, const Layout& layout, std::size_t fluid) {
-  const double h = layout.phases[fluid].smoothing_length;
-  return scene.phases[fluid].density * h * std::sqrt(norm(scene.domain.gravity) * h);
-}
-
-}  // namespace
 
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b) {
   const auto of = [&](std::size_t k) {
