@@ -96,6 +96,41 @@ history-every = 0.01
 """
 
 
+# Water that slides out of a domain over a floor.
+LEAVING = """
+dimensions = 2
+spacing = 0.02
+[domain]
+size = [0.6, 0.5]
+open = ["right"]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+sound-speed = 40
+scheme = "{scheme}"
+enclosed = false
+[phases.floor]
+kind = "wall"
+[interactions]
+kernel = "wendland-c2"
+water-water = 2.6
+water-floor = 2.6
+[[fill]]
+phase = "floor"
+shape = {{ sides = ["bottom"], layers = 3 }}
+[[fill]]
+phase = "water"
+shape = {{ box = {{ min = [0.3, 0], max = [0.6, 0.2] }} }}
+velocity = [3, 0]
+[time]
+end = 0.06
+largest-speed = 4
+[output]
+every = 0.03
+history-every = 0.01
+"""
+
 # Scenes of scenes/, shortened, by what they show: file, end (s), overrides. Frames at the middle and the end.
 SCENES = {
     "eddies over rough, fitted ground": ("verification/rough_hill", 0.016, "spacing=0.05"),
@@ -141,7 +176,7 @@ class Folder(unittest.TestCase):
 
     def start_file(self, ranks, scene, out, *options, threads=1):
         alone = {k: v for k, v in os.environ.items() if not k.startswith(LAUNCHERS)}
-        before = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks else []
+        before = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", str(ranks)] if ranks else []
         return subprocess.run([*before, PROGRAM, "run", str(scene), "--quiet", "--threads", str(threads), "--out", out, *options],
                               cwd=self.at, env=alone, capture_output=True, text=True, timeout=600)
 
@@ -213,6 +248,21 @@ class Ranks(Folder):
     def test_three_dimensions(self):
         self.compare(channel("consistent", solid=True), 2, 3)
 
+    def test_what_leaves_through_an_open_side(self):
+        for scheme in ("plain", "consistent"):
+            with self.subTest(scheme):
+                text = LEAVING.format(scheme=scheme)
+                self.run_on(0, text, f"{scheme}-1")
+                header, *rows = (self.at / f"{scheme}-1/history.csv").read_text().splitlines()
+                left = next(k for k, name in enumerate(header.split(",")) if name.startswith("water_left"))
+                self.assertGreater(float(rows[-1].split(",")[left]), 1.0)
+                for n in (2, 3):
+                    self.run_on(n, text, f"{scheme}-{n}")
+                    self.same(f"{scheme}-1", f"{scheme}-{n}")
+
+    def test_fluid_with_energy(self):
+        self.compare(channel("consistent").replace("viscosity = 1e-6", "viscosity = 1e-6\nenergy = true"), 3)
+
     def test_threads_beside_ranks(self):
         text = PERIODIC.format(scheme="plain", precision="")
         self.run_on(0, text, "one")
@@ -242,7 +292,7 @@ class Ranks(Folder):
     def test_what_cannot_run_is_refused_by_name_and_writes_nothing(self):
         ended = self.start_file(2, SOURCE / "scenes/verification/hertz_spheres.toml", "out")
         self.assertEqual(ended.returncode, 2, ended.stderr)
-        self.assertIn('a phase of kind "grains" cannot run on several ranks yet', ended.stderr)
+        self.assertIn('a phase of kind "elastic" cannot run on several ranks yet', ended.stderr)
         self.assertEqual(ended.stderr.count("cannot run on several ranks"), 1)
         self.assertFalse((self.at / "out").exists())
         text = channel("consistent").replace("viscosity = 1e-6", "viscosity = 1e-6\nenergy-budget = true")

@@ -96,12 +96,9 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
       const std::size_t index = *q / PairList::stride;
       if (index == dummy) continue;
       const auto entry = look_up<dim>(index, grid, n);
-      if (shared && index >= n) {
-        const double* const ghost = ghosts + (index - n) * (2 * dim + 1);
-        if (distance2<dim>(entry, x, k, [&](std::size_t d) { return ghost[d]; }) < within2) f(index);
-      } else if (distance2<dim>(entry, x, k, [&](std::size_t d) { return x[d][entry.source]; }) < within2) {
-        f(entry.source);
-      }
+      const double* const ghost = shared && index >= n ? ghosts + (index - n) * (2 * dim + 1) : nullptr;
+      const auto there = [&](std::size_t d) { return ghost ? ghost[d] : x[d][entry.source]; };
+      if (distance2<dim>(entry, x, k, there) < within2) f(ghost ? index : entry.source);
     }
   };
   const auto count = static_cast<std::int64_t>(members_.size());
