@@ -32,7 +32,6 @@ FluidPhase::FluidPhase(const Scene& scene, const Layout& layout, std::size_t num
 
 void FluidPhase::schedule(Schedule& s) {
   using enum Field;
-  const bool corrected = keys_.scheme == FluidScheme::consistent;
   const auto own = [this](const FieldSet& reads, const FieldSet& writes) -> Touches {
     return {{plan_.name, reads, writes}};
   };
@@ -60,7 +59,7 @@ void FluidPhase::schedule(Schedule& s) {
     s.add({stage::eddies, plan_.name, touches, [this] { find_eddies(); }});
   }
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
-  if (corrected) writes = writes | FieldSet{anisotropy};
+  if (keys_.scheme == FluidScheme::consistent) writes = writes | FieldSet{anisotropy};
   if (plan_.eddies) {
     reads = reads | FieldSet{ground_distance};
     writes = writes | FieldSet{eddy_viscosity};
