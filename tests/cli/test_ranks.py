@@ -261,7 +261,7 @@ class Ranks(Folder):
                     self.same(f"{scheme}-1", f"{scheme}-{n}")
 
     def test_fluid_with_energy(self):
-        self.compare(channel("consistent").replace("viscosity = 1e-6", "viscosity = 1e-6\nenergy = true"), 3)
+        self.compare(channel("plain").replace("viscosity = 1e-6", "viscosity = 1e-6\nenergy = true"), 3)
 
     def test_threads_beside_ranks(self):
         text = PERIODIC.format(scheme="plain", precision="")
