@@ -100,7 +100,7 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
       if (distance2<dim>(entry, x, k, there) < within2) f(ghost ? index : entry.source);
     }
   };
-  const auto count = static_cast<std::int64_t>(members_.size());
+  const auto count = static_cast<std::int64_t>(members_.size()), all = static_cast<std::int64_t>(n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t m = 0; m < count; ++m) {
     const std::size_t k = members_[static_cast<std::size_t>(m)];
@@ -111,7 +111,6 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     each_near(k, mark);
   }
   if (shared) return_marks(grid, n);
-  const auto all = static_cast<std::int64_t>(n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < all; ++i) {
     const auto k = static_cast<std::size_t>(i);
