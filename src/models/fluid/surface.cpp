@@ -88,7 +88,6 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
   const bool shared = grid.is_shared();
   if (shared) take_ghosts<Dim>(fluid, grid);
   take_members(chi, n, shared ? grid.images() : 0, dim, threshold);
-  const double* const ghosts = ghosts_.data();
   // Calls f with the place of each neighbour, or of its ghost.
   const auto each_near = [&](std::size_t k, auto&& f) {
     const auto row = own.row(k);
@@ -96,12 +95,12 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
       const std::size_t index = *q / PairList::stride;
       if (index == dummy) continue;
       const auto entry = look_up<dim>(index, grid, n);
-      const double* const ghost = shared && index >= n ? ghosts + (index - n) * (2 * dim + 1) : nullptr;
+      const double* const ghost = shared && index >= n ? &ghosts_[(index - n) * (2 * dim + 1)] : nullptr;
       const auto there = [&](std::size_t d) { return ghost ? ghost[d] : x[d][entry.source]; };
       if (distance2<dim>(entry, x, k, there) < within2) f(ghost ? index : entry.source);
     }
   };
-  const auto count = static_cast<std::int64_t>(members_.size());
+  const auto count = static_cast<std::int64_t>(members_.size()), all = static_cast<std::int64_t>(n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t m = 0; m < count; ++m) {
     const std::size_t k = members_[static_cast<std::size_t>(m)];
@@ -112,7 +111,6 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     each_near(k, mark);
   }
   if (shared) return_marks(grid, n);
-  const auto all = static_cast<std::int64_t>(n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < all; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -120,7 +118,7 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     std::array<double, dim> sum{};
     const auto add = [&](std::size_t b) {
       if (shared && b >= n) {
-        const double* const ghost = ghosts + (b - n) * (2 * dim + 1) + dim;
+        const double* const ghost = &ghosts_[(b - n) * (2 * dim + 1) + dim];
         if (ghost[0] < threshold)
           for (std::size_t d = 0; d < dim; ++d) sum[d] += ghost[1 + d];
       } else if (chi[b] < threshold) {
