@@ -104,9 +104,7 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
 #pragma omp parallel for schedule(static)
   for (std::int64_t m = 0; m < count; ++m) {
     const std::size_t k = members_[static_cast<std::size_t>(m)];
-    const auto mark = [&](std::size_t b) {
-      std::atomic_ref<std::uint8_t>(near_[b]).store(1, std::memory_order_relaxed);
-    };
+    const auto mark = [&](std::size_t b) { std::atomic_ref(near_[b]).store(1, std::memory_order_relaxed); };
     mark(k);
     each_near(k, mark);
   }
