@@ -112,6 +112,13 @@ struct ExtendedState {
     for (std::size_t d = 0; d < Dim; ++d) v[d] = mean[d] + (stuck_normal - mean_normal) * normal[d];
     return v;
   }
+  /// Between free slip and `stuck`, of which the share `rub` is left; `stuck` where the depth is unknown.
+  std::array<double, Dim> rubbed(const std::array<double, Dim>& stuck, double rub) const {
+    if (!(depth > 0.0) || rub >= 1.0) return stuck;
+    std::array<double, Dim> v = free_slip(stuck);
+    for (std::size_t d = 0; d < Dim; ++d) v[d] += rub * (stuck[d] - v[d]);
+    return v;
+  }
   /// Of a wall that does not pull: a pressure (Pa) below zero becomes zero, and fluid that goes away from the wall, or
   /// beside a wall without a normal, has its own velocity v there.
   void let_go(double& pressure, std::array<double, Dim>& v) const {

@@ -11,6 +11,15 @@
 
 namespace barchan {
 
+namespace {
+
+nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
+  return {
+      {"count", ranks.count}, {"messages", ranks.messages}, {"bytes", ranks.bytes}, {"collectives", ranks.collectives}};
+}
+
+}  // namespace
+
 std::string to_json(const RunReport& r) {
   using Json = nlohmann::ordered_json;
   Json seconds = Json::object();
@@ -55,11 +64,7 @@ std::string to_json(const RunReport& r) {
   for (const auto& use : r.thread_uses)
     json["threads_used"].push_back({{"threads", use.threads}, {"steps", use.steps}, {"seconds", use.seconds}});
   json["thread_switches"] = r.thread_switches;
-  if (r.ranks.count > 1)
-    json["ranks"] = {{"count", r.ranks.count},
-                     {"messages", r.ranks.messages},
-                     {"bytes", r.ranks.bytes},
-                     {"collectives", r.ranks.collectives}};
+  if (r.ranks.count > 1) json["ranks"] = json_of(r.ranks);
   for (const auto& m : r.measured)
     json["measured"].push_back({{"kind", m.kind}, {"name", m.name}, {"files", m.files}, {"samples", m.samples}});
   // A title that is not UTF-8 must not lose the report of a whole run.

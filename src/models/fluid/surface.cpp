@@ -105,8 +105,8 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
   for (std::int64_t m = 0; m < count; ++m) {
     const std::size_t k = members_[static_cast<std::size_t>(m)];
     const auto mark = [&](std::size_t b) { std::atomic_ref(near_[b]).store(1, std::memory_order_relaxed); };
-    mark(k);
     each_near(k, mark);
+    mark(k);
   }
   if (shared) return_marks(grid, n);
 #pragma omp parallel for schedule(static)
@@ -128,10 +128,8 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     for (std::size_t d = 0; d < dim; ++d) inwards_[k * dim + d] = sum[d];
   }
 #pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < all; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (std::size_t k = 0; k < n; ++k)
     for (std::size_t d = 0; d < dim; ++d) normal[d][k] = near_[k] != 0 ? inwards_[k * dim + d] : 0.0;
-  }
 }
 
 void SurfaceFinder::find(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius,

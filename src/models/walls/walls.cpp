@@ -58,11 +58,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
       record[R::pressure] += state.turning_pressure(&bend.values[at], simd::sum(s.lever));
     }
     const auto stuck = rule.own_velocity ? state.grain(alone) : state.no_slip();
-    auto v = rule.slip == Slip::no_slip ? stuck : state.free_slip(stuck);
-    if (rule.slip == Slip::no_slip && rule.rub < 1.0 && state.depth > 0.0) {
-      const auto slid = state.free_slip(stuck);
-      for (std::size_t d = 0; d < Dim; ++d) v[d] = slid[d] + rule.rub * (stuck[d] - slid[d]);
-    }
+    auto v = rule.slip == Slip::no_slip ? state.rubbed(stuck, rule.rub) : state.free_slip(stuck);
     if (rule.lets_go) state.let_go(record[R::pressure], v);
     for (std::size_t d = 0; d < Dim; ++d) record[R::velocity + d] = v[d];
   };
