@@ -228,10 +228,14 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   const V per_trace = V(1.0) / trace;
   place.loose = is_loose<Dim, V>(content, s.concentration, q);
   V inner(1.0), outer(0.0), viscosity(mu);
+  [[maybe_unused]] V beside_it(0.0);
   if constexpr (ends) {
     inner = simd::select(place.ends > V(0.0), smooth_step(place.wholeness, surface_begins, surface_ends), V(1.0));
     outer = V(1.0) - inner;
-    if (q.least_viscosity > 0.0) viscosity = least_viscosity<Dim, V>(V(mu), outer, place.normal, q);
+    if (q.least_viscosity > 0.0) {
+      beside_it = beside_surface<Dim, V>(outer, place.normal);
+      viscosity = least_viscosity<V>(V(mu), beside_it, q);
+    }
   }
   const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
   const V specific = V(1.0) / rho;
@@ -295,6 +299,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     }
   }
   if (ends && q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_of<Dim, V>(s.moment), lopsided, q);
+  if (ends && q.least_viscosity > 0.0) r.density += relax_tension<V>(rho, beside_it, q);
   if (q.calming > 0.0) r.density = calm<V>(r.density, rho, q);
   if constexpr (Parts::asked) parts.renewed += r.density;
   // The next step's weights; they stay positive: no entry of A beyond a half, save at a heavy surface.
