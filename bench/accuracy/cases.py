@@ -23,6 +23,7 @@ import cases_open
 import cases_periodic
 import cases_surface
 import cases_walls
+import cases_waves
 import cases_wind
 from barchan_bench.page import keep
 from barchan_bench.table import HEAD
@@ -30,7 +31,7 @@ from harness import RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion):
+for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion, cases_waves):
     CASES.update(topic.CASES)
 
 
