@@ -97,7 +97,7 @@ def sloshing(n):
 
 
 CASES = {
-    "viscous-wave": (lambda: [viscous_wave(re, n) for re in (50, 250, 2500) for n in (25, 50, 100) if n <= options.largest],
+    "viscous-wave": (lambda: [viscous_wave(re, n) for re in (50, 250, 2500) for n in (12, 25, 50, 100) if n <= options.largest],
                      "Standing wave in viscous water, Re = H sqrt(gH)/nu"),
-    "sloshing": (lambda: [sloshing(n) for n in (25, 50, 100) if n <= options.largest], "Sloshing in a tank, and at resonance"),
+    "sloshing": (lambda: [sloshing(n) for n in (12, 25, 50, 100) if n <= options.largest], "Sloshing in a tank, and at resonance"),
 }
