@@ -17,12 +17,14 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import cases_dams
 import cases_grains
 import cases_motion
 import cases_open
 import cases_periodic
 import cases_surface
 import cases_walls
+import cases_waves
 import cases_wind
 from barchan_bench.page import keep
 from barchan_bench.table import HEAD
@@ -30,7 +32,7 @@ from harness import RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion):
+for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion, cases_waves, cases_dams):
     CASES.update(topic.CASES)
 
 

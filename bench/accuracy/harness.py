@@ -43,7 +43,7 @@ def run(scene, overrides, phase=None, last=None, keep=lambda t: True, files=(), 
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch) / "run"
         if options.runs:
-            text = scene if "\n" in scene else scene + " " + " ".join(overrides)
+            text = scene + (" ".join(overrides) if "\n" in scene else " " + " ".join(overrides))
             out = pathlib.Path(options.runs) / hashlib.sha1(text.encode()).hexdigest()[:12]
         name, seconds = run_into(out, scene, overrides)
         if files:
