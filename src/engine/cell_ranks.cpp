@@ -71,10 +71,12 @@ void CellGrid::share(PhaseParticles& particles) {
     begin_[walk_[w]] -= static_cast<std::uint32_t>(first);
     end_[walk_[w]] -= static_cast<std::uint32_t>(first);
   }
-  for (std::size_t d = 0; d < dimensions_; ++d)
-    std::copy(search_[d].begin() + static_cast<std::ptrdiff_t>(first),
-              search_[d].begin() + static_cast<std::ptrdiff_t>(last), search_[d].begin());
-  images_.clear();
+  for (std::size_t d = 0; d < dimensions_; ++d)  // the memory of the others' goes back
+    search_[d] = AlignedVector<float>(search_[d].begin() + static_cast<std::ptrdiff_t>(first),
+                                      search_[d].begin() + static_cast<std::ptrdiff_t>(last));
+  images_ = {};
+  cell_of_ = {};
+  order_ = {};
   particles.keep_range(first, last);
   make_runs();
 }

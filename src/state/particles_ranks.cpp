@@ -1,4 +1,5 @@
 // Particles that change their rank, and those of all ranks together.
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 
@@ -6,6 +7,21 @@
 #include "state/particles.hpp"
 
 namespace barchan {
+
+namespace {
+
+/// Gives back the memory of values that other ranks have now; a little room is left for those that come.
+template <class Values>
+void give_back(Values& values) {
+  const std::size_t room = values.size() + values.size() / 8;
+  if (values.capacity() <= room) return;
+  Values kept;
+  kept.reserve(room);
+  kept.assign(values.begin(), values.end());
+  values.swap(kept);
+}
+
+}  // namespace
 
 void PhaseParticles::keep_range(std::size_t first, std::size_t last) {
   const auto move = [&](auto& values, std::size_t width) {
@@ -18,6 +34,19 @@ void PhaseParticles::keep_range(std::size_t first, std::size_t last) {
   for (OwnValues& v : own_) move(v.values, v.width);
   is_part_ = true;
   resize(last - first);
+  std::size_t widest = 0;
+  for (auto& columns : columns_)
+    for (auto& column : columns) give_back(column);
+  for (OwnValues& v : own_) {
+    give_back(v.values);
+    widest = std::max(widest, v.values.size());
+  }
+  own_scratch_.resize(widest);
+  give_back(own_scratch_);
+  give_back(id_);
+  give_back(id_scratch_);
+  give_back(scratch_);
+  order_ = {};
   find_places();
 }
 
