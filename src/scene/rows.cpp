@@ -92,6 +92,9 @@ constexpr Key rows_of_keys[] = {
     {"phases", "retardation", of<&ElasticKeys::retardation>(0.0).like("1e-4"), "s",
      "Damping of Kelvin and Voigt, of a body with formulation = \"total-lagrangian\": a vibration of angular frequency w has the damping ratio "
      "w retardation/2.", not_negative},
+    {"phases", "wave-correction", of<&ElasticKeys::wave_correction>(false), "",
+     "Short waves of compression keep their speed, so that impacts last as long as they should; of a body with formulation = \"total-lagrangian\" "
+     "(docs/method.md)."},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "", "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid only with scheme = \"plain\", of a body only with formulation = \"updated-lagrangian\"."},
     {"phases", "energy-budget", of<&FluidKeys::energy_budget>(false), "", "history.csv has the fluid's energies of weight and compression, and what took energy since the start, by name (docs/method.md, What damps)."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",

@@ -40,7 +40,7 @@ struct Stage {
     q.hourglass = 0.7;
     q.density = 1.3;
     for (std::size_t d = 0; d < 3; ++d) q.period[d] = b.periodic[d] ? b.high[d] - b.low[d] : 0.0;
-    work.resize(start.size(), reference.width, dimensions, retardation > 0.0);
+    work.resize(start.size(), reference.width, dimensions, q);
     for (std::size_t d = 0; d < 3; ++d)
       if (q.period[d] > 0.0) work.displaced[d].assign(start.size(), 0.0);
     p.keep_places();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "scene/couplings.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 /// The spring of two facing particles is a quarter of what continues the material, (lambda + 2 mu) dx^(D - 2) of the
 /// softer body. A stiffer one sends waves into the bodies that are shorter than their lattice can carry: of two bars of
 /// 40 particles a length A then keeps 1.7 % of its speed, in place of 0.6 % (docs/impacts.md).
-constexpr double softness = 0.25;
+const double softness = std::getenv("SOFT") ? std::atof(std::getenv("SOFT")) : 0.25;
 
 BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   double stiffness = 1e300, inverse_mass = 0.0;
