@@ -13,6 +13,8 @@
 // s is (y - z).(y + z)/(|y| + |z|), and y - z = u - H X: single precision keeps the digits of a small one.
 #pragma once
 
+#include <cmath>
+
 #include "laws/hyperelastic.hpp"
 
 namespace barchan {
@@ -25,17 +27,20 @@ struct StrayLength {
 
   BARCHAN_SIMD_INLINE StrayLength(const std::array<V, Dim>& x, const std::array<V, Dim>& u,
                                   const hyperelastic::Matrix<Dim, V>& h) {
+    using hyperelastic::fma;
+    using simd::sqrt;
+    using std::sqrt;
     V y2(1e-30F), z2(1e-30F), between(0.0F);
     for (std::size_t d = 0; d < Dim; ++d) {
       V hx = h[d][0] * x[0];
-      for (std::size_t e = 1; e < Dim; ++e) hx = simd::fma(h[d][e], x[e], hx);
+      for (std::size_t e = 1; e < Dim; ++e) hx = fma(h[d][e], x[e], hx);
       y[d] = x[d] + u[d];
       z[d] = x[d] + hx;
-      y2 = simd::fma(y[d], y[d], y2);
-      z2 = simd::fma(z[d], z[d], z2);
-      between = simd::fma(u[d] - hx, y[d] + z[d], between);
+      y2 = fma(y[d], y[d], y2);
+      z2 = fma(z[d], z[d], z2);
+      between = fma(u[d] - hx, y[d] + z[d], between);
     }
-    const V long_y = simd::sqrt(y2), long_z = simd::sqrt(z2);
+    const V long_y = sqrt(y2), long_z = sqrt(z2);
     inverse_y = V(1.0F) / long_y;
     inverse_z = V(1.0F) / long_z;
     stray = between / (long_y + long_z);
