@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/impacts/cases.py build/barchan [--only CASE]... [--write]
     /usr/bin/python3 bench/impacts/cases.py none --only none --write     # the page from the results, runs nothing
 
-Cases: cantilever, csm3, bars, restitution, paper, of bounce.py rings, block, of hertz.py hertz, hertz_spheres, of eq13.py eq13, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.json. With
+Cases: cantilever, csm3, restitution, paper, of bars.py bars, rows, of bounce.py rings, block, of hertz.py hertz, hertz_spheres, of eq13.py eq13, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.json. With
 --write, docs/impacts.md (between its markers) and docs/gallery/impacts_*.png are made from them. One thread, about five minutes
 on a quiet core; csm3 takes most of them.
 """
@@ -18,6 +18,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import bars
 import bearing
 import bounce
 import eq13
@@ -28,7 +29,7 @@ from barchan_bench import ROOT, page as pages, run
 RESULTS = ROOT / "bench/impacts/results/impacts.json"
 PAGE = ROOT / "docs/impacts.md"
 TIMOSHENKO, THIN = 0.25645, 0.25403  # s, period of the plate
-LENGTH, WAVE, SPEED = 0.040, 5936.0, 10.0  # m, m/s, m/s: the bars
+SPEED = 10.0  # m/s: of what hits
 
 
 class Run:
@@ -80,24 +81,6 @@ def csm3(program):
     return {"table": table}
 
 
-def bars(program):
-    exact = 2 * LENGTH / WAVE
-    table, history = [], None
-    for count in (20, 40, 80, 160):
-        dx = LENGTH / count
-        run = Run(program, "verification/two_bars", [f"spacing={dx!r}", f"domain.size=[0.1, {5 * dx!r}]",
-                                                     *(f"fill.{k}.shape.box.max=[{x}, {5 * dx!r}]" for k, x in ((0, 0.045), (1, 0.085)))])
-        t, a, b = run["time"], run["a_mean_vx"], run["b_mean_vx"]
-        force = np.diff(b) / np.diff(t) * exact / SPEED  # over the exact one, which lasts for `exact`
-        half, all_of_it = np.where(force > 0.5)[0], np.where(force > 0.05)[0]
-        energy = run.energy(["a", "b"])
-        table.append({"count": count, "time": float(t[half[-1] + 1] - t[half[0]]) / exact, "touch": float(t[all_of_it[-1] + 1] - t[all_of_it[0]]) / exact,
-                      "restitution": float(b[-1] - a[-1]) / SPEED, "left": float(a[-1]) / SPEED, "energy": float(abs(energy[-1] / energy[0] - 1))})
-        if count == 40:
-            history = [t.tolist(), a.tolist(), b.tolist()]
-    return {"table": table, "history": history}
-
-
 def restitution(program):
     table = []
     for written in (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0):
@@ -139,8 +122,8 @@ def paper(program):
     return {"table": table}
 
 
-CASES = {"cantilever": cantilever, "csm3": csm3, "bars": bars, "restitution": restitution, "paper": paper} | hertz.CASES | eq13.CASES
-for other_name, other_case in (rigid.CASES | bounce.CASES).items():
+CASES = {"cantilever": cantilever, "csm3": csm3, "restitution": restitution, "paper": paper} | hertz.CASES | eq13.CASES
+for other_name, other_case in (bars.CASES | rigid.CASES | bounce.CASES).items():
     CASES[other_name] = lambda program, case=other_case: case(lambda *scene: Run(program, *scene))
 
 
@@ -169,16 +152,7 @@ def page(results):
         lines += [f"| {r['across']} | {1e3 * r['ux'][0]:.2f} +- {1e3 * r['ux'][1]:.2f} | {1e3 * r['uy'][0]:.2f} +- {1e3 * r['uy'][1]:.2f} | "
                   f"{r['frequency']:.4f} |" for r in results["csm3"]["table"]]
         lines += ["| reference | -14.305 +- 14.305 | -63.607 +- 65.160 | 1.0995 (1.0940 in the mean of 10 s) |", ""]
-    if "bars" in results:
-        lines += ["### A bar hits an equal bar", "",
-                  "| particles a length | force above half of rho c V/2, over 2L/c | above a twentieth | restitution | speed of A over V | energy, change |",
-                  "| --- | --- | --- | --- | --- | --- |"]
-        rows = results["bars"]["table"]
-        lines += [f"| {r['count']} | {r['time']:.4f} | {r['touch']:.4f} | {r['restitution']:.4f} | {r['left']:.4f} | {r['energy']:.1e} |" for r in rows]
-        first, last = rows[0], rows[-1]
-        order = math.log(first["left"] / last["left"]) / math.log(last["count"] / first["count"])
-        lines += ["| exact | 1 | 1 | 1 | 0 | 0 |", "", f"The speed that A keeps falls with order {order:.2f} in the spacing: the front of the wave is a jump.", "",
-                  "![Speeds of two bars](gallery/impacts_bars.png)", ""]
+    lines += bars.page(results)
     if "restitution" in results:
         rows = results["restitution"]["table"]
         combinations = sorted({(r["young"], r["speed"]) for r in rows})
@@ -218,8 +192,8 @@ def plots(results):
         figure, axes = pyplot.subplots(figsize=(7, 3.2), layout="constrained")
         axes.plot(t * 1e6, a, color=blue, label="A")
         axes.plot(t * 1e6, b, "--", color=red, label="B")
-        axes.plot([0, 2e6 * LENGTH / WAVE, max(t) * 1e6], [10, 0, 0], ":", color="black", label="exact")
-        axes.plot([0, 2e6 * LENGTH / WAVE, max(t) * 1e6], [0, 10, 10], ":", color="black")
+        axes.plot([0, 2e6 * bars.EXACT, max(t) * 1e6], [10, 0, 0], ":", color="black", label="exact")
+        axes.plot([0, 2e6 * bars.EXACT, max(t) * 1e6], [0, 10, 10], ":", color="black")
         axes.set(xlabel="time [us]", ylabel="mean speed [m/s]")
         axes.legend(loc="lower center", bbox_to_anchor=(.5, 1.), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_bars.png", dpi=110)

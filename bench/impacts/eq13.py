@@ -6,7 +6,8 @@ import tempfile
 from barchan_bench import run
 from barchan_bench.frame import table as columns
 
-UPDATED = [f"{key}" for p in "ab" for key in (f"phases.{p}.formulation=updated-lagrangian", f"phases.{p}.artificial-viscosity=0.2", f"phases.{p}.energy=true")]
+UPDATED = [f'phases.{p}={{ kind = "elastic", formulation = "updated-lagrangian", density = 7870, young = 206e9, poisson = 0.3, artificial-viscosity = 0.2, '
+           "energy = true }" for p in "ab"]
 PLAIN = [f"phases.{p}.artificial-viscosity=0" for p in "ab"]
 BARS = UPDATED + ['interactions={ kernel = "cubic-spline", a-a = 2.4, b-b = 2.4, a-b = 1.0 }']
 RUNS = {"cubes, one spacing between them (figure 7b)": ("paper/impact_cubes.toml", []),

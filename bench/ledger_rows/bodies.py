@@ -25,11 +25,19 @@ def plates(r):
 
 
 def contacts(r):
-    for t in r["bars"]["table"]:
-        case = f"two bars, {t['count']} particles a length"
-        yield row("time with more than half of the force, over 2L/c", case, 1, t["time"], BARS, FILE)
-        yield row("restitution", case, 1, t["restitution"], BARS, FILE)
-        yield row("speed of A after the impact, over V", case, 0, t["left"], BARS, FILE)
+    for name, words in (("table", "two bars"), ("plain", "two bars without wave-correction")):
+        for t in r["bars"][name]:
+            case = f"{words}, {t['count']} particles a length"
+            bound, met = within(100 * (t["touch"] - 1), 1) if name == "table" and t["count"] >= 40 else (None, None)
+            yield row("time with more than half of the force, over 2L/c", case, 1, t["time"], BARS, FILE)
+            yield row("time with more than a twentieth of the force, over 2L/c", case, 1, t["touch"], BARS, FILE, bound=bound, met=met)
+            yield row("restitution", case, 1, t["restitution"], BARS, FILE)
+            yield row("speed of A after the impact, over V", case, 0, t["left"], BARS, FILE)
+    for t in r["rows"]["table"]:
+        case = f"{t['hits']} bars hit {t['hits']}" + ("" if t["corrected"] else ", without wave-correction")
+        bound, met = within(100 * (t["restitution"] - 1), 2)
+        yield row("restitution of the rows", case, 1, t["restitution"], BARS, FILE, bound=bound, met=met)
+        yield row("speed of a single bar, largest difference over V", case, 0, t["worst"], BARS, FILE)
     for t in r["restitution"]["table"]:
         if t["young"] != 206e9 or t["speed"] != 10:
             continue

@@ -15,7 +15,7 @@ void check_formulation(const Phase& phase, const Report& report) {
     if (report.has(dotted + "." + key) && !report.touched(dotted + "." + key))
       report(dotted + "." + key, std::string("nothing reads it; expected formulation = \"") + other + "\" beside it");
   };
-  for (const char* key : {"elasticity", "hourglass", "retardation"})
+  for (const char* key : {"elasticity", "hourglass", "retardation", "wave-correction"})
     if (!total) refuse(key, "total-lagrangian");
   for (const char* key : {"artificial-viscosity", "artificial-viscosity-beta", "artificial-stress", "energy"})
     if (total) refuse(key, "updated-lagrangian");

@@ -84,14 +84,14 @@ constexpr Key rows_of_keys[] = {
      "those that are near, as in Halik et al. 2015 (docs/method.md)."},
     {"phases", "elasticity", of<&ElasticKeys::elasticity>(Elasticity::neo_hookean), "",
      "Law of a body with formulation = \"total-lagrangian\"; both are Hooke's for small strains."},
-    {"phases", "hourglass", of<&ElasticKeys::hourglass>(0.5), "Young's modulus",
-     "Strength of the control of motions that the gradient does not see, of a body with formulation = \"total-lagrangian\".", not_negative},
+    {"phases", "hourglass", of<&ElasticKeys::hourglass>(0.5), "Young's modulus", "Strength of the control of motions that the gradient does not see, of a body with formulation = \"total-lagrangian\".", not_negative},
     {"phases", "artificial-stress", of<&ElasticKeys::artificial_stress>(0.0).like("0.3"), "",
      "Repulsion of particles that are pulled, against the tensile instability, of a body with formulation = \"updated-lagrangian\": epsilon of Gray, "
      "Monaghan & Swift 2001, who took 0.3.", {.at_least = 0.0, .at_most = 1.0}},
     {"phases", "retardation", of<&ElasticKeys::retardation>(0.0).like("1e-4"), "s",
      "Damping of Kelvin and Voigt, of a body with formulation = \"total-lagrangian\": a vibration of angular frequency w has the damping ratio "
      "w retardation/2.", not_negative},
+    {"phases", "wave-correction", of<&ElasticKeys::wave_correction>(false), "", "Short waves of compression keep their speed, so that impacts last as long as they should; of a body with formulation = \"total-lagrangian\" (docs/method.md)."},
     {"phases", "energy", of<&FluidKeys::energy, &ElasticKeys::energy>(false), "", "Integrate the internal energy, Halik et al. 2015 eq. (13). Of a fluid only with scheme = \"plain\", of a body only with formulation = \"updated-lagrangian\"."},
     {"phases", "energy-budget", of<&FluidKeys::energy_budget>(false), "", "history.csv has the fluid's energies of weight and compression, and what took energy since the start, by name (docs/method.md, What damps)."},
     {"phases", "restitution", of<&GrainsKeys::restitution>(0.7), "",

@@ -80,9 +80,10 @@ struct ElasticKeys {
   Formulation formulation{};
   double young{};  // Pa
   double poisson{};
-  Elasticity elasticity{};                                     // of total-lagrangian bodies, as the next two
+  Elasticity elasticity{};                                     // of total-lagrangian bodies, as the next three
   double hourglass{};                                          // strength of the hourglass control, of Young's modulus
   double retardation{};                                        // s, of Kelvin and Voigt's damping
+  bool wave_correction{};                                      // short waves of compression keep their speed
   double artificial_viscosity{}, artificial_viscosity_beta{};  // Monaghan's alpha and beta
   double artificial_stress{};  // epsilon of Gray, Monaghan & Swift; updated Lagrangian bodies
   bool energy{};               // integrate the internal energy (eq. 13)

@@ -125,6 +125,7 @@ template <class Law> void parts() {
   touching<typename Law::Smooth, 2>(); touching<typename Law::Smooth, 3>();
 }
 void all() { barchan::each_sphere_law([](auto row) { parts<typename decltype(row)::Law>(); }); }""",
+    "stray_length": "template struct barchan::StrayLength<2, double>; template struct barchan::StrayLength<3, double>;",
     "surface_contact": """
 double pushed() { const barchan::SurfaceContactLaw law{1, 1, 1}; return law.push(1, 1, 1, 1) + law.grip(1, 1, 1, 1); }""",
     "turning_friction": PAIRS + "PAIRS(TurningFriction)",

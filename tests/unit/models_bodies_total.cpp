@@ -30,7 +30,8 @@ struct Stage {
   TotalParameters q;
   PhaseParticles p;
 
-  Stage(int dimensions, const Bounds& b, std::vector<Vec3> places, Elasticity law, double retardation = 0.0)
+  Stage(int dimensions, const Bounds& b, std::vector<Vec3> places, Elasticity law, double retardation = 0.0,
+        double along = 0.0)
       : bounds(b),
         start(std::move(places)),
         reference(make_reference_body<T>(start, b, 1.0, KernelKind::wendland_c2, radius, simd::width_in_use<T>())),
@@ -38,9 +39,10 @@ struct Stage {
     q.law = law;
     q.moduli = {3.0, 2.0, retardation};
     q.hourglass = 0.7;
+    q.along = along;
     q.density = 1.3;
     for (std::size_t d = 0; d < 3; ++d) q.period[d] = b.periodic[d] ? b.high[d] - b.low[d] : 0.0;
-    work.resize(start.size(), reference.width, dimensions, retardation > 0.0);
+    work.resize(start.size(), reference.width, dimensions, q);
     for (std::size_t d = 0; d < 3; ++d)
       if (q.period[d] > 0.0) work.displaced[d].assign(start.size(), 0.0);
     p.keep_places();
@@ -226,10 +228,12 @@ TEST_P(TotalLagrangian, AccelerationEqualsTheNaiveSums) {
 }
 
 TEST_P(TotalLagrangian, AForceIsTheSlopeOfTheEnergy) {
-  for (const Elasticity law : {Elasticity::neo_hookean, Elasticity::saint_venant_kirchhoff}) {
+  for (const auto& [law, along] : {std::pair{Elasticity::neo_hookean, 0.0},
+                                   {Elasticity::neo_hookean, 1.9},
+                                   {Elasticity::saint_venant_kirchhoff, 0.0}}) {
     Uniform random(6);
     const Bounds b = bounds_of(GetParam());
-    Stage<double> s(GetParam().dimensions, b, places_of(GetParam(), b, random), law);
+    Stage<double> s(GetParam().dimensions, b, places_of(GetParam(), b, random), law, 0.0, along);
     s.shake(0.05, random);
     s.load();
     for (std::size_t k = 0; k < s.p.size(); k += 13)
@@ -251,7 +255,7 @@ TEST_P(TotalLagrangian, AnAffineMotionIsSeenExactlyAndStraysNowhere) {
   if (GetParam().periodic) return;
   Uniform random(7);
   const Bounds b = bounds_of(GetParam());
-  Stage<double> s(GetParam().dimensions, b, places_of(GetParam(), b, random), Elasticity::neo_hookean);
+  Stage<double> s(GetParam().dimensions, b, places_of(GetParam(), b, random), Elasticity::neo_hookean, 0.0, 1.9);
   const auto dim = static_cast<std::size_t>(GetParam().dimensions);
   Tensor h{};
   for (std::size_t d = 0; d < dim; ++d)
@@ -290,9 +294,9 @@ TEST_P(TotalLagrangian, SinglePrecisionKeepsTheDigitsOfABodyThatTurns) {
   Uniform random(8);
   const Bounds b = bounds_of(GetParam());
   const auto start = places_of(GetParam(), b, random);
-  for (const double retardation : {0.0, 0.2}) {
-    Stage<double> exact(GetParam().dimensions, b, start, Elasticity::neo_hookean, retardation);
-    Stage<float> s(GetParam().dimensions, b, start, Elasticity::neo_hookean, retardation);
+  for (const auto& [retardation, along] : {std::pair{0.0, 0.0}, {0.2, 0.0}, {0.0, 1.9}}) {
+    Stage<double> exact(GetParam().dimensions, b, start, Elasticity::neo_hookean, retardation, along);
+    Stage<float> s(GetParam().dimensions, b, start, Elasticity::neo_hookean, retardation, along);
     exact.q.gravity = s.q.gravity = {1e-5, -2e-5, 0.0};
     exact.shake(1e-4, random);
     const double c = std::cos(1.9), z = std::sin(1.9);
@@ -314,7 +318,7 @@ TEST_P(TotalLagrangian, SinglePrecisionKeepsTheDigitsOfABodyThatTurns) {
     Archive saved;
     s.work.turns.archive(saved);
     Archive loaded(saved.bytes());
-    Stage<float> again(GetParam().dimensions, b, start, Elasticity::neo_hookean, retardation);
+    Stage<float> again(GetParam().dimensions, b, start, Elasticity::neo_hookean, retardation, along);
     again.q.gravity = s.q.gravity;
     again.work.turns.archive(loaded);
     for (int d = 0; d < s.p.dimensions(); ++d)

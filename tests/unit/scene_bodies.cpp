@@ -43,7 +43,8 @@ TEST(SceneBodies, RefusesKeysThatNothingReads) {
   expect_refused({"artificial-viscosity = 1"}, "phases.a.artificial-viscosity", "\"updated-lagrangian\"");
   expect_refused({"artificial-viscosity-beta = 1"}, "phases.a.artificial-viscosity-beta", "\"updated-lagrangian\"");
   expect_refused({"energy = true"}, "phases.a.energy", "\"updated-lagrangian\"");
-  for (const char* key : {"elasticity = \"neo-hookean\"", "hourglass = 0.1", "retardation = 1"})
+  for (const char* key :
+       {"elasticity = \"neo-hookean\"", "hourglass = 0.1", "retardation = 1", "wave-correction = true"})
     expect_refused({"formulation = \"updated-lagrangian\"\n" + std::string(key)},
                    "phases.a." + std::string(key).substr(0, std::string(key).find(' ')), "\"total-lagrangian\"");
   expect_refused({"", "a-b = { radius = 1.1 }"}, "interactions.a-b.radius", "no such key");

@@ -15,16 +15,27 @@ namespace {
 /// 40 particles a length A then keeps 1.7 % of its speed, in place of 0.6 % (docs/impacts.md).
 constexpr double softness = 0.25;
 
+/// Whether all bodies of an entry that yield carry short waves at their speed (`wave-correction`).
+bool carry_short_waves(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  return std::none_of(layout.phases.begin(), layout.phases.end(), [&](const PlanPhase& p) {
+    const auto k = static_cast<std::size_t>(&p - layout.phases.data());
+    return e.has(k) && p.yields && !scene.phases[k].elastic().wave_correction;
+  });
+}
+
 BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry& e) {
-  double stiffness = 1e300, inverse_mass = 0.0;
+  double softest = 1e300, compliance = 0.0, inverse_mass = 0.0;
   for (const std::size_t k : {e.a, e.b}) {  // of a body with itself twice
     const PlanPhase& p = layout.phases[k];
     if (!p.yields) continue;
     const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
-    stiffness = std::min(stiffness, softness * modulus * std::pow(p.spacing, layout.dimensions - 2));
+    const double continued = modulus * std::pow(p.spacing, layout.dimensions - 2);
+    softest = std::min(softest, softness * continued);
+    compliance += 1.0 / continued;
     inverse_mass += 1.0 / p.mass;
   }
   const double distance = 0.5 * (layout.phases[e.a].spacing + layout.phases[e.b].spacing);
+  const double stiffness = carry_short_waves(scene, layout, e) ? 1.0 / compliance : softest;
   return BodyContactLaw::of(distance, stiffness, 1.0 / inverse_mass, e.restitution, e.friction);
 }
 

@@ -2,8 +2,10 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "kernels/kernel.hpp"
 #include "scene/random.hpp"
 
 namespace barchan {
@@ -23,7 +25,7 @@ double stiffest_vibration(KernelKind kernel, double radius, double spacing, int 
   const auto reference =
       make_reference_body<double>(places, bounds, spacing, kernel, radius, simd::width_in_use<double>());
   TotalWork<double> work;
-  work.resize(places.size(), reference.width, dimensions, false);
+  work.resize(places.size(), reference.width, dimensions, q);
   PhaseParticles block("block", dimensions, places.size(), 1.0, 0);
   for (const Field f : {Field::position, Field::velocity, Field::acceleration, Field::density}) block.add(f);
   block.keep_places();
@@ -54,6 +56,25 @@ double stiffest_vibration(KernelKind kernel, double radius, double spacing, int 
   }
   omp_set_num_threads(threads);
   return std::sqrt(square);
+}
+
+double length_stiffness(KernelKind kernel, double radius, double spacing, int dimensions, const TotalParameters& q) {
+  const int far = static_cast<int>(radius / spacing), deep = dimensions == 2 ? 0 : far;
+  double second = 0.0, fourth = 0.0, along = 0.0;  // sums of w X^2, w X^4, w X^6/r^2
+  with_kernel<double>(kernel, radius, dimensions, [&](const auto& w_of) {
+    for (int k = -deep; k <= deep; ++k)
+      for (int j = -far; j <= far; ++j)
+        for (int i = -far; i <= far; ++i) {
+          const double x = i * spacing, r = spacing * std::sqrt(static_cast<double>(i * i + j * j + k * k));
+          if (i == 0 || r >= radius) continue;
+          const double w = std::pow(spacing, dimensions) * std::abs(w_of.derivative(r)) / r;
+          second += w * x * x;
+          fourth += w * x * x * x * x;
+          along += w * std::pow(x, 6) / (r * r);
+        }
+  });
+  if (!(along > 0.0)) return 0.0;
+  return std::max(0.0, (4.0 / 3.0 * q.moduli.compression() / second - q.hourglass) * fourth / along);
 }
 
 }  // namespace barchan

@@ -12,4 +12,9 @@ namespace barchan {
 /// Its angular frequency (1/s).
 double stiffest_vibration(KernelKind kernel, double radius, double spacing, int dimensions, TotalParameters parameters);
 
+/// kappa_l (Pa) of laws/stray_length.hpp: with it waves of compression along the axes of the lattice keep their speed
+/// to the fourth order.
+double length_stiffness(KernelKind kernel, double radius, double spacing, int dimensions,
+                        const TotalParameters& parameters);
+
 }  // namespace barchan

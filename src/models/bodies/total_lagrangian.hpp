@@ -11,6 +11,16 @@
 
 namespace barchan {
 
+struct TotalParameters {
+  Elasticity law = Elasticity::neo_hookean;
+  ElasticModuli moduli;
+  double hourglass = 0.0;  // kappa, Pa
+  double along = 0.0;      // kappa_l, Pa, of the lengths of pairs (laws/stray_length.hpp)
+  double density = 0.0;    // kg/m3, at rest
+  Vec3 gravity{};
+  Vec3 period{};  // m; 0: not periodic
+};
+
 /// What the sums work on, in the order of ids. T: float in mixed precision. Columns that neighbours are read from have
 /// room for a register on both sides.
 template <class T>
@@ -22,6 +32,7 @@ struct TotalWork {
   std::array<AlignedVector<Place>, 3> displacement;  // less that of the piece's anchor
   std::array<AlignedVector<T>, 3> velocity;          // of damped bodies, less that of the anchor
   std::array<AlignedVector<T>, 9> reach;             // Q = kappa H - P M^-1, Pa
+  std::array<AlignedVector<T>, 9> gradient;          // H, of a body whose pairs keep their lengths (total_along.hpp)
   PartTurns turns;                                   // in mixed precision only
   std::vector<double> largest;                       // m, of each piece: the largest component of its displacements
   double unit = 1.0;                                 // m, a power of two that follows the largest displacement
@@ -31,16 +42,7 @@ struct TotalWork {
   const std::uint32_t* at = nullptr;                 // place of each id in the phase (PhaseParticles::places)
   bool in_order = true;                              // at[k] == k
 
-  void resize(std::size_t size, std::size_t width, int dimensions, bool damped);
-};
-
-struct TotalParameters {
-  Elasticity law = Elasticity::neo_hookean;
-  ElasticModuli moduli;
-  double hourglass = 0.0;  // kappa, Pa
-  double density = 0.0;    // kg/m3, at rest
-  Vec3 gravity{};
-  Vec3 period{};  // m; 0: not periodic
+  void resize(std::size_t size, std::size_t width, int dimensions, const TotalParameters& parameters);
 };
 
 /// What only outputs read, of one particle: the gradient H and the energy density of the hourglass control (J/m3).

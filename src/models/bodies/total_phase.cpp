@@ -32,7 +32,7 @@ class BodyOf : public TotalBody {
  public:
   BodyOf(ReferenceBody<T> reference, const TotalParameters& parameters)
       : reference_(std::move(reference)), parameters_(parameters) {
-    work_.resize(reference_.size, reference_.width, reference_.dimensions, parameters.moduli.retardation > 0.0);
+    work_.resize(reference_.size, reference_.width, reference_.dimensions, parameters);
     for (std::size_t d = 0; d < 3; ++d)
       if (parameters.period[d] > 0.0) work_.displaced[d].assign(reference_.size, 0.0);
     const std::size_t padded = reference_.groups.size() * reference_.width;
@@ -86,13 +86,16 @@ std::unique_ptr<TotalBody> make_body(const std::vector<Vec3>& places, const Layo
 }  // namespace
 
 template <class T>
-void TotalWork<T>::resize(std::size_t size, std::size_t width, int dimensions, bool damped) {
+void TotalWork<T>::resize(std::size_t size, std::size_t width, int dimensions, const TotalParameters& q) {
   const std::size_t room = (size + width - 1) / width * width + 2 * margin, dim = static_cast<std::size_t>(dimensions);
   for (std::size_t d = 0; d < dim; ++d) {
     displacement[d].assign(room, Place(0));
-    if (damped) velocity[d].assign(room, T(0));
+    if (q.moduli.retardation > 0.0) velocity[d].assign(room, T(0));
   }
-  for (std::size_t c = 0; c < dim * dim; ++c) reach[c].assign(room, T(0));
+  for (std::size_t c = 0; c < dim * dim; ++c) {
+    reach[c].assign(room, T(0));
+    if (q.along > 0.0) gradient[c].assign(room, T(0));
+  }
 }
 template struct TotalWork<float>;
 template struct TotalWork<double>;
@@ -118,6 +121,8 @@ TotalPhase::TotalPhase(const Scene& scene, const Layout& layout, std::size_t num
   parameters_.law = keys.elasticity;
   parameters_.moduli = ElasticModuli::of(keys.young, keys.poisson, keys.retardation);
   parameters_.hourglass = keys.hourglass * keys.young;
+  if (keys.wave_correction && own_)
+    parameters_.along = length_stiffness(own_->kernel, own_->radius, plan_.spacing, layout.dimensions, parameters_);
   parameters_.density = phase_.density;
   parameters_.gravity = scene.domain.gravity;
   for (std::size_t d = 0; d < static_cast<std::size_t>(layout.dimensions); ++d)
