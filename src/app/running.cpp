@@ -181,8 +181,8 @@ bool Run::is_terminated() const {
 /// Every rank may have got a signal; the clock and the folder are those of the first one.
 void Run::agree() {
   if (!ranks::active()) return;
-  const bool first = ranks::is_first();
-  std::array<std::int64_t, 3> asks{stop_signal(), checkpoint_due_here() && first ? 1 : 0,
+  const bool first = ranks::is_first(), asked = checkpoint_was_asked_for();
+  std::array<std::int64_t, 3> asks{stop_signal(), asked || (first && checkpoint_is_late()) ? 1 : 0,
                                    first && is_terminated() ? 1 : 0};
   ranks::active()->reduce(asks.data(), asks.size(), Communicator::Take::largest);
   course_.agreed = {static_cast<int>(asks[0]), asks[1] != 0, asks[2] != 0};
@@ -196,10 +196,12 @@ int Run::stop(const std::string& why, int status) {
   return status;
 }
 
-bool Run::checkpoint_due() const { return ranks::active() ? course_.agreed.checkpoint : checkpoint_due_here(); }
+bool Run::checkpoint_due() const {
+  if (ranks::active()) return course_.agreed.checkpoint;
+  return checkpoint_was_asked_for() || checkpoint_is_late();
+}
 
-bool Run::checkpoint_due_here() const {
-  if (checkpoint_was_asked_for()) return true;
+bool Run::checkpoint_is_late() const {
   return scene_.output.checkpoint_every > 0 &&
          course_.progress.seconds() - course_.last_checkpoint >= scene_.output.checkpoint_every;
 }

@@ -92,7 +92,7 @@ class Run {
   bool is_terminated() const;
   void agree();
   bool checkpoint_due() const;
-  bool checkpoint_due_here() const;
+  bool checkpoint_is_late() const;
   /// A checkpoint, unless the last one says the same.
   void bring_checkpoint_up_to_date();
   void write_frame();
