@@ -70,7 +70,7 @@ class Killed(unittest.TestCase):
         self.addCleanup(run.kill)
         return run
 
-    def end(self, run, seconds=120):
+    def end(self, run, seconds=300):
         _, errors = run.communicate(timeout=seconds)
         return errors
 
