@@ -47,6 +47,30 @@ def viscous_wave(re, n):
     both(name, n, case, "floor")
 
 
+# ---- flows down a slope: a surface bears no stress -------------------------------------------------------------------
+
+def film(n):
+    """A laminar film after 10 s: its profile over the speed of its surface. A top row that nothing holds back would be 100 % too fast."""
+    def case(scheme, overrides):
+        frames, seconds = run("falling_film", [f"spacing={1 / n!r}"] + overrides, "water")
+        y, u = frames[-1].x[:, 1], frames[-1]["velocity"][:, 0]
+        report("film down a slope", scheme, n, "speed/that of the surface, largest error", abs(u / .5 - (2 * y - y * y)).max(), .01, seconds)
+        report("film down a slope", scheme, n, "flow, error/g_x H^3/(3 nu)", abs(u.mean() * 3 - 1), .01, seconds)
+    both("film down a slope", n, case, "floor")
+
+
+def river(n):
+    """Turbulent water down a slope after 0.5 s: its profile over u*, and its flow."""
+    def case():
+        frames, seconds = run("river", [f"spacing={.1 / n!r}", f"domain.size=[{20 * .1 / n!r}, 0.15]", f"fill.1.shape.box.max=[{20 * .1 / n!r}, 0.1]"], "water")
+        first, last = frames[0], frames[-1]
+        s = numpy.sqrt(numpy.clip(1 - last.x[:, 1] / .1, 0, 1))
+        exact = 2 * s + numpy.log((1 - s) / (1 + s)) + math.log(4000) - 2
+        report("river", "consistent", n, "speed, largest error/u*", abs(last["velocity"][:, 0] - exact).max() / .4, .05, seconds)
+        report("river", "consistent", n, "flow, change/start", abs(last["velocity"][:, 0].mean() / first["velocity"][:, 0].mean() - 1), .01, seconds)
+    attempt("river", "consistent", n, case)
+
+
 # ---- sloshing --------------------------------------------------------------------------------------------------------
 
 K, DEPTH = math.pi, .5  # of sloshing_tank.toml
@@ -99,5 +123,7 @@ def sloshing(n):
 CASES = {
     "viscous-wave": (lambda: [viscous_wave(re, n) for re in (50, 250, 2500) for n in (12, 25, 50, 100) if n <= options.largest],
                      "Standing wave in viscous water, Re = H sqrt(gH)/nu"),
+    "falling-film": (lambda: [film(n) for n in (10, 20, 40) if n <= options.largest] + [river(n) for n in (20, 40, 80) if n <= options.largest],
+                     "Laminar and turbulent water down a slope"),
     "sloshing": (lambda: [sloshing(n) for n in (12, 25, 50, 100) if n <= options.largest], "Sloshing in a tank, and at resonance"),
 }

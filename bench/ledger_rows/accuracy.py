@@ -30,6 +30,7 @@ LONG = {
     "heaving-cylinder": "Ito 1977, thesis, MIT; linear theory: Maskell & Ursell 1970, J. Fluid Mech. 44, 303; Yeung 1982, J. Eng. Math. 16, 97",
     "wave-maker": "linear theory of the piston: Havelock 1929, Phil. Mag. 8, 569; Dean & Dalrymple 1991, section 6.3",
     "viscous-wave": "linear theory, solved by bench/accuracy/viscous_wave_reference.py: Prosperetti 1981, Phys. Fluids 24, 1217; Lamb 1932, section 349",
+    "falling-film": "exact: Nusselt 1916, Z. VDI 60, 541; turbulent: the mixing length of Prandtl 1932, integrated",
     "sloshing": "Lamb 1932, Hydrodynamics, section 257; resonance: Faltinsen & Timokha 2009, Sloshing, chapter 5",
     "far-front": "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244, 312, a = 2.25 in: n^2 = 1 by Xie 2021, arXiv:2108.08769; n^2 = 2, figure 3",
     "dam-pressure": "Buchner 2002, thesis, Delft, as TrixiParticles.jl keeps it; sensor 45 mm lower: Greco 2001, Adami et al. 2012",

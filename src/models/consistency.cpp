@@ -17,9 +17,17 @@ Consistency lattice_consistency(KernelKind kind, double radius, int dimensions) 
           if (r == 0.0 || r >= radius * (1.0 - 1e-12)) continue;
           ++c.neighbours;
           c.gradient_sum -= kernel.derivative(r) * x * x / r;
+          if (y < 0) c.surface_sum += kernel.derivative(r) * y / r;
         }
   });
   return c;
+}
+
+const Consistency& own_consistency(const Layout& layout, std::size_t fluid) {
+  static const Consistency none{0, 1.0, 1.0, 0.5};
+  for (const auto& e : layout.entries)
+    if (e.a == fluid && e.b == fluid) return e.consistency;
+  return none;
 }
 
 void describe_kernel_sums(const Interaction& pair, int dimensions, PlanEntry& e) {

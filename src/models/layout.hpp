@@ -34,6 +34,7 @@ struct Consistency {
   int neighbours = 0;
   double volume_sum = 0;    // sum V W, the particle itself included
   double gradient_sum = 0;  // -sum V x dW/dx
+  double surface_sum = 0;   // -dx sum V dW/dy over all rows below that of the particle
   /// Within 3 % of the truth without any correction.
   bool consistent() const { return std::abs(volume_sum - 1) < 0.03 && std::abs(gradient_sum - 1) < 0.03; }
 };
@@ -240,5 +241,8 @@ struct Layout {
     return all;
   }
 };
+
+/// Sums of a fluid's entry with itself, on a lattice.
+const Consistency& own_consistency(const Layout& layout, std::size_t fluid);
 
 }  // namespace barchan

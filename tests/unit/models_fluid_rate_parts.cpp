@@ -71,6 +71,9 @@ FluidParameters with_everything(const PartsCase& c) {
     q.loosening = 3.0;
     q.least_viscosity = 0.3;
     q.surface_depth = 0.5;
+    q.stressed = true;
+    q.surface_viscosity = 0.6;
+    q.layer_share = 0.3;
   } else {
     q.calming = 3.0;
   }
@@ -97,7 +100,8 @@ TEST_P(RatePartsOf, AreTheRates) {
   for (int d = 0; d < fluid.dimensions(); ++d) {
     const auto c = static_cast<std::size_t>(d);
     for (std::size_t k = 0; k < fluid.size(); ++k)
-      sum[k] = parts.pressure[c][k] + parts.friction[c][k] + parts.carried[c][k] + q.gravity[c] + q.acceleration[c];
+      sum[k] = parts.pressure[c][k] + parts.friction[c][k] + parts.stress[c][k] + parts.turning[c][k] +
+               parts.carried[c][k] + q.gravity[c] + q.acceleration[c];
     EXPECT_LT(difference(fluid.column(Field::acceleration, d), sum), 1e-12) << d;
   }
   for (std::size_t k = 0; k < fluid.size(); ++k)

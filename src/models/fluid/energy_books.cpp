@@ -188,14 +188,17 @@ void EnergyBooks::take_pushes(double kick) {
     return parts_.viscosity[k] > 0.0 ? part / parts_.viscosity[k] : 0.0;
   };
   take_push(0, kick, [&](std::size_t k) { return of(parts_.pressure, k, 1.0); });
-  take_push(1, kick, [&](std::size_t k) { return of(parts_.friction, k, share(k, plain)); });
+  take_push(1, kick,
+            [&](std::size_t k) { return of(parts_.friction, k, share(k, plain)) + of(parts_.stress, k, 1.0); });
   take_push(2, kick, [&](std::size_t k) { return of(parts_.friction, k, share(k, fluid_.artificial)); });
-  take_push(3, kick, [&](std::size_t k) { return of(parts_.friction, k, 1.0 - share(k, both)); });
+  take_push(3, kick,
+            [&](std::size_t k) { return of(parts_.friction, k, 1.0 - share(k, both)) + of(parts_.turning, k, 1.0); });
   take_push(4, kick, [&](std::size_t k) { return of(parts_.carried, k, 1.0); });
   take_push(5, kick, [&](std::size_t k) {
     Vec3 rest = a[k] - fluid_.weight;
     for (std::size_t d = 0; d < dimensions; ++d)
-      rest[d] -= parts_.pressure[d][k] + parts_.friction[d][k] + parts_.carried[d][k];
+      rest[d] -= parts_.pressure[d][k] + parts_.friction[d][k] + parts_.stress[d][k] + parts_.turning[d][k] +
+                 parts_.carried[d][k];
     return rest;
   });
 }

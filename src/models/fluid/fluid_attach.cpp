@@ -206,13 +206,6 @@ void hold_as_it_is(BulkHold& hold, const PhaseParticles& fluid, const Bounds& bo
   }
 }
 
-/// -tr M/Dim of a fluid's own entry on a lattice.
-double lattice_moment(const Layout& layout, std::size_t fluid) {
-  for (const auto& e : layout.entries)
-    if (e.a == fluid && e.b == fluid) return e.consistency.gradient_sum;
-  return 1.0;
-}
-
 /// The plain sums push with p_a + p_b: where that is below zero they pull, and particles that no friction holds clump
 /// (Swegle, Hicks & Attaway 1995). Where every side is periodic the pressure has a constant that means nothing; adding
 /// one in the sums stops the clumping and costs accuracy by disorder. Clumps grow at the rate U/h, friction takes
@@ -256,11 +249,16 @@ void FluidPhase::attach(Workspace& w) {
   q.gravity = scene_.domain.gravity;
   q.acceleration = forces_.uniform();
   if (solids_move_in(scene_, phase_)) q.pores = 0.5 * q.sound_speed / q.smoothing_length;  // they may leave holes
-  q.lattice_moment = lattice_moment(layout_, number_);
+  const Consistency& lattice = own_consistency(layout_, number_);
+  q.lattice_moment = lattice.gradient_sum;
   if (plan_.free_surface) {
     surface_ = std::make_unique<SurfaceFinder>();
     if (!plan_.eddies) q.least_viscosity = viscosity_of_rows(scene_, layout_, number_);
     q.surface_depth = 0.5 * plan_.spacing;
+    if (q.least_viscosity > 0.0) q.surface_diffusivity = surface_diffusion * q.smoothing_length * q.sound_speed;
+    const double rubbing = plan_.eddies ? 0.0 : phase_.density * keys_.viscosity;
+    if (corrected && (plan_.eddies || rubbing > 0.0 || q.least_viscosity > 0.0))
+      set_surface_stress(q, rubbing, plan_.spacing, lattice.surface_sum);
     q.loosening = 4.0 * q.sound_speed / q.smoothing_length;
     q.void_pressure = pressure_(phase_.density);
   } else {

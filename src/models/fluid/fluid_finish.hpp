@@ -2,12 +2,14 @@
 // passes over laminar and turbulent fluids. V: numbers of several particles side by side (Four), or of one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
 #include "laws/consistent_fluid.hpp"
 #include "laws/plain_fluid.hpp"
 #include "models/fluid/fluid_rates.hpp"
+#include "models/fluid/fluid_stress.hpp"
 #include "models/fluid/fluid_surface.hpp"
 #include "models/fluid/rate_parts.hpp"
 
@@ -84,7 +86,7 @@ BARCHAN_SIMD_INLINE void note_parts(RateParts<Dim, V>& parts, const typename Pla
   for (std::size_t d = 0; d < Dim; ++d) {
     parts.pressure[d] = -s.pressure[d] * specific;
     parts.friction[d] = V(2.0) * s.viscous[d] * specific;
-    parts.carried[d] = V(0.0);
+    parts.stress[d] = parts.turning[d] = parts.carried[d] = V(0.0);
   }
   parts.viscosity = V(mu);
   parts.squeezed = rho * s.divergence + V(2.0 * parts.centring) * s.diffusion;
@@ -194,6 +196,17 @@ BARCHAN_SIMD_INLINE V calm(V rate, V rho, const FluidParameters& q) {
   return simd::max(simd::min(simd::fnma(V(q.calming), excess, rate), most), zero - most);
 }
 
+/// mu grad v: as the pairs of a fluid with viscosities of its particles have it, or of the scene's viscosity.
+template <int Dim, class V, class Friction>
+BARCHAN_SIMD_INLINE std::array<std::array<V, Dim>, Dim> flux_of(const Friction& friction,
+                                                                std::array<std::array<V, Dim>, Dim> grad_v,
+                                                                const FluidParameters& q) {
+  if constexpr (requires { friction.t; }) return friction.t;
+  for (auto& row : grad_v)
+    for (auto& g : row) g *= V(q.surface_viscosity);
+  return grad_v;
+}
+
 /// `friction` gives, from M^-1 and grad v, the viscous sum less what a linear field makes of it: of the term
 /// laplace_v mu friction.
 template <int Dim, Beside beside, class V, class Friction, class Parts>
@@ -243,19 +256,36 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   [[maybe_unused]] const V push = V(2.0) * (place.pressure - V(q.void_pressure));
   std::array<V, Dim> grad_p, force;
   std::array<std::array<V, Dim>, Dim> grad_v;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    grad_p[d] = inverse[d * Dim] * s.pressure[0];
-    for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
-    if constexpr (ends) force[d] = inner * grad_p[d] + outer * (push * s.concentration[d] - s.pressure[d]);
-    else force[d] = grad_p[d];
+  for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e < Dim; ++e) {
       grad_v[d][e] = s.velocity[d * Dim] * inverse[e];
       for (std::size_t f = 1; f < Dim; ++f)
         grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
     }
-  }
-  if (ends && q.least_viscosity > 0.0) carry_weight<Dim, V>(force, grad_p, s, push, outer, q);
   const std::array<V, Dim> rubbed = friction(inverse, grad_v);
+  const bool stressed = ends && q.stressed;
+  [[maybe_unused]] V level(0.0), more(0.0);
+  if (ends && q.least_viscosity > 0.0) {
+    level = level_surface<Dim, V>(place.normal, q);
+    more = V(std::max(mu, bulk_friction * q.least_viscosity) - q.surface_viscosity) * level;
+  }
+  [[maybe_unused]] SurfaceStress<Dim, V> stress;
+  if (stressed)
+    stress = surface_stress<Dim, V>(flux_of<Dim, V>(friction, grad_v, q), grad_v, s.concentration,
+                                    beside_surface<Dim, V>(outer, place.normal), more, q);
+  for (std::size_t d = 0; d < Dim; ++d) {
+    grad_p[d] = inverse[d * Dim] * s.pressure[0];
+    for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
+  }
+  [[maybe_unused]] const auto pushed = [&](V twice_p) __attribute__((always_inline)) {
+    std::array<V, Dim> f;
+    for (std::size_t d = 0; d < Dim; ++d)
+      f[d] = inner * grad_p[d] + outer * (twice_p * s.concentration[d] - s.pressure[d]);
+    if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, outer, q);
+    return f;
+  };
+  if constexpr (ends) force = pushed(stressed ? simd::fma(V(-2.0), stress.normal, push) : push);
+  else force = grad_p;
   V divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
     divergence += grad_v[d][d];
@@ -267,26 +297,42 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       squared += grad_v[d][e] * grad_v[e][d];
     }
     r.acceleration[d] = laplace_v * rubbed[d] - force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
+    if (stressed) r.acceleration[d] = simd::fma(stress.drag[d], specific, r.acceleration[d]);
     if constexpr (Parts::asked) {
       parts.pressure[d] = -force[d] * specific;
       parts.friction[d] = laplace_v * rubbed[d];
+      parts.stress[d] = parts.turning[d] = V(0.0);
       parts.carried[d] = transported;
     }
   }
+  if constexpr (Parts::asked && ends)
+    if (stressed) {
+      const auto bare = pushed(push);
+      const auto own = surface_stress<Dim, V>(flux_of<Dim, V>(friction, grad_v, q), grad_v, s.concentration,
+                                              beside_surface<Dim, V>(outer, place.normal), V(0.0), q);
+      for (std::size_t d = 0; d < Dim; ++d) {
+        parts.pressure[d] = -bare[d] * specific;
+        parts.stress[d] = (bare[d] - force[d] + own.drag[d]) * specific;
+        parts.turning[d] = (stress.drag[d] - own.drag[d]) * specific;
+      }
+    }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
   V laplacian = laplace_p * dynamic, carried = along_p * V(1.0 / c2);
   if constexpr (ends) {
     laplacian = inner * laplacian + outer * (V(2.0) * s.diffusion - lost_beyond<Dim, V>(force, s.concentration, q));
     carried = inner * carried;
   }
-  r.density = -rho * divergence + V(q.diffusivity / c2) * laplacian +
-              V(q.source_diffusivity / c2 * q.reference_density) * squared + carried;
+  V diffusivity(q.diffusivity / c2), source(q.source_diffusivity / c2 * q.reference_density);
+  if (ends && q.least_viscosity > 0.0) {
+    diffusivity = simd::fma(V(q.surface_diffusivity / c2), level, diffusivity);
+    source = simd::fma(V(q.surface_diffusivity / c2 * q.reference_density), level, source);
+  }
+  r.density = -rho * divergence + diffusivity * laplacian + source * squared + carried;
   if constexpr (Parts::asked) {
     const V centred = V(parts.centring) * (laplacian + V(0.5 * q.reference_density) * squared);
     parts.viscosity = viscosity;
     parts.squeezed = centred - rho * divergence;
-    parts.diffused =
-        V(q.diffusivity / c2) * laplacian + V(q.source_diffusivity / c2 * q.reference_density) * squared - centred;
+    parts.diffused = diffusivity * laplacian + source * squared - centred;
     parts.moved = carried;
     parts.renewed = V(0.0) - r.density;
   }
@@ -312,7 +358,8 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a[m], V(0.5)), V(-0.5)));
     }
   if (ends && q.least_viscosity > 0.0) {
-    const V factor = raised_weights<Dim, V>(a, outer);
+    V factor = raised_weights<Dim, V>(a, outer);
+    if (stressed) factor = simd::fnma(kept_isotropic<V>(viscosity, more, q), factor - V(1.0), factor);
     for (auto& skew : anisotropy) skew *= factor;
   }
   return r;

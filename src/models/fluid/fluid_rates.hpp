@@ -43,6 +43,11 @@ struct LooseParticles {
 /// wave 25 rows deep was 0.15 % slower and lost 1.8 % more. Without weight a surface needs none.
 constexpr double bulk_friction = 0.08, plain_friction = 5.0;
 
+/// Beside a heavy free surface the density diffuses with so much more h c: disordered rows make noise there that
+/// delta = 0.05 does not take, and a disturbed tank of 50 rows moved at 0.06 sqrt(gH) for good. 0.05 is too little;
+/// with 0.15 a tank disturbed by a quarter of a spacing breaks down.
+constexpr double surface_diffusion = 0.1;
+
 struct FluidParameters {
   double reference_density;   // kg/m3
   double sound_speed;         // m/s
@@ -57,11 +62,16 @@ struct FluidParameters {
   double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
   double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_surface.hpp); else 0
   double surface_depth;    // m, of the middle of the top row below a heavy free surface, half a spacing
-  double loosening;        // 1/s, at which loose fluid loses its pressure (free surface); 0: none
-  double calming = 0.0;    // 1/s, of a fluid that fills its space: see calm() in fluid_finish.hpp; 0: none
-  double lattice_moment;   // -tr M/Dim on a lattice at rest, 1
-  bool ends;               // a void or a free surface is near some particle, or solids move in the fluid
-  LooseParticles* loose;   // where particles that may stand beside a void are noted; null: nobody asks
+  double surface_diffusivity = 0.0;  // m2/s, of the density beside a heavy free surface, added
+  bool stressed = false;             // a free surface bears no viscous stress (fluid_stress.hpp)
+  double surface_viscosity = 0.0;    // Pa s, the scene's, of a laminar fluid that is stressed
+  double layer_share = 0.0;          // of the stress along the surface, the share that acts as pressure
+  double per_top_row = 1.0;          // 1/(2 dx |B|) of the top row of a lattice
+  double loosening;                  // 1/s, at which loose fluid loses its pressure (free surface); 0: none
+  double calming = 0.0;              // 1/s, of a fluid that fills its space: see calm() in fluid_finish.hpp; 0: none
+  double lattice_moment;             // -tr M/Dim on a lattice at rest, 1
+  bool ends;                         // a void or a free surface is near some particle, or solids move in the fluid
+  LooseParticles* loose;             // where particles that may stand beside a void are noted; null: nobody asks
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.

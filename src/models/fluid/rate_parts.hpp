@@ -22,6 +22,7 @@ struct RateParts {
   static constexpr bool asked = true;
   double centring;                                 // s, the time by which the velocities are behind the density's step
   std::array<V, Dim> pressure, friction, carried;  // m/s2; carried: by the shifting
+  std::array<V, Dim> stress, turning;              // m/s2, of a free surface; turning: by the friction of the method
   V viscosity;                                     // Pa s, of the friction
   V squeezed;                                      // kg/m3/s: -rho div v, of velocities that are not behind
   V diffused, moved, renewed;                      // kg/m3/s; moved: by the shifting; renewed: loose or clamped
@@ -31,12 +32,12 @@ struct RateParts {
 struct PartColumns {
   static constexpr bool asked = true;
   double centring = 0.0;
-  std::array<std::vector<double>, 3> pressure, friction, carried;
+  std::array<std::vector<double>, 3> pressure, friction, stress, turning, carried;
   std::vector<double> viscosity, squeezed, diffused, moved, renewed;
 
   /// Makes room for n particles.
   void fit(std::size_t n, int dimensions) {
-    for (auto* vectors : {&pressure, &friction, &carried})
+    for (auto* vectors : {&pressure, &friction, &stress, &turning, &carried})
       for (int d = 0; d < dimensions; ++d) (*vectors)[static_cast<std::size_t>(d)].resize(n);
     for (auto* column : {&viscosity, &squeezed, &diffused, &moved, &renewed}) column->resize(n);
   }
@@ -54,6 +55,8 @@ struct PartColumns {
     for (std::size_t d = 0; d < Dim; ++d) {
       store_four(r.pressure[d], pressure[d].data(), k, count);
       store_four(r.friction[d], friction[d].data(), k, count);
+      store_four(r.stress[d], stress[d].data(), k, count);
+      store_four(r.turning[d], turning[d].data(), k, count);
       store_four(r.carried[d], carried[d].data(), k, count);
     }
     store_four(r.viscosity, viscosity.data(), k, count);

@@ -1,5 +1,7 @@
 #include "models/fluid/surface.hpp"
 
+#include "models/fluid/fluid_stress.hpp"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -136,6 +138,16 @@ void SurfaceFinder::find(PhaseParticles& fluid, const CellGrid& grid, const Pair
                          double threshold) {
   if (fluid.dimensions() == 2) find_in<2>(fluid, grid, own, radius, threshold);
   else find_in<3>(fluid, grid, own, radius, threshold);
+}
+
+void set_surface_stress(FluidParameters& q, double viscosity, double spacing, double row) {
+  q.stressed = true;
+  q.surface_viscosity = viscosity;
+  q.per_top_row = row > 0.0 ? 0.5 / row : 1.0;
+  const double rate = std::sqrt(norm(q.gravity) / (wave_of_layer * spacing));  // 1/s, of a wave of 2 pi 16 dx
+  if (!(viscosity > 0.0 && rate > 0.0)) return;
+  const double layer = std::sqrt(2.0 * viscosity / (q.reference_density * rate)) / (resolved_layer * spacing);
+  q.layer_share = 1.0 / (1.0 + layer * layer * std::sqrt(layer));
 }
 
 void release_surface(PhaseParticles& fluid, double threshold, const PressureLaw& law) {

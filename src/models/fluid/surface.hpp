@@ -38,6 +38,10 @@ class SurfaceFinder {
   std::vector<double> ghosts_;          // on several ranks, by ghost: place of its source, wholeness, B
 };
 
+/// Sets what fluid_stress.hpp needs. `viscosity`: of a laminar fluid (Pa s), 0: the particles have their own; `row`: dx
+/// |B| of the top row of a lattice.
+void set_surface_stress(FluidParameters& q, double viscosity, double spacing, double row);
+
 /// Particles of the surface feel no tension: where the pressure is below that of the void, it becomes that, and the
 /// density the one at rest.
 void release_surface(PhaseParticles& fluid, double threshold, const PressureLaw& law);
