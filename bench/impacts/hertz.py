@@ -10,6 +10,7 @@ from barchan_bench.frame import Frame
 RADIUS, YOUNG, POISSON = 0.02, 1e6, 0.3  # m, Pa, -: hertz.toml
 STEEP = YOUNG / (2 * (1 - POISSON**2))  # Pa, E*
 GENTLE = 0.015  # m/s, half the largest speed of the middles; the scene's 0.04 gives 2.7 times the approach
+SURFACES = "interactions.upper-lower={ restitution = 1, surfaces = true }"
 FRAMES = 16  # of the end, whose mean is taken: what vibrates is averaged
 
 
@@ -52,12 +53,13 @@ def measure(ended, spacing):
 
 def hertz(program):
     table = []
-    for count, speed in ((20, None), (40, None), (80, None), (80, GENTLE)):
+    for count, speed, surfaces in ((20, None, False), (40, None, False), (80, None, False), (80, GENTLE, False),
+                                   (20, None, True), (40, None, True), (80, None, True)):
         with tempfile.TemporaryDirectory(prefix="barchan_hertz_") as folder:
-            sets = [f"spacing={RADIUS / count!r}"]
+            sets = [f"spacing={RADIUS / count!r}"] + [SURFACES] * surfaces
             if speed:
                 sets += [f'motion.{k}.velocity=[0, "{sign}(t < 0.02)*{speed}*(1 - cos(2*pi*t/0.02))"]' for k, sign in ((0, "-"), (1, ""))]
-            table.append(measure(run.scene(program, "verification/hertz", folder, sets, shown=True), RADIUS / count))
+            table.append(measure(run.scene(program, "verification/hertz", folder, sets, shown=True), RADIUS / count) | {"surfaces": surfaces})
     return {"table": table}
 
 
@@ -89,14 +91,19 @@ def measure_spheres(ended, spacing):
 
 def hertz_spheres(program):
     table = []
-    for count in (10, 20, 40):
+    for count, surfaces in ((10, False), (20, False), (40, False), (10, True), (20, True), (40, True)):
         with tempfile.TemporaryDirectory(prefix="barchan_hertz_") as folder:
-            ended = run.scene(program, "verification/hertz_spheres", folder, [f"spacing={RADIUS / count!r}"], shown=True)
-            table.append(measure_spheres(ended, RADIUS / count))
+            sets = [f"spacing={RADIUS / count!r}"] + [SURFACES] * surfaces
+            ended = run.scene(program, "verification/hertz_spheres", folder, sets, shown=True)
+            table.append(measure_spheres(ended, RADIUS / count) | {"surfaces": surfaces})
     return {"table": table}
 
 
 CASES = {"hertz": hertz, "hertz_spheres": hertz_spheres}
+
+
+def name_of(row):
+    return f"{row['count']}{', by surfaces' if row.get('surfaces') else ''}"
 
 
 def page(results):
@@ -110,7 +117,7 @@ def page_of_spheres(results):
              "| particles a radius | P [N] | a/R | p_0/E | spacings in a | particles that touch | width over a: by the second moment | by the fit | farthest that touches "
              "| peak over p_0, by the fit | pressure inside 0.6 a over the exact one |",
              "| --- |" + " --- |" * 10]
-    lines += [f"| {r['count']} | {r['load']:.2f} | {r['a'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in a']:.1f} | {r['touching']} | {r['moment']:.3f} | "
+    lines += [f"| {name_of(r)} | {r['load']:.2f} | {r['a'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in a']:.1f} | {r['touching']} | {r['moment']:.3f} | "
               f"{r['width']:.3f} | {r['farthest']:.3f} | {r['peak']:.3f} | {r['inner']:.3f} |" for r in results["hertz_spheres"]["table"]]
     return lines + [""]
 
@@ -122,7 +129,7 @@ def page_of_discs(results):
              "| particles a radius | P [N/m] | b/R | p_0/E | spacings in b | width over b: by the fit | by the second moment | farthest that touches "
              "| peak over p_0: by the fit | largest of a particle | stress on the axis over the exact one, from 2 spacings to 2 b deep | in the two outermost layers |",
              "| --- |" + " --- |" * 11]
-    lines += [f"| {r['count']} | {r['load']:.0f} | {r['b'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in b']:.1f} | {r['width']:.3f} | {r['moment']:.3f} | "
+    lines += [f"| {name_of(r)} | {r['load']:.0f} | {r['b'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in b']:.1f} | {r['width']:.3f} | {r['moment']:.3f} | "
               f"{r['farthest']:.3f} | {r['peak']:.3f} | {r['largest']:.3f} | {r['axis'][0]:.3f} to {r['axis'][1]:.3f} | {r['outer']:.2f} at least |"
               for r in results["hertz"]["table"]]
     lines += ["", "![Pressure in the contact of two discs, and stress below it](gallery/impacts_hertz.png)", ""]

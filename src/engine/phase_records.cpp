@@ -15,6 +15,7 @@ int size_of(Record record, int dimensions) {
     case Record::stress: return flat ? StressRecord<2>::size : StressRecord<3>::size;
     case Record::artificial: return ArtificialStressRecord::size;
     case Record::carried: return flat ? CarriedRecord<2>::size : CarriedRecord<3>::size;
+    case Record::surface: return flat ? SurfaceRecord<2>::size : SurfaceRecord<3>::size;
     case Record::compact:
     case Record::eddies: break;
   }

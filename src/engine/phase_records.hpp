@@ -22,7 +22,7 @@ class PhaseRecords {
   void make_compact(const Bounds& bounds);
   bool has(Record record) const;
 
-  /// Of motion, extended, stress, artificial, carried; empty if they were not made.
+  /// Of motion, extended, stress, artificial, carried, surface; empty if they were not made.
   const RecordArray& array(Record record) const { return arrays_[static_cast<std::size_t>(record)]; }
   RecordArray& array(Record record) { return arrays_[static_cast<std::size_t>(record)]; }
   const CompactRecords* compact() const { return compact_.get(); }

@@ -13,6 +13,9 @@
 //   2D  x y u v cx cy w w0        3D  x y z u v w cx cy cz wx wy wz w0x w0y w0z -
 // A turbulence record is a motion record whose velocity is (k, ln omega), whose pressure is the root of k/omega:
 //   2D  x y k l s V - -      3D  x y z k l - s V     (l the logarithm of omega in 1/s)
+// A surface record holds of a particle of an elastic body its position, velocity, the outward normal n of the surface,
+// whose length says how sure it is, and its share g of a contact; g = 0 inside of the body:
+//   2D  x y u v nx ny g -    3D  x y z u v w nx ny nz g - ...
 #pragma once
 
 #include <algorithm>
@@ -50,6 +53,11 @@ template <int Dim>
 struct CarriedRecord {
   static constexpr int size = Dim == 2 ? 8 : 16, position = 0, velocity = Dim, turning = 2 * Dim, rate = 3 * Dim,
                        old_rate = Dim == 2 ? 7 : 12;
+};
+
+template <int Dim>
+struct SurfaceRecord {
+  static constexpr int size = Dim == 2 ? 8 : 16, position = 0, velocity = Dim, normal = 2 * Dim, share = 3 * Dim;
 };
 
 /// Whose records these are, for the check of access in builds with assertions, and whether their images are of now.

@@ -57,6 +57,26 @@ struct BodyContactLaw {
           slow(0.5 * step / law.reduced_mass) {}
   };
 
+  /// F_n of an overlap, at this speed along the normal; above zero: they part.
+  template <class V>
+  static BARCHAN_SIMD_INLINE V normal_force(const Constants<V>& c, V overlap, V normal_speed) {
+    const V one(1.0);
+    const V way = simd::max(normal_speed, -normal_speed) * c.dt, share = overlap / simd::max(way, V(1e-300));
+    const auto first = share <= one;
+    const V phi = select(first, V(0.5) * (one + share), one), psi = select(first, V(0.5) + share, one);
+    const V damping = c.dashpot * psi;
+    const V second = c.second_stiffness * simd::max(overlap - c.deep_distance, V(0.0));
+    const V push = simd::fma(phi * c.stiffness, overlap, simd::fnma(damping, normal_speed, second)) /
+                   simd::fma(damping, c.slow, one);
+    return select(overlap > V(0.0), simd::max(push, V(0.0)), V(0.0));
+  }
+  /// |F_t|/|v_t|; `square`: |v_t|^2 > 0.
+  template <class V>
+  static BARCHAN_SIMD_INLINE V grip(const Constants<V>& c, V normal, V square) {
+    const V sticking = c.rub / simd::fma(c.rub, c.slow, V(1.0));
+    return simd::min(sticking, c.friction * normal / simd::sqrt(square));
+  }
+
   /// Adds the force [N]; r2 = |r|^2 > 0. Nothing where the particles are further apart than d.
   template <bool Rubs, class V, std::size_t Dim>
   static BARCHAN_SIMD_INLINE void add(const Constants<V>& c, const std::array<V, Dim>& r, V r2,
@@ -65,14 +85,7 @@ struct BodyContactLaw {
     V normal_speed(0.0);
     for (std::size_t d = 0; d < Dim; ++d) normal_speed = simd::fma(v[d], r[d], normal_speed);
     normal_speed = normal_speed * inverse;
-    const V way = simd::max(normal_speed, -normal_speed) * c.dt, share = overlap / simd::max(way, V(1e-300));
-    const auto first = share <= one;
-    const V phi = select(first, V(0.5) * (one + share), one), psi = select(first, V(0.5) + share, one);
-    const V damping = c.dashpot * psi;
-    const V second = c.second_stiffness * simd::max(overlap - c.deep_distance, V(0.0));
-    const V push = simd::fma(phi * c.stiffness, overlap, simd::fnma(damping, normal_speed, second)) /
-                   simd::fma(damping, c.slow, one);
-    const V normal = select(overlap > V(0.0), simd::max(push, V(0.0)), V(0.0));
+    const V normal = normal_force(c, overlap, normal_speed);
     for (std::size_t d = 0; d < Dim; ++d) force[d] = simd::fma(normal * inverse, r[d], force[d]);
     if constexpr (Rubs) {
       std::array<V, Dim> along;
@@ -81,9 +94,8 @@ struct BodyContactLaw {
         along[d] = v[d] - normal_speed * inverse * r[d];
         square = simd::fma(along[d], along[d], square);
       }
-      const V sticking = c.rub / simd::fma(c.rub, c.slow, one);
-      const V grip = simd::min(sticking, c.friction * normal / simd::sqrt(square));
-      for (std::size_t d = 0; d < Dim; ++d) force[d] = force[d] - grip * along[d];
+      const V held = grip(c, normal, square);
+      for (std::size_t d = 0; d < Dim; ++d) force[d] = force[d] - held * along[d];
     }
   }
 };

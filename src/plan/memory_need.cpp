@@ -109,6 +109,10 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
       for (const auto& e : plan.entries)  // models/bodies/self_contact.hpp
         if (e.self_contact && e.a == k) records += n * (2.0 * wide + index * (dimensions == 2 ? 25.0 : 93.0));
     }
+    if (std::any_of(scene.interactions.begin(), scene.interactions.end(), [&](const Interaction& i) {
+          return i.surfaces && (i.a == scene.phases[k].name || i.b == scene.phases[k].name);
+        }))  // models/bodies/body_surface.hpp
+      records += all * wide * (dimensions == 2 ? SurfaceRecord<2>::size : SurfaceRecord<3>::size);
     const double search = all * dimensions * narrow * 1.125 + (all - n) * sizeof(Image);
     grids += cells(plan, k) * 4.0 * index + search + 2.0 * n * index;
     past += own + cells(plan, k) * 2.0 * index + search;

@@ -24,6 +24,11 @@ void check_formulation(const Phase& phase, const Report& report) {
 /// restitution and friction, and what a contact of bodies has no use for.
 void check_contact(const Interaction& pair, const Phase& a, const Phase& b, const Report& report) {
   const std::string dotted = "interactions." + pair.a + "-" + pair.b;
+  const auto elastic = [](const Phase& p) { return p.kind() == PhaseKind::elastic; };
+  if (pair.surfaces && (a.name == b.name || !elastic(a) || !elastic(b) || !touch_as_bodies(pair, a, b)))
+    report(dotted + ".surfaces", a.name != b.name && elastic(a) && elastic(b)
+                                     ? "nothing reads it without restitution; expected restitution beside it"
+                                     : "only two elastic bodies touch so; expected no such key here");
   if (touches_itself(pair, a, b)) return;
   if (a.name == b.name && a.kind() == PhaseKind::elastic) {
     for (const char* key : {".restitution", ".friction"})

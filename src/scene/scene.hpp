@@ -185,6 +185,7 @@ struct Interaction {
   ContactLaw law{};                         // of grains with grains, walls and bodies
   std::optional<double> restitution;        // contact of bodies: of two particles that meet
   std::optional<double> friction;           // contact of bodies: Coulomb's coefficient
+  bool surfaces{};                          // contact of elastic bodies: by their surfaces, not particle by particle
 };
 
 // ---- fills: what is where at the beginning -------------------------------------------------------------------------

@@ -26,6 +26,7 @@ const char* name_of(Record record) {
     case Record::carried: return "carried";
     case Record::eddies: return "eddies";
     case Record::turbulence: return "turbulence";
+    case Record::surface: return "surface";
   }
   return "";
 }

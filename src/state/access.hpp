@@ -34,8 +34,18 @@ class FieldSet {
 };
 
 /// What passes over pairs read of a phase, packed by particle (engine/records.hpp).
-enum class Record : std::uint8_t { motion, compact, extended, stress, artificial, carried, eddies, turbulence };
-inline constexpr std::size_t record_count = 8;
+enum class Record : std::uint8_t {
+  motion,
+  compact,
+  extended,
+  stress,
+  artificial,
+  carried,
+  eddies,
+  turbulence,
+  surface
+};
+inline constexpr std::size_t record_count = 9;
 const char* name_of(Record record);
 
 /// A set of kinds of records.

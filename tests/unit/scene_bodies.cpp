@@ -52,6 +52,7 @@ TEST(SceneBodies, RefusesKeysThatNothingReads) {
   expect_refused({"", "a-b = { radius-in-metres = 0.1 }"}, "interactions.a-b.radius-in-metres", "no such key");
   expect_refused({"", "a-sand = { restitution = 0.5 }"}, "interactions.a-sand.restitution", "no such key");
   expect_refused({"", "a-b = { restitution = 0.01 }"}, "interactions.a-b.restitution", "0.05");
+  expect_refused({"", "a-sand = { surfaces = true }"}, "interactions.a-sand.surfaces", "no such key");
 }
 
 TEST(SceneBodies, RefusesSetsThatAreNone) {

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/errors.hpp"
+#include "output/numbers.hpp"
 #include "scene/couplings.hpp"
+#include "scene/located.hpp"
 
 namespace barchan {
 
@@ -15,6 +18,18 @@ namespace {
 /// 40 particles a length A then keeps 1.7 % of its speed, in place of 0.6 % (docs/impacts.md).
 constexpr double softness = 0.25;
 
+/// By surfaces 0.4: of Hertz's spheres with 20 particles a radius a quarter gives 1.08 of the width and 0.91 of the
+/// peak, a half 0.95 of the width (by the fit) and 1.05 of the peak (docs/impacts.md).
+constexpr double softness_of_surfaces = 0.4;
+
+/// With `wave-correction` each side gives 1.2 of the spring of one spacing, what a pressed body lacks of its length.
+constexpr double exact_side = 1.2;
+
+bool by_surfaces(const Scene& scene, const PlanEntry& e) {
+  const Interaction* pair = entry_between(scene, scene.phases[e.a], scene.phases[e.b]);
+  return pair && pair->surfaces && e.a != e.b;
+}
+
 /// Whether all bodies of an entry that yield carry short waves at their speed (`wave-correction`).
 bool carry_short_waves(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   return std::none_of(layout.phases.begin(), layout.phases.end(), [&](const PlanPhase& p) {
@@ -24,18 +39,20 @@ bool carry_short_waves(const Scene& scene, const Layout& layout, const PlanEntry
 }
 
 BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  const bool smooth = by_surfaces(scene, e);
+  const double share = smooth ? softness_of_surfaces : softness, side = smooth ? exact_side : 1.0;
   double softest = 1e300, compliance = 0.0, inverse_mass = 0.0;
   for (const std::size_t k : {e.a, e.b}) {  // of a body with itself twice
     const PlanPhase& p = layout.phases[k];
     if (!p.yields) continue;
     const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
     const double continued = modulus * std::pow(p.spacing, layout.dimensions - 2);
-    softest = std::min(softest, softness * continued);
+    softest = std::min(softest, share * continued);
     compliance += 1.0 / continued;
     inverse_mass += 1.0 / p.mass;
   }
   const double distance = 0.5 * (layout.phases[e.a].spacing + layout.phases[e.b].spacing);
-  const double stiffness = carry_short_waves(scene, layout, e) ? 1.0 / compliance : softest;
+  const double stiffness = carry_short_waves(scene, layout, e) ? side / compliance : softest;
   return BodyContactLaw::of(distance, stiffness, 1.0 / inverse_mass, e.restitution, e.friction);
 }
 
@@ -58,7 +75,7 @@ std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const P
 
 }  // namespace
 
-void describe_body_contact(const Scene& scene, const Interaction&, const Layout& layout, PlanEntry& e) {
+void describe_body_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
   const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
   e.law = "contact";
   e.meaning = "bodies: touching decides";
@@ -69,7 +86,8 @@ void describe_body_contact(const Scene& scene, const Interaction&, const Layout&
     e.meaning += "; restitution " + std::string(number) +
                  " is of two particles, bodies of many keep more (0.91 to 0.93 measured)";
   }
-  e.radius = layout.touching_distance(e);
+  if (pair.surfaces) e.meaning += "; by their surfaces";
+  e.radius = layout.touching_distance(e) * (pair.surfaces ? SmoothContactLaw::reach : 1.0);
   e.keeps_apart = true;
   const bool surfaces = has_surfaces(scene, scene.phases[e.a]) || has_surfaces(scene, scene.phases[e.b]);
   e.searched = !surfaces;
@@ -93,9 +111,30 @@ BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEnt
       sides_ = sides_of(scene, layout, wall);
       surfaces_.emplace(scene, layout, wall);
     }
+  if (by_surfaces(scene, entry)) smooth_ = SmoothContactLaw::of(law_, layout.dimensions);
+}
+
+/// m, the radius in which a particle of a body finds those that it was made with.
+double BodyContact::held_within(std::size_t phase) const {
+  for (const PlanEntry& e : layout_.entries)
+    if ((e.first_shape || e.reads_stress) && e.a == phase && e.b == phase) return e.radius;
+  return 2.0 * layout_.phases[phase].spacing;
 }
 
 void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
+  if (smooth_)
+    for (const std::size_t side : {0u, 1u}) {
+      const std::size_t phase = side == 0 ? entry_.a : entry_.b;
+      const std::vector<Vec3>& places = blocks[phase].position;
+      skins_[side] = BodySurface(places, layout_.bounds, layout_.phases[phase].spacing, held_within(phase), *smooth_);
+      if (const std::int64_t alone = skins_[side].alone(); alone >= 0) {
+        const Vec3& x = places[static_cast<std::size_t>(alone)];
+        throw SceneError(located(scene_, "interactions." + entry_.name + ".surfaces") + ": the particle of \"" +
+                         layout_.phases[phase].name + "\" at (" + brief(x[0]) + ", " + brief(x[1]) + ", " +
+                         brief(x[2]) + ") m has no surface, since its neighbours lie in one line or plane or there " +
+                         "are none; expected bodies of two layers of particles or more, or no such key");
+      }
+    }
   if (!itself()) return;
   const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(),
                                  [&](const PlanEntry& e) { return e.first_shape && e.a == entry_.a; });
@@ -105,6 +144,11 @@ void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
 void BodyContact::attach(Workspace& w) {
   w_ = &w;
   if (itself()) w.when_sorted.emplace_back([this] { must_choose_ = true; });
+  for (const std::size_t phase : {entry_.a, entry_.b})
+    if (smooth_) {
+      w.need(phase, Record::surface);
+      w.particles(phase).keep_places();
+    }
 }
 
 void BodyContact::archive(Archive& a) {
@@ -123,6 +167,7 @@ void BodyContact::schedule(Schedule& s) {
     s.add({stage::contacts, entry_.name, touched(entry_.a), [this] { push_itself(); }});
     return;
   }
+  if (smooth_) return schedule_surfaces(s);
   for (const std::size_t phase : {entry_.a, entry_.b}) {
     if (!layout_.phases[phase].moves) continue;
     if (!sides_.empty())
@@ -134,6 +179,31 @@ void BodyContact::schedule(Schedule& s) {
     if (entry_.direction(phase) < 0) continue;
     s.add({stage::contacts, entry_.name, touched(phase), [this, phase] { push(phase); }});
   }
+}
+
+/// First all records of surfaces, then what they give each other.
+void BodyContact::schedule_surfaces(Schedule& s) {
+  using enum Field;
+  for (const std::size_t phase : {entry_.a, entry_.b}) {
+    const std::string& name = layout_.phases[phase].name;
+    s.add({stage::contacts,
+           entry_.name + " surface of " + name,
+           {{name, {position, velocity}, {}, {{}, {}, {Record::surface}}}},
+           [this, phase] {
+             skins_[phase == entry_.a ? 0 : 1].pack(w_->particles(phase), w_->to_write(phase, Record::surface));
+           }});
+  }
+  const RecordTouch surface{{}, {Record::surface}, {}};
+  for (const std::size_t phase : {entry_.a, entry_.b}) {
+    Touches touches{{layout_.phases[phase].name, {}, {acceleration, contact_force}, surface},
+                    {layout_.phases[entry_.partner(phase)].name, {}, {}, surface}};
+    s.add({stage::contacts, entry_.name, touches, [this, phase] { push_surface(phase); }});
+  }
+}
+
+void BodyContact::push_surface(std::size_t phase) {
+  body_contact_forces(w_->particles(phase), w_->records(phase, Record::surface), w_->list(entry_.direction(phase)),
+                      w_->records(entry_.partner(phase), Record::surface), *smooth_, w_->state.dt);
 }
 
 /// Whether a body of this entry is made of particles that nothing holds together.

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "models/bodies/body_forces.hpp"
+#include "models/bodies/body_surface.hpp"
 #include "models/bodies/wall_surfaces.hpp"
 #include "models/workspace.hpp"
 
@@ -28,7 +29,10 @@ class BodyContact : public Model {
   void push(std::size_t phase);
   void push_itself();
   void push_from_sides(std::size_t phase);
+  void push_surface(std::size_t phase);
+  void schedule_surfaces(Schedule& s);
   bool of_single_particles() const;
+  double held_within(std::size_t phase) const;
 
   const Scene& scene_;
   const Layout& layout_;
@@ -37,6 +41,9 @@ class BodyContact : public Model {
   std::vector<BodySide> sides_;           // of a wall
   std::optional<WallSurfaces> surfaces_;  // of one whose shapes all have surfaces
   Workspace* w_ = nullptr;
+  // Of bodies that touch by their surfaces:
+  std::optional<SmoothContactLaw> smooth_;
+  std::array<BodySurface, 2> skins_;  // of entry_.a, of entry_.b
   // Of a body with itself:
   bool itself() const { return entry_.a == entry_.b; }
   FarPairs far_;

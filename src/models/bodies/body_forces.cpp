@@ -53,6 +53,45 @@ void contacts(PhaseParticles& a, const RecordArray& own, const List& list, const
   }
 }
 
+template <int Dim, bool Rubs>
+void surface_contacts(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
+                      const SmoothContactLaw& law, double dt) {
+  using R = SurfaceRecord<Dim>;
+  std::array<double*, Dim> acceleration{};
+  for (int d = 0; d < Dim; ++d) acceleration[static_cast<std::size_t>(d)] = a.column(Field::acceleration, d);
+  const std::array<double*, Dim> felt = felt_columns<Dim>(a);
+  const double inverse_mass = 1.0 / a.mass();
+  const SmoothContactLaw::Constants<Lanes> constants(law, dt);
+  Shares shares(static_cast<std::int64_t>(a.size()), 64);
+#pragma omp parallel
+  for (const std::int64_t i : shares) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto row = list.row(k);
+    const double* record = own[k];
+    if (row.begin == row.end || record[R::share] == 0.0) continue;
+    std::array<Lanes, Dim> x, v, n, force;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      x[d] = Lanes(record[R::position + d]);
+      v[d] = Lanes(record[R::velocity + d]);
+      n[d] = Lanes(record[R::normal + d]);
+      force[d] = Lanes(0.0);
+    }
+    const Lanes share(record[R::share]);
+    for_each_neighbour<R::size>(
+        row, others, [&](const Lanes* b) __attribute__((always_inline)) {
+          std::array<Lanes, Dim> r, dv;
+          const Lanes r2 = separation<Dim>(x, b + R::position, r);
+          for (std::size_t d = 0; d < Dim; ++d) dv[d] = v[d] - b[R::velocity + d];
+          SmoothContactLaw::add<Rubs>(constants, r, r2, dv, n, b + R::normal, share * b[R::share], force);
+        });
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double sum = simd::sum(force[d]);
+      acceleration[d][k] += sum * inverse_mass;
+      if (felt[d]) felt[d][k] += sum;
+    }
+  }
+}
+
 /// The particles k .. k + width - 1.
 template <class V, int Dim, bool Rubs>
 BARCHAN_SIMD_INLINE void at_side(const std::array<double*, Dim>& x, const std::array<double*, Dim>& v,
@@ -121,6 +160,16 @@ void contacts_of(PhaseParticles& a, const RecordArray& own, const List& list, co
 void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
                          const BodyContactLaw& law, double dt) {
   contacts_of(a, own, list, others, law, dt);
+}
+void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list, const RecordArray& others,
+                         const SmoothContactLaw& law, double dt) {
+  const bool rubs = law.pair.friction > 0.0;
+  if (a.dimensions() == 2)
+    rubs ? surface_contacts<2, true>(a, own, list, others, law, dt)
+         : surface_contacts<2, false>(a, own, list, others, law, dt);
+  else
+    rubs ? surface_contacts<3, true>(a, own, list, others, law, dt)
+         : surface_contacts<3, false>(a, own, list, others, law, dt);
 }
 void body_contact_forces(PhaseParticles& a, const RecordArray& own, const FarPairs& list, const BodyContactLaw& law,
                          double dt) {

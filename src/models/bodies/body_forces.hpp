@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "engine/pair_loop.hpp"
-#include "laws/body_contact.hpp"
+#include "laws/smooth_contact.hpp"
 #include "models/bodies/self_contact.hpp"
 #include "state/particles.hpp"
 
@@ -21,6 +21,9 @@ BARCHAN_PER_INSTRUCTION_SET(body_contact_forces,
                             /// the step. Records of motion.
                             void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
                                                      const RecordArray& others, const BodyContactLaw& law, double dt);
+                            /// The same by surfaces: records of these.
+                            void body_contact_forces(PhaseParticles& a, const RecordArray& own, const PairList& list,
+                                                     const RecordArray& others, const SmoothContactLaw& law, double dt);
                             /// What parts of a body give each other.
                             void body_contact_forces(PhaseParticles& a, const RecordArray& own, const FarPairs& list,
                                                      const BodyContactLaw& law, double dt);)

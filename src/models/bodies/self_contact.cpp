@@ -20,7 +20,8 @@ void each_neighbour(const PhaseParticles& body, PairList::Row row, const CellGri
   }
 }
 
-/// Neighbours in the first shape by id.
+}  // namespace
+
 std::vector<std::vector<std::uint32_t>> first_neighbours(const std::vector<Vec3>& places, const Bounds& bounds,
                                                          double spacing, double radius) {
   const std::size_t n = places.size();
@@ -38,8 +39,6 @@ std::vector<std::vector<std::uint32_t>> first_neighbours(const std::vector<Vec3>
                    [&](std::uint32_t id, std::uint32_t) { result[static_cast<std::size_t>(p.id()[k])].push_back(id); });
   return result;
 }
-
-}  // namespace
 
 FarPairs::FarPairs(const std::vector<Vec3>& places, const Bounds& bounds, double spacing, double radius) {
   const auto first = first_neighbours(places, bounds, spacing, radius);

@@ -10,6 +10,10 @@
 
 namespace barchan {
 
+/// Neighbours in the first shape by id, in any order. `places` (m): the first ones, by id.
+std::vector<std::vector<std::uint32_t>> first_neighbours(const std::vector<Vec3>& places, const Bounds& bounds,
+                                                         double spacing, double radius);
+
 /// The pairs of a list whose particles are far apart in the body's first shape: neither neighbours there nor with a
 /// common neighbour. These are two steps along the material, not a distance: both sides of a narrow cut are far apart.
 class FarPairs {
