@@ -33,10 +33,7 @@ void check_contact(const Interaction& pair, const Phase& a, const Phase& b, cons
   if (a.name == b.name && a.kind() == PhaseKind::elastic) {
     for (const char* key : {".restitution", ".friction"})
       if (report.has(dotted + key))
-        report(dotted + key, is_total(a)
-                                 ? "nothing reads it without restitution; expected restitution beside it"
-                                 : "parts of an updated Lagrangian body feel each other by its kernel; expected "
-                                   "formulation = \"total-lagrangian\", or no such key here");
+        report(dotted + key, "nothing reads it without restitution; expected restitution beside it");
     return;
   }
   if (!touch_as_bodies(pair, a, b)) {

@@ -145,7 +145,7 @@ bool touch_as_bodies(const Interaction& pair, const Phase& a, const Phase& b) {
 }
 
 bool touches_itself(const Interaction& pair, const Phase& a, const Phase& b) {
-  return a.name == b.name && is_total(a) && pair.restitution;
+  return a.name == b.name && a.kind() == PhaseKind::elastic && pair.restitution;
 }
 
 bool touches_as_body(const Scene& scene, const Phase& phase) {

@@ -97,10 +97,13 @@ void describe_body_contact(const Scene& scene, const Interaction& pair, const La
 PlanEntry self_contact_of(const Scene& scene, const Interaction& pair, const Layout& layout, const PlanEntry& held) {
   PlanEntry e = held;
   e.name += " contact";
-  e.first_shape = e.corrected = false;
+  e.first_shape = e.corrected = e.reads_stress = false;
   e.self_contact = true;
   e.consistency = {};
   describe_body_contact(scene, pair, layout, e);
+  // Lists of another radius would be sorted at other moments, which changes the order of all sums.
+  e.forward = e.backward = -1;
+  if (held.reads_stress) e.searched = false;
   return e;
 }
 
@@ -136,13 +139,16 @@ void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
       }
     }
   if (!itself()) return;
-  const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(),
-                                 [&](const PlanEntry& e) { return e.first_shape && e.a == entry_.a; });
+  const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+    return (e.first_shape || e.reads_stress) && e.a == entry_.a && e.b == entry_.a;
+  });
+  list_ = held->reads_stress ? held->forward : entry_.forward;
   far_ = FarPairs(blocks[entry_.a].position, layout_.bounds, layout_.phases[entry_.a].spacing, held->radius);
 }
 
 void BodyContact::attach(Workspace& w) {
   w_ = &w;
+  if (itself()) w.need(entry_.a, Record::motion);
   if (itself()) w.when_sorted.emplace_back([this] { must_choose_ = true; });
   for (const std::size_t phase : {entry_.a, entry_.b})
     if (smooth_) {
@@ -231,7 +237,7 @@ void BodyContact::push(std::size_t phase) {
 
 void BodyContact::push_itself() {
   PhaseParticles& body = w_->particles(entry_.a);
-  if (must_choose_) far_.choose(body, w_->list(entry_.forward), w_->neighbours.grid(entry_.a));
+  if (must_choose_) far_.choose(body, w_->list(list_), w_->neighbours.grid(entry_.a));
   must_choose_ = false;
   body_contact_forces(body, w_->records(entry_.a, Record::motion), far_, law_, w_->state.dt);
 }

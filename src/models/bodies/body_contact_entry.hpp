@@ -47,6 +47,7 @@ class BodyContact : public Model {
   // Of a body with itself:
   bool itself() const { return entry_.a == entry_.b; }
   FarPairs far_;
+  int list_ = -1;            // direction: of an updated Lagrangian body that of its kernel
   bool must_choose_ = true;  // the list is new
 };
 

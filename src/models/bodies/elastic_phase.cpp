@@ -131,11 +131,27 @@ ElasticPhase::ElasticPhase(const Scene& scene, const Layout& layout, std::size_t
       phase_(scene.phases[number]),
       plan_(layout.phases[number]),
       number_(number),
-      forces_(scene, phase_.name) {}
+      forces_(scene, phase_.name) {
+  const bool touches = std::any_of(layout.entries.begin(), layout.entries.end(),
+                                   [&](const PlanEntry& e) { return e.self_contact && e.a == number; });
+  for (const auto& e : layout.entries)
+    if (touches && e.reads_stress && e.a == number && e.b == number) own_ = &e;
+}
 
-void ElasticPhase::begin(State& state, const std::vector<ParticleBlock>&) {
+void ElasticPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   PhaseParticles& p = state.phases[number_];
   std::fill_n(p.column(Field::density), p.size(), phase_.density);
+  if (own_) held_ = FarPairs(blocks[number_].position, layout_.bounds, plan_.spacing, own_->radius);
+}
+
+void ElasticPhase::archive(Archive& a) {
+  if (a.loads()) must_choose_ = true;
+}
+
+void ElasticPhase::choose_held() {
+  if (!own_ || !must_choose_) return;
+  held_.choose_near(w_->particles(number_), w_->list(own_->forward), w_->neighbours.grid(number_));
+  must_choose_ = false;
 }
 
 void ElasticPhase::attach(Workspace& w) {
@@ -161,8 +177,9 @@ void ElasticPhase::attach(Workspace& w) {
                                               [&](const auto& kernel) { return kernel.value(dx); });
     neighbours_.push_back({&w.list(e.direction(number_)), &w.records(other, Record::stress), e.kernel, e.radius,
                            layout_.phases[other].mass, pulled ? &w.records(other, Record::artificial) : nullptr,
-                           weight > 0.0 ? 1.0 / weight : 0.0});
+                           weight > 0.0 ? 1.0 / weight : 0.0, &e == own_ ? &held_ : nullptr});
   }
+  if (own_) w.when_sorted.emplace_back([this] { must_choose_ = true; });
 }
 
 void ElasticPhase::schedule(Schedule& s) {
@@ -216,12 +233,14 @@ void ElasticPhase::pack_middle() { pack_stress(w_->particles(number_), w_->to_wr
 
 void ElasticPhase::strain() {
   PhaseParticles& p = w_->particles(number_);
+  choose_held();
   elastic_strain(p, w_->records(number_, Record::stress), neighbours_, parameters_, w_->state.dt);
   drift(p, 0.5 * w_->state.dt);
 }
 
 void ElasticPhase::load() {
   PhaseParticles& p = w_->particles(number_);
+  choose_held();
   const RecordArray& artificial = w_->records(number_, Record::artificial);
   elastic_forces(p, w_->records(number_, Record::stress), neighbours_, parameters_,
                  artificial.stride() > 0 ? &artificial : nullptr);

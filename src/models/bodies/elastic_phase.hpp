@@ -26,6 +26,7 @@ class ElasticPhase : public Model {
   void history(HistoryRow& row) const override;
   double budget_energy() override { return strain_energy(); }
   void limits(std::vector<StepLimit>& limits) const override;
+  void archive(Archive& a) override;
   int phase() const override { return static_cast<int>(number_); }
 
  private:
@@ -35,6 +36,7 @@ class ElasticPhase : public Model {
   void load();
   void take_power();
   double strain_energy() const;
+  void choose_held();
 
   const Scene& scene_;
   const Layout& layout_;
@@ -46,6 +48,10 @@ class ElasticPhase : public Model {
   std::vector<ElasticNeighbour> neighbours_;
   ElasticParameters parameters_{};
   std::array<std::vector<double>, 3> pairs_;  // m/s2, acceleration by the pairs of this law; with energy = true
+  // Of a body that touches itself:
+  const PlanEntry* own_ = nullptr;  // its entry with itself
+  FarPairs held_;                   // the pairs between which stress acts
+  bool must_choose_ = true;         // the list is new
 };
 
 }  // namespace barchan

@@ -61,7 +61,7 @@ bool FarPairs::near(std::uint32_t a, std::uint32_t b) const {
   return std::binary_search(at(a), at(a + 1), b);
 }
 
-void FarPairs::choose(const PhaseParticles& body, const PairList& list, const CellGrid& grid) {
+void FarPairs::pick(const PhaseParticles& body, const PairList& list, const CellGrid& grid, bool nearest) {
   const auto dummy =
       static_cast<std::uint32_t>(PairList::stride * PairList::dummy_index(body.size(), grid.image_list().size()));
   index_.clear();
@@ -69,7 +69,8 @@ void FarPairs::choose(const PhaseParticles& body, const PairList& list, const Ce
   for (std::size_t k = 0; k < body.size(); ++k) {
     const auto a = static_cast<std::uint32_t>(body.id()[k] - body.first_id());
     each_neighbour(body, list.row(k), grid, [&](std::uint32_t b, std::uint32_t entry) {
-      if (!near(a, b)) index_.push_back(entry);
+      if (near(a, b) == nearest) index_.push_back(entry);
+      else if (nearest) index_.push_back(dummy);
     });
     while (index_.size() % list.padding() != 0) index_.push_back(dummy);
     begin_.push_back(index_.size());

@@ -1,4 +1,4 @@
-// Which particles of a body may touch others of the same body.
+// Which particles of a body may touch others of the same body, and which hold it together.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,18 @@ class FarPairs {
   FarPairs(const std::vector<Vec3>& places, const Bounds& bounds, double spacing, double radius);
 
   /// After every search: the far pairs of this list of the body with itself.
-  void choose(const PhaseParticles& body, const PairList& list, const CellGrid& grid);
+  void choose(const PhaseParticles& body, const PairList& list, const CellGrid& grid) { pick(body, list, grid, false); }
+  /// The others: those between which stress acts. Every pair keeps its place in the row, dummies stand in place of far
+  /// ones: sums are those of the whole list, to the bit, where the far ones are beyond the kernel.
+  void choose_near(const PhaseParticles& body, const PairList& list, const CellGrid& grid) {
+    pick(body, list, grid, true);
+  }
   /// As of a PairList.
   PairList::Row row(std::size_t k) const { return {index_.data() + begin_[k], index_.data() + begin_[k + 1]}; }
 
  private:
   bool near(std::uint32_t a, std::uint32_t b) const;
+  void pick(const PhaseParticles& body, const PairList& list, const CellGrid& grid, bool nearest);
 
   std::vector<std::size_t> near_begin_;  // by id
   std::vector<std::uint32_t> near_;      // ids, ascending; the particle itself too

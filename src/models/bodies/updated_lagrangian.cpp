@@ -132,7 +132,7 @@ void strain(PhaseParticles& body, const RecordArray& own_records, std::span<cons
       typename Law::template Sums<Lanes> s{};
       for (std::size_t c = 0; c < neighbours.size(); ++c) {
         const auto& e = neighbours[c];
-        const auto row = e.list->row(k);
+        const auto row = e.row(k);
         const Lanes mass(e.mass);
         kernels[c]([&](const auto& kernel) __attribute__((always_inline)) {
           for_each_neighbour<R::size>(
@@ -206,7 +206,7 @@ BARCHAN_SIMD_INLINE std::array<Lanes, Dim + (WithPower ? 1 : 0)> forces_on(
   }
   for (std::size_t c = 0; c < neighbours.size(); ++c) {
     const auto& e = neighbours[c];
-    const auto row = e.list->row(k);
+    const auto row = e.row(k);
     const double h = 0.5 * e.radius;
     own.mass_b = Lanes(e.mass);
     own.alpha = Lanes(viscosity.alpha * h);

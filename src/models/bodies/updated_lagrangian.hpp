@@ -4,6 +4,7 @@
 #include <span>
 
 #include "engine/pair_loop.hpp"
+#include "models/bodies/self_contact.hpp"
 #include "scene/scene.hpp"
 #include "state/particles.hpp"
 
@@ -18,6 +19,8 @@ struct ElasticNeighbour {
   double mass;                              // kg, of a particle of the other phase
   const RecordArray* artificial = nullptr;  // artificial stress of the other phase; null: the entry has none
   double inverse_weight = 0.0;              // m^dimensions, 1/W(dx); dx: mean spacing of both
+  const FarPairs* held = nullptr;  // of a body that touches itself: the pairs of the list that hold it together
+  PairList::Row row(std::size_t k) const { return held ? held->row(k) : list->row(k); }
 };
 
 struct ElasticParameters {
