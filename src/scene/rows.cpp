@@ -166,11 +166,9 @@ constexpr Key rows_of_keys[] = {
      "Only of two phases of one fluid, spacings 1 to 2: below zero the fluid has the finer particles, above zero the coarser ones, as in \"y - 0.05\". "
      "A coarse particle that crosses it becomes 4 fine ones (3D: 8), and so many fine ones become a coarse one; mass and momentum are kept (docs/method.md).", {}, "x y z"},
     {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
-     "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative "
-     "speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
+     "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
     {"interactions.pair", "friction", at<&Interaction::friction>("0").like("0.3"), "", "Coulomb's coefficient of friction of such a contact.", {.at_least = 0.0, .at_most = 10.0}},
-    {"interactions.pair", "surfaces", at<&Interaction::surfaces>(false), "",
-     "Two elastic bodies touch by their surfaces: a particle feels the mean of those of the other body that face it, along the normals of both surfaces (docs/method.md). false: by their particles, one by one."},
+    {"interactions.pair", "surfaces", at<&Interaction::surfaces>(false), "", "Two elastic bodies touch by their surfaces: a particle feels the mean of those of the other body that face it, along the normals of both surfaces (docs/method.md). false: by their particles, one by one."},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
     {"fill", "phase", at<&Fill::phase>(required).like("\"sand\""), "", "Phase of the particles."},
     {"fill", "shape", fill_shape().like("{ bed = 0.01 }"), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},

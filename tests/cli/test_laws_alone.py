@@ -49,6 +49,17 @@ template <int Dim> void touching() {
   Law::add<false>(c, r, 1.0, r, force);
 }
 template void touching<2>(); template void touching<3>();""",
+    "smooth_contact": """
+template <int Dim> void touching_surfaces() {
+  using Law = barchan::SmoothContactLaw;
+  const Law::Constants<double> c(Law::of({1, 1, 1, 1, 1, 1}, Dim), 1.0);
+  std::array<double, Dim> r{}, force{};
+  Law::add<true>(c, r, 1.0, r, r, r.data(), 1.0, force);
+  Law::add<false>(c, r, 1.0, r, r, r.data(), 1.0, force);
+}
+template void touching_surfaces<2>();
+template void touching_surfaces<3>();
+""",
     "consistent_fluid": FLUID + "FLUID(ConsistentFluid)",
     "drag_coefficients": """
 double excess(double re) {
