@@ -7,6 +7,7 @@ GRAY = "Timoshenko's beam with shear and rotatory inertia; the plate of Gray, Mo
 TUREK = "Turek & Hron 2006, in Fluid-Structure Interaction (Springer), p. 371, CSM3"
 BARS = "exact: one-dimensional waves of c = sqrt((lambda + 2 mu)/rho)"
 HERTZ = "Hertz 1882; Johnson 1985, Contact Mechanics, section 4.2"
+BY_SURFACES = ", by surfaces"
 PAPER = "Halik et al. 2015, section 5, figure "
 
 
@@ -25,7 +26,7 @@ def plates(r):
 
 
 def contacts(r):
-    for name, words in (("table", "two bars"), ("plain", "two bars without wave-correction")):
+    for name, words in (("table", "two bars"), ("plain", "two bars without wave-correction"), ("smooth", "two bars" + BY_SURFACES)):
         for t in r["bars"][name]:
             case = f"{words}, {t['count']} particles a length"
             bound, met = within(100 * (t["touch"] - 1), 1) if name == "table" and t["count"] >= 40 else (None, None)
@@ -34,7 +35,7 @@ def contacts(r):
             yield row("restitution", case, 1, t["restitution"], BARS, FILE)
             yield row("speed of A after the impact, over V", case, 0, t["left"], BARS, FILE)
     for t in r["rows"]["table"]:
-        case = f"{t['hits']} bars hit {t['hits']}" + ("" if t["corrected"] else ", without wave-correction")
+        case = f"{t['hits']} bars hit {t['hits']}" + ("" if t["corrected"] else ", without wave-correction") + BY_SURFACES * t.get("surfaces", False)
         bound, met = within(100 * (t["restitution"] - 1), 2)
         yield row("restitution of the rows", case, 1, t["restitution"], BARS, FILE, bound=bound, met=met)
         yield row("speed of a single bar, largest difference over V", case, 0, t["worst"], BARS, FILE)
@@ -45,12 +46,12 @@ def contacts(r):
         yield row(f"restitution {t['written']:g}", "two particles, E = 206 GPa, 10 m/s", t["written"], t["measured"],
                   "the value that the scene writes (exact)", FILE, bound=f"within {most:g}", met=abs(error) <= most)
     for t in r["hertz"]["table"]:
-        case = f"two discs, {t['count']} particles a radius, P = {t['load']:.0f} N/m"
+        case = f"two discs, {t['count']} particles a radius, P = {t['load']:.0f} N/m" + BY_SURFACES * t.get("surfaces", False)
         for name, key in (("half the contact's width over b, second moment", "moment"), ("half the contact's width over b, fit", "width"), ("peak pressure over p_0, fit", "peak")):
             bound, met = within(100 * (t[key] - 1), 10)
             yield row(name, case, 1, t[key], HERTZ, FILE, bound=bound, met=met)
     for t in r["hertz_spheres"]["table"]:
-        case = f"two spheres, {t['count']} particles a radius"
+        case = f"two spheres, {t['count']} particles a radius" + BY_SURFACES * t.get("surfaces", False)
         for name, key in (("contact's radius over a, second moment", "moment"), ("contact's radius over a, fit", "width"), ("peak pressure over p_0, fit", "peak"),
                           ("pressure inside 0.6 a over the exact one", "inner")):
             bound, met = within(100 * (t[key] - 1), 10) if t["count"] == 40 else (None, None)
