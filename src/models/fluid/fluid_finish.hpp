@@ -280,7 +280,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   [[maybe_unused]] const auto pushed = [&](V twice_p) __attribute__((always_inline)) {
     std::array<V, Dim> f;
     for (std::size_t d = 0; d < Dim; ++d)
-      f[d] = inner * grad_p[d] + outer * (twice_p * s.concentration[d] - s.pressure[d]);
+      f[d] = simd::fma(inner, grad_p[d], outer * simd::fma(twice_p, s.concentration[d], V(0.0) - s.pressure[d]));
     if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, outer, q);
     return f;
   };
