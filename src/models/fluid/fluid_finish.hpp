@@ -277,14 +277,15 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     grad_p[d] = inverse[d * Dim] * s.pressure[0];
     for (std::size_t e = 1; e < Dim; ++e) grad_p[d] = simd::fma(inverse[d * Dim + e], s.pressure[e], grad_p[d]);
   }
-  [[maybe_unused]] const auto pushed = [&](V twice_p) __attribute__((always_inline)) {
+  [[maybe_unused]] const auto pushed = [&](V across) __attribute__((always_inline)) {
+    const V twice_p = push - across;
     std::array<V, Dim> f;
     for (std::size_t d = 0; d < Dim; ++d)
       f[d] = simd::fma(inner, grad_p[d], outer * simd::fma(twice_p, s.concentration[d], V(0.0) - s.pressure[d]));
-    if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, outer, q);
+    if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, across, outer, q);
     return f;
   };
-  if constexpr (ends) force = pushed(stressed ? simd::fma(V(-2.0), stress.normal, push) : push);
+  if constexpr (ends) force = pushed(stressed ? V(2.0) * stress.normal : V(0.0));
   else force = grad_p;
   V divergence(0.0), along_p(0.0), dynamic = s.diffusion, squared(0.0);
   for (std::size_t d = 0; d < Dim; ++d) {
@@ -307,7 +308,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   }
   if constexpr (Parts::asked && ends)
     if (stressed) {
-      const auto bare = pushed(push);
+      const auto bare = pushed(V(0.0));
       const auto own = surface_stress<Dim, V>(flux_of<Dim, V>(friction, grad_v, q), grad_v, s.concentration,
                                               beside_surface<Dim, V>(outer, place.normal), V(0.0), q);
       for (std::size_t d = 0; d < Dim; ++d) {

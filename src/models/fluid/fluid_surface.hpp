@@ -87,10 +87,12 @@ BARCHAN_SIMD_INLINE V relax_tension(V rho, V beside, const FluidParameters& q) {
 /// front) the plain sum counts alone: the corrected one then feeds energy in, 1 % of a broken dam's.
 constexpr double surface_answer = 4.0, curvature_in_slope = 0.6, calm_within = 0.25, rough_beyond = 0.5;
 
-/// Adds to `force` what makes this of it, where the plain sum counts with `outer`; twice_p: 2 (p_a - p_v).
+/// Adds to `force` what makes this of it, where the plain sum counts with `outer`; twice_p: 2 (p_a - p_v), of which
+/// `stress` is what the surface bears beside (2 (1 + s) n.T.n): calm is what the pressure alone says, so that a
+/// released particle of a standing face, p_a = p_v, stays rough.
 template <int Dim, class V, class Sums>
 BARCHAN_SIMD_INLINE void carry_weight(std::array<V, Dim>& force, const std::array<V, Dim>& grad_p, const Sums& s,
-                                      V twice_p, V outer, const FluidParameters& q) {
+                                      V twice_p, V stress, V outer, const FluidParameters& q) {
   const auto& b = s.concentration;
   V square(1e-24), inwards(0.0), curved = s.diffusion;
   for (std::size_t d = 0; d < Dim; ++d) {
@@ -100,10 +102,11 @@ BARCHAN_SIMD_INLINE void carry_weight(std::array<V, Dim>& force, const std::arra
   }
   const V per_size = V(1.0) / simd::sqrt(square);
   const V weight = V(q.reference_density * q.surface_depth) * simd::max(inwards * per_size, V(1e-9));
-  const V off = V(0.5) * twice_p - weight;
+  const V off = V(0.5) * (twice_p + stress) - weight;
   const V rough = smooth_step(simd::max(off, V(0.0) - off) / weight, calm_within, rough_beyond);
   const V counts = outer * (V(1.0) - rough);
-  const V along = V(surface_answer) * off + V(curvature_in_slope * q.surface_depth) * curved * per_size - twice_p;
+  const V along = V(surface_answer) * (off - V(0.5) * stress) +
+                  V(curvature_in_slope * q.surface_depth) * curved * per_size - twice_p;
   for (std::size_t d = 0; d < Dim; ++d) {
     const V change = simd::fma(along, b[d], grad_p[d] + s.pressure[d]);
     force[d] = simd::fma(counts, change, force[d]);
