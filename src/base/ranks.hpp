@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -62,6 +63,21 @@ inline Communicator* available() { return detail::given; }
 inline Communicator* active() { return detail::shared ? detail::given : nullptr; }
 inline void give(Communicator* communicator) { detail::given = communicator; }
 inline void share() { detail::shared = detail::given != nullptr; }
+
+/// As long as it lives, `alone` makes this process one without others: for what every rank holds and computes itself,
+/// with the same bits, so that nothing is to be shared out or reduced.
+class Alone {
+ public:
+  explicit Alone(bool alone = true) {
+    if (alone) detail::given = nullptr;
+  }
+  ~Alone() { detail::given = all_; }
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+
+ private:
+  Communicator* all_ = detail::given;
+};
 
 inline bool is_first() { return !detail::given || detail::given->rank() == 0; }
 
@@ -158,17 +174,29 @@ int best(T& candidate, Better&& better) {
   return static_cast<int>(first);
 }
 
-/// Sums that go through the particles in the order of one process: each rank takes `value` from the one before it,
-/// calls `add`, and hands it on; at last all have it. For what happens once a run.
+/// Bytes of a sum, or of several that stand side by side.
+struct Sums {
+  void* data;
+  std::size_t bytes;
+};
+
+/// Sums that go through the particles in the order of one process: each rank takes `sums` from the one before it, calls
+/// `add`, and hands them on; at last all have them. For what happens once a run or once in many steps.
+template <class Add>
+void in_turn(std::initializer_list<Sums> sums, Add&& add) {
+  Communicator* const all = active();
+  if (all && all->rank() > 0)
+    for (const Sums& s : sums) all->receive(s.data, s.bytes, all->rank() - 1);
+  add();
+  if (!all) return;
+  if (all->rank() + 1 < all->size())
+    for (const Sums& s : sums) all->send(s.data, s.bytes, all->rank() + 1);
+  for (const Sums& s : sums) all->broadcast(s.data, s.bytes, all->size() - 1);
+}
 template <class T, class Add>
 void in_turn(T& value, Add&& add) {
   static_assert(std::is_trivially_copyable_v<T>);
-  Communicator* const all = active();
-  if (all && all->rank() > 0) all->receive(&value, sizeof value, all->rank() - 1);
-  add();
-  if (!all) return;
-  if (all->rank() + 1 < all->size()) all->send(&value, sizeof value, all->rank() + 1);
-  all->broadcast(&value, sizeof value, all->size() - 1);
+  in_turn({Sums{&value, sizeof value}}, add);
 }
 
 }  // namespace ranks

@@ -64,6 +64,8 @@ class CellGrid {
 
   std::size_t cells() const { return begin_.size(); }
   std::size_t images() const { return images_.size(); }
+  /// Of a grid that is not shared: how many particles were sorted.
+  std::size_t particles() const { return walk_.empty() ? 0 : end_[walk_.back()]; }
   const std::vector<Image>& image_list() const { return images_; }
   const std::array<double, 3>& period() const { return period_; }
 
@@ -131,6 +133,11 @@ class CellGrid {
   /// Marks, by padded cell, the cells of other particles that a search of this radius about the own ones of `about`
   /// looks into.
   void mark(const CellGrid& about, float reach, std::vector<char>& needed) const;
+  /// The same about those particles of a phase, whole on every rank, whose row is this rank's by `owners`.
+  void mark(const CellGrid& about, const std::vector<std::int32_t>& owners, float reach,
+            std::vector<char>& needed) const;
+  /// The rank that owns the cell of a search position.
+  std::int32_t rank_of(const std::array<float, 3>& x) const;
   /// Makes ghosts in the marked cells, those beyond periodic sides among them.
   void take_ghosts(const std::vector<char>& needed);
   /// Sends an item of `width` bytes for every ghost that other ranks have of this one's particles: pack(image, item)
@@ -187,6 +194,7 @@ class CellGrid {
   void migrate(PhaseParticles& particles);
   void balance();
   void make_own_images(const PhaseParticles& particles);
+  void mark_box(const std::array<float, 3>& low, const std::array<float, 3>& high, std::vector<char>& needed) const;
   std::size_t halo_number(std::uint32_t cell) const;
   SharedCells::Question ask_owners(const std::vector<char>& needed);
   std::size_t place_ghosts(const SharedCells::Question& question);

@@ -153,25 +153,56 @@ void CellGrid::make_own_images(const PhaseParticles& particles) {
   }
 }
 
+/// Marks the cells of a box.
+void CellGrid::mark_box(const std::array<float, 3>& low, const std::array<float, 3>& high,
+                        std::vector<char>& needed) const {
+  std::array<int, 3> first{0, 0, 0}, last{0, 0, 0};
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    first[d] = cell_coordinate(low[d], d);
+    last[d] = cell_coordinate(high[d], d);
+  }
+  for (int z = first[2]; z <= last[2]; ++z)
+    for (int y = first[1]; y <= last[1]; ++y) {
+      const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
+      std::fill(needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(first[0])),
+                needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(last[0]) + 1), char{1});
+    }
+}
+
 void CellGrid::mark(const CellGrid& about, float reach, std::vector<char>& needed) const {
   const auto [from, to] = about.own_walk();
   for (std::size_t w = from; w < to; ++w) {
     const std::uint32_t cell = about.walk_[w];
     if (about.begin_[cell] == about.end_[cell]) continue;
-    std::array<int, 3> first{0, 0, 0}, last{0, 0, 0};
+    std::array<float, 3> first{}, last{};
     for (std::size_t d = 0; d < dimensions_; ++d) {
       const float* x = about.search_position(static_cast<int>(d));
       const auto [low, high] = std::minmax_element(x + about.begin_[cell], x + about.end_[cell]);
-      first[d] = cell_coordinate(*low - reach, d);
-      last[d] = cell_coordinate(*high + reach, d);
+      first[d] = *low - reach;
+      last[d] = *high + reach;
     }
-    for (int z = first[2]; z <= last[2]; ++z)
-      for (int y = first[1]; y <= last[1]; ++y) {
-        const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
-        std::fill(needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(first[0])),
-                  needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(last[0]) + 1), char{1});
-      }
+    mark_box(first, last, needed);
   }
+}
+
+void CellGrid::mark(const CellGrid& about, const std::vector<std::int32_t>& owners, float reach,
+                    std::vector<char>& needed) const {
+  const std::int32_t own = ranks::active()->rank();
+  for (std::size_t k = 0; k < owners.size(); ++k) {
+    if (owners[k] != own) continue;
+    std::array<float, 3> first{}, last{};
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      first[d] = about.search_[d][k] - reach;
+      last[d] = about.search_[d][k] + reach;
+    }
+    mark_box(first, last, needed);
+  }
+}
+
+std::int32_t CellGrid::rank_of(const std::array<float, 3>& x) const {
+  const SharedCells& s = *shared_;
+  const auto cell = static_cast<std::uint32_t>(cell_of(x));
+  return s.owner[cell] >= 0 ? s.owner[cell] : s.owner[halo_cells_[halo_number(cell)].source];
 }
 
 std::size_t CellGrid::halo_number(std::uint32_t cell) const {

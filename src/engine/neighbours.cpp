@@ -14,6 +14,7 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
       directions_(std::move(directions)),
       grids_(spacings.size()),
       lists_(directions_.size()),
+      owners_(spacings.size()),
       ranges_(spacings.size()),
       padding_(padding),
       skin_(skin),
@@ -225,7 +226,8 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force, cons
   }
   kept_ = 0;
   for (std::size_t p = 0; p < grids_.size(); ++p) {
-    if (!grids_[p] || (!first && !has_moved(p) && !ranks::active())) continue;
+    const bool shared = ranks::active() && !particles[p].is_whole();  // then others may have gone elsewhere
+    if (!grids_[p] || (!first && !has_moved(p) && !shared)) continue;
     PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
     grids_[p]->sort(particles[p]);
   }
@@ -254,6 +256,10 @@ void Neighbours::search(const std::vector<PhaseParticles>& particles, const std:
     const std::uint32_t dummy = PairList::dummy_index(particles[d.b].size(), grids_[d.b]->images());
     searches_.push_back({grids_[d.a].get(), particles[d.a].size(), grids_[d.b].get(), d.a == d.b,
                          d.radius * (1.0 + skin_), dummy, bounds_.dimensions});
+    if (!owners_[d.a].empty() && grids_[d.b]->is_shared()) {
+      searches_.back().ranks = owners_[d.a].data();
+      searches_.back().own_rank = ranks::active()->rank();
+    }
     const std::size_t count = lists_[q].prepare(particles[d.a].size(), padding_);
     for (std::size_t number = 0; number < count; ++number) chunks_.push_back({q, number});
   }
@@ -282,6 +288,7 @@ void Neighbours::archive(Archive& a, std::vector<PhaseParticles>& particles, boo
     grid->archive(a);
   }
   if (whole && a.loads()) share(particles);
+  else if (a.loads() && ranks::active()) find_owners();
   if (a.loads()) search(particles, {});
 }
 

@@ -52,6 +52,9 @@ class Neighbours {
   void archive(Archive& a, std::vector<PhaseParticles>& particles, bool whole = false);
   void gather();
   void forget_gathered();
+  /// On several ranks, of a phase that is whole on every one of them and looks for particles of one that is shared out:
+  /// by particle, the rank that has its neighbours of all phases; its rows are empty on the others. Else empty.
+  const std::vector<std::int32_t>& owners(std::size_t phase) const { return owners_[phase]; }
 
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
@@ -71,6 +74,7 @@ class Neighbours {
   void measure(const PhaseParticles& particles, std::size_t phase);
   bool has_moved(std::size_t phase) const;
   void share(std::vector<PhaseParticles>& particles);
+  void find_owners();
   void take_ghosts();
   void widen_by_ranks();
   void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);
@@ -79,6 +83,7 @@ class Neighbours {
   std::vector<Direction> directions_;
   std::vector<std::unique_ptr<CellGrid>> grids_;  // null for a phase without entries
   std::vector<PairList> lists_;
+  std::vector<std::vector<std::int32_t>> owners_;  // by phase
   std::vector<PairList::Search> searches_;  // by list, of the last update
   struct Chunk {
     std::size_t list, number;

@@ -111,7 +111,12 @@ void search_rows(Chunk& c, const PairList::Search& search, std::size_t number, s
     auto low = place(group), high = low;
     const auto cell = grid_a.cell_of(low);
     std::size_t end = group + 1;
-    for (; end < last; ++end) {
+    if (search.ranks && search.ranks[group] != search.own_rank) {
+      c.begin[group - first] = used;
+      group = end;
+      continue;
+    }
+    for (; end < last && (!search.ranks || search.ranks[end] == search.own_rank); ++end) {
       const auto x = place(end);
       if (grid_a.cell_of(x) != cell) break;
       for (std::size_t d = 0; d < Dim; ++d) {

@@ -47,6 +47,8 @@ class PairList {
     double radius;
     std::uint32_t dummy;
     int dimensions;
+    const std::int32_t* ranks = nullptr;  // by particle of `a`: whose row it is, the rows of others are empty; null: all
+    std::int32_t own_rank = 0;
   };
 
   /// Makes room for the rows of `size_a` particles, padded to multiples of `padding`, a power of two; returns the

@@ -196,6 +196,7 @@ void ForceOn::measure_volume() {
 /// Adds `share` of mass times (acceleration - less), and its moment.
 void ForceOn::add_sums(double share, const Vec3& less) {
   const PhaseParticles& p = set_.particles();
+  const ranks::Alone alone(p.is_whole());
   const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
   std::array<const double*, 3> x{}, a{};
   for (std::size_t d = 0; d < dimensions; ++d) {

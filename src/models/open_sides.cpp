@@ -174,6 +174,7 @@ void OpenSides::book(const PhaseParticles& p, std::size_t k, Departed& departed)
 
 void OpenSides::leave() {
   PhaseParticles& p = w_->particles(phase_);
+  const ranks::Alone alone(p.is_whole());
   if (!ranks::any(any_beyond(p))) return;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;

@@ -55,6 +55,7 @@ class ForceEntry : public Model {
     pair_forces(w_->particles(phase), w_->records(phase, Record::motion),
                 PairEntry<Law>{&w_->list(entry_.direction(phase)), &w_->records(entry_.partner(phase), Record::motion),
                                entry_.kernel, entry_.radius, law});
+    w_->share_field(phase, Field::acceleration);
   }
 
   const Layout& layout_;

@@ -119,6 +119,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   wall_motions.resize(phases, nullptr);
   for (std::size_t k = 0; k < phases; ++k) {
     const PlanPhase& p = layout.phases[k];
+    if (ranks::available() && layout.is_whole(k)) state.phases[k].be_whole();
     records_.push_back(std::make_unique<PhaseRecords>(p.name, layout.dimensions));
     if (read[k]) need(k, Record::motion);
     if (seen[k]) need(k, Record::extended);
@@ -205,7 +206,7 @@ void CommonWork::find_neighbours() {
   const auto beside = [this] {
     for (const auto& call : w_->when_sorted) call();
   };
-  if (layout_.directions.empty()) return;
+  if (layout_.directions.empty()) return ranks::share();
   long changes = 0;
   for (const auto& p : w_->state.phases) changes += p.changes();
   const bool others = w_->must_search || changes != w_->changes_of_lists;  // particles than the lists are of

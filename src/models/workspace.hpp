@@ -63,6 +63,10 @@ class Workspace : public Halo {
   /// One call for whoever reads images outside of the schedule; before tasks, the schedule calls it.
   void fill_images(std::size_t phase, Record record) override;
   void outdate_images(std::size_t phase, Record record) override { records_[phase]->outdate_images(record); }
+  /// On several ranks, after a task whose loop went over the rows of a phase that is whole on every rank: some rows are
+  /// other ranks' (Neighbours::owners). Every rank gets what the owner of each particle has: a field, records.
+  void share_field(std::size_t phase, Field field);
+  void share_records(std::size_t phase, Record record);
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;

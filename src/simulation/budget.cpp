@@ -54,6 +54,7 @@ Budget::Sums Budget::sums(const State& state) const {
   Sums s;
   for (const Moving& moving : moving_) {
     const PhaseParticles& p = state.phases[moving.phase];
+    const ranks::Alone alone(p.is_whole());
     const std::size_t n = p.size();
     s.mass += reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i); });
     for (int d = 0; d < p.dimensions(); ++d) {

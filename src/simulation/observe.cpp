@@ -13,6 +13,7 @@ std::uint64_t Simulation::pairs(const PlanEntry& e) const {
   for (const int direction : {e.forward, e.backward})
     if (direction >= 0) n += work_->list(direction).entries();
   for (const auto& model : models_) n += model->pairs(e);
+  const ranks::Alone alone(state_.phases[e.a].is_whole() && state_.phases[e.b].is_whole());
   return ranks::total(n);
 }
 
@@ -116,6 +117,7 @@ FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& wr
 
 void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   const auto& p = state_.phases[k];
+  const ranks::Alone alone(p.is_whole());
   const std::size_t n = p.size(), shown = ranks::total(shown_of(k));
   std::array<const double*, 3> v{};
   for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "engine/team.hpp"
 #include "scene/couplings.hpp"
 #include "scene/ground.hpp"
@@ -219,6 +220,7 @@ Scene softened(Scene s, double stiffness) {
 }  // namespace
 
 SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
+  const ranks::Alone alone;  // every rank makes the whole bed
   const SettlingRoom c = settling_room(scene, k);
   const Scene s = settling_scene(scene, k, c);
   double thickness = 0.0;

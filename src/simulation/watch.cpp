@@ -116,6 +116,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   for (const auto& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const PlanPhase& plan = see_.plan.phases[g.phase];
+    const ranks::Alone alone(p.is_whole());
     const auto count = static_cast<double>(ranks::total(p.size()));
     mass_ += p.mass() * count;
     start_energy_ += 0.5 * p.mass() * count * std::pow(plan.rules.idle * plan.sound_speed, 2);
@@ -248,6 +249,7 @@ double Watch::look_at_phases(const Moment& now) {
   double fastest_solid = 0.0, energy = 0.0, wrong = 0.0;
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
+    const ranks::Alone alone(p.is_whole());
     const double bound = speed_bound(g, now.dt), bound2 = bound * bound;
     const auto n = static_cast<std::int64_t>((p.size() + block - 1) / block);
     if (parts_.size() < static_cast<std::size_t>(n)) parts_.resize(static_cast<std::size_t>(n));
@@ -288,9 +290,10 @@ bool Watch::too_near(Apart& pair) const {
   see_.work.fill_images(pair.b, record);  // no task may have read them since they were packed
   const RecordArray &own = see_.work.records(pair.a, record), &others = see_.work.records(pair.b, record);
   const std::size_t n = see_.particles[pair.a].size();
-  const double least = see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
-                       : pair.stress             ? least_separation<3, 16>(n, list, own, others)
-                                                 : least_separation<3, 8>(n, list, own, others);
+  const double least =
+      ranks::least(see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
+                   : pair.stress             ? least_separation<3, 16>(n, list, own, others)
+                                             : least_separation<3, 8>(n, list, own, others));
   pair.left = std::sqrt(std::min(least, pair.reach * pair.reach)) - pair.distance;
   return pair.left < 0.0;
 }
@@ -345,6 +348,7 @@ double Watch::strongest_force(const Moment& now) const {
   double strongest = drag_;
   for (const Force& f : forces_) {
     const PhaseParticles& p = see_.particles[f.phase];
+    const ranks::Alone alone(p.is_whole());
     const bool constant =
         f.acceleration[0].is_constant() && f.acceleration[1].is_constant() && f.acceleration[2].is_constant();
     const std::size_t stride = constant ? p.size() : std::max<std::size_t>(1, ranks::total(p.size()) / sample);

@@ -163,7 +163,7 @@ void Watch::tell_worst(const Moment& now) const {
     for (std::size_t k = 0; k < p.size(); ++k) {
       const auto found = wrong_with(g, k, now.dt);
       if (!found) continue;
-      ++wrong;
+      if (!p.is_whole() || ranks::is_first()) ++wrong;
       if (lowest >= 0 && p.id()[k] > lowest) continue;
       lowest = p.id()[k];
       what = *found;
@@ -205,18 +205,22 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
       any = true;
     }
   }
+  std::int64_t lowest = any ? a.id()[first] : -1;  // a row may be that of one rank alone
+  const int rank = ranks::best(lowest, [](std::int64_t x, std::int64_t y) { return x >= 0 && (y < 0 || x < y); });
   const double spacing = 0.5 * (see_.plan.phases[pair.a].spacing + see_.plan.phases[pair.b].spacing);
   const std::string near = brief(distance / spacing) + " spacings (bound " + brief(pair.distance / spacing) + ")";
   const std::string& stiffer = see_.plan.phases[pair.a].rules.stiffness_key;
   if (!see_.plan.phases[pair.b].moves)
-    throw BreakdownError(who(pair.a, first, now) + " is deep in the wall \"" + b.name() + "\", " + near +
-                         " from a particle of it; it was too fast or pressed too hard for the contact, or the fills "
-                         "overlap: raise " +
-                         stiffer + ", or move the fills apart");
-  throw BreakdownError(who(pair.a, first, now) + " is in the same place as " + see_.plan.phases[pair.b].rules.one +
-                       " " + std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
-                       " apart; the contact could not keep them apart, or the fills overlap: raise " + stiffer +
-                       ", or move the fills apart");
+    throw BreakdownError(ranks::text_of(
+        rank, who(pair.a, first, now) + " is deep in the wall \"" + b.name() + "\", " + near +
+                  " from a particle of it; it was too fast or pressed too hard for the contact, or the fills "
+                  "overlap: raise " +
+                  stiffer + ", or move the fills apart"));
+  throw BreakdownError(ranks::text_of(
+      rank, who(pair.a, first, now) + " is in the same place as " + see_.plan.phases[pair.b].rules.one + " " +
+                std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
+                " apart; the contact could not keep them apart, or the fills overlap: raise " + stiffer +
+                ", or move the fills apart"));
 }
 
 /// Pairing: the kernel no longer separates two particles. A fault when more than a share is nearer than pair_distance
@@ -300,8 +304,11 @@ void Watch::look_at_energy(const Moment& now) {
   speed += wall_speed_;
   note_speed(speed - start_speed_, now);
   double mass = 0.0;  // of more particles than at the start: those that entered have no more than the largest speed
-  for (const Guard& g : guards_)
-    mass += see_.particles[g.phase].mass() * static_cast<double>(ranks::total(see_.particles[g.phase].size()));
+  for (const Guard& g : guards_) {
+    const PhaseParticles& p = see_.particles[g.phase];
+    const ranks::Alone alone(p.is_whole());
+    mass += p.mass() * static_cast<double>(ranks::total(p.size()));
+  }
   const double bound = WatchBounds::energy * 0.5 * std::max(mass, mass_) * speed * speed;
   if (energy_ <= bound) return;
   throw BreakdownError("the kinetic energy of all particles, " + brief(energy_) + " J, is more than " +

@@ -6,20 +6,26 @@ namespace barchan {
 
 namespace {
 
-/// Of each phase the values of all ranks, one rank after another, as one process has them; `counts`: of this rank's
-/// particles of each phase; `width`: values a particle.
+/// Values of this rank's particles of a phase. Of one that is whole only those of the first rank count.
+struct Held {
+  std::size_t count = 0;
+  bool whole = false;
+};
+
+/// Of each phase the values of all ranks, one rank after another, as one process has them; `width`: values a particle.
 template <class T>
-void gather(std::vector<T>& values, const std::vector<std::size_t>& counts, std::size_t width) {
+void gather(std::vector<T>& values, const std::vector<Held>& phases, std::size_t width) {
   std::vector<T> whole;
   std::size_t at = 0;
-  for (const std::size_t count : counts) {
+  for (const Held& held : phases) {
+    const std::size_t count = held.whole && !ranks::is_first() ? 0 : held.count;
     const std::vector<std::size_t> of_ranks = ranks::each(count);
     std::size_t total = 0;
     for (const std::size_t n : of_ranks) total += n;
     const std::size_t before = whole.size();
     if (ranks::is_first()) whole.resize(before + total * width);
     ranks::active()->gather(values.data() + at * width, count, whole.data() + before, of_ranks, width * sizeof(T));
-    at += count;
+    at += held.count;
   }
   values = std::move(whole);
 }
@@ -28,8 +34,8 @@ void gather(std::vector<T>& values, const std::vector<std::size_t>& counts, std:
 
 /// The frame of all ranks on the first one; an empty one on the others.
 void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written) const {
-  std::vector<std::size_t> counts;
-  for (const std::size_t k : written) counts.push_back(shown_of(k));
+  std::vector<Held> counts;
+  for (const std::size_t k : written) counts.push_back({shown_of(k), state_.phases[k].is_whole()});
   gather(f.points, counts, 3);
   gather(f.id, counts, 1);
   gather(f.phase, counts, 1);

@@ -106,13 +106,17 @@ class PhaseParticles {
 
   // Of a run on several ranks: a phase holds the particles of its rank (engine/cell_ranks.cpp).
 
+  /// Every rank holds all particles of the phase, moves them, and has the same bits.
+  void be_whole() { is_whole_ = true; }
+  bool is_whole() const { return is_whole_; }
   /// From now on it holds those at the places first .. last - 1 alone, and checkpoints may hold other numbers.
   void keep_range(std::size_t first, std::size_t last);
   /// Bytes of a particle on its way: id, fields, own columns.
   std::size_t packed_width() const;
   void pack(std::size_t k, std::byte* to) const;
   void unpack(std::size_t k, const std::byte* from);
-  /// The particles of all ranks, one rank after another, on the first rank; none on the others.
+  /// The particles of all ranks, one rank after another, on the first rank; none on the others. Of a phase that is
+  /// whole: its particles.
   PhaseParticles gathered() const;
   /// The same of those at the places for which `wanted` is true, with these fields, no own columns.
   PhaseParticles gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const;
@@ -136,7 +140,7 @@ class PhaseParticles {
   std::string name_;
   int dimensions_;
   std::size_t size_;
-  bool may_change_ = false, is_part_ = false, keeps_places_ = false, in_order_ = false;
+  bool may_change_ = false, is_part_ = false, is_whole_ = false, keeps_places_ = false, in_order_ = false;
   std::uint32_t arrangements_ = 0;
   long changes_ = 0;
   std::int64_t first_id_;

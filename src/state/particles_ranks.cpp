@@ -88,7 +88,7 @@ void PhaseParticles::unpack(std::size_t k, const std::byte* from) {
 PhaseParticles PhaseParticles::gathered() const {
   PhaseParticles whole = *this;
   Communicator* const all = ranks::active();
-  if (!all) return whole;
+  if (!all || is_whole_) return whole;
   const std::size_t width = packed_width();
   const std::vector<std::size_t> counts = ranks::each(size_);
   const std::size_t total = all->rank() == 0 ? std::accumulate(counts.begin(), counts.end(), std::size_t{0}) : 0;
@@ -105,6 +105,7 @@ PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::funct
   for (std::size_t k = 0; k < size_; ++k)
     if (wanted(k)) from.push_back(k);
   PhaseParticles part(name_, dimensions_, from.size(), mass_, first_id_);
+  part.is_whole_ = is_whole_;
   for (std::size_t k = 0; k < from.size(); ++k) part.id_[k] = id_[from[k]];
   for (std::size_t f = 0; f < field_count; ++f) {
     const auto field = static_cast<Field>(f);

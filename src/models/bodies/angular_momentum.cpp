@@ -10,6 +10,7 @@ double sum_over(const PhaseParticles* const* phases, std::size_t count, auto&& t
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     const PhaseParticles& p = *phases[k];
+    const ranks::Alone alone(p.is_whole());
     sum += reproducible_sum(p.size(), [&](std::size_t i) { return p.mass_of(i) * term(p, i); });
   }
   return sum;

@@ -269,6 +269,7 @@ void ElasticPhase::take_power() {
 /// p = (K/rho0)(rho - rho0), and s:s/(4 G) a cubic metre of the deviator.
 double ElasticPhase::strain_energy() const {
   const PhaseParticles& p = w_->particles(number_);
+  const ranks::Alone alone(p.is_whole());
   const double* rho = p.column(Field::density);
   std::array<const double*, 6> s{};
   for (int c = 0; c < 6; ++c) s[static_cast<std::size_t>(c)] = p.column(Field::stress, c);
@@ -286,6 +287,7 @@ void ElasticPhase::history(HistoryRow& row) const {
   add_angular_momentum(row, w_->particles(number_), layout_);
   if (!phase_.elastic().energy) return;
   const PhaseParticles& p = w_->particles(number_);
+  const ranks::Alone alone(p.is_whole());
   const double* e = p.column(Field::energy);
   row.add(plan_.name + "_internal_energy [J]",
           p.mass() * reproducible_sum(p.size(), [&](std::size_t k) { return e[k]; }));

@@ -14,18 +14,6 @@ namespace barchan {
 
 namespace {
 
-/// Every rank makes the whole body for itself: its search is not shared out.
-class Alone {
- public:
-  Alone() { ranks::give(nullptr); }
-  ~Alone() { ranks::give(all_); }
-  Alone(const Alone&) = delete;
-  Alone& operator=(const Alone&) = delete;
-
- private:
-  Communicator* all_ = ranks::available();
-};
-
 /// A neighbour of a particle: its number, X_ab (m), w.
 struct Near {
   std::int64_t b;
@@ -44,7 +32,7 @@ std::vector<std::vector<Near>> find_near(const std::vector<Vec3>& places, const 
   const auto dimensions = static_cast<std::size_t>(bounds.dimensions);
   for (std::size_t d = 0; d < dimensions; ++d)
     for (std::size_t k = 0; k < n; ++k) p.column(Field::position, static_cast<int>(d))[k] = places[k][d];
-  const Alone alone;
+  const ranks::Alone alone;  // every rank makes the whole body
   Neighbours search(bounds, {{0, 0, radius}}, 1e-3, {spacing}, simd::width_in_use<double>(), n);
   search.update(all, true);
   const auto& images = search.grid(0).image_list();

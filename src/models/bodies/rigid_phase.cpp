@@ -220,6 +220,7 @@ void RigidPhase::add_particles(RigidBody& body) const {
     return f;
   };
   const std::uint32_t* const place_of = p.places() + body.first;
+  const ranks::Alone alone(p.is_whole());
   for (std::size_t d = 0; d < 3; ++d) {
     body.now.touch_force[d] += reproducible_sum(body.count, [&](std::size_t k) { return force_on(place_of[k])[d]; });
     body.now.touch_torque[d] += reproducible_sum(

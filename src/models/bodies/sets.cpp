@@ -120,6 +120,7 @@ void DrivenSet::lead() { set_velocity(w_->state.time + 0.5 * w_->state.dt); }
 /// The forces of the step are known: they are noted, and the set goes on as it is driven.
 void DrivenSet::hold() {
   const PhaseParticles& p = set_.particles();
+  const ranks::Alone alone(p.is_whole());
   Vec3 force{};
   for (int d = 0; d < layout_.dimensions; ++d) {
     const double* a = p.column(Field::acceleration, d);
@@ -165,6 +166,7 @@ void MarkedSet::attach(Workspace& w) { set_.attach(w, "marker." + std::to_string
 
 void MarkedSet::history(HistoryRow& row) const {
   const PhaseParticles& p = set_.particles();
+  const ranks::Alone alone(p.is_whole());
   const auto n = static_cast<double>(set_.count());
   for (int d = 0; d < std::min(layout_.dimensions, 3); ++d) {
     const double* x = p.column(Field::position, d);

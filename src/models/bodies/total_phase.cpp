@@ -230,6 +230,7 @@ void TotalPhase::derive() {
     return solid_of(detail.gradient, id, layout_.dimensions, parameters_.law, parameters_.moduli);
   };
   for (std::size_t id = 0; id < p.size(); ++id) fields.write(p.places()[id], solid(id));
+  const ranks::Alone alone(p.is_whole());
   strain_energy_ = volume * reproducible_sum(p.size(), [&](std::size_t id) { return solid(id).energy; });
   hourglass_energy_ = volume * reproducible_sum(p.size(), [&](std::size_t id) { return detail.hourglass[id]; });
 }

@@ -370,6 +370,7 @@ void ColumnPhase::history(HistoryRow& row) const {
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
     const double* drag = p.column(Field::drag_acceleration, 0);
+    const ranks::Alone alone(p.is_whole());
     const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
     momentum -= time * reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
+
 namespace barchan {
 
 AirGrid::AirGrid(const Bounds& bounds, double spacing) : bounds_(bounds) {
@@ -46,12 +48,17 @@ void AirGrid::gather(const PhaseParticles& air) {
   const double *x = air.column(Field::position, 0), *y = air.column(Field::position, 1);
   const double *u = air.column(Field::velocity, 0), *v = air.column(Field::velocity, 1);
   const double m = air.mass();
-  for (std::size_t k = 0; k < air.size(); ++k)
-    for (const auto& [node, weight] : corners({x[k], y[k]})) {
-      mass_[node] += m * weight;
-      velocity_[node][0] += m * weight * u[k];
-      velocity_[node][1] += m * weight * v[k];
-    }
+  const auto add = [&] {
+    for (std::size_t k = 0; k < air.size(); ++k)
+      for (const auto& [node, weight] : corners({x[k], y[k]})) {
+        mass_[node] += m * weight;
+        velocity_[node][0] += m * weight * u[k];
+        velocity_[node][1] += m * weight * v[k];
+      }
+  };
+  ranks::in_turn({ranks::Sums{mass_.data(), mass_.size() * sizeof(double)},
+                  ranks::Sums{velocity_.data(), velocity_.size() * sizeof(Flat)}},
+                 add);
   for (std::size_t n = 0; n < mass_.size(); ++n)
     for (double& c : velocity_[n]) c = mass_[n] > 0.0 ? c / mass_[n] : 0.0;
 }

@@ -51,6 +51,7 @@ void SolidInFluid::extend() {
   // The acceleration of the last step: the one of this step is computed later.
   extend_into_solid(w_->particles(solid_), w_->to_write(solid_, Record::extended), sources_, scene_.domain.gravity,
                     rule_);
+  w_->share_records(solid_, Record::extended);
   share_extended(*w_, solid_);
 }
 
@@ -58,10 +59,10 @@ void SolidInFluid::react() {
   PhaseParticles& solid = w_->particles(solid_);
   const RecordArray& extended = w_->records(solid_, Record::extended);
   for (const auto& fluid : felt_) fluid_reaction(solid, extended, fluid, separate_);
-  if (!separate_) return;
-  for (std::size_t c = 0; c < felt_.size(); ++c)
+  for (std::size_t c = 0; separate_ && c < felt_.size(); ++c)
     if (layout_.phases[fluids_[c]].eddies)
       eddy_reaction(solid, extended, felt_[c], w_->eddies(fluids_[c]), felt_[c].viscosity);
+  w_->share_field(solid_, Field::acceleration);
 }
 
 }  // namespace barchan

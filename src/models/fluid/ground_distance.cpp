@@ -109,6 +109,7 @@ bool GroundDistance::are_known(std::span<const Ground> phases) {
   for (const Ground& phase : phases) {
     std::vector<Piece> pieces;
     each_piece(phase, [&](const Piece& piece) { pieces.push_back(piece); });
+    const ranks::Alone alone(phase.particles->is_whole());
     ranks::join(pieces);
     of_ranks_.insert(of_ranks_.end(), pieces.begin(), pieces.end());
   }

@@ -139,7 +139,7 @@ void VoidFinder::take_ghosts(std::span<const Seen> seen) {
   if (ghosts_.size() < seen.size()) ghosts_.resize(seen.size());
   if (!seen.front().grid->is_shared()) return;
   for (std::size_t s = 0; s < seen.size(); ++s)
-    for (int d = 0; d < seen[s].particles->dimensions(); ++d)
+    for (int d = 0; seen[s].grid->is_shared() && d < seen[s].particles->dimensions(); ++d)
       seen[s].grid->take_values(seen[s].particles->column(Field::position, d), ghosts_[s][static_cast<std::size_t>(d)]);
   marked_.assign(seen.front().grid->images(), 0);
 }

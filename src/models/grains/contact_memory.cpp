@@ -43,7 +43,7 @@ void ContactMemory::keep(std::size_t moving, std::size_t all, std::span<const Sp
     for (const SphereChunk& chunk : chunks) {
       pairs_of(chunk, call);
       for (const auto& at : chunk.sides)
-        if (at.touches) call(before[at.sphere], side(at.axis, at.sign), at.memory, std::size_t{1});
+        if (at.touches != 0) call(before[at.sphere], side(at.axis, at.sign), at.memory, std::size_t{1});
     }
   };
   each([&](std::uint32_t number, std::uint32_t, const double*, std::size_t) { ++begin_[number + 1]; });

@@ -36,6 +36,7 @@ void GrainFlux::schedule(Schedule& s) {
 double GrainFlux::flux() const {
   const PhaseParticles& p = w_->particles(grains_);
   const double* vx = p.column(Field::velocity, 0);
+  const ranks::Alone alone(p.is_whole());
   return reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * vx[k]; }) / area_;
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "output/series.hpp"
@@ -170,8 +171,11 @@ void GrainSource::schedule(Schedule& s) {
          [this] { enter(); }});
 }
 
-/// Whether no sphere overlaps one at a place.
-bool GrainSource::has_room(const Vec3& x, double radius) const {
+/// Whether no sphere overlaps one at a place, those of walls on other ranks too.
+bool GrainSource::has_room(const Vec3& x, double radius) const { return !ranks::any(is_taken(x, radius)); }
+
+/// Whether some sphere of this rank overlaps one at a place.
+bool GrainSource::is_taken(const Vec3& x, double radius) const {
   for (std::size_t q = 0; q < layout_.phases.size(); ++q) {
     const PlanPhase& other = layout_.phases[q];
     if (!other.sphere_records) continue;
@@ -188,10 +192,10 @@ bool GrainSource::has_room(const Vec3& x, double radius) const {
         squared += apart * apart;
       }
       const double touching = radius + (radii ? radii[k] : 0.5 * other.largest_size);
-      if (squared < touching * touching) return false;
+      if (squared < touching * touching) return true;
     }
   }
-  return true;
+  return false;
 }
 
 /// Puts a grain where it is `age` (s) after it passed the side; false: its place is taken.

@@ -73,6 +73,7 @@ class GrainSource : public Model {
   void enter();
   bool place(const Arrivals::Grain& grain, double age);
   bool has_room(const Vec3& x, double radius) const;
+  bool is_taken(const Vec3& x, double radius) const;
 
   const Scene& scene_;
   const Layout& layout_;

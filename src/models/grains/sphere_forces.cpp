@@ -212,13 +212,13 @@ void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereC
   const double radius = r[R::radius], distance = at.sign * (r[at.axis] - at.place), overlap = radius - distance;
   const double parts = at.sign * r[R::velocity + at.axis];
   if (!(overlap > -step.dt * std::abs(parts))) {
-    for (std::size_t k = 0; at.touches && k < Law::template springs<Dim>; ++k)
+    for (std::size_t k = 0; at.touches != 0 && k < Law::template springs<Dim>; ++k)
       chunk.lost += law.left_behind() * at.memory[k] * at.memory[k];
-    at.touches = false;
+    at.touches = 0;
     std::fill_n(at.memory, ContactMemory::most_numbers, 0.0);
     return;
   }
-  at.touches = true;
+  at.touches = 1;
   TouchingSpheres<One, Dim> s;
   for (std::size_t d = 0; d < Dim; ++d) {
     s.normal[d] = One(d == at.axis ? at.sign : 0.0);

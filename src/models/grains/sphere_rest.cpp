@@ -135,7 +135,7 @@ void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::vector<
       else if (m.b != Meeting::side && (own = find(m.b, -1.0 * m.branch, m.reach)))
         set_slips(step, m, -1.0 * own->force, -1.0 * own->torque, memory, apart);
       if (!own) return;
-      if (m.b == Meeting::side) chunk.sides[at].touches = true;
+      if (m.b == Meeting::side) chunk.sides[at].touches = 1;
       else chunk.set_touching(at);
     });
   }
@@ -149,7 +149,7 @@ std::vector<RestingContact> contacts_at_rest(const SphereStep& step, const Spher
   for (const SphereChunk& chunk : chunks)
     each_meeting(step, s, chunk, [&](const Meeting& m, const double* memory, std::size_t apart, std::size_t at) {
       const bool side = m.b == Meeting::side;
-      const bool touches = side ? chunk.sides[at].touches : chunk.touching(at);
+      const bool touches = side ? chunk.sides[at].touches != 0 : chunk.touching(at);
       // Both chunks of a pair have it: that of the first tells.
       const bool own = side || (chunk.a[at] >= chunk.begin && chunk.a[at] < chunk.end);
       if (!touches || !own || !step.rubs || m.a < first || m.a >= first + count) return;

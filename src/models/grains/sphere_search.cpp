@@ -122,7 +122,7 @@ void SphereSearch::place(const SphereSet& s, SphereChunk& chunk, const std::vect
     const auto batches = static_cast<std::uint32_t>((all + batch - 1) / batch);
     const auto first = at / static_cast<std::uint32_t>(batch);
     if (chunk.groups.capacity() == chunk.groups.size()) chunk.groups.reserve(2 * chunk.groups.size() + 8);
-    chunk.groups.push_back({key / 4, first, first + batches, key % 4 == 0 ? 1.0 : 0.5});
+    chunk.groups.push_back({key / 4, first, first + batches, 0, key % 4 == 0 ? 1.0 : 0.5});
     next[key] = at;
     next[key + 1] = at + count[key];
     at += batches * static_cast<std::uint32_t>(batch);
@@ -158,7 +158,7 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
       at.place = side.place;
       if (const double* memory = memory_.find(s.numbers[k], ContactMemory::side(side.axis, side.sign))) {
         std::copy_n(memory, memory_.numbers(), at.memory);
-        at.touches = true;
+        at.touches = 1;
       }
     }
 }

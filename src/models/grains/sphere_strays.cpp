@@ -236,7 +236,7 @@ void SphereStrays::add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std
   const auto first = static_cast<std::uint32_t>(batches), end = static_cast<std::uint32_t>(batches + more_batches);
   if (!chunk.groups.empty() && chunk.groups.back().law == law && chunk.groups.back().weight == weight)
     chunk.groups.back().end = end;
-  else chunk.groups.push_back({law, first, end, weight});
+  else chunk.groups.push_back({law, first, end, 0, weight});
   chunk.a[batches * batch] = a;
   chunk.b[batches * batch] = b;
   evaluate(chunk, batches * batch);

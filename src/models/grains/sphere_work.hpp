@@ -68,6 +68,7 @@ struct SphereChunk : ContactBatches {
   /// Batches of one law; `weight`: of their energies, 1/2 where another chunk has the pair too.
   struct Group {
     std::uint32_t law = 0, first = 0, end = 0;
+    std::uint32_t none = 0;  // a checkpoint has every byte: none is without a value
     double weight = 1.0;
   };
   /// A sphere at a side of the domain: the side at `place` on `axis` holds what is above (`side` +1) or below (-1).
@@ -75,9 +76,9 @@ struct SphereChunk : ContactBatches {
     std::uint32_t sphere = 0, law = 0;
     std::uint16_t axis = 0;
     std::int16_t sign = 1;
+    std::uint32_t touches = 0;  // 1: it does; no byte of these is without a value
     double place = 0.0;
     double memory[ContactMemory::most_numbers] = {};
-    bool touches = false;
   };
 
   std::size_t begin = 0, end = 0;  // spheres

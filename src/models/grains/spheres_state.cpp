@@ -15,6 +15,7 @@ void Spheres::history(HistoryRow& row) const {
   for (const Part& part : parts_) {
     const PhaseParticles& p = w_->particles(part.phase);
     if (!p.has(Field::angular_velocity)) continue;
+    const ranks::Alone alone(p.is_whole());
     const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
     turning += reproducible_sum(p.size(), [&](std::size_t k) {
       const double r = radius ? radius[k] : part.mean_radius;
