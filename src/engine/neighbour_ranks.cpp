@@ -45,7 +45,8 @@ void Neighbours::take_ghosts() {
     needed.assign(grids_[b]->cells(), 0);
     for (const auto& d : directions_) {
       if (d.b != b) continue;
-      const auto reach = static_cast<float>(d.radius * (1.0 + skin_) * 1.001);  // a little more than a search looks into
+      // A little more than a search looks into (pair_list.cpp).
+      const auto reach = static_cast<float>(d.radius * (1.0 + skin_) * 1.001);
       if (grids_[d.a]->is_shared()) grids_[b]->mark(*grids_[d.a], reach, needed);
       else grids_[b]->mark(*grids_[d.a], owners_[d.a], reach, needed);
     }

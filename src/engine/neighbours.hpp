@@ -84,7 +84,7 @@ class Neighbours {
   std::vector<std::unique_ptr<CellGrid>> grids_;  // null for a phase without entries
   std::vector<PairList> lists_;
   std::vector<std::vector<std::int32_t>> owners_;  // by phase
-  std::vector<PairList::Search> searches_;  // by list, of the last update
+  std::vector<PairList::Search> searches_;         // by list, of the last update
   struct Chunk {
     std::size_t list, number;
   };

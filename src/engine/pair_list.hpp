@@ -47,7 +47,7 @@ class PairList {
     double radius;
     std::uint32_t dummy;
     int dimensions;
-    const std::int32_t* ranks = nullptr;  // by particle of `a`: whose row it is, the rows of others are empty; null: all
+    const std::int32_t* ranks = nullptr;  // by particle of `a`: whose row it is; others have no row. Null: all have one
     std::int32_t own_rank = 0;
   };
 

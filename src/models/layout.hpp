@@ -234,13 +234,12 @@ struct Layout {
     return 0.5 * (phases[e.a].largest_size + phases[e.b].largest_size);
   }
   double particles() const;
-  /// Whether every rank of a run holds all particles of a phase and moves them: what is no fluid and no wall that others
-  /// look for.
+  /// Whether every rank of a run holds all particles of a phase and moves them: what is no fluid, and no wall that
+  /// others look for.
   bool is_whole(std::size_t phase) const {
     const PlanPhase& p = phases[phase];
-    return (p.moves && !p.flows) || std::none_of(directions.begin(), directions.end(), [&](const Direction& d) {
-             return d.a == phase || d.b == phase;
-           });
+    return (p.moves && !p.flows) || std::none_of(directions.begin(), directions.end(),
+                                                 [&](const Direction& d) { return d.a == phase || d.b == phase; });
   }
   /// For a task that touches these of all phases.
   Touches of_all(const FieldSet& reads, const FieldSet& writes) const {

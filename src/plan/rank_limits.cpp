@@ -19,8 +19,7 @@ void check_phase(const Scene& scene, const Plan& plan, std::size_t number) {
   const PlanPhase& p = plan.phases[number];
   const std::string where = scene.file + ": phases." + p.name;
   const PhaseKind kind = scene.phases[number].kind();
-  if (kind == PhaseKind::elastic || kind == PhaseKind::rigid)
-    cannot_run(where, "a phase of kind \"" + p.kind + "\"");
+  if (kind == PhaseKind::elastic || kind == PhaseKind::rigid) cannot_run(where, "a phase of kind \"" + p.kind + "\"");
   if (p.flows && scene.phases[number].fluid().energy_budget) cannot_run(where, "a fluid with an energy-budget");
 }
 

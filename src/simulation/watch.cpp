@@ -290,10 +290,9 @@ bool Watch::too_near(Apart& pair) const {
   see_.work.fill_images(pair.b, record);  // no task may have read them since they were packed
   const RecordArray &own = see_.work.records(pair.a, record), &others = see_.work.records(pair.b, record);
   const std::size_t n = see_.particles[pair.a].size();
-  const double least =
-      ranks::least(see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
-                   : pair.stress             ? least_separation<3, 16>(n, list, own, others)
-                                             : least_separation<3, 8>(n, list, own, others));
+  const double least = ranks::least(see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
+                                    : pair.stress             ? least_separation<3, 16>(n, list, own, others)
+                                                              : least_separation<3, 8>(n, list, own, others));
   pair.left = std::sqrt(std::min(least, pair.reach * pair.reach)) - pair.distance;
   return pair.left < 0.0;
 }

@@ -153,6 +153,11 @@ SCENES = {
     "a flow through open ends": ("verification/open_channel", 0.4),
     "a flow past a cylinder through open ends": ("verification/cylinder_open", 0.1),
     "borders of spacings, eddies and open ends": ("verification/joined_wind", 0.002),
+    "grains by kernels in air": ("verification/pile", 0.001),
+    "spheres that blow in and out": ("verification/sand_influx", 0.005),
+    "spheres on a belt": ("hopper_belt", 0.0003),
+    "spheres that sleep under water, and an influx": ("water_over_sand", 0.0003),
+    "a settled bed under a wind": ("threshold", 0.0001, "domain.size=[0.016, 0.032]"),
 }
 
 
@@ -260,6 +265,13 @@ class Ranks(Folder):
 
     def test_fluid_with_energy(self):
         self.compare(channel("plain").replace("viscosity = 1e-6", "viscosity = 1e-6\nenergy = true"), 3)
+
+    def test_a_column_of_air_over_spheres(self):
+        sets = ["--set", "time.end=0.0005", "--set", "output.every=0.00025", "--set", "output.history-every=0.00025"]
+        for ranks, out in ((0, "one"), (3, "of-3")):
+            ended = self.start_file(ranks, SOURCE / "scenes/saltation.toml", out, *sets)
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.same("one", "of-3")
 
     def test_threads_beside_ranks(self):
         text = PERIODIC.format(scheme="plain", precision="")
