@@ -76,7 +76,7 @@ TEST(ContactMemories, GoWithTheirPairs) {
   side.axis = 1;
   side.memory[0] = 7.0;
   side.memory[1] = 8.0;
-  side.touches = true;
+  side.touches = 1;
   chunks[1].sides.push_back(side);
   memory.keep(moving, all, chunks, before);
   EXPECT_EQ(memory.kept().size(), 4u) << "the pair of two chunks once";
@@ -113,7 +113,7 @@ TEST(ContactMemories, FollowTheirPairsToOtherNumbers) {
   SphereChunk::AtSide side;
   side.sphere = 4;
   side.memory[0] = 7.0;
-  side.touches = true;
+  side.touches = 1;
   chunks[0].sides.push_back(side);
   memory.keep(moving, all, chunks, before);
   // 1 goes, three come behind 4; the fixed one is the last as before.
