@@ -67,6 +67,8 @@ class Workspace : public Halo {
   /// other ranks' (Neighbours::owners). Every rank gets what the owner of each particle has: a field, records.
   void share_field(std::size_t phase, Field field);
   void share_records(std::size_t phase, Record record);
+  /// The same of values by place.
+  void share_values(std::size_t phase, std::vector<Vec3>& values) const;
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;

@@ -1,33 +1,8 @@
 // What ranks tell each other of phases that are whole on every one of them.
-#include "base/ranks.hpp"
+#include "models/share_items.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
-
-namespace {
-
-/// Every rank gets the items of `width` doubles of all particles from their owners: at(k) is where that of particle k
-/// begins.
-template <class At>
-void share_items(const std::vector<std::int32_t>& owners, std::size_t width, At&& at) {
-  if (owners.empty()) return;
-  const std::int32_t own = ranks::active()->rank();
-  std::vector<std::size_t> next(static_cast<std::size_t>(ranks::active()->size()) + 1, 0);
-  std::vector<double> items;
-  for (std::size_t k = 0; k < owners.size(); ++k) {
-    next[static_cast<std::size_t>(owners[k]) + 1] += width;
-    if (owners[k] == own) items.insert(items.end(), at(k), at(k) + width);
-  }
-  for (std::size_t r = 1; r < next.size(); ++r) next[r] += next[r - 1];
-  ranks::join(items);
-  for (std::size_t k = 0; k < owners.size(); ++k) {
-    std::size_t& from = next[static_cast<std::size_t>(owners[k])];
-    std::copy_n(items.begin() + static_cast<std::ptrdiff_t>(from), width, at(k));
-    from += width;
-  }
-}
-
-}  // namespace
 
 void Workspace::share_field(std::size_t phase, Field field) {
   const auto& owners = neighbours.owners(phase);
@@ -44,6 +19,10 @@ void Workspace::share_records(std::size_t phase, Record record) {
   if (owners.empty()) return;
   RecordArray& records = to_write(phase, record);
   share_items(owners, records.stride(), [&](std::size_t k) { return records[k]; });
+}
+
+void Workspace::share_values(std::size_t phase, std::vector<Vec3>& values) const {
+  share_items(neighbours.owners(phase), 3, [&](std::size_t k) { return values[k].data(); });
 }
 
 }  // namespace barchan

@@ -233,6 +233,8 @@ void BodyContact::limits(std::vector<StepLimit>& limits) const {
 void BodyContact::push(std::size_t phase) {
   body_contact_forces(w_->particles(phase), w_->records(phase, Record::motion), w_->list(entry_.direction(phase)),
                       w_->records(entry_.partner(phase), Record::motion), law_, w_->state.dt);
+  w_->share_field(phase, Field::acceleration);
+  if (w_->particles(phase).has(Field::contact_force)) w_->share_field(phase, Field::contact_force);
 }
 
 void BodyContact::push_itself() {

@@ -146,7 +146,10 @@ void RigidInFluid::move_surface() {
 void RigidInFluid::turn() {
   if (felt_.empty()) return;
   turning_friction(w_->records(solid_, Record::extended), felt_, rates_, areas_, couples_, layout_.dimensions);
+  w_->share_values(solid_, areas_);
+  w_->share_values(solid_, couples_);
   const PhaseParticles& p = w_->particles(solid_);
+  const ranks::Alone alone(p.is_whole());
   for (std::size_t b = 0; b < bodies_; ++b) {
     RigidBody& body = w_->state.bodies[first_body_ + b];
     const OwnAxes axes(body);
