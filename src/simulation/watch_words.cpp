@@ -210,15 +210,14 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
   const double spacing = 0.5 * (see_.plan.phases[pair.a].spacing + see_.plan.phases[pair.b].spacing);
   const std::string near = brief(distance / spacing) + " spacings (bound " + brief(pair.distance / spacing) + ")";
   const std::string& stiffer = see_.plan.phases[pair.a].rules.stiffness_key;
-  const auto tell = [&](const std::string& what) {
-    throw BreakdownError(ranks::text_of(rank, who(pair.a, first, now) + what + stiffer + ", or move the fills apart"));
-  };
-  if (!see_.plan.phases[pair.b].moves)
-    tell(" is deep in the wall \"" + b.name() + "\", " + near +
-         " from a particle of it; it was too fast or pressed too hard for the contact, or the fills overlap: raise ");
-  tell(" is in the same place as " + see_.plan.phases[pair.b].rules.one + " " + std::to_string(b.id()[with]) +
-       " of phase \"" + b.name() + "\": they are " + near +
-       " apart; the contact could not keep them apart, or the fills overlap: raise ");
+  const std::string what = see_.plan.phases[pair.b].moves
+                               ? " is in the same place as " + see_.plan.phases[pair.b].rules.one + " " +
+                                     std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
+                                     " apart; the contact could not keep them apart, or "
+                               : " is deep in the wall \"" + b.name() + "\", " + near +
+                                     " from a particle of it; it was too fast or pressed too hard for the contact, or ";
+  throw BreakdownError(ranks::text_of(
+      rank, who(pair.a, first, now) + what + "the fills overlap: raise " + stiffer + ", or move the fills apart"));
 }
 
 /// Pairing: the kernel no longer separates two particles. A fault when more than a share is nearer than pair_distance
