@@ -131,6 +131,12 @@ void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& 
   describe_approximation(pair, scene.dimensions, correction_of(scene, e.fluid), e);
 }
 
+bool calmed(const Scene& scene, const Layout& layout, std::size_t fluid) {
+  const PlanPhase& p = layout.phases[fluid];
+  return p.free_surface && !p.eddies && norm(scene.domain.gravity) > 0.0 &&
+         scene.phases[fluid].fluid().scheme == FluidScheme::consistent;
+}
+
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid) {
   const FluidKeys& keys = scene.phases[fluid].fluid();
   const double c = layout.phases[fluid].sound_speed, density = scene.phases[fluid].density;
@@ -155,9 +161,8 @@ double wall_rub(const Scene& scene, const Layout& layout, std::size_t solid) {
   double rub = 0.0;
   for (const PlanEntry& e : layout.entries) {
     if (!e.extends || e.other != solid) continue;
-    const PlanPhase& fluid = layout.phases[e.fluid];
-    const bool calmed = e.corrected && fluid.free_surface && !fluid.eddies;
-    const double least = calmed ? bulk_friction * viscosity_of_rows(scene, layout, e.fluid) : 0.0;
+    const double least =
+        calmed(scene, layout, e.fluid) ? bulk_friction * viscosity_of_rows(scene, layout, e.fluid) : 0.0;
     rub = std::max(rub, least > 0.0 ? std::min(pair_viscosity(scene, layout, solid, e.fluid) / least, 1.0) : 1.0);
   }
   return rub > 0.0 ? rub : 1.0;

@@ -15,7 +15,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
   double alone = 0.0;
   for (std::size_t c = 0; c < fluids.size(); ++c) {
     const ExtensionSource& e = fluids[c];
-    entries[c] = {e.list, e.records, e.kernel, e.radius, Law{{}, e.density}};
+    entries[c] = {e.list, e.records, e.kernel, e.radius, Law{{}, e.density, e.compression}};
     alone += e.alone;
   }
   const double* depth = solid.has(Field::wall_depth) ? solid.column(Field::wall_depth) : nullptr;

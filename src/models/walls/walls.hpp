@@ -19,6 +19,7 @@ struct ExtensionSource {
   double radius;       // m
   double density;      // kg/m3, of the fluid at rest
   double alone = 0.0;  // sum V W of the fluid about a grain that stands alone in it, where a form drag acts; 0: no drag
+  Compression compression = {};
 };
 
 /// How a wall's surface bends, by particle: the second derivatives of its height over sqrt(1 + slope^2) (1/m) at the
