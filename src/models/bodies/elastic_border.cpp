@@ -40,12 +40,12 @@ bool inside(const std::vector<ContactSurface>& surfaces, const Vec3& x) {
 
 }  // namespace
 
-std::vector<BorderPoint> free_border(const Scene& scene, const Layout& layout, std::size_t fill, double width) {
+std::vector<BorderPoint> free_border(const Scene& scene, std::size_t fill, double width) {
   const Phase* phase = find_phase(scene, scene.fills[fill].phase);
   const double spacing = phase->spacing;
   const auto beside = others(scene, fill, spacing);
   std::vector<BorderPoint> free;
-  for (const BorderPoint& point : border_points(scene.fills[fill].shape, layout.dimensions, spacing, width))
+  for (const BorderPoint& point : border_points(scene.fills[fill].shape, scene.dimensions, spacing, width))
     if (!inside(beside, point.at + before_border * width * point.normal)) free.push_back(point);
   return free;
 }
@@ -58,7 +58,7 @@ ElasticBorder::ElasticBorder(const Scene& scene, const Layout& layout, std::size
   for (std::size_t p = 0; p < block.parts.size(); ++p) {
     const ParticleBlock::Part& part = block.parts[p];
     const std::size_t end = p + 1 < block.parts.size() ? block.parts[p + 1].first : block.position.size();
-    for (const BorderPoint& point : free_border(scene, layout, part.fill, width))
+    for (const BorderPoint& point : free_border(scene, part.fill, width))
       add_piece(scene, block, part, end, point.at, {point.normal, point.content});
   }
   std::size_t buckets = 1;

@@ -15,7 +15,7 @@
 namespace barchan {
 
 /// The pieces of the border of a fill (border_points) on which no other wall or body stands at the start.
-std::vector<BorderPoint> free_border(const Scene& scene, const Layout& layout, std::size_t fill, double width);
+std::vector<BorderPoint> free_border(const Scene& scene, std::size_t fill, double width);
 
 /// Pieces of the borders of the fills of an elastic phase, made once of the first shape. A piece X_q follows from the
 /// particles k about it by moving least squares of first order in the first shape (Lancaster & Salkauskas 1981):

@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::uint32_t inner = 0xffffffffu;
 constexpr double margin = 0.02, margin_of_off = 0.2;     // spacings: as at the sides of the domain (Sides)
-constexpr double memory = 20.0;                          // h/c, over which a border forgets speeds of parting
 
 }  // namespace
 
@@ -175,10 +174,12 @@ void ElasticInFluid::load() {
   }
 }
 
-/// p -= rho c (w - mean of w), w the speed with which the fluid goes off the border.
+/// p -= rho c (w - mean of w), w the speed with which the fluid goes off the border. The mean is that of h/c: over 20
+/// h/c it turned a part of the added mass into a force along the velocity, which fed the second mode of the plate of
+/// FSI3 (Turek & Hron 2006) until the fluid broke up.
 void ElasticInFluid::radiate(const BorderFluid& fluid, std::vector<double>& parted) {
-  const double impedance = fluid.density * fluid.sound_speed,
-               share = std::min(1.0, w_->state.dt * fluid.sound_speed / (memory * layout_.phases[fluid.phase].smoothing_length));
+  const double c = fluid.sound_speed, impedance = fluid.density * c,
+               share = std::min(1.0, w_->state.dt * c / layout_.phases[fluid.phase].smoothing_length);
   for (std::size_t q = 0; q < stress_.size(); ++q) {
     if (!stress_[q].wet) continue;
     parted[q] += share * (stress_[q].parting - parted[q]);

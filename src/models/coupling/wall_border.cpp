@@ -9,7 +9,7 @@ WallBorder::WallBorder(const Scene& scene, const Layout& layout, const PlanEntry
     : wall_(entry.other), fluid_(border_fluid(scene, layout, entry)), slack_(widest_skin(layout)) {
   const double width = piece_width(layout.dimensions) * fluid_.spacing;
   for (const ParticleBlock::Part& part : block.parts) {
-    const auto points = free_border(scene, layout, part.fill, width);
+    const auto points = free_border(scene, part.fill, width);
     if (points.empty()) {
       pieces_.clear();
       return;
