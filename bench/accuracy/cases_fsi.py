@@ -57,10 +57,9 @@ def steady(n):
     _, values, seconds = measured("FSI1", n)
     for what, known in FSI1.items():
         found = values[what]
-        say = report if n >= 20 and what[0] == "u" else tell
-        error, name = found.mean() / known - 1, f"{what}, mean of 7 to 9 s against {known}, relative"
-        say("FSI1", "consistent", n, name, abs(error) if say is report else f"{error:+.3f}, rms of its changes {found.std() / known:.3f}",
-            .03 if say is report else "", seconds)
+        tell("FSI1", "consistent", n, f"{what}: mean of 7 to 9 s, rms of its changes; known {known}", f"{found.mean():.4g}, {found.std():.2g}", "", seconds)
+        if what[0] == "u":
+            report("FSI1", "consistent", n, f"{what} against {known}, relative", abs(found.mean() / known - 1), .03, seconds)
 
 
 def swinging(name, known, n):
@@ -69,7 +68,7 @@ def swinging(name, known, n):
         found = swings(t, values[what])
         tell(name, "consistent", n, f"{what}: mean +- amplitude, Hz; known {mean} +- {amplitude}, {frequency}",
              f"{found[0]:.2f} +- {found[1]:.2f}, {found[2]:.2f}", "", seconds)
-        if n >= 20 and what[0] == "u":
+        if what[0] == "u":
             report(name, "consistent", n, f"amplitude of {what} against {amplitude}, relative", abs(found[1] / amplitude - 1), .03, seconds)
             report(name, "consistent", n, f"frequency of {what} against {frequency}, relative", abs(found[2] / frequency - 1), .015, seconds)
 

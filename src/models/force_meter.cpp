@@ -142,8 +142,10 @@ void ForceOn::schedule(Schedule& s) {
   Touches touches{{name, reads, writes, {stays_ ? RecordSet{Record::extended} : RecordSet{}, {}, {}}}};
   for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
     if (stays_ && e.extends && e.other == phase_)
-      touches.push_back(
-          {layout_.phases[e.fluid].name, stands_alone(e.fluid) || bends_a_body(e.fluid) ? by_volume : reads, {}, {{}, {Record::motion}, {}}});
+      touches.push_back({layout_.phases[e.fluid].name,
+                         stands_alone(e.fluid) || bends_a_body(e.fluid) ? by_volume : reads,
+                         {},
+                         {{}, {Record::motion}, {}}});
   s.add({stays_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 

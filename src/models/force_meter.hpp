@@ -18,9 +18,10 @@ namespace barchan {
 /// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of a wall that stays inside the domain, alone in a
 /// laminar fluid of that scheme without a free surface or a [[forcing]], it is what a control volume about it loses
 /// (models/fluid/control_volume.hpp). Of a whole wall beside an elastic body at whose border that fluid ends it is the
-/// load on the wall's border (models/coupling/wall_border.hpp), torque too. Other torques are those of the pairs. Of spheres: the impulse of their contacts
-/// over the steps within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its particles, less
-/// gravity. The torque counts periodic images nearest to its point. history.csv has the means since its last row.
+/// load on the wall's border (models/coupling/wall_border.hpp), torque too. Other torques are those of the pairs. Of
+/// spheres: the impulse of their contacts over the steps within a step (models/grains/spheres.hpp). Of a body: mass
+/// times acceleration of its particles, less gravity. The torque counts periodic images nearest to its point.
+/// history.csv has the means since its last row.
 class ForceOn : public Model {
  public:
   ForceOn(const Scene& scene, const Layout& layout, std::size_t number);

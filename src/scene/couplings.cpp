@@ -74,6 +74,11 @@ bool solids_move_in(const Scene& scene, const Phase& fluid) {
   return false;
 }
 
+bool is_wall_or_body(const Phase& phase) {
+  const PhaseKind kind = phase.kind();
+  return kind == PhaseKind::wall || kind == PhaseKind::elastic || kind == PhaseKind::rigid;
+}
+
 bool ends_at_border(const Scene& scene, const Phase& body) {
   if (!is_total(body)) return false;
   bool any = false;

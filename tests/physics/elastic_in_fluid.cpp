@@ -84,9 +84,7 @@ void expect_exact(const std::string& text, std::size_t phase, const Motion& f, c
   EXPECT_LT(lost, 1e-11) << what;
   EXPECT_LT(norm(closed), 1e-12) << what;
   const Vec3 curl{0, 0, 0.5 * (g[0][1] - g[1][0])};  // of a turn, where F is one
-  if (norm(f[0] - Vec3{1, 0, 0}) == 0.0) {
-    EXPECT_NEAR(border.pieces().front().spin[2], curl[2], 1e-11) << what;
-  }
+  if (norm(f[0] - Vec3{1, 0, 0}) == 0.0) { EXPECT_NEAR(border.pieces().front().spin[2], curl[2], 1e-11) << what; }
 }
 
 TEST(ElasticBorder, IsExactForAffineMotions) {
@@ -139,8 +137,8 @@ TEST(ElasticInConsistentFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
 }
 
 TEST(ElasticInConsistentFluid, ABodyOfTheFluidsDensityStays) {
-  const auto run = small::simulation(
-      block_in_a_tank(1.0, "[[marker]]\nname = \"place\"\nphase = \"block\"\nbox = { min = [0.5, 0.5], max = [1.2, 1.1] }\n"));
+  const auto run = small::simulation(block_in_a_tank(
+      1.0, "[[marker]]\nname = \"place\"\nphase = \"block\"\nbox = { min = [0.5, 0.5], max = [1.2, 1.1] }\n"));
   const double start = value(*run, "place_y");
   go(*run, 0.3);
   const double way = std::abs(value(*run, "place_y") - start), falls = 0.5 * 0.3 * 0.3;
@@ -155,7 +153,8 @@ TEST(ElasticInConsistentFluid, AStiffDiscStartsWithItsAddedMass) {
   std::string text(std::istreambuf_iterator<char>(file), {});
   text = small::changed(text, "kind    = \"rigid\"", "kind = \"elastic\"\nyoung = 2e3\npoisson = 0.3");
   text = small::changed(text, "scheme      = \"plain\"", "scheme = \"consistent\"");
-  text = small::changed(text, "disc-tank = false", "disc-tank = false\ndisc-disc = { radius = 1.6, kernel = \"wendland-c2\" }");
+  text = small::changed(text, "disc-tank = false",
+                        "disc-tank = false\ndisc-disc = { radius = 1.6, kernel = \"wendland-c2\" }");
   text += "\n[[marker]]\nname = \"place\"\nphase = \"disc\"\nbox = { min = [-0.5, -0.5], max = [0.5, 0.5] }\n";
   const auto run = small::simulation(
       text, {"interactions.water-water=2.1", "interactions.water-disc=2.1", "interactions.water-tank=2.1"});

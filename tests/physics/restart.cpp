@@ -69,8 +69,8 @@ TEST(Restart, BetweenAnyTwoOfManySteps) {
   // Far enough that lists are made anew many times between saving and the end.
   for (const auto& text :
        {small::held_dune, small::dam, small::squares, small::spheres, small::hertzian_spheres, small::drowned,
-        small::drowned_ball, small::drowned_consistent, small::drowned_ball_consistent, small::paddle, small::drum, small::flag, small::jelly,
-        small::spheres_on_block, small::spheres_on_block_3d}) {
+        small::drowned_ball, small::drowned_consistent, small::drowned_ball_consistent, small::paddle, small::drum,
+        small::flag, small::jelly, small::spheres_on_block, small::spheres_on_block_3d}) {
     const auto run = small::simulation(text), other = small::simulation(text);
     expect_restarts(*run, *other, 60, 1);
   }

@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "models/bodies/contact_surface.hpp"
 #include "output/numbers.hpp"
+#include "scene/couplings.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -22,7 +23,7 @@ std::vector<ContactSurface> others(const Scene& scene, std::size_t but, double s
   std::vector<ContactSurface> all;
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     const Phase* phase = find_phase(scene, scene.fills[k].phase);
-    if (k == but || !phase || phase->kind() == PhaseKind::fluid || phase->kind() == PhaseKind::grains) continue;
+    if (k == but || !phase || !is_wall_or_body(*phase)) continue;
     for (ContactSurface& surface : surfaces_of(scene.fills[k].shape, scene, spacing)) {
       surface.prepare(spacing, spacing);
       all.push_back(std::move(surface));

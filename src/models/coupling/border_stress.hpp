@@ -9,10 +9,10 @@ namespace barchan {
 /// A fluid that presses on a border.
 struct BorderFluid {
   std::size_t phase;
-  bool free_surface;           // beyond which nothing presses
-  double spacing, radius;      // m; of the fit
-  double viscosity, density;   // Pa s; kg/m3, at rest
-  double sound_speed;          // m/s
+  bool free_surface;          // beyond which nothing presses
+  double spacing, radius;     // m; of the fit
+  double viscosity, density;  // Pa s; kg/m3, at rest
+  double sound_speed;         // m/s
 };
 
 /// As the entry of a solid with a fluid of the consistent scheme says.
@@ -24,17 +24,17 @@ constexpr double piece_width(int dimensions) { return dimensions == 2 ? 0.5 : 0.
 
 /// A place of the border of a solid.
 struct BorderPlace {
-  std::size_t anchor;               // where the particle of the solid stands from which it is found
-  Vec3 beside;                      // m, from that particle to it
-  Vec3 normal;                      // into the fluid
-  Vec3 velocity, spin;              // m/s, 1/s: v + spin x r is the velocity of the surface about it
+  std::size_t anchor;   // where the particle of the solid stands from which it is found
+  Vec3 beside;          // m, from that particle to it
+  Vec3 normal;          // into the fluid
+  Vec3 velocity, spin;  // m/s, 1/s: v + spin x r is the velocity of the surface about it
 };
 
 struct BorderStress {
-  bool wet = false;        // some fluid is near
-  double pressure = 0.0;   // Pa
-  Vec3 friction{};         // Pa, along the border
-  double parting = 0.0;    // m/s, with which the fluid goes off the border: zero but for the error of the scheme
+  bool wet = false;       // some fluid is near
+  double pressure = 0.0;  // Pa
+  Vec3 friction{};        // Pa, along the border
+  double parting = 0.0;   // m/s, with which the fluid goes off the border: zero but for the error of the scheme
 };
 
 /// Weighted least squares over the particles within the radius that stand before the border, (x - x_q).n > 0: behind a

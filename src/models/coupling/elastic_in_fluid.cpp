@@ -10,7 +10,7 @@ namespace barchan {
 namespace {
 
 constexpr std::uint32_t inner = 0xffffffffu;
-constexpr double margin = 0.02, margin_of_off = 0.2;     // spacings: as at the sides of the domain (Sides)
+constexpr double margin = 0.02, margin_of_off = 0.2;  // spacings: as at the sides of the domain (Sides)
 
 }  // namespace
 

@@ -14,8 +14,8 @@ namespace barchan {
 ///
 /// The fluid's pressure follows the border by way of its density, some steps late, and feeds vibrations faster than
 /// c/h. So the pressure is that of an acoustic wave that meets the border: p - rho c w, w = (v_fluid - v_border).n
-/// there, which is zero but for the error of the scheme (the solution of Riemann's problem for sound; of SPH with solids
-/// e.g. Zhang, Rezavand & Hu 2021). Less its mean over h/c, this is no load of slow motions.
+/// there, which is zero but for the error of the scheme (the solution of Riemann's problem for sound; of SPH with
+/// solids e.g. Zhang, Rezavand & Hu 2021). Less its mean over h/c, this is no load of slow motions.
 class ElasticInFluid : public Model {
  public:
   /// For the phase `solid` (ends_at_border of scene/couplings.hpp) and all its entries with such fluids.

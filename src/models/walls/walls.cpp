@@ -71,7 +71,7 @@ void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<
                        const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend) {
   const bool curved = rule.slip == Slip::free_slip && !bend.values.empty();
   const auto one_sided = solid.dimensions() == 2 ? extend<2, false, true> : extend<3, false, true>;
-  const auto extended = rule.one_sided           ? one_sided
+  const auto extended = rule.one_sided            ? one_sided
                         : solid.dimensions() == 2 ? (curved ? extend<2, true> : extend<2, false>)
                                                   : (curved ? extend<3, true> : extend<3, false>);
   extended(solid, own, fluids, gravity, rule, bend);
