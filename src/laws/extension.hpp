@@ -45,10 +45,11 @@ struct Compression {
   double per_c2 = 0.0;  // s2/m2, 1/c^2; 0: the density at rest counts
 };
 
-/// Curved: with the sum that a curved wall's pressure needs.
-template <bool Curved>
+/// Curved: with the sum that a curved wall's pressure needs. OneSided: of a body that may be thin, whose depth and
+/// normal are known, fluid behind the surface counts a millionth: it decides only where there is no other.
+template <bool Curved, bool OneSided = false>
 struct Extension : PairLaw<Needs::value_and_gradient, Quantity::velocity, Quantity::pressure, Quantity::volume> {
-  static constexpr double solid_share = 0.65, open_share = 0.9;
+  static constexpr double solid_share = 0.65, open_share = 0.9, from_behind = 1e-6;
   double density;  // kg/m3, of the fluid at rest
   Compression compression;
 
@@ -71,13 +72,14 @@ struct Extension : PairLaw<Needs::value_and_gradient, Quantity::velocity, Quanti
   template <int Dim, class T>
   BARCHAN_SIMD_INLINE void add(const Own<Dim, T>& w, const Particle<Dim, T, Reads>& a, const Pair<Dim, T>& wa,
                                Sums<Dim, T>& s) const {
-    const T weight = wa.w * a.volume;
+    T weight = wa.w * a.volume;
     const T rho = fma(T(compression.per_c2), a.p - T(compression.rest), T(density));
     T p = a.p, phi = w.behind;
     for (std::size_t d = 0; d < Dim; ++d) {
       p = fma(rho * w.pull[d], wa.r[d], p);
       phi = fnma(w.normal[d], wa.r[d], phi);  // phi_a = n.(x_a - x_w) - phi_w
     }
+    if constexpr (OneSided) weight = select(phi < T(0.0), T(from_behind) * weight, weight);
     const T w_phi = weight * phi;
     s.weight += weight;
     if constexpr (Curved) s.lever = fma(weight * T(density), phi - w.behind, s.lever);
