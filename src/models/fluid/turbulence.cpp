@@ -8,7 +8,7 @@ namespace barchan {
 bool over_rough_walls(std::span<const EddyNeighbour> neighbours) {
   bool rough = false;
   for (const EddyNeighbour& e : neighbours) {
-    if (e.friction == Friction::smooth || e.friction == Friction::grains) return false;
+    if (e.friction == Friction::smooth || e.friction == Friction::grains || e.given) return false;
     rough = rough || e.friction == Friction::rough;
   }
   return rough;

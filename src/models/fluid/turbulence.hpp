@@ -40,7 +40,8 @@ struct EddyParameters {
   }
 };
 
-/// Whether walls with a roughness are ground of a fluid with these entries, and nothing else is.
+/// Whether walls with a roughness are ground of a fluid with these entries, by the logarithmic law, and nothing else
+/// is.
 bool over_rough_walls(std::span<const EddyNeighbour> neighbours);
 
 /// Writes ground_distance and the records. Returns the largest kinematic viscosity, m2/s.
