@@ -353,6 +353,7 @@ void FluidPhase::bind_eddies() {
         bind_friction(e, other, sides, particles);
     eddy_neighbours_.push_back(e);
   }
+  eddies_.rough_ground = keys_.turbulence == Turbulence::mixing_length && over_rough_walls(eddy_neighbours_);
   if (has_k_omega()) bind_k_omega();
   if ((keys_.turbulence == Turbulence::mixing_length || has_k_omega()) && ground_phases_.empty())
     throw SceneError(scene_.file + ": phases." + plan_.name +

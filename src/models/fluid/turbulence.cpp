@@ -5,6 +5,15 @@
 
 namespace barchan {
 
+bool over_rough_walls(std::span<const EddyNeighbour> neighbours) {
+  bool rough = false;
+  for (const EddyNeighbour& e : neighbours) {
+    if (e.friction == Friction::smooth || e.friction == Friction::grains || e.given) return false;
+    rough = rough || e.friction == Friction::rough;
+  }
+  return rough;
+}
+
 double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDistance& ground, const EddyParameters& e) {
   double *distance = fluid.column(Field::ground_distance), *nu_t = fluid.column(Field::eddy_viscosity);
   std::array<const double*, 3> x{}, v{};
