@@ -131,12 +131,6 @@ void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& 
   describe_approximation(pair, scene.dimensions, correction_of(scene, e.fluid), e);
 }
 
-bool calmed(const Scene& scene, const Layout& layout, std::size_t fluid) {
-  const PlanPhase& p = layout.phases[fluid];
-  return p.free_surface && !p.eddies && norm(scene.domain.gravity) > 0.0 &&
-         scene.phases[fluid].fluid().scheme == FluidScheme::consistent;
-}
-
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid) {
   const FluidKeys& keys = scene.phases[fluid].fluid();
   const double c = layout.phases[fluid].sound_speed, density = scene.phases[fluid].density;

@@ -8,8 +8,11 @@ namespace barchan {
 bool over_rough_walls(std::span<const EddyNeighbour> neighbours) {
   bool rough = false;
   for (const EddyNeighbour& e : neighbours) {
-    if (e.friction == Friction::smooth || e.friction == Friction::grains || e.given) return false;
-    rough = rough || e.friction == Friction::rough;
+    const bool is_rough = e.friction == Friction::rough;
+    const bool no_ground =
+        e.friction == Friction::fluid || e.friction == Friction::slip || e.friction == Friction::driven;
+    if (!(is_rough || no_ground) || e.given) return false;
+    rough = rough || is_rough;
   }
   return rough;
 }
