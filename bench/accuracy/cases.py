@@ -18,6 +18,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import cases_dams
+import cases_fsi
 import cases_grains
 import cases_motion
 import cases_open
@@ -32,7 +33,7 @@ from harness import RESULTS, options, rows
 from page import processor, write_page
 
 CASES = {}  # name: (function, heading of its table)
-for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion, cases_waves, cases_dams):
+for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion, cases_waves, cases_dams, cases_fsi):
     CASES.update(topic.CASES)
 
 

@@ -79,8 +79,8 @@ def couette(n):
 
 # ---- logarithmic layer -----------------------------------------------------------------------------------------------
 
-def logarithmic_layer(friction_velocity, n=40):
-    """Profile by rows of one spacing, wall stress and pressure noise over the second half of the run."""
+def logarithmic_layer(friction_velocity, n=40, end=2.):
+    """Profile by rows of one spacing, wall stress and pressure noise over the second half of the run, of `end` seconds."""
     height, z0, rho, kappa = .1, 1e-4, 1.225, .4
     dx, us = height / n, friction_velocity
     law = lambda y: us / kappa * numpy.log(y / z0)
@@ -88,7 +88,7 @@ def logarithmic_layer(friction_velocity, n=40):
     frames, seconds = run("logarithmic_layer", [
         f"spacing={dx!r}", f"domain.size=[{20 * dx!r}, {height}]", f"phases.air.sound-speed={10 * top!r}",
         f"time.largest-speed={top!r}", f"phases.lid.shear-stress=[{rho * us**2!r}, 0]",
-        f"fill.2.velocity.log-profile.friction-velocity={us}"], "air", keep=lambda t: t > 1)
+        f"fill.2.velocity.log-profile.friction-velocity={us}", f"time.end={end!r}"], "air", keep=lambda t: t > end / 2)
     error, weight, stress, noise, first = numpy.zeros(n), numpy.zeros(n), [], [], None
     for f in frames:
         y, u = f.x[:, 1], f["velocity"][:, 0]
@@ -303,7 +303,8 @@ CASES = {
     "backward-step": (lambda: [backward_step(re) for re in (100, 200)],
                       "Backward-facing step, expansion ratio 2 (Armaly et al. 1983; Erturk 2008)"),
     "cylinder": (lambda: [cylinder(re) for re in (100, 20)], "Flow past a round cylinder, 12.5 spacings in D"),
-    "logarithmic-layer": (lambda: [logarithmic_layer(us) for us in (.2, .4, .8)], "Logarithmic layer over rough ground"),
+    "logarithmic-layer": (lambda: [*(logarithmic_layer(us) for us in (.2, .4, .8)), *(logarithmic_layer(.4, n, .5) for n in (80, 160))],
+                          "Logarithmic layer over rough ground"),
     "low-hill": (lambda: [low_hill(n) for n in (10, 20)], "Potential flow over a low hill, H/L = 0.1 (Witch of Agnesi)"),
     "rushil": (lambda: [*(rushil(ratio) for ratio in RUSHIL), rushil_fine()], "Turbulent air over the hills of RUSHIL"),
     "two-phase-column": (lambda: [two_phase_column(ratio, p) for ratio in (1000, 2000) for p in (0, .2)],

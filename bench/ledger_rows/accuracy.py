@@ -28,6 +28,7 @@ LONG = {
     "open-cylinder": "Dennis & Chang 1970, J. Fluid Mech. 42, 471 (Re 20); Park et al. 1998, Phys. Fluids 10, 345; Williamson 1989",
     "sinking-sphere": "Faxen's series for a sphere in a tube: Happel & Brenner 1983, section 7-3",
     "heaving-cylinder": "Ito 1977, thesis, MIT; linear theory: Maskell & Ursell 1970, J. Fluid Mech. 44, 303; Yeung 1982, J. Eng. Math. 16, 97",
+    **{f"fsi{k}": "Turek & Hron 2006, in Fluid-Structure Interaction, Springer, p. 371, finest grids" for k in (1, 2, 3)},
     "wave-maker": "linear theory of the piston: Havelock 1929, Phil. Mag. 8, 569; Dean & Dalrymple 1991, section 6.3",
     "viscous-wave": "linear theory, solved by bench/accuracy/viscous_wave_reference.py: Prosperetti 1981, Phys. Fluids 24, 1217; Lamb 1932, section 349",
     "falling-film": "exact: Nusselt 1916, Z. VDI 60, 541; turbulent: the mixing length of Prandtl 1932, integrated",

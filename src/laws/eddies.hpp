@@ -9,6 +9,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "simd/vec.hpp"
+
 namespace barchan {
 
 inline constexpr double karman = 0.4;  // kappa, as in the wind of eq. (18)
@@ -32,6 +34,16 @@ template <class T>
 inline T eddy_viscosity(T nu, T length, T phi) {
   using std::sqrt;
   return T(0.5) * (sqrt(nu * nu + T(4.0) * length * length * phi) - nu);
+}
+
+/// The same over rough ground: nu_t = max(l sqrt(phi) - nu, 0), so that nu + nu_t = l^2 |S| wherever that is more than
+/// nu. The logarithmic law of rough ground (Prandtl 1932) is one of the whole stress, tau = rho l^2 |S|^2; with nu
+/// beside it the layer is not logarithmic where nu/(l sqrt(phi)) is not small: u would lack u*/kappa ln(1 + nu/(kappa
+/// u* d)) between the distance d and the free layer. Never 0 quite: 0 says that there is none yet.
+template <class T>
+inline T rough_eddy_viscosity(T nu, T length, T phi) {
+  using std::sqrt;
+  return simd::max(length * sqrt(phi) - nu, T(1e-30));
 }
 
 /// (kappa/ln(d/z0))^2. Nearer than a quarter of a spacing, and nearer than twice z0, the law is not followed.

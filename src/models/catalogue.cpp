@@ -13,6 +13,7 @@
 #include "models/column/column_phase.hpp"
 #include "models/coupling/border_load.hpp"
 #include "models/coupling/drag_entry.hpp"
+#include "models/coupling/elastic_in_fluid.hpp"
 #include "models/coupling/rigid_in_fluid.hpp"
 #include "models/coupling/sand_layer.hpp"
 #include "models/coupling/solid_in_fluid.hpp"
@@ -116,7 +117,7 @@ void add_of_entry(const Scene& scene, const Layout& layout, const PlanEntry& e, 
 /// Fields of a phase for the fluid or the wind about it.
 void describe_surroundings(const Scene& scene, std::size_t number, PlanPhase& p) {
   const Phase& phase = scene.phases[number];
-  if (phase.kind() == PhaseKind::rigid && meets(scene, phase, PhaseKind::fluid))
+  if ((phase.kind() == PhaseKind::rigid && meets(scene, phase, PhaseKind::fluid)) || ends_at_border(scene, phase))
     for (const Field f : {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
       p.fields.push_back(f);
   if (p.travels && meets(scene, phase, PhaseKind::fluid))
@@ -186,10 +187,11 @@ Models make_models(const Scene& scene, const Layout& layout) {
     models.push_back(std::make_unique<GrainSource>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
     if (!layout.phases[k].moves || !layout.is_extended(k)) continue;
-    const bool rigid = scene.phases[k].kind() == PhaseKind::rigid;
+    const bool rigid = scene.phases[k].kind() == PhaseKind::rigid, bent = ends_at_border(scene, scene.phases[k]);
+    if (bent) models.push_back(std::make_unique<ElasticInFluid>(scene, layout, k));
     if (rigid)  // its surface moves before the fluid is extended into it
       models.push_back(std::make_unique<RigidInFluid>(scene, layout, k));
-    models.push_back(std::make_unique<SolidInFluid>(scene, layout, k, rigid));
+    models.push_back(std::make_unique<SolidInFluid>(scene, layout, k, rigid || bent));
     for (const PlanEntry& e : layout.entries)
       if (rigid && e.extends && e.other == k && e.corrected) models.push_back(make_entry<BorderLoad>(scene, layout, e));
   }

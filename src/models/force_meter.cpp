@@ -5,6 +5,7 @@
 
 #include "engine/reproducible_sum.hpp"
 #include "models/fluid/fluid_phase.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -43,6 +44,7 @@ ForceOn::ForceOn(const Scene& scene, const Layout& layout, std::size_t number)
 void ForceOn::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   set_.find(blocks);
   make_volume(state);
+  make_border(blocks);
 }
 
 void ForceOn::attach(Workspace& w) {
@@ -68,6 +70,8 @@ void ForceOn::attach(Workspace& w) {
   });
   by_volume_ = !balance_ && volume_.there() && fluids_.size() == 1 && stands_alone(fluids_.front().phase);
   if (!by_volume_) volume_ = {};
+  if (fluids_.empty()) border_ = {};
+  if (border_.there()) w.particles(phase_).keep_places();
 }
 
 /// A control volume about a wall that stays, if it lies inside the domain and reaches no other wall.
@@ -86,6 +90,25 @@ void ForceOn::make_volume(const State& state) {
       }
     }
   }
+}
+
+/// Beside an elastic body at whose border a fluid ends.
+void ForceOn::make_border(const std::vector<ParticleBlock>& blocks) {
+  if (!stays_ || layout_.phases[phase_].travels || scene_.force_meters[number_].box || volume_.there()) return;
+  const PlanEntry* only = nullptr;
+  for (const PlanEntry& e : layout_.entries) {
+    if (!e.extends || e.other != phase_) continue;
+    if (only || !e.corrected || layout_.phases[e.fluid].eddies) return;
+    only = &e;
+  }
+  if (only && bends_a_body(only->fluid)) border_ = WallBorder(scene_, layout_, *only, blocks[phase_]);
+}
+
+/// Whether the fluid ends at the border of an elastic body.
+bool ForceOn::bends_a_body(std::size_t fluid) const {
+  return std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+    return e.extends && e.fluid == fluid && ends_at_border(scene_, scene_.phases[e.other]);
+  });
 }
 
 /// The fluid is laminar, consistent, without a free surface, free of a [[forcing]], and touches nothing that could come
@@ -119,8 +142,10 @@ void ForceOn::schedule(Schedule& s) {
   Touches touches{{name, reads, writes, {stays_ ? RecordSet{Record::extended} : RecordSet{}, {}, {}}}};
   for (const auto& e : layout_.entries)  // fluids, where it takes what the wall gives from their momentum
     if (stays_ && e.extends && e.other == phase_)
-      touches.push_back(
-          {layout_.phases[e.fluid].name, stands_alone(e.fluid) ? by_volume : reads, {}, {{}, {Record::motion}, {}}});
+      touches.push_back({layout_.phases[e.fluid].name,
+                         stands_alone(e.fluid) || bends_a_body(e.fluid) ? by_volume : reads,
+                         {},
+                         {{}, {Record::motion}, {}}});
   s.add({stays_ ? stage::reaction : stage::motion, name + ", force", touches, [this] { measure(); }});
 }
 
@@ -158,6 +183,12 @@ void ForceOn::measure_wall() {
     add_sums(felt.share, {0, 0, 0});
   }
   if (by_volume_) return measure_volume();
+  if (border_.there()) {
+    const WallBorder::Load load = border_.load(*w_, meter_.about);
+    force_ = load.force;
+    torque_ = load.torque;
+    return;
+  }
   if (!balance_) return;
   force_ = {};
   for (const Felt& felt : fluids_) {

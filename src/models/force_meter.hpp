@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "models/bodies/sets.hpp"
+#include "models/coupling/wall_border.hpp"
 #include "models/fluid/control_volume.hpp"
 #include "models/fluid/fluid_rates.hpp"
 #include "models/row_mean.hpp"
@@ -16,9 +17,11 @@ namespace barchan {
 /// R) (docs/method.md). So of a whole wall that is all that its fluids of that scheme touch, the force is what the
 /// fluids lose: - sum m (dv/dt - g - forcing) over their particles. Of a wall that stays inside the domain, alone in a
 /// laminar fluid of that scheme without a free surface or a [[forcing]], it is what a control volume about it loses
-/// (models/fluid/control_volume.hpp). Torques are always those of the pairs. Of spheres: the impulse of their contacts
-/// over the steps within a step (models/grains/spheres.hpp). Of a body: mass times acceleration of its particles, less
-/// gravity. The torque counts periodic images nearest to its point. history.csv has the means since its last row.
+/// (models/fluid/control_volume.hpp). Of a whole wall beside an elastic body at whose border that fluid ends it is the
+/// load on the wall's border (models/coupling/wall_border.hpp), torque too. Other torques are those of the pairs. Of
+/// spheres: the impulse of their contacts over the steps within a step (models/grains/spheres.hpp). Of a body: mass
+/// times acceleration of its particles, less gravity. The torque counts periodic images nearest to its point.
+/// history.csv has the means since its last row.
 class ForceOn : public Model {
  public:
   ForceOn(const Scene& scene, const Layout& layout, std::size_t number);
@@ -44,6 +47,8 @@ class ForceOn : public Model {
   bool stands_alone(std::size_t number) const;
   void make_volume(const State& state);
   void measure_volume();
+  void make_border(const std::vector<ParticleBlock>& blocks);
+  bool bends_a_body(std::size_t fluid) const;
 
   const Scene& scene_;
   const Layout& layout_;
@@ -57,6 +62,7 @@ class ForceOn : public Model {
   bool by_volume_ = false;           // ... what a control volume loses
   ControlVolume volume_;
   std::vector<ControlVolume::Share> shares_;
+  WallBorder border_;        // there: the force is the load on it
   Vec3 force_{}, torque_{};  // N, N m (per metre of depth in 2D): of all but spheres, at the end of the step
   Vec3 impulse_{};           // N s: so far, of spheres that of their contacts, else by the trapezoids of the kicks
   Vec3 smooth_{};            // N: of all but spheres, at the end of the last step

@@ -69,9 +69,27 @@ bool solids_move_in(const Scene& scene, const Phase& fluid) {
     const PhaseKind kind = other.kind();
     if (kind != PhaseKind::grains && kind != PhaseKind::elastic) continue;
     const Interaction* pair = entry_between(scene, fluid, other);
-    if (pair && pair->drag_law == DragLaw::none) return true;
+    if (pair && pair->drag_law == DragLaw::none && !ends_at_border(scene, other)) return true;
   }
   return false;
+}
+
+bool is_wall_or_body(const Phase& phase) {
+  const PhaseKind kind = phase.kind();
+  return kind == PhaseKind::wall || kind == PhaseKind::elastic || kind == PhaseKind::rigid;
+}
+
+bool ends_at_border(const Scene& scene, const Phase& body) {
+  if (!is_total(body)) return false;
+  bool any = false;
+  for (const Phase& fluid : scene.phases) {
+    if (fluid.kind() != PhaseKind::fluid || !entry_between(scene, fluid, body)) continue;
+    if (fluid.fluid().scheme != FluidScheme::consistent || has_eddies(scene, fluid)) return false;
+    any = true;
+  }
+  return any && std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+           return fill.phase != body.name || has_surface(fill.shape, scene.dimensions);
+         });
 }
 
 const Motion* motion_of(const Scene& scene, const Phase& phase) {

@@ -38,6 +38,14 @@ double weight_share(const Scene& scene, const Phase& grains);
 /// Whether particles of grains or bodies are moving walls in the fluid and may leave holes in it.
 bool solids_move_in(const Scene& scene, const Phase& fluid);
 
+/// A wall, an elastic or a rigid body.
+bool is_wall_or_body(const Phase& phase);
+
+/// Whether fluids end at the border of an elastic body, as it is deformed, and load that border
+/// (models/coupling/elastic_in_fluid.hpp): a total Lagrangian body whose fills all have a surface, in laminar fluids of
+/// the consistent scheme. Every other elastic body is a wall of particles to a fluid.
+bool ends_at_border(const Scene& scene, const Phase& body);
+
 /// The [[motion]] of a phase; of several the first; null: none.
 const Motion* motion_of(const Scene& scene, const Phase& phase);
 

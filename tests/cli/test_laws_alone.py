@@ -98,7 +98,7 @@ template <int Dim> void one_pair() {
 }
 template void one_pair<2>(); template void one_pair<3>();
 template double barchan::nearness(double);""",
-    "extension": PAIRS + "PAIRS(Extension<false>) PAIRS(Extension<true>)\n"
+    "extension": PAIRS + "PAIRS(Extension<false>) PAIRS(Extension<true>) PAIRS(Extension<false, true>)\n"
                  "template struct barchan::ExtendedState<2>; template struct barchan::ExtendedState<3>;",
     "grain_drag": PAIRS + "PAIRS(DragAndBarrier)",
     "hyperelastic": """

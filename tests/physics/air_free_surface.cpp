@@ -147,7 +147,8 @@ TEST_P(FreeSurface, StillTankIsQuiet) {
         return energy(p, 9.81, 62.6, 1000);
       });
   // On a lattice the plain sums are not in balance at a surface: its rows move, and what they gain never quite rests.
-  const double quiet = GetParam() ? 1e-3 : 1e-2;
+  // Consistent: 7.5e-4 while the walls above the surface counted, 6e-5 while their pressure took no compression.
+  const double quiet = GetParam() ? 1e-5 : 1e-2;
   report("largest speed/sqrt(gH)", fastest / std::sqrt(9.81), quiet);
   report("largest gain of the total energy", e.gain, 1e-3);
   EXPECT_LE(fastest / std::sqrt(9.81), quiet);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "physics/flags.hpp"
 #include "physics/small_scenes.hpp"
 
 namespace {
@@ -111,6 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                     small::Named{"Spheres", &small::spheres}, small::Named{"Drowned", &small::drowned},
                     small::Named{"DrownedConsistent", &small::drowned_consistent},
                     small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
+                    small::Named{"Flag", &small::flag}, small::Named{"Jelly", &small::jelly},
                     small::Named{"Rigid", &small::rigid}, small::Named{"Paddle", &small::paddle},
                     small::Named{"Drum", &small::drum}, small::Named{"SpheresOnBlock", &small::spheres_on_block},
                     small::Named{"HertzianSpheres", &small::hertzian_spheres}),

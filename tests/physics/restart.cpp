@@ -9,6 +9,7 @@
 
 #include "physics/drive.hpp"
 #include "physics/every_scene.hpp"
+#include "physics/flags.hpp"
 #include "physics/small_scenes.hpp"
 
 namespace barchan {
@@ -69,7 +70,7 @@ TEST(Restart, BetweenAnyTwoOfManySteps) {
   for (const auto& text :
        {small::held_dune, small::dam, small::squares, small::spheres, small::hertzian_spheres, small::drowned,
         small::drowned_ball, small::drowned_consistent, small::drowned_ball_consistent, small::paddle, small::drum,
-        small::spheres_on_block, small::spheres_on_block_3d}) {
+        small::flag, small::jelly, small::spheres_on_block, small::spheres_on_block_3d}) {
     const auto run = small::simulation(text), other = small::simulation(text);
     expect_restarts(*run, *other, 60, 1);
   }

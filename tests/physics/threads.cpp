@@ -7,6 +7,7 @@
 #include <cstring>
 #include <thread>
 
+#include "physics/flags.hpp"
 #include "physics/small_scenes.hpp"
 
 namespace barchan {
@@ -104,6 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
                     small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
                     small::Named{"DrownedBall", &small::drowned_ball}, small::Named{"Paddle", &small::paddle},
                     small::Named{"Drum", &small::drum}, small::Named{"HertzianSpheres", &small::hertzian_spheres},
+                    small::Named{"Flag", &small::flag}, small::Named{"Jelly", &small::jelly},
                     small::Named{"MixedDune", &mixed_dune}, small::Named{"MixedChannel", &mixed_channel}),
     [](const auto& s) { return std::string(s.param.name); });
 

@@ -87,7 +87,7 @@ TEST(PairLaws, ExtensionSumsPressureAndVelocity) {
   a.p = One(7.0);
   a.volume = One(0.5);
   Law::Sums<2, One> s{};
-  Law{{}, 2.0}.add(w, a, apart<Law>(0.2, -1.0), s);
+  Law{{}, 2.0, {}}.add(w, a, apart<Law>(0.2, -1.0), s);
   EXPECT_DOUBLE_EQ(s.weight[0], 0.1);
   EXPECT_DOUBLE_EQ(s.pressure[0], -7.3);
   EXPECT_DOUBLE_EQ(s.depth2[0], 0.9);
@@ -96,6 +96,19 @@ TEST(PairLaws, ExtensionSumsPressureAndVelocity) {
   EXPECT_DOUBLE_EQ(s.velocity[1][0], 0.5);
   EXPECT_DOUBLE_EQ(s.sloped[0][0], 0.9);  // 0.1 * 3 * (4 - 1)
   EXPECT_DOUBLE_EQ(s.sloped[1][0], 1.5);  // 0.1 * 3 * 5
+}
+
+/// The same fluid with rest = 3 Pa, 1/c^2 = 0.25: rho = 2 + 0.25 (7 - 3) = 3, p = 7 + 3 (0*3 - 10*4) = -113.
+TEST(PairLaws, ExtensionKnowsTheDensityAtThePressure) {
+  using Law = Extension<false>;
+  Law::Own<2, One> w{};
+  w.pull = {One(0.0), One(-10.0)};
+  Particle<2, One, Law::Reads> a{};
+  a.p = One(7.0);
+  a.volume = One(0.5);
+  Law::Sums<2, One> s{};
+  Law{{}, 2.0, {3.0, 0.25}}.add(w, a, apart<Law>(0.2, -1.0), s);
+  EXPECT_DOUBLE_EQ(s.pressure[0], -11.3);
 }
 
 /// The fluid moves with (3, 0.5) on average and the wall with (1, 0); n = (0, 1).

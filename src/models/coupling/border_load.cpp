@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/hold_inside.hpp"
 #include "models/coupling/border_fit.hpp"
+#include "models/coupling/border_search.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "scene/located.hpp"
 
@@ -16,14 +17,6 @@ namespace {
 constexpr double fit_radius = 3.0;                       // spacings
 constexpr double flat_pieces = 0.5, solid_pieces = 0.7;  // spacings, in 2D and in 3D
 constexpr double margin = 0.02, margin_of_off = 0.2;     // spacings: as at the sides of the domain (Sides)
-
-/// Two unit vectors across a normal; in 2D the first one.
-std::array<Vec3, 2> along_border(const Vec3& normal, int dimensions) {
-  if (dimensions == 2) return {Vec3{-normal[1], normal[0], 0.0}, Vec3{}};
-  const Vec3 other = std::abs(normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, first = cross(normal, other);
-  const Vec3 along = 1.0 / norm(first) * first;
-  return {along, cross(normal, along)};
-}
 
 }  // namespace
 
@@ -141,36 +134,6 @@ void BorderLoad::find_stress(const RigidBody& body, const Border& border) {
     stress_[static_cast<std::size_t>(q)] = stress_at<Dim>(body, axes, border, static_cast<std::size_t>(q));
 }
 
-/// Calls f(particle of the fluid, place of the piece in its image) for all that may be within the radius of a piece.
-/// Only particles are looked at, not the images of the grid: these reach no farther than the lists.
-template <int Dim, class F>
-void BorderLoad::each_near(const Anchor& anchor, const OwnAxes& axes, F&& f) const {
-  const PhaseParticles& solid = w_->particles(solid_);
-  const CellGrid &grid = w_->neighbours.grid(fluid_), &own = w_->neighbours.grid(solid_);
-  const std::size_t place = solid.places()[anchor.particle], n = w_->particles(fluid_).size();
-  const Vec3 beside = axes.to_space(anchor.to_piece);
-  const double reach = radius_ + slack_;
-  const auto periodic = [&](std::size_t d) { return d < Dim && layout_.bounds.periodic[d]; };
-  const auto search = [&](const std::array<int, 3>& turns) {
-    Vec3 at{};
-    std::array<float, 3> sorted{};  // where it was when the particles were sorted, less the domain's lower corner
-    for (std::size_t d = 0; d < Dim; ++d) {
-      const double period = layout_.bounds.high[d] - layout_.bounds.low[d], turned = turns[d] * period + beside[d];
-      at[d] = solid.column(Field::position, static_cast<int>(d))[place] + turned;
-      sorted[d] = own.search_position(static_cast<int>(d))[place] + static_cast<float>(turned);
-      if (periodic(d) && !(sorted[d] > -reach && sorted[d] < period + reach)) return;
-    }
-    grid.candidates(sorted, sorted, static_cast<float>(reach), [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::size_t b = begin; b < std::min<std::size_t>(end, n); ++b) f(b, at);
-    });
-  };
-  std::array<int, 3> ways{};
-  for (std::size_t d = 0; d < 3; ++d) ways[d] = periodic(d) ? 1 : 0;
-  for (int k = -ways[2]; k <= ways[2]; ++k)
-    for (int j = -ways[1]; j <= ways[1]; ++j)
-      for (int i = -ways[0]; i <= ways[0]; ++i) search({i, j, k});
-}
-
 template <int Dim>
 BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& axes, const Border& border,
                                          std::size_t number) const {
@@ -205,7 +168,9 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
     for (std::size_t d = 0; d + 1 < Dim; ++d) beside[static_cast<Eigen::Index>(d)] = dot(along[d], r) / spacing_;
     sample.rub(gap->distance / spacing_, beside, w, u);
   };
-  each_near<Dim>(border.anchors[number], axes, look);
+  const Anchor& anchor = border.anchors[number];
+  each_near<Dim>(*w_, fluid_, solid_, w_->particles(solid_).places()[anchor.particle], axes.to_space(anchor.to_piece),
+                 radius_, slack_, look);
   if (!sample.any()) return {};
   Stress s{true, sample.pressure(), {}};
   if (free_surface_) s.pressure = std::max(s.pressure, lowest);

@@ -43,8 +43,6 @@ class BorderLoad : public Model {
   void find_stress(const RigidBody& body, const Border& border);
   template <int Dim>
   Stress stress_at(const RigidBody& body, const OwnAxes& axes, const Border& border, std::size_t piece) const;
-  template <int Dim, class F>
-  void each_near(const Anchor& anchor, const OwnAxes& axes, F&& f) const;
   void sum(RigidBody& body, const Border& border) const;
 
   const Scene& scene_;

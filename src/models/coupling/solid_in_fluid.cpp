@@ -1,6 +1,7 @@
 #include "models/coupling/solid_in_fluid.hpp"
 
 #include "models/fluid/fluid_phase.hpp"
+#include "scene/couplings.hpp"
 
 namespace barchan {
 
@@ -19,6 +20,7 @@ SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t
       rule_{Slip::no_slip, !separate_, separate_} {
   if (separate_) return;
   rule_.rub = wall_rub(scene, layout, solid);
+  rule_.one_sided = ends_at_border(scene, scene.phases[solid]);
   for (const PlanEntry& e : layout.entries)
     if (e.extends && e.other == solid && e.corrected && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
 }

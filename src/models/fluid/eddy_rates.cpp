@@ -117,7 +117,8 @@ BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
     return;
   }
   const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
-  const Four grown = eddy_viscosity(Four(p.viscosity), length, simd::sqrt(stress.phi2) * Four(1.0 / p.density));
+  const Four phi = simd::sqrt(stress.phi2) * Four(1.0 / p.density), nu(p.viscosity);
+  const Four grown = p.rough_ground ? rough_eddy_viscosity(nu, length, phi) : eddy_viscosity(nu, length, phi);
   const Four begun = length * length * simd::sqrt(stress.shear2);
   const Four before = load_four(columns.nu_t, at.first, at.count);
   store_four(simd::select(before > Four(0.0), grown, begun), columns.nu_t, at.first, at.count);

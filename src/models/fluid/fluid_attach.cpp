@@ -155,9 +155,8 @@ double wall_rub(const Scene& scene, const Layout& layout, std::size_t solid) {
   double rub = 0.0;
   for (const PlanEntry& e : layout.entries) {
     if (!e.extends || e.other != solid) continue;
-    const PlanPhase& fluid = layout.phases[e.fluid];
-    const bool calmed = e.corrected && fluid.free_surface && !fluid.eddies;
-    const double least = calmed ? bulk_friction * viscosity_of_rows(scene, layout, e.fluid) : 0.0;
+    const double least =
+        calmed(scene, layout, e.fluid) ? bulk_friction * viscosity_of_rows(scene, layout, e.fluid) : 0.0;
     rub = std::max(rub, least > 0.0 ? std::min(pair_viscosity(scene, layout, solid, e.fluid) / least, 1.0) : 1.0);
   }
   return rub > 0.0 ? rub : 1.0;
@@ -348,6 +347,7 @@ void FluidPhase::bind_eddies() {
         bind_friction(e, other, sides, particles);
     eddy_neighbours_.push_back(e);
   }
+  eddies_.rough_ground = keys_.turbulence == Turbulence::mixing_length && over_rough_walls(eddy_neighbours_);
   if (has_k_omega()) bind_k_omega();
   if ((keys_.turbulence == Turbulence::mixing_length || has_k_omega()) && ground_phases_.empty())
     throw SceneError(scene_.file + ": phases." + plan_.name +

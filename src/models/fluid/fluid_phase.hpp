@@ -121,6 +121,9 @@ double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, s
 /// which fluids have a free surface.
 double wall_rub(const Scene& scene, const Layout& layout, std::size_t solid);
 
+/// Whether a fluid has the treatment of a calm heavy surface (docs/method.md): a laminar fluid of the consistent scheme
+/// with weight and a free surface.
+bool calmed(const Scene& scene, const Layout& layout, std::size_t fluid);
 /// The equation of state of a fluid phase.
 PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t fluid);
 

@@ -55,6 +55,12 @@ Column column_of(const Scene& scene, const Layout& layout, const ParticleBlock& 
 
 }  // namespace
 
+bool calmed(const Scene& scene, const Layout& layout, std::size_t fluid) {
+  const PlanPhase& p = layout.phases[fluid];
+  return p.free_surface && !p.eddies && norm(scene.domain.gravity) > 0.0 &&
+         scene.phases[fluid].fluid().scheme == FluidScheme::consistent;
+}
+
 std::vector<double> pressure_at_rest(const Scene& scene, const Layout& layout, const std::vector<ParticleBlock>& blocks,
                                      std::size_t fluid) {
   std::vector<Column> columns;

@@ -1,32 +1,14 @@
 #include "models/fluid/surface.hpp"
 
-#include "models/fluid/fluid_stress.hpp"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 
-#include "engine/entry_of_list.hpp"
+#include "models/fluid/fluid_stress.hpp"
+#include "models/fluid/surface_neighbours.hpp"
 
 namespace barchan {
-
-namespace {
-
-/// Square distance of a listed particle from particle `from`; there: gives the place of its source, by axis.
-template <std::size_t Dim, class Place>
-double distance2(const ListedParticle<Dim>& entry, const std::array<const double*, Dim>& x, std::size_t from,
-                 const Place& there) {
-  double sum = 0.0;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    const double r = x[d][from] - there(d) - entry.shift[d];
-    sum += r * r;
-  }
-  return sum;
-}
-
-}  // namespace
 
 /// The particles whose wholeness is below the threshold; nobody is near them yet.
 void SurfaceFinder::take_members(const double* chi, std::size_t n, std::size_t ghosts, std::size_t dimensions,
@@ -42,29 +24,6 @@ void SurfaceFinder::take_members(const double* chi, std::size_t n, std::size_t g
     if (chi[k] < threshold) members_.push_back(static_cast<std::uint32_t>(k));
 }
 
-/// On several ranks: what the walks read of ghosts.
-template <int Dim>
-void SurfaceFinder::take_ghosts(const PhaseParticles& fluid, const CellGrid& grid) {
-  constexpr std::size_t dim = Dim, width = 2 * dim + 1;
-  std::array<const double*, width> columns{};
-  columns[dim] = fluid.column(Field::wholeness);
-  for (std::size_t d = 0; d < dim; ++d) {
-    columns[d] = fluid.column(Field::position, static_cast<int>(d));
-    columns[dim + 1 + d] = fluid.column(Field::surface_normal, static_cast<int>(d));
-  }
-  if (ghosts_.size() < grid.images() * width) ghosts_.resize(grid.images() * width);
-  grid.fill_ghosts(
-      width * sizeof(double),
-      [&](const Image& image, std::byte* item) {
-        std::array<double, width> values{};
-        for (std::size_t c = 0; c < width; ++c) values[c] = columns[c][image.source];
-        std::memcpy(item, values.data(), sizeof values);
-      },
-      [&](std::size_t ghost, const std::byte* item) {
-        std::memcpy(ghosts_.data() + ghost * width, item, width * sizeof(double));
-      });
-}
-
 /// Marked ghosts mark their sources.
 void SurfaceFinder::return_marks(const CellGrid& grid, std::size_t n) {
   grid.return_ghosts(
@@ -78,7 +37,7 @@ template <int Dim>
 void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius,
                             double threshold) {
   constexpr std::size_t dim = Dim;
-  const std::size_t n = fluid.size(), dummy = n + grid.images();
+  const std::size_t n = fluid.size();
   const double* chi = fluid.column(Field::wholeness);
   std::array<const double*, dim> x{};
   std::array<double*, dim> normal{};
@@ -87,20 +46,14 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     normal[d] = fluid.column(Field::surface_normal, static_cast<int>(d));
   }
   const double within2 = reach * reach * radius * radius;
-  const bool shared = grid.is_shared();
-  if (shared) take_ghosts<Dim>(fluid, grid);
-  take_members(chi, n, shared ? grid.images() : 0, dim, threshold);
-  // Calls f with the place of each neighbour, or of its ghost.
+  const SurfaceNeighbours<dim> surface(fluid, grid, ghosts_);
+  take_members(chi, n, surface.shared() ? grid.images() : 0, dim, threshold);
   const auto each_near = [&](std::size_t k, auto&& f) {
-    const auto row = own.row(k);
-    for (const std::uint32_t* q = row.begin; q != row.end; ++q) {
-      const std::size_t index = *q / PairList::stride;
-      if (index == dummy) continue;
-      const auto entry = look_up<dim>(index, grid, n);
-      const double* const ghost = shared && index >= n ? &ghosts_[(index - n) * (2 * dim + 1)] : nullptr;
-      const auto there = [&](std::size_t d) { return ghost ? ghost[d] : x[d][entry.source]; };
-      if (distance2<dim>(entry, x, k, there) < within2) f(ghost ? index : entry.source);
-    }
+    std::array<double, dim> at;
+    for (std::size_t d = 0; d < dim; ++d) at[d] = x[d][k];
+    surface.each(
+        own.row(k), at, within2, [](std::size_t) { return true; },
+        [&](std::size_t b, const std::array<double, dim>&) { f(b); });
   };
   const auto count = static_cast<std::int64_t>(members_.size()), all = static_cast<std::int64_t>(n);
 #pragma omp parallel for schedule(static)
@@ -110,20 +63,15 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     each_near(k, mark);
     mark(k);
   }
-  if (shared) return_marks(grid, n);
+  if (surface.shared()) return_marks(grid, n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < all; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (near_[k] == 0) continue;
     std::array<double, dim> sum{};
     const auto add = [&](std::size_t b) {
-      if (shared && b >= n) {
-        const double* const ghost = &ghosts_[(b - n) * (2 * dim + 1) + dim];
-        if (ghost[0] < threshold)
-          for (std::size_t d = 0; d < dim; ++d) sum[d] += ghost[1 + d];
-      } else if (chi[b] < threshold) {
-        for (std::size_t d = 0; d < dim; ++d) sum[d] += normal[d][b];
-      }
+      if (surface.wholeness(b) < threshold)
+        for (std::size_t d = 0; d < dim; ++d) sum[d] += surface.normal(b, d);
     };
     add(k);
     each_near(k, add);

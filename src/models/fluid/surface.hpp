@@ -27,15 +27,13 @@ class SurfaceFinder {
 
  private:
   void take_members(const double* chi, std::size_t n, std::size_t ghosts, std::size_t dimensions, double threshold);
-  template <int Dim>
-  void take_ghosts(const PhaseParticles& fluid, const CellGrid& grid);
   void return_marks(const CellGrid& grid, std::size_t n);
   template <int Dim>
   void find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
   std::vector<std::uint8_t> near_;      // by particle; on several ranks ghosts follow
   std::vector<std::uint32_t> members_;  // particles of the surface
   std::vector<double> inwards_;         // by particle and component
-  std::vector<double> ghosts_;          // on several ranks, by ghost: place of its source, wholeness, B
+  std::vector<double> ghosts_;          // on several ranks: see SurfaceNeighbours
 };
 
 /// Sets what fluid_stress.hpp needs. `viscosity`: of a laminar fluid (Pa s), 0: the particles have their own; `row`: dx

@@ -5,6 +5,18 @@
 
 namespace barchan {
 
+bool over_rough_walls(std::span<const EddyNeighbour> neighbours) {
+  bool rough = false;
+  for (const EddyNeighbour& e : neighbours) {
+    const bool is_rough = e.friction == Friction::rough;
+    const bool no_ground =
+        e.friction == Friction::fluid || e.friction == Friction::slip || e.friction == Friction::driven;
+    if (!(is_rough || no_ground) || e.given) return false;
+    rough = rough || is_rough;
+  }
+  return rough;
+}
+
 double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDistance& ground, const EddyParameters& e) {
   double *distance = fluid.column(Field::ground_distance), *nu_t = fluid.column(Field::eddy_viscosity);
   std::array<const double*, 3> x{}, v{};

@@ -26,18 +26,23 @@ struct EddyNeighbour {
 
 struct EddyParameters {
   Turbulence model = Turbulence::none;
-  double density = 0.0;      // kg/m3
-  double viscosity = 0.0;    // m2/s, molecular and artificial
-  double length = 0.0;       // m, C_s dx
-  double spacing = 0.0;      // m
-  double roughness = 0.0;    // m, of grains
-  double grain_reach = 0.0;  // m: air farther from the ground meets only grains in flight
+  double density = 0.0;       // kg/m3
+  double viscosity = 0.0;     // m2/s, molecular and artificial
+  double length = 0.0;        // m, C_s dx
+  double spacing = 0.0;       // m
+  double roughness = 0.0;     // m, of grains
+  bool rough_ground = false;  // over_rough_walls: nu_t of a mixing length is rough_eddy_viscosity
+  double grain_reach = 0.0;   // m: air farther from the ground meets only grains in flight
   template <class V>
   V mixing_length(V distance) const {
     return model == Turbulence::mixing_length ? V(karman) * distance
                                               : V(model == Turbulence::smagorinsky ? length : 0.0);
   }
 };
+
+/// Whether walls with a roughness are ground of a fluid with these entries, by the logarithmic law, and nothing else
+/// is.
+bool over_rough_walls(std::span<const EddyNeighbour> neighbours);
 
 /// Writes ground_distance and the records. Returns the largest kinematic viscosity, m2/s.
 double pack_eddies(PhaseParticles& fluid, EddyRecords& records, const GroundDistance& ground, const EddyParameters& e);

@@ -140,7 +140,9 @@ void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 
 void Wall::attach(Workspace& w) {
   w_ = &w;
-  if (extended_) sources_ = extension_sources(w, number_);
+  if (!extended_) return;
+  sources_ = extension_sources(w, number_);
+  contact_.emplace(w, number_);
 }
 
 void Wall::schedule(Schedule& s) {
@@ -148,8 +150,10 @@ void Wall::schedule(Schedule& s) {
   if (!plan_.travels) s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
   FieldSet reads{position, velocity, wall_depth, wall_normal};
   if (plan_.travels) reads = reads | FieldSet{surface_velocity, surface_acceleration};
-  if (extended_)
-    s.add({stage::extend_walls, plan_.name, extension_touches(layout_, number_, reads), [this] { extend(); }});
+  if (!extended_) return;
+  Touches touches = extension_touches(layout_, number_, reads);
+  add_contact_touches(scene_, layout_, number_, touches);
+  s.add({stage::extend_walls, plan_.name, touches, [this] { extend(); }});
 }
 
 void Wall::slide() {
@@ -164,9 +168,18 @@ void Wall::slide() {
 }
 
 void Wall::extend() {
-  extend_into_solid(w_->particles(number_), w_->to_write(number_, Record::extended), sources_, scene_.domain.gravity,
-                    rule_, bend_);
+  const PhaseParticles& wall = w_->particles(number_);
+  RecordArray& records = w_->to_write(number_, Record::extended);
+  extend_into_solid(wall, records, sources_, scene_.domain.gravity, rule_, bend_);
+  contact_->cut(wall, records);
   share_extended(*w_, number_);
+}
+
+/// Of a calm heavy fluid, whose rest a column of water of one density disturbs; of others none.
+static Compression compression_of(const Workspace& w, std::size_t fluid) {
+  if (!calmed(w.scene, w.layout, fluid)) return {};
+  const PressureLaw law = pressure_law(w.scene, w.layout, fluid);
+  return {law(law.reference_density), 1.0 / (law.sound_speed * law.sound_speed)};
 }
 
 std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) {
@@ -182,7 +195,8 @@ std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) 
   for (const auto& e : w.layout.entries)
     if (e.extends && e.other == solid)
       sources.push_back({&w.list(e.direction(solid)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
-                         w.scene.phases[e.fluid].density, e.drag > 0 ? weight_about_a_lone_particle(e) : 0.0});
+                         w.scene.phases[e.fluid].density, e.drag > 0 ? weight_about_a_lone_particle(e) : 0.0,
+                         compression_of(w, e.fluid)});
   return sources;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "models/forces.hpp"
+#include "models/walls/contact_line.hpp"
 #include "models/walls/walls.hpp"
 #include "models/workspace.hpp"
 
@@ -44,6 +46,7 @@ class Wall : public Model {
   std::vector<ExtensionSource> sources_;
   SurfaceBend bend_;
   ExtensionRule rule_;
+  std::optional<ContactLine> contact_;  // of a wall that a fluid is extended into
 };
 
 /// Normals of the walls inside the domain, where some wall's surface must know which way it faces: once all walls have

@@ -6,16 +6,16 @@ namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
-template <int Dim, bool Curved>
+template <int Dim, bool Curved, bool OneSided = false>
 void extend(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids, const Vec3& gravity,
             const ExtensionRule& rule, const SurfaceBend& bend) {
-  using Law = Extension<Curved>;
+  using Law = Extension<Curved, OneSided>;
   using R = MotionRecord<Dim>;
   std::array<PairEntry<Law>, most_entries> entries{};
   double alone = 0.0;
   for (std::size_t c = 0; c < fluids.size(); ++c) {
     const ExtensionSource& e = fluids[c];
-    entries[c] = {e.list, e.records, e.kernel, e.radius, Law{{}, e.density}};
+    entries[c] = {e.list, e.records, e.kernel, e.radius, Law{{}, e.density, e.compression}};
     alone += e.alone;
   }
   const double* depth = solid.has(Field::wall_depth) ? solid.column(Field::wall_depth) : nullptr;
@@ -70,8 +70,10 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
                        const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend) {
   const bool curved = rule.slip == Slip::free_slip && !bend.values.empty();
-  const auto extended = solid.dimensions() == 2 ? (curved ? extend<2, true> : extend<2, false>)
-                                                : (curved ? extend<3, true> : extend<3, false>);
+  const auto one_sided = solid.dimensions() == 2 ? extend<2, false, true> : extend<3, false, true>;
+  const auto extended = rule.one_sided            ? one_sided
+                        : solid.dimensions() == 2 ? (curved ? extend<2, true> : extend<2, false>)
+                                                  : (curved ? extend<3, true> : extend<3, false>);
   extended(solid, own, fluids, gravity, rule, bend);
 }
 

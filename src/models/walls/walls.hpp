@@ -19,6 +19,7 @@ struct ExtensionSource {
   double radius;       // m
   double density;      // kg/m3, of the fluid at rest
   double alone = 0.0;  // sum V W of the fluid about a grain that stands alone in it, where a form drag acts; 0: no drag
+  Compression compression = {};
 };
 
 /// How a wall's surface bends, by particle: the second derivatives of its height over sqrt(1 + slope^2) (1/m) at the
@@ -36,6 +37,7 @@ struct ExtensionRule {
   bool accelerates = false;   // the fluid's pressure follows the acceleration of its particles: a body, a driven wall
   bool own_velocity = false;  // its particles keep their own velocity: grains
   bool lets_go = false;       // it does not pull: where the fluid has no pressure, it may leave
+  bool one_sided = false;     // fluid behind its surface is another one: bodies that may be thin
   double rub = 1.0;           // share of no slip that is left along a surface whose normal is known (wall_rub)
 };
 

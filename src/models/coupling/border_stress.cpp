@@ -1,0 +1,31 @@
+#include "models/coupling/border_stress.hpp"
+
+#include "models/fluid/fluid_phase.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr double fit_radius = 3.0;  // spacings, as of rigid bodies (border_load.cpp)
+
+}  // namespace
+
+BorderFluid border_fluid(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
+  const PlanPhase& fluid = layout.phases[entry.fluid];
+  return {entry.fluid,
+          fluid.free_surface,
+          fluid.spacing,
+          fit_radius * fluid.spacing,
+          pair_viscosity(scene, layout, entry.other, entry.fluid),
+          scene.phases[entry.fluid].density,
+          fluid.sound_speed};
+}
+
+double widest_skin(const Layout& layout) {
+  double widest = 0.0;
+  for (const PlanEntry& e : layout.entries)
+    if (e.searched) widest = std::max(widest, layout.skin * e.radius);
+  return widest;
+}
+
+}  // namespace barchan

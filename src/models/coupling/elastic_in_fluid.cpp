@@ -1,0 +1,213 @@
+#include "models/coupling/elastic_in_fluid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/walls/sides.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr std::uint32_t inner = 0xffffffffu;
+constexpr double margin = 0.02, margin_of_off = 0.2;  // spacings: as at the sides of the domain (Sides)
+
+}  // namespace
+
+ElasticInFluid::ElasticInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
+    : scene_(scene), layout_(layout), solid_(solid) {
+  slack_ = widest_skin(layout);
+  for (const PlanEntry& e : layout.entries)
+    if (e.extends && e.other == solid && e.corrected) fluids_.push_back(border_fluid(scene, layout, e));
+}
+
+void ElasticInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks) {
+  double finest = 1e300, widest = 0.0, reach = 0.0;
+  for (const BorderFluid& fluid : fluids_) {
+    finest = std::min(finest, fluid.spacing);
+    widest = std::max(widest, fluid.spacing);
+  }
+  for (const PlanEntry& e : layout_.entries)
+    if (e.extends && e.other == solid_) reach = std::max(reach, e.radius);
+  const double width = piece_width(layout_.dimensions) * finest;
+  border_ = ElasticBorder(scene_, layout_, solid_, blocks[solid_], width, reach + widest);
+  PhaseParticles& p = state.phases[solid_];
+  nearest_ = p.add_own<std::uint32_t>("nearest piece of its surface", Kept::state, inner);
+  p.keep_places();
+  border_.move(p);
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const auto near = border_.nearest(blocks[solid_].position[k]);
+    if (near && near->distance < 0.0) p.own(nearest_)[k] = static_cast<std::uint32_t>(near->piece);
+  }
+  stress_.resize(border_.pieces().size());
+  parted_.assign(fluids_.size(), std::vector<double>(stress_.size(), 0.0));
+  force_.resize(p.size());
+}
+
+void ElasticInFluid::attach(Workspace& w) {
+  w_ = &w;
+  w.particles(solid_).keep_places();
+}
+
+void ElasticInFluid::schedule(Schedule& s) {
+  using enum Field;
+  const std::string& name = layout_.phases[solid_].name;
+  Touches held{{name, {position, velocity}, {}}}, loaded{{name, {position, velocity}, {acceleration}}};
+  for (const BorderFluid& fluid : fluids_) {
+    const std::string& other = layout_.phases[fluid.phase].name;
+    held.push_back({other, {position, velocity, density}, {position, velocity}});
+    loaded.push_back({other, {position, velocity, pressure}, {}});
+  }
+  s.add({stage::walls, name + ", border", held, [this] { hold(); }});
+  s.add({stage::extend_solids,
+         name + ", surface",
+         {{name, {position, acceleration}, {wall_normal, wall_depth, surface_velocity, surface_acceleration}}},
+         [this] { move_surface(); }});
+  s.add({stage::reaction, name + ", border", loaded, [this] { load(); }});
+}
+
+/// Brings the border to where the body is, puts particles of the fluid back that came too near to it, and stops their
+/// motion towards it.
+void ElasticInFluid::hold() {
+  border_.move(w_->particles(solid_));
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  for (const BorderFluid& fluid : fluids_) {
+    PhaseParticles& p = w_->particles(fluid.phase);
+    std::array<double*, 3> x{}, v{};
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      x[d] = p.column(Field::position, static_cast<int>(d));
+      v[d] = p.column(Field::velocity, static_cast<int>(d));
+    }
+    const double* rho = p.column(Field::density);
+    const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      Vec3 at{};
+      for (std::size_t d = 0; d < dimensions; ++d) at[d] = x[d][k];
+      if (!border_.may_reach(at)) continue;
+      const auto near = border_.nearest(at);
+      const double room =
+          (std::abs(rho[k] - fluid.density) > Sides::off * fluid.density ? margin_of_off : margin) * fluid.spacing;
+      if (!near || near->distance >= room) continue;
+      const ElasticBorder::Piece& piece = border_.pieces()[near->piece];
+      const Vec3 carried = piece.velocity_at(near->from);
+      double into = 0.0;
+      for (std::size_t d = 0; d < dimensions; ++d) into += (v[d][k] - carried[d]) * piece.normal[d];
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        x[d][k] += (room - near->distance) * piece.normal[d];
+        v[d][k] -= std::min(into, 0.0) * piece.normal[d];
+      }
+    }
+  }
+}
+
+/// Normals, depths, velocities and accelerations of the nearest places of the surface.
+void ElasticInFluid::move_surface() {
+  PhaseParticles& p = w_->particles(solid_);
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  std::array<const double*, 3> x{}, a{};
+  std::array<double*, 3> normal{}, speed{}, followed{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    const int c = static_cast<int>(d);
+    x[d] = p.column(Field::position, c);
+    a[d] = p.column(Field::acceleration, c);
+    normal[d] = p.column(Field::wall_normal, c);
+    speed[d] = p.column(Field::surface_velocity, c);
+    followed[d] = p.column(Field::surface_acceleration, c);
+  }
+  double* const depth = p.column(Field::wall_depth);
+  const std::uint32_t* const nearest = p.own(nearest_);
+  const double* const v[3] = {p.column(Field::velocity, 0), p.column(Field::velocity, 1),
+                              dimensions == 3 ? p.column(Field::velocity, 2) : nullptr};
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Vec3 n_k{}, v_k{}, a_k{};
+    depth[k] = 0.0;
+    if (nearest[k] == inner) {
+      for (std::size_t d = 0; d < dimensions; ++d) v_k[d] = v[d][k], a_k[d] = a[d][k];
+    } else {
+      const ElasticBorder::Piece& piece = border_.pieces()[nearest[k]];
+      Vec3 r{};
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        r[d] = x[d][k] - piece.place[d];
+        if (const double period = layout_.bounds.high[d] - layout_.bounds.low[d]; layout_.bounds.periodic[d])
+          r[d] -= period * std::nearbyint(r[d] / period);
+      }
+      depth[k] = std::max(-dot(r, piece.normal), 0.0);
+      n_k = piece.normal;
+      v_k = piece.velocity_at(r + depth[k] * n_k);
+      a_k = border_.mean(nearest[k], p.places(), a);
+    }
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      normal[d][k] = n_k[d];
+      speed[d][k] = v_k[d];
+      followed[d][k] = a_k[d];
+    }
+  }
+}
+
+void ElasticInFluid::load() {
+  std::fill(force_.begin(), force_.end(), Vec3{});
+  const auto& pieces = border_.pieces();
+  const std::uint32_t* const places = w_->particles(solid_).places();
+  const auto count = static_cast<std::int64_t>(pieces.size());
+  for (std::size_t c = 0; c < fluids_.size(); ++c) {
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < count; ++i) {
+      const auto q = static_cast<std::size_t>(i);
+      const ElasticBorder::Piece& piece = pieces[q];
+      const BorderPlace at{places[piece.anchor], piece.beside, piece.normal, piece.velocity, piece.spin};
+      stress_[q] = layout_.dimensions == 2 ? border_stress<2>(*w_, fluids_[c], solid_, at, slack_)
+                                           : border_stress<3>(*w_, fluids_[c], solid_, at, slack_);
+    }
+    radiate(fluids_[c], parted_[c]);
+    sum(fluids_[c]);
+  }
+  PhaseParticles& p = w_->particles(solid_);
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    double* const a = p.column(Field::acceleration, d);
+    for (std::size_t id = 0; id < force_.size(); ++id)
+      a[places[id]] += force_[id][static_cast<std::size_t>(d)] / p.mass();
+  }
+}
+
+/// p -= rho c (w - mean of w), w the speed with which the fluid goes off the border. The mean is that of h/c: over 20
+/// h/c it turned a part of the added mass into a force along the velocity, which fed the second mode of the plate of
+/// FSI3 (Turek & Hron 2006) until the fluid broke up.
+void ElasticInFluid::radiate(const BorderFluid& fluid, std::vector<double>& parted) {
+  const double c = fluid.sound_speed, impedance = fluid.density * c,
+               share = std::min(1.0, w_->state.dt * c / layout_.phases[fluid.phase].smoothing_length);
+  for (std::size_t q = 0; q < stress_.size(); ++q) {
+    if (!stress_[q].wet) continue;
+    parted[q] += share * (stress_[q].parting - parted[q]);
+    stress_[q].pressure -= impedance * (stress_[q].parting - parted[q]);
+  }
+}
+
+/// Where no fluid is near, as between bodies that touch, the pressure is the mean of the others; beside a free surface
+/// it is zero.
+void ElasticInFluid::sum(const BorderFluid& fluid) {
+  const auto& pieces = border_.pieces();
+  double wet = 0.0, mean = 0.0;
+  for (std::size_t q = 0; q < pieces.size(); ++q) {
+    if (!stress_[q].wet) continue;
+    wet += pieces[q].content;
+    mean += pieces[q].content * stress_[q].pressure;
+  }
+  mean = fluid.free_surface || fluids_.size() > 1 || !(wet > 0.0) ? 0.0 : mean / wet;
+  for (std::size_t q = 0; q < pieces.size(); ++q) {
+    const double pressure = stress_[q].wet ? stress_[q].pressure : mean;
+    border_.spread(q, pieces[q].content * (stress_[q].friction - pressure * pieces[q].normal), force_);
+  }
+}
+
+void ElasticInFluid::archive(Archive& a) {
+  for (std::size_t c = 0; c < fluids_.size(); ++c)
+    a.values("parting speeds at " + layout_.phases[solid_].name + " of " + layout_.phases[fluids_[c].phase].name,
+             parted_[c].data(), parted_[c].size());
+}
+
+}  // namespace barchan

@@ -1,0 +1,48 @@
+// Elastic bodies in fluids of the consistent scheme: the surface that the fluid ends at, and the fluid's load on it.
+#pragma once
+
+#include "models/bodies/elastic_border.hpp"
+#include "models/coupling/border_stress.hpp"
+
+namespace barchan {
+
+/// The surface of the body is its border as it is deformed (ElasticBorder). It gives the body's particles depth and
+/// normal, and the velocity and the acceleration of the nearest place of the surface, from which the fluid is continued
+/// into them; particles of the fluid that come too near are put back. The load is the integral of -p n + mu du/dn over
+/// the border, as of rigid bodies (border_load.hpp), and goes to the particles that carry each piece
+/// (docs/method.md, Elastic bodies in fluids).
+///
+/// The fluid's pressure follows the border by way of its density, some steps late, and feeds vibrations faster than
+/// c/h. So the pressure is that of an acoustic wave that meets the border: p - rho c w, w = (v_fluid - v_border).n
+/// there, which is zero but for the error of the scheme (the solution of Riemann's problem for sound; of SPH with
+/// solids e.g. Zhang, Rezavand & Hu 2021). Less its mean over h/c, this is no load of slow motions.
+class ElasticInFluid : public Model {
+ public:
+  /// For the phase `solid` (ends_at_border of scene/couplings.hpp) and all its entries with such fluids.
+  ElasticInFluid(const Scene& scene, const Layout& layout, std::size_t solid);
+  void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
+  void attach(Workspace& w) override;
+  void schedule(Schedule& s) override;
+  void archive(Archive& a) override;
+
+ private:
+  void hold();
+  void move_surface();
+  void load();
+  void radiate(const BorderFluid& fluid, std::vector<double>& parted);
+  void sum(const BorderFluid& fluid);
+
+  const Scene& scene_;
+  const Layout& layout_;
+  std::size_t solid_;
+  std::vector<BorderFluid> fluids_;
+  double slack_ = 0.0;  // m
+  ElasticBorder border_;
+  OwnColumn<std::uint32_t> nearest_;         // piece of the surface by particle; `inner`: none is near
+  std::vector<BorderStress> stress_;         // by piece, of the fluid that is looked at
+  std::vector<std::vector<double>> parted_;  // m/s by fluid and piece: mean speed of parting
+  std::vector<Vec3> force_;                  // N by particle (id from the phase's first)
+  Workspace* w_ = nullptr;
+};
+
+}  // namespace barchan

@@ -1,0 +1,189 @@
+// Elastic bodies at whose borders fluids of the consistent scheme end: the pieces of a border, buoyancy, added mass, a
+// light plate that comes to rest.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "models/bodies/elastic_border.hpp"
+#include "physics/drive.hpp"
+#include "physics/flags.hpp"
+
+namespace barchan {
+namespace {
+
+using testing::Drive;
+using testing::report;
+
+double value(const Simulation& s, const std::string& column) {
+  const auto columns = s.history_columns();
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
+  if (found == columns.end()) throw std::logic_error("no column " + column);
+  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
+}
+
+void go(Simulation& run, double time) {
+  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
+}
+
+/// Columns of F.
+using Motion = std::array<Vec3, 3>;
+Vec3 moved(const Motion& f, const Vec3& x) { return x[0] * f[0] + x[1] * f[1] + x[2] * f[2]; }
+
+/// The pieces of the body of a scene after x = F X, v = G X, against those of the shape itself.
+void expect_exact(const std::string& text, std::size_t phase, const Motion& f, const Motion& g, const char* what) {
+  const Scene scene = parse_scene(text, "border.toml");
+  const auto blocks = generate(scene);
+  const Plan plan = make_plan(scene, blocks);
+  PhaseParticles body("body", scene.dimensions, blocks[phase].position.size(), 1.0, 0);
+  body.add(Field::position);
+  body.add(Field::velocity);
+  for (std::size_t k = 0; k < body.size(); ++k)
+    for (int d = 0; d < scene.dimensions; ++d) {
+      const auto c = static_cast<std::size_t>(d);
+      body.column(Field::position, d)[k] = moved(f, blocks[phase].position[k])[c];
+      body.column(Field::velocity, d)[k] = moved(g, blocks[phase].position[k])[c];
+    }
+  body.keep_places();
+  ElasticBorder border(scene, plan, phase, blocks[phase], 0.025, 0.2);
+  border.move(body);
+  const auto first = free_border(scene, blocks[phase].parts.front().fill, 0.025);
+  ASSERT_EQ(first.size(), border.pieces().size());
+  const Motion cofactor{cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])};
+  double place = 0.0, normal = 0.0, speed = 0.0, lost = 0.0;
+  Vec3 closed{};
+  std::vector<Vec3> to(body.size());
+  for (std::size_t q = 0; q < first.size(); ++q) {
+    const auto& piece = border.pieces()[q];
+    place = std::max(place, norm(piece.place - moved(f, first[q].at)));
+    speed = std::max(speed, norm(piece.velocity - moved(g, first[q].at)));
+    const Vec3 area = first[q].content * moved(cofactor, first[q].normal);
+    normal = std::max(normal, norm(piece.content * piece.normal - area) / first[q].content);
+    closed = closed + area;
+    // a force on the piece has its torque on the particles
+    std::fill(to.begin(), to.end(), Vec3{});
+    const Vec3 push{1.0, 2.0, scene.dimensions == 3 ? -0.5 : 0.0};
+    border.spread(q, push, to);
+    Vec3 force{}, torque{};
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      force = force + to[k];
+      torque = torque + cross(moved(f, blocks[phase].position[k]), to[k]);
+    }
+    lost = std::max({lost, norm(force - push), norm(torque - cross(piece.place, push))});
+    const auto near = border.nearest(piece.place + 0.01 * piece.normal);
+    ASSERT_TRUE(near) << what;
+    EXPECT_GT(near->distance, 0.0) << what;
+  }
+  report(std::string("places of an affine motion, ") + what, place, 1e-12);
+  report(std::string("normals and areas of it, ") + what, normal, 1e-11);
+  EXPECT_LT(place, 1e-12) << what;
+  EXPECT_LT(speed, 1e-12) << what;
+  EXPECT_LT(normal, 1e-11) << what;
+  EXPECT_LT(lost, 1e-11) << what;
+  EXPECT_LT(norm(closed), 1e-12) << what;
+  const Vec3 curl{0, 0, 0.5 * (g[0][1] - g[1][0])};  // of a turn, where F is one
+  if (norm(f[0] - Vec3{1, 0, 0}) == 0.0) { EXPECT_NEAR(border.pieces().front().spin[2], curl[2], 1e-11) << what; }
+}
+
+TEST(ElasticBorder, IsExactForAffineMotions) {
+  const Motion rest{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, spin{Vec3{0, 2, 0}, Vec3{-2, 0, 0}, Vec3{}};
+  const Motion sheared{Vec3{1.1, 0.2, 0}, Vec3{-0.4, 0.9, 0}, Vec3{0, 0, 1}};
+  expect_exact(small::flag, 2, rest, spin, "disc at rest, turning");
+  expect_exact(small::flag, 2, sheared, spin, "disc");
+  expect_exact(small::flag, 1, sheared, spin, "plate");
+  const Motion bent{Vec3{1.1, 0.2, 0.1}, Vec3{-0.4, 0.9, 0}, Vec3{0.1, -0.2, 1.05}};
+  expect_exact(small::jelly, 1, bent, spin, "block in 3D");
+}
+
+TEST(ElasticBorder, LeavesOutWhatStandsInAWall) {
+  const Scene scene = read_scene(testing::scene_file("verification/turek_hron_fsi2"), {});
+  const auto plate = free_border(scene, 0, 0.005);
+  double length = 0.0, nearest = 1.0;
+  for (const BorderPoint& p : plate) {
+    length += p.content;
+    nearest = std::min(nearest, p.at[0]);
+  }
+  EXPECT_NEAR(length, 2 * 0.35 + 0.02, 0.012) << "two sides and the end of 0.35 m x 0.02 m";
+  EXPECT_GT(nearest, 0.2465) << "nothing in the slot of the cylinder";
+}
+
+constexpr double displaced = 0.6 * 0.4;  // m2
+
+std::string block_in_a_tank(double density, const std::string& more) {
+  return "precision = \"double\"\nspacing = 0.04\n[domain]\nsize = [1.6, 1.6]\ngravity = [0, -1]\n"
+         "[phases.water]\nkind = \"fluid\"\ndensity = 1\nviscosity = 1e-3\nsound-speed = 20\n"
+         "[phases.tank]\nkind = \"wall\"\n[phases.block]\nkind = \"elastic\"\nyoung = 1e3\npoisson = 0.3\ndensity = " +
+         std::to_string(density) +
+         "\n[interactions]\nwater-water = 2.1\nwater-tank = 2.1\nwater-block = 2.1\nblock-tank = false\n"
+         "block-block = { radius = 1.6, kernel = \"wendland-c2\" }\n"
+         "[[fill]]\nphase = \"block\"\nshape = { box = { min = [0.52, 0.6], max = [1.12, 1] } }\n"
+         "[[fill]]\nphase = \"tank\"\nshape = { sides = [\"left\", \"right\", \"bottom\", \"top\"] }\n"
+         "[[fill]]\nphase = \"water\"\nshape = \"the-rest\"\npressure = \"hydrostatic\"\n"
+         "[[force]]\nname = \"lift\"\nphase = \"block\"\n[time]\nend = 1\nlargest-speed = 1\n" +
+         more;
+}
+
+TEST(ElasticInConsistentFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
+  const auto run = small::simulation(block_in_a_tank(2.0, "[[motion]]\nphase = \"block\"\n"));
+  go(*run, 0.05);
+  run->begin_row();
+  go(*run, 0.2);
+  const double error = std::abs(value(*run, "lift_force_y") / displaced - 1.0);
+  report("lift over the weight of the liquid displaced", error, 0.01);
+  EXPECT_LT(error, 0.01);
+  EXPECT_LT(std::abs(value(*run, "lift_force_x")), 0.01 * displaced);
+}
+
+TEST(ElasticInConsistentFluid, ABodyOfTheFluidsDensityStays) {
+  const auto run = small::simulation(block_in_a_tank(
+      1.0, "[[marker]]\nname = \"place\"\nphase = \"block\"\nbox = { min = [0.5, 0.5], max = [1.2, 1.1] }\n"));
+  const double start = value(*run, "place_y");
+  go(*run, 0.3);
+  const double way = std::abs(value(*run, "place_y") - start), falls = 0.5 * 0.3 * 0.3;
+  report("way over that of a free fall", way / falls, 0.01);
+  EXPECT_LT(way / falls, 0.01);
+  EXPECT_GT(way, 0.0) << "it is not held";
+}
+
+/// As of a rigid disc (rigid_in_consistent.cpp): potential flow in a round tank (Lamb 1932, section 70).
+TEST(ElasticInConsistentFluid, AStiffDiscStartsWithItsAddedMass) {
+  std::ifstream file(testing::scene_file("verification/sinking_disc"));
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  text = small::changed(text, "kind    = \"rigid\"", "kind = \"elastic\"\nyoung = 2e3\npoisson = 0.3");
+  text = small::changed(text, "scheme      = \"plain\"", "scheme = \"consistent\"");
+  text = small::changed(text, "disc-tank = false",
+                        "disc-tank = false\ndisc-disc = { radius = 1.6, kernel = \"wendland-c2\" }");
+  text += "\n[[marker]]\nname = \"place\"\nphase = \"disc\"\nbox = { min = [-0.5, -0.5], max = [0.5, 0.5] }\n";
+  const auto run = small::simulation(
+      text, {"interactions.water-water=2.1", "interactions.water-disc=2.1", "interactions.water-tank=2.1"});
+  const double start = value(*run, "place_y"), time = 0.4;
+  go(*run, time);
+  const double added = (1.0 + 0.16) / (1.0 - 0.16), exact = -(2.0 - 1.0) / (2.0 + added);
+  const double found = 2.0 * (value(*run, "place_y") - start) / (time * time * exact);
+  report("acceleration over that with the added mass", std::abs(found - 1.0), 0.05);
+  EXPECT_NEAR(found, 1.0, 0.05);
+}
+
+/// The pressure follows a border some steps late; without the radiation of sound this plate, as dense as the water,
+/// gains energy until it breaks.
+TEST(ElasticInConsistentFluid, AShakenPlateComesToRest) {
+  const auto run = small::simulation(
+      "precision = \"double\"\nspacing = 0.01\n[domain]\nsize = [0.6, 0.3]\nperiodic = [\"x\"]\n"
+      "[phases.water]\nkind = \"fluid\"\ndensity = 1000\nviscosity = 1e-3\nsound-speed = 20\n[phases.wall]\nkind = "
+      "\"wall\"\n[phases.plate]\nkind = \"elastic\"\nspacing = 0.005\ndensity = 1000\nyoung = 1.4e6\npoisson = 0.4\n"
+      "[interactions]\nwater-water = 2.1\nwater-wall = 2.1\nwater-plate = 2.1\nplate-wall = false\nplate-plate = { "
+      "radius = 1.6, kernel = \"wendland-c2\" }\n[[fill]]\nphase = \"plate\"\nshape = { box = { min = [0.2, 0.14], max "
+      "= [0.4, 0.16] } }\nvelocity = [0, \"x < 0.24 ? 0 : 0.1*(x - 0.24)\"]\n[[fill]]\nphase = \"wall\"\nshape = { "
+      "sides = [\"bottom\", \"top\"] }\n[[fill]]\nphase = \"water\"\nshape = \"the-rest\"\n[[motion]]\nphase = "
+      "\"plate\"\nbox = { min = [0.2, 0.14], max = [0.24, 0.16] }\n[time]\nend = 1\nlargest-speed = 1\n");
+  const double start = value(*run, "plate_kinetic_energy");
+  go(*run, 0.5);
+  const double left = (value(*run, "plate_kinetic_energy") + value(*run, "plate_strain_energy")) / start;
+  report("energy of the plate over that of the blow", left, 1.0);
+  EXPECT_LT(left, 1.0);
+}
+
+}  // namespace
+}  // namespace barchan
