@@ -1,6 +1,7 @@
 // Closed sides of the domain that no particle may pass.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "state/particles.hpp"
@@ -21,6 +22,13 @@ struct Sides {
     return false;
   }
 };
+
+/// Spacings that a particle of a fluid keeps from a surface that moves, as from a closed side: `rho`, its density, and
+/// `rest`, the fluid's at rest, in kg/m3.
+constexpr double border_room = 0.02, border_room_of_off = 0.2;
+inline double room_at_border(double rho, double rest) {
+  return std::abs(rho - rest) > Sides::off * rest ? border_room_of_off : border_room;
+}
 
 /// Puts particles that came nearer to a closed side than the margin back to it and stops their motion outwards. The
 /// consistent scheme has no pressure that a particle at the wall would feel; where the flow drives them on, as into the

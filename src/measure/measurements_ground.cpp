@@ -15,8 +15,8 @@ namespace barchan {
 
 namespace {
 
-constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-enum Quantity : std::size_t { total, airborne };
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+enum OfGround : std::size_t { total, airborne };
 
 /// A number of the layers at a place along the ground: linear between their middles, over a periodic side; beyond the
 /// first and the last middle that of the nearest.
@@ -77,10 +77,10 @@ Table Measurements::ground(std::size_t k) {
   for (std::size_t row = 0; row < i.rows.size(); ++row) {
     const Average a = average(k, row);
     const bool any = a.count() > 0;
-    const auto root = [&](double square) { return any ? std::sqrt(std::max(square, 0.0)) : absent; };
-    whole.values.push_back(any ? a.mean(total) : absent);
-    air.values.push_back(any ? a.mean(airborne) : absent);
-    grains.values.push_back(any ? a.mean(total) - a.mean(airborne) : absent);
+    const auto root = [&](double square) { return any ? std::sqrt(std::max(square, 0.0)) : no_value; };
+    whole.values.push_back(any ? a.mean(total) : no_value);
+    air.values.push_back(any ? a.mean(airborne) : no_value);
+    grains.values.push_back(any ? a.mean(total) - a.mean(airborne) : no_value);
     rms.values.push_back(root(a.covariance(total, total)));
     air_rms.values.push_back(root(a.covariance(airborne, airborne)));
     friction.values.push_back(root(std::abs(a.mean(total)) / i.density));
@@ -103,8 +103,8 @@ void Measurements::add_flux(std::size_t k, Table& t) const {
   FrameField by_area{"mass_flux", "kg/m2/s", 3, {}}, by_width{"flux", "kg/m/s", 1, {}};
   for (std::size_t row = 0; row < i.rows.size(); ++row) {
     const double* sum = memory_.flux.data() + places_[k].flux + 3 * row;
-    for (std::size_t d = 0; d < 3; ++d) by_area.values.push_back(moments > 0 ? sum[d] / moments : absent);
-    by_width.values.push_back(moments > 0 ? sum[0] / moments * (i.high[1] - i.low[1]) : absent);
+    for (std::size_t d = 0; d < 3; ++d) by_area.values.push_back(moments > 0 ? sum[d] / moments : no_value);
+    by_width.values.push_back(moments > 0 ? sum[0] / moments * (i.high[1] - i.low[1]) : no_value);
   }
   t.fields.push_back(std::move(by_area));
   if (i.axis != 1) t.fields.push_back(std::move(by_width));

@@ -75,6 +75,26 @@ def twins(src):
     return {name: sorted(folders) for name, folders in where.items() if len(folders) > 1}
 
 
+def clashes(src):
+    """Names that two files of a folder give in namespaces without a name: some presets compile a folder's files together
+    (cmake/options.cmake). Functions are not looked at, since they may be overloaded."""
+    found = []
+    for folder in sorted({f.parent for f in src.rglob("*.cpp")}):
+        where = {}
+        for f in sorted(folder.glob("*.cpp")):
+            text = f.read_text()
+            outer = re.search(r"^namespace (barchan\S*)", text, re.M)
+            for inner in re.findall(r"^namespace {$(.*?)^}", text, re.M | re.S):
+                names = set(re.findall(r"^(?:struct|class|enum class|enum|using) (\w+)(?: [:={]|;)", inner, re.M))
+                for line in re.findall(r"^(?:static |inline )?(?:constexpr|const) ([^(]*?=.*?);", inner, re.M | re.S):
+                    names |= set(re.findall(r"(?<!:)\b([a-z_]\w*)(?:\[\w*\])?\s*(?:=[^=]|$)", re.sub(r"{[^{}]*}", "", line)))
+                for name in names:
+                    where.setdefault((name, outer and outer[1]), []).append(f.name)
+        found += [f"{folder.relative_to(src)}: {name} in {' and '.join(files)}"
+                  for (name, _), files in where.items() if len(files) > 1]
+    return sorted(found)
+
+
 def circles(src):
     """Circles of includes among the files of src, each as the list of its files."""
     includes = {}
@@ -118,6 +138,19 @@ class Layers(unittest.TestCase):
 
     def test_a_name_of_a_file_stands_once(self):
         self.assertEqual(twins(ROOT / "src"), {})
+
+    def test_hidden_names_differ_within_a_folder(self):
+        self.assertEqual(clashes(ROOT / "src"), [])
+
+    def test_planted_clashes_are_found(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            src = pathlib.Path(scratch)
+            for name, text in {"a/x.cpp": "constexpr double room = 0.02, far = 0.2;  // m\nstruct S {\n};\n",
+                               "a/y.cpp": "constexpr double far = 0.2;\nstruct S {\n  int room = 1;\n};\n",
+                               "b/z.cpp": "constexpr double room = 1.0;\n"}.items():
+                (src / name).parent.mkdir(exist_ok=True)
+                (src / name).write_text(f"namespace barchan {{\n\nnamespace {{\n\n{text}\n}}  // namespace\n\n}}\n")
+            self.assertEqual(clashes(src), ["a: S in x.cpp and y.cpp", "a: far in x.cpp and y.cpp"])
 
     def test_no_circle_of_includes(self):
         self.assertEqual(circles(ROOT / "src"), [])

@@ -6,6 +6,9 @@
 
 namespace barchan {
 
+/// How far about a place of a border the fluid is fitted, in spacings.
+constexpr double border_fit_radius = 3.0;
+
 /// Fits values to `N` functions of the place. Values: numbers of a sample.
 template <int N, int Values>
 class BorderFit {

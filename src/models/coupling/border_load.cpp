@@ -14,9 +14,7 @@ namespace barchan {
 
 namespace {
 
-constexpr double fit_radius = 3.0;                       // spacings
 constexpr double flat_pieces = 0.5, solid_pieces = 0.7;  // spacings, in 2D and in 3D
-constexpr double margin = 0.02, margin_of_off = 0.2;     // spacings: as at the sides of the domain (Sides)
 
 }  // namespace
 
@@ -27,7 +25,7 @@ BorderLoad::BorderLoad(const Scene& scene, const Layout& layout, const PlanEntry
       solid_(entry.other),
       free_surface_(layout.phases[fluid_].free_surface),
       spacing_(layout.phases[fluid_].spacing),
-      radius_(fit_radius * spacing_),
+      radius_(border_fit_radius * spacing_),
       viscosity_(pair_viscosity(scene, layout, solid_, fluid_)) {
   for (const PlanEntry& e : layout.entries)
     if (e.searched) slack_ = std::max(slack_, layout.skin * e.radius);
@@ -92,7 +90,7 @@ void BorderLoad::hold() {
     const BodyBorder& border = borders_[b].body;
     const OwnAxes axes(body);
     const Vec3 rate = axes.to_space(own_angular_velocity(body));
-    const double farthest = border.reach() + margin_of_off * spacing_;
+    const double farthest = border.reach() + border_room_of_off * spacing_;
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -103,7 +101,7 @@ void BorderLoad::hold() {
       }
       if (!(dot(arm, arm) < farthest * farthest)) continue;
       const auto gap = border.gap(axes, arm);
-      const double room = (std::abs(rho[k] - rest) > Sides::off * rest ? margin_of_off : margin) * spacing_;
+      const double room = room_at_border(rho[k], rest) * spacing_;
       if (!gap || gap->distance >= room || !std::isfinite(gap->distance)) continue;
       const Vec3 carried = body.now.velocity + cross(rate, arm);
       double into = 0.0;

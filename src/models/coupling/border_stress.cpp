@@ -4,18 +4,12 @@
 
 namespace barchan {
 
-namespace {
-
-constexpr double fit_radius = 3.0;  // spacings, as of rigid bodies (border_load.cpp)
-
-}  // namespace
-
 BorderFluid border_fluid(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
   const PlanPhase& fluid = layout.phases[entry.fluid];
   return {entry.fluid,
           fluid.free_surface,
           fluid.spacing,
-          fit_radius * fluid.spacing,
+          border_fit_radius * fluid.spacing,
           pair_viscosity(scene, layout, entry.other, entry.fluid),
           scene.phases[entry.fluid].density,
           fluid.sound_speed};

@@ -10,7 +10,6 @@ namespace barchan {
 namespace {
 
 constexpr std::uint32_t inner = 0xffffffffu;
-constexpr double margin = 0.02, margin_of_off = 0.2;  // spacings: as at the sides of the domain (Sides)
 
 }  // namespace
 
@@ -87,8 +86,7 @@ void ElasticInFluid::hold() {
       for (std::size_t d = 0; d < dimensions; ++d) at[d] = x[d][k];
       if (!border_.may_reach(at)) continue;
       const auto near = border_.nearest(at);
-      const double room =
-          (std::abs(rho[k] - fluid.density) > Sides::off * fluid.density ? margin_of_off : margin) * fluid.spacing;
+      const double room = room_at_border(rho[k], fluid.density) * fluid.spacing;
       if (!near || near->distance >= room) continue;
       const ElasticBorder::Piece& piece = border_.pieces()[near->piece];
       const Vec3 carried = piece.velocity_at(near->from);

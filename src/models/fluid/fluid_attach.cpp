@@ -266,10 +266,10 @@ void FluidPhase::attach(Workspace& w) {
   bind_entries();
   q.ends = true;
   if (particles_->has(Field::near_void)) look_for_voids();
-  held_.margin = 0.02 * plan_.spacing;
+  held_.margin = border_room * plan_.spacing;
   if (corrected && plan_.enclosed) {
     parameters_.calming = 0.5 * parameters_.sound_speed / parameters_.smoothing_length;
-    held_.margin_of_off = 0.2 * plan_.spacing;
+    held_.margin_of_off = border_room_of_off * plan_.spacing;
     held_.rest = phase_.density;
   }
   if (!corrected) {
