@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The memory that `plan` states is what the run takes, the median of three runs: at most 2 % less and 6.5 % more."""
+"""The memory that `plan` states is what the run takes: at most 2 % less and 6.5 % more. A run that is farther off is run twice more; then the
+median counts."""
 
 import json
 import os
@@ -12,6 +13,7 @@ import unittest
 
 PROGRAM, SCENES = sys.argv[1], pathlib.Path(sys.argv[2]) / "scenes"
 
+LEAST, MOST = 0.98, 1.065  # bytes that are planned over those that are taken
 # scene, overrides: of each kind of physics, a second of work or two
 CASES = {
     "fluid, mixed": ("verification/taylor_green", "spacing=0.004", "time.end=0.01"),
@@ -52,14 +54,16 @@ class Memory(unittest.TestCase):
                 for text in overrides:
                     command += ["--set", text]
                 memory = self.planned(command)
-                taken = statistics.median(self.taken(command, f"{top}/out_{k}") for k in range(3))
+                taken = self.taken(command, f"{top}/out_0")
+                if not LEAST < memory["bytes"] / taken < MOST:
+                    taken = statistics.median([taken] + [self.taken(command, f"{top}/out_{k}") for k in (1, 2)])
                 ratio = memory["bytes"] / taken
                 parts = ", ".join(f"{part} {size * 1e-6:.1f}" for part, size in memory["parts"].items())
                 print(f"{name}: planned/taken {ratio:.3f}, {taken * 1e-6:.1f} MB taken; planned {parts}", flush=True)
                 # One run and the next differ by up to 4 %: the holes between the blocks of the heap depend on when the
                 # writer's thread takes and gives back its own; and Linux counts a resident set to 1 MB.
-                self.assertLess(0.98, ratio, parts)
-                self.assertLess(ratio, 1.065, parts)
+                self.assertLess(LEAST, ratio, parts)
+                self.assertLess(ratio, MOST, parts)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ using Pairs = std::map<std::pair<std::uint32_t, std::uint32_t>, Known>;
 SphereChunk some_list(double filled, unsigned seed) {
   sets::Uniform random{seed};
   SphereChunk chunk;
-  chunk.groups = {{0, 0, 5, 1.0}, {0, 5, 12, 0.5}};
+  chunk.groups = {{0, 0, 5, 0, 1.0}, {0, 5, 12, 0, 0.5}};
   const std::size_t batches = 12;
   chunk.a.assign(batches * batch, far);
   chunk.b.assign(batches * batch, far + 1);
