@@ -16,6 +16,7 @@ void Neighbours::share(std::vector<PhaseParticles>& particles) {
   ranks::share();
   find_owners();
   take_ghosts();
+  find_contested();
 }
 
 /// A particle of a phase that is whole belongs to the rank whose cells it stands in: those of the first phase that it
@@ -54,25 +55,59 @@ void Neighbours::take_ghosts() {
   }
 }
 
-/// The ranges of displacements of all ranks.
-void Neighbours::widen_by_ranks() {
-  Communicator* const all = ranks::active();
-  if (!all) return;
-  for (auto& ranges : ranges_) {
-    std::vector<float> bounds;
-    for (const Range& range : ranges)
-      for (std::size_t d = 0; d < 3; ++d) {
-        bounds.push_back(-range.low[d]);
-        bounds.push_back(range.high[d]);
-      }
-    all->reduce(bounds.data(), bounds.size(), Communicator::Take::largest);
-    std::size_t k = 0;
-    for (Range& range : ranges)
-      for (std::size_t d = 0; d < 3; ++d) {
-        range.low[d] = -bounds[k++];
-        range.high[d] = bounds[k++];
-      }
+/// Two blocks side by side are compared by every rank that has particles in them. So only blocks in or beside which
+/// several ranks have particles need the displacements of all ranks.
+void Neighbours::find_contested() {
+  const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]);
+  std::vector<float> near(blocks_.size(), 0.0f);
+  std::vector<char> own(blocks_.size(), 0);
+  for (std::size_t q = 0; q < blocks_.size(); ++q) {
+    if (std::any_of(grids_.begin(), grids_.end(), [q](const auto& grid) { return grid && !grid->runs(q).empty(); }))
+      own[q] = 1;
+    if (std::none_of(grids_.begin(), grids_.end(),
+                     [q](const auto& grid) { return grid && grid->is_shared() && !grid->runs(q).empty(); }))
+      continue;
+    const auto at = static_cast<long>(q);
+    std::array<long, 3> xs{}, ys{}, zs{};
+    const int mx = places_beside(0, at % nx, xs), my = places_beside(1, at / nx % ny, ys),
+              mz = places_beside(2, at / (nx * ny), zs);
+    for (std::size_t z = 0; z < static_cast<std::size_t>(mz); ++z)
+      for (std::size_t y = 0; y < static_cast<std::size_t>(my); ++y)
+        for (std::size_t x = 0; x < static_cast<std::size_t>(mx); ++x)
+          near[static_cast<std::size_t>((zs[z] * ny + ys[y]) * nx + xs[x])] = 1.0f;
   }
+  ranks::active()->reduce(near.data(), near.size(), Communicator::Take::sum);
+  contested_.clear();
+  watched_.clear();
+  for (std::size_t q = 0; q < near.size(); ++q) {
+    if (near[q] > 1.0f) contested_.push_back(q);
+    if (near[q] > 1.0f || own[q] != 0) watched_.push_back(q);
+  }
+  for (auto& ranges : ranges_)  // of blocks that nobody watches any more
+    for (Range& range : ranges) range.clear();
+}
+
+/// Makes `all` the range of all ranks, and likewise the ranges of contested blocks.
+void Neighbours::widen_by_ranks(Range& all) {
+  Communicator* const others = ranks::active();
+  if (!others) return;
+  std::vector<Range*> told{&all};
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (grids_[p] && grids_[p]->is_shared())
+      for (const std::size_t q : contested_) told.push_back(&ranges_[p][q]);
+  told_.clear();
+  for (const Range* range : told)
+    for (std::size_t d = 0; d < 3; ++d) {
+      told_.push_back(-range->low[d]);
+      told_.push_back(range->high[d]);
+    }
+  others->reduce(told_.data(), told_.size(), Communicator::Take::largest);
+  std::size_t k = 0;
+  for (Range* range : told)
+    for (std::size_t d = 0; d < 3; ++d) {
+      range->low[d] = -told_[k++];
+      range->high[d] = told_[k++];
+    }
 }
 
 void Neighbours::gather() {

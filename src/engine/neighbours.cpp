@@ -127,12 +127,13 @@ void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
     x[d] = particles.column(Field::position, static_cast<int>(d));
     old[d] = grid.search_position(static_cast<int>(d));
   }
-  const auto n = static_cast<std::int64_t>(blocks_.size());
+  const auto n = static_cast<std::int64_t>(watched());
 #pragma omp parallel for schedule(static)
-  for (std::int64_t q = 0; q < n; ++q) {
-    Range& all = ranges_[phase][static_cast<std::size_t>(q)];
+  for (std::int64_t i = 0; i < n; ++i) {
+    const std::size_t q = watched(static_cast<std::size_t>(i));
+    Range& all = ranges_[phase][q];
     all.clear();
-    const auto runs = grid.runs(static_cast<std::size_t>(q));
+    const auto runs = grid.runs(q);
     if (runs.empty()) continue;
     Displacements<Dim> moved;
     for (const BlockRun& run : runs) moved.add(x, old, bounds_.low, run.begin, run.end);
@@ -143,38 +144,41 @@ void Neighbours::measure(const PhaseParticles& particles, std::size_t phase) {
   }
 }
 
+/// Places along an axis of the block at a place and of those beside it, over periodic sides. Returns how many.
+int Neighbours::places_beside(std::size_t axis, long at, std::array<long, 3>& out) const {
+  const auto count = static_cast<long>(blocks_.count[axis]);
+  int n = 0;
+  for (long s = -1; s <= 1; ++s) {
+    long b = at + s;
+    if (bounds_.periodic[axis]) b += b < 0 ? count : b >= count ? -count : 0;
+    if (b >= 0 && b < count) out[static_cast<std::size_t>(n++)] = b;
+  }
+  return n;
+}
+
 bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
   for (std::size_t p = 0; p < grids_.size(); ++p)
     if (grids_[p]) bounds_.dimensions == 2 ? measure<2>(particles[p], p) : measure<3>(particles[p], p);
   // A pair that no list holds stood more than radius + skin apart. In the same or adjacent blocks it comes within the
   // radius only by a relative displacement of a skin; elsewhere it stood a whole block apart.
-  widen_by_ranks();
   Range all;
   all.clear();
   for (std::size_t p = 0; p < grids_.size(); ++p)
-    if (grids_[p])
-      for (const auto& range : ranges_[p]) all.widen(range);
+    for (std::size_t i = 0; grids_[p] && i < watched(); ++i) all.widen(ranges_[p][watched(i)]);
+  widen_by_ranks(all);
   double least_gap = std::numeric_limits<double>::max();
   for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d)
     least_gap = std::min(least_gap, blocks_.side[d] - widest_);
   if (!(apart(all, all) < least_gap * least_gap)) return false;
-  const auto steps = [&](std::size_t axis, long at, std::array<long, 3>& out) {
-    const auto count = static_cast<long>(blocks_.count[axis]);
-    int n = 0;
-    for (long s = -1; s <= 1; ++s) {
-      long b = at + s;
-      if (bounds_.periodic[axis]) b += b < 0 ? count : b >= count ? -count : 0;
-      if (b >= 0 && b < count) out[static_cast<std::size_t>(n++)] = b;
-    }
-    return n;
-  };
   bool valid = true;
-  const auto blocks = static_cast<std::int64_t>(blocks_.size());
+  const auto blocks = static_cast<std::int64_t>(watched());
 #pragma omp parallel for schedule(static) reduction(&& : valid)
-  for (std::int64_t q = 0; q < blocks; ++q) {
+  for (std::int64_t i = 0; i < blocks; ++i) {
+    const auto q = static_cast<long>(watched(static_cast<std::size_t>(i)));
     const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]);
     std::array<long, 3> xs{}, ys{}, zs{};
-    const int mx = steps(0, q % nx, xs), my = steps(1, q / nx % ny, ys), mz = steps(2, q / (nx * ny), zs);
+    const int mx = places_beside(0, q % nx, xs), my = places_beside(1, q / nx % ny, ys),
+              mz = places_beside(2, q / (nx * ny), zs);
     for (const auto& direction : directions_) {
       const Range& own = ranges_[direction.a][static_cast<std::size_t>(q)];
       if (own.low[0] > own.high[0]) continue;
@@ -192,7 +196,7 @@ bool Neighbours::still_valid(const std::vector<PhaseParticles>& particles) {
           }
     }
   }
-  return valid;
+  return !ranks::any(!valid);
 }
 
 /// A step costs (1 + s)^D pairs of the skin s and a rebuild every k s steps: least where D (1 + s)^(D-1) = cost/(k

@@ -76,7 +76,11 @@ class Neighbours {
   void share(std::vector<PhaseParticles>& particles);
   void find_owners();
   void take_ghosts();
-  void widen_by_ranks();
+  int places_beside(std::size_t axis, long at, std::array<long, 3>& out) const;
+  std::size_t watched() const { return watched_.empty() ? blocks_.size() : watched_.size(); }
+  std::size_t watched(std::size_t number) const { return watched_.empty() ? number : watched_[number]; }
+  void find_contested();
+  void widen_by_ranks(Range& all);
   void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);
 
   Bounds bounds_;
@@ -91,6 +95,9 @@ class Neighbours {
   std::vector<Chunk> chunks_;  // of all lists
   Blocks blocks_;
   std::vector<std::vector<Range>> ranges_;  // by phase, block
+  std::vector<std::size_t> contested_;      // blocks in or beside which several ranks have particles
+  std::vector<std::size_t> watched_;        // blocks of this rank's particles, and contested ones; none: all blocks
+  std::vector<float> told_;                 // to the other ranks: bounds of ranges
   std::size_t padding_;
   double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
   bool adapts_ = false;
