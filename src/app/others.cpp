@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "output/compare.hpp"
 #include "output/series.hpp"
+#include "plan/rank_limits.hpp"
 #include "scene/reader.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/measure_cost.hpp"
@@ -16,13 +17,14 @@
 
 namespace barchan {
 
-int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
+int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json, int ranks) {
   const Scene scene = read_scene(file, overrides);
   if (threads > 0) use_threads(threads, 0);
   const auto start = std::chrono::steady_clock::now();
   auto blocks = make_particles(scene, json ? nullptr : &std::cout);
   const std::chrono::duration<double> making = std::chrono::steady_clock::now() - start;
   Plan plan = make_plan(scene, blocks);
+  if (ranks > 1) check_for_ranks(scene, plan);
   use_threads(threads, plan.particles());
   const bool retreats = !scene.time.fixed_step;
   const MemoryNeed memory = memory_need(scene, plan, retreats);
@@ -30,7 +32,7 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   Estimate estimate;
   try {
     check_memory(scene, memory);
-    estimate = measure(scene, plan, std::move(blocks), retreats);
+    estimate = measure(scene, plan, std::move(blocks), retreats, ranks);
     estimate.start_seconds = making.count();
   } catch (const SceneError& error) {
     if (json) throw;
