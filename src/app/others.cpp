@@ -50,12 +50,14 @@ int generate(const std::string& file, const std::string& output, const std::vect
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = make_particles(scene, &std::cout);
+  auto blocks = make_particles(scene, &std::cout);
   const Plan plan = make_plan(scene, blocks);
   use_threads(0, plan.particles());
-  Simulation start(scene, plan, blocks);
+  std::vector<std::vector<RestingContact>> contacts;
+  for (const ParticleBlock& block : blocks) contacts.push_back(block.contacts);
+  Simulation start(scene, plan, std::move(blocks));
   Frame frame = start.frame(0);
-  for (std::size_t k = 0; k < blocks.size(); ++k) add_contacts(frame, blocks[k].contacts, start.phases()[k].first_id());
+  for (std::size_t k = 0; k < contacts.size(); ++k) add_contacts(frame, contacts[k], start.phases()[k].first_id());
   write_frame(output, frame, vtu ? FrameFormat::vtu : FrameFormat::vtp, scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";
   return 0;

@@ -82,6 +82,15 @@ void CellGrid::order_interior(const Blocks& blocks) {
 
 void CellGrid::sort(PhaseParticles& particles) {
   if (shared_) migrate(particles);
+  find_order(particles);
+  make_runs();
+  particles.permute(order_.data());
+  if (shared_) make_own_images(particles);
+  else make_images(particles);
+}
+
+/// Fills order_, and begin_ and end_ of the interior cells.
+void CellGrid::find_order(PhaseParticles& particles) {
   const std::size_t n = particles.size();
   if (cell_of_.size() < n) {
     cell_of_.resize(n);
@@ -94,10 +103,6 @@ void CellGrid::sort(PhaseParticles& particles) {
     place_cells();
     fill_cells(particles.id());
   }
-  make_runs();
-  particles.permute(order_.data());
-  if (shared_) make_own_images(particles);
-  else make_images(particles);
 }
 
 /// Wraps, finds the cell of each particle and counts those of each cell in end_. All threads of a team call it.

@@ -126,7 +126,10 @@ class CellGrid {
 
   /// Whether this rank has cells of its own and ghosts in the others; image_list() then knows no sources.
   bool is_shared() const { return shared_ != nullptr; }
-  /// Of the phase as one process sorted it: keeps the particles of the cells of this rank alone. Ghosts are missing.
+  /// The first sort, of the particles that every rank has made: keeps those of the cells of this rank alone. Ghosts are
+  /// missing.
+  void sort_and_share(PhaseParticles& particles);
+  /// The same of a phase as one process sorted it.
   void share(PhaseParticles& particles);
   /// All cells are this process' own again: for who loads what one process had, and shares it then.
   void unshare() { shared_.reset(); }
@@ -217,6 +220,8 @@ class CellGrid {
   }
   double divide(double cell, double reach, const Blocks& blocks);
   void order_interior(const Blocks& blocks);
+  void find_order(PhaseParticles& particles);
+  std::array<std::size_t, 2> take_own_cells();
   void find_halo();
   void find_cells(PhaseParticles& particles);
   void place_cells();

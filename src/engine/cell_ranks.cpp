@@ -23,11 +23,35 @@ std::size_t sum(const std::vector<std::size_t>& counts) {
 
 }  // namespace
 
+/// Divides the cells of one process. From now on begin_ and end_ of this rank's count its own particles; those stood
+/// at first .. second - 1.
+std::array<std::size_t, 2> CellGrid::take_own_cells() {
+  auto shared = std::make_unique<SharedCells>();
+  static_cast<CellOwners&>(*shared) = divided(static_cast<std::size_t>(ranks::available()->size()));
+  shared_ = std::move(shared);
+  const auto [from, to] = own_walk();
+  const std::size_t first = from < to ? begin_[walk_[from]] : 0, last = from < to ? end_[walk_[to - 1]] : 0;
+  for (std::size_t w = from; w < to; ++w) {
+    begin_[walk_[w]] -= static_cast<std::uint32_t>(first);
+    end_[walk_[w]] -= static_cast<std::uint32_t>(first);
+  }
+  return {first, last};
+}
+
+void CellGrid::sort_and_share(PhaseParticles& particles) {
+  find_order(particles);
+  cell_of_ = {};
+  const auto [first, last] = take_own_cells();
+  particles.keep(order_.data() + first, last - first);
+  order_ = {};  // as long as the particles of all ranks
+  make_runs();
+  make_own_images(particles);
+}
+
 void CellGrid::share(PhaseParticles& particles) {
-  shared_ = std::make_unique<SharedCells>();
-  SharedCells& s = *shared_;
-  static_cast<CellOwners&>(s) = divided(static_cast<std::size_t>(ranks::available()->size()));
+  const auto [first, last] = take_own_cells();
   const auto rank = ranks::available()->rank();
+  SharedCells& s = *shared_;
   s.image_begin.assign(1, 0);
   for (const HaloCell& halo : halo_cells_) {
     if (s.owner[halo.source] == rank)
@@ -35,12 +59,6 @@ void CellGrid::share(PhaseParticles& particles) {
         s.image_search[d].insert(s.image_search[d].end(), search_[d].begin() + begin_[halo.cell],
                                  search_[d].begin() + end_[halo.cell]);
     s.image_begin.push_back(static_cast<std::uint32_t>(s.image_search[0].size()));
-  }
-  const auto [from, to] = own_walk();
-  const std::size_t first = from < to ? begin_[walk_[from]] : 0, last = from < to ? end_[walk_[to - 1]] : 0;
-  for (std::size_t w = from; w < to; ++w) {
-    begin_[walk_[w]] -= static_cast<std::uint32_t>(first);
-    end_[walk_[w]] -= static_cast<std::uint32_t>(first);
   }
   for (std::size_t d = 0; d < dimensions_; ++d)  // the memory of the others' goes back
     search_[d] = AlignedVector<float>(search_[d].begin() + static_cast<std::ptrdiff_t>(first),
@@ -108,7 +126,7 @@ void CellGrid::migrate(PhaseParticles& particles) {
 void CellGrid::make_own_images(const PhaseParticles& particles) {
   SharedCells& s = *shared_;
   const std::size_t n = particles.size();
-  const auto rank = ranks::active()->rank();
+  const auto rank = ranks::available()->rank();
   fit_search(n, 0, n);
   std::array<const double*, 3> x{};
   for (std::size_t d = 0; d < dimensions_; ++d) {

@@ -72,7 +72,7 @@ std::string to_text(const RankPlan& plan) {
     t += line("every rank has %.0f particles of grains and bodies; they take %.0f %% of a step\n", plan.whole_particles,
               100.0 * plan.whole_share);
   t += "at the start every rank makes all particles: " + memory_text(plan.start_memory) +
-       "; the first rank has the frame and the checkpoint of all\n";
+       "; later the first one has the frames of all\n";
   if (plan.efficiency > 0)
     t += line("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
               plan.efficiency, plan.ranks.size());

@@ -49,6 +49,23 @@ double states_kept(double steps) {
                   1.0 + std::floor(steps / static_cast<double>(steps_between_states)));
 }
 
+double bytes_of(const std::vector<ParticleBlock>& blocks) {
+  std::size_t bytes = 0;
+  const auto add = [&](const auto& values) { bytes += values.capacity() * sizeof values[0]; };
+  for (const ParticleBlock& b : blocks) {
+    add(b.position);
+    add(b.velocity);
+    add(b.pressure);
+    add(b.parts);
+    add(b.radius);
+    add(b.contacts);
+    add(b.normal);
+    add(b.depth);
+    add(b.bend);
+  }
+  return static_cast<double>(bytes);
+}
+
 double part_of(const MemoryNeed& need, const std::string& name) {
   for (const auto& [part, bytes] : need.parts)
     if (part == name) return bytes;
@@ -63,11 +80,9 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   // One thread does the work: several that wait for each other on a busy machine would count their waiting.
   omp_set_num_threads(1);
   double before = allocated_memory();
-  Simulation simulation(scene, plan, blocks);
-  const double with_blocks = allocated_memory();
-  blocks.clear();
-  const double of_blocks = with_blocks - allocated_memory();
+  const double of_blocks = bytes_of(blocks);
   before -= of_blocks;
+  Simulation simulation(scene, plan, std::move(blocks));
   simulation.check_start();
   std::optional<RankMeasure> on_ranks;
   if (ranks > 0) {

@@ -31,7 +31,9 @@ RankMeasure::RankMeasure(const Simulation& simulation, int ranks)
     use_[p] = neighbours.grid(p).use();
     const std::vector<std::uint32_t> cells = neighbours.grid(p).cells_of_particles();
     rank_of_id_[p].assign(cells.size(), -1);
-    for (std::size_t k = 0; k < cells.size(); ++k) rank_of_id_[p][number_of(p, k)] = owners_[p]->owner[cells[k]];
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      if (const std::size_t number = number_of(p, k); number < cells.size())
+        rank_of_id_[p][number] = owners_[p]->owner[cells[k]];
   }
 }
 
@@ -89,6 +91,8 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
   double arrays = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) arrays += of(simulation_.phases()[p].bytes());
   for (std::size_t p = 0; p < whole_.size(); ++p) {
+    if (simulation_.neighbours().has_grid(p))
+      plan.reduced_bytes += 6.0 * sizeof(float) * of(simulation_.neighbours().blocks());
     const double n = of(simulation_.phases()[p].size()), share = of(simulation_.phases()[p].bytes()) / arrays;
     if (!owners[p]) {
       plan.whole_particles += n;
@@ -100,7 +104,6 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
     }
     const std::vector<RankHalo> halo = simulation_.neighbours().halo_of(p, owners);
     add_halo(plan, p, halo, steps);
-    plan.reduced_bytes += 6.0 * sizeof(float) * of(simulation_.neighbours().blocks());
     const double work = work_of(p), a_ghost = bytes_of_a_ghost(p);
     for (std::size_t r = 0; r < ranks_ && n > 0.0; ++r) {
       const double own = of(halo[r].particles) / n;
@@ -190,34 +193,39 @@ void RankMeasure::add_seconds(RankPlan& plan, const std::vector<Part>& parts) co
 
 /// Bytes: search position, image, its place among what comes, and its records where they are and on their way.
 double RankMeasure::bytes_of_a_ghost(std::size_t phase) const {
-  return simulation_.plan().dimensions * sizeof(float) + sizeof(Image) + sizeof(std::uint32_t) +
+  const double dimensions = simulation_.plan().dimensions;
+  return dimensions * sizeof(float) + sizeof(Image) + sizeof(std::uint32_t) +
          2.0 * of(simulation_.bytes_of_an_image(phase));
 }
 
 /// What of one process is of all cells, a rank has too; the rest is its part of the particles, with ghosts. Before that
-/// every rank has made all particles and sorted them.
+/// every rank has made all particles and found their order.
 void RankMeasure::add_memory(RankPlan& plan, const std::vector<Part>& parts, const MemoryOfOne& memory) const {
   const Neighbours& neighbours = simulation_.neighbours();
-  double cells = 0.0, owners = 0.0, grids = 0.0, images = 0.0, all = 0.0, packed = 0.0;
+  const double dimensions = simulation_.plan().dimensions;
+  double cells = 0.0, owners = 0.0, images = 0.0, packed = 0.0, order = 0.0, gathered = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) {
     const PhaseParticles& particles = simulation_.phases()[p];
-    all += of(particles.bytes());
-    packed = std::max(packed, of(particles.packed_width() * particles.size()));
+    const double n = of(particles.size());
+    packed += n * of(particles.packed_width());
     if (!neighbours.has_grid(p)) continue;
     const CellGrid& grid = neighbours.grid(p);
     cells += of(grid.bytes_of_cells());
-    grids += of(grid.bytes());
-    if (owners_[p]) owners += of(grid.cells()) * sizeof(std::int32_t);
+    order = std::max(order, 2.0 * sizeof(std::uint32_t) * n);
+    if (!owners_[p]) continue;
+    owners += of(grid.cells()) * sizeof(std::int32_t);
     images += of(grid.images()) * bytes_of_a_ghost(p);
+    // Of a checkpoint: a column, cells, and search positions as they came and as they are.
+    gathered +=
+        n * sizeof(double) + 2.0 * of(grid.cells()) * sizeof(std::uint32_t) + 2.0 * n * dimensions * sizeof(float);
   }
   const double rest = std::max(memory.arrays - cells - images, 0.0);
-  plan.start_memory = memory.program + memory.blocks + all + grids;
+  plan.start_memory = memory.program + packed + std::max(memory.blocks, cells + order);
   for (std::size_t r = 0; r < ranks_; ++r) {
     const Part& part = parts[r];
     const double own = memory.program + cells + owners + part.arrays * (rest + memory.states) + part.ghosts;
-    // The first rank has the frame of all, or what a checkpoint holds: particles as they came and as they are.
-    const double gathers = r == 0 ? std::max(memory.frame, all + packed) : part.arrays * memory.frame;
-    plan.ranks[r].memory = std::max({own + gathers, own + memory.blocks, plan.start_memory});
+    const double gathers = r == 0 ? std::max(memory.frame, gathered) : part.arrays * memory.frame;
+    plan.ranks[r].memory = std::max(own + gathers, plan.start_memory);
   }
 }
 

@@ -24,7 +24,8 @@ class Simulation {
   enum class Storage { as_filled, shuffled };
   /// `more`: models beside those of the scene, for programs that use the library; their tasks come behind the others of
   /// a stage.
-  Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks,
+  /// `blocks`: their memory goes back before lists are made.
+  Simulation(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks,
              Storage storage = Storage::as_filled, Models more = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;
@@ -122,7 +123,7 @@ class Simulation {
   Models models_;
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
-  bool loads_whole_ = false;
+  bool loads_whole_ = false, saves_whole_ = false;
   std::unique_ptr<Watch> watch_;
   std::optional<Budget> budget_;
 };

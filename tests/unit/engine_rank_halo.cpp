@@ -116,6 +116,25 @@ TEST(RankHalosOfAStrip, AreTwoSidesOfIt) {
   }
 }
 
+TEST(ParticlesOfARank, AreThoseThatItKeepsInTheirNewOrder) {
+  Uniform random(3);
+  PhaseParticles p = phase(2, scattered(box(2, {5, 5, 0}, {false, false, false}), 9, random), 1.0, {}, 40);
+  const auto own = p.add_own<std::array<std::uint16_t, 3>>("model.three", Kept::state);
+  std::vector<Vec3> x;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    p.own(own)[k] = {static_cast<std::uint16_t>(k), 7, 8};
+    x.push_back(position(p, k));
+  }
+  const std::vector<std::uint32_t> order{8, 2, 5, 0};
+  p.keep(order.data(), order.size());
+  ASSERT_EQ(p.size(), order.size());
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    EXPECT_EQ(p.id()[k], 40 + order[k]);
+    EXPECT_EQ(position(p, k), x[order[k]]);
+    EXPECT_EQ(p.own(own)[k][0], order[k]);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Boxes, RankHalos,
                          testing::Values(HaloCase{"Open2D", 2, {40, 17, 0}, {false, false, false}},
                                          HaloCase{"PeriodicX", 2, {36, 20, 0}, {true, false, false}},
