@@ -22,7 +22,7 @@ std::string line(const char* format, A... a) {
 }
 
 std::string row(const std::string& name, const RankPlan::Rank& r) {
-  return line("%-8s %11.0f %10.0f %7.3f %10s %9.1f %12.0f\n", name.c_str(), r.particles, r.ghosts, r.halo_share(),
+  return line("%-8s %11.0f %10.0f %7.3f %10s %9.1f %12.0f\n", name.c_str(), r.particles, r.ghosts, r.halo_share,
               memory_text(r.memory).c_str(), r.messages, r.bytes);
 }
 
