@@ -165,10 +165,10 @@ def _with_scene(scene, name, act):
         return act(_SceneFile(scene, folder, name).path)
 
 
-def plan(scene, set=None, threads=None, name="scene", program=None):
-    """What a scene will run and what it costs, as the dictionary of `barchan plan --json`. Throws as `run` does; a Breakdown of the first steps has it as `plan`."""
+def plan(scene, set=None, threads=None, name="scene", program=None, ranks=None):
+    """What a scene will run and what it costs, on so many ranks too, as the dictionary of `barchan plan --json`. Throws as `run` does; a Breakdown of the first steps has it as `plan`."""
     def act(file):
-        options = ["--threads", threads] if threads is not None else []
+        options = [word for key, value in (("--threads", threads), ("--ranks", ranks)) if value is not None for word in (key, value)]
         status, said, complained = start(["plan", file, "--json", *options, *settings(set)], program)
         found = json.loads(said) if said.strip() else None
         if status:

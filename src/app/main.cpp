@@ -117,9 +117,14 @@ int dispatch(int argc, char** argv) {
   c_plan->add_option("--threads", threads, "number of threads that the estimate is for (default: those that run takes)")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+  int ranks = 0;
+  c_plan
+      ->add_option("--ranks", ranks, "particles, ghosts, memory, messages and speed of a run on N ranks (mpirun -n N)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
   c_plan->add_flag("--json", json, "as JSON");
   add_set(c_plan);
-  c_plan->callback([&] { status = barchan::plan(barchan::scene_file(scene), overrides, threads, json); });
+  c_plan->callback([&] { status = barchan::plan(barchan::scene_file(scene), overrides, threads, json, ranks); });
 
   auto* c_generate = app.add_subcommand("generate", "write the initial particles only");
   c_generate->add_option("scene", scene, of_scene)->type_name("SCENE")->required();

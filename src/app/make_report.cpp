@@ -89,7 +89,7 @@ RunReport start_report(const Scene& scene) {
 namespace {
 
 /// What the ranks have sent to each other; all of them call it.
-RunReport::Ranks traffic() {
+RunReport::Ranks traffic(const Simulation& simulation) {
   RunReport::Ranks r;
   Communicator* const all = ranks::active();
   if (!all) return r;
@@ -98,6 +98,15 @@ RunReport::Ranks traffic() {
   r.collectives = mine.collectives;
   r.messages = ranks::total(mine.messages);
   r.bytes = ranks::total(mine.bytes);
+  std::int64_t particles = 0, ghosts = 0;
+  for (std::size_t p = 0; p < simulation.phases().size(); ++p) {
+    particles += static_cast<std::int64_t>(simulation.phases()[p].size());
+    const Neighbours& neighbours = simulation.neighbours();
+    if (neighbours.has_grid(p) && neighbours.grid(p).is_shared())
+      ghosts += static_cast<std::int64_t>(neighbours.grid(p).images());
+  }
+  r.ghosts = ranks::total(ghosts);
+  r.most_particles = ranks::largest(particles);
   return r;
 }
 
@@ -123,7 +132,7 @@ RunReport make_report(const Simulation& simulation, const SeriesWriter* series, 
   for (const auto& [limit, count] : simulation.limit_counts())
     if (count > 0) r.time_step_limits[limit] = count;
   add_budgets(r, simulation);
-  r.ranks = traffic();
+  r.ranks = traffic(simulation);
   r.warnings = simulation.plan().warnings;
   for (const std::string& warning : simulation.warnings().texts()) r.warnings.push_back(warning);
   return r;

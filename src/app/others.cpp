@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "output/compare.hpp"
 #include "output/series.hpp"
+#include "plan/rank_limits.hpp"
 #include "scene/reader.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/measure_cost.hpp"
@@ -16,13 +17,14 @@
 
 namespace barchan {
 
-int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json) {
+int plan(const std::string& file, const std::vector<std::string>& overrides, int threads, bool json, int ranks) {
   const Scene scene = read_scene(file, overrides);
   if (threads > 0) use_threads(threads, 0);
   const auto start = std::chrono::steady_clock::now();
   auto blocks = make_particles(scene, json ? nullptr : &std::cout);
   const std::chrono::duration<double> making = std::chrono::steady_clock::now() - start;
   Plan plan = make_plan(scene, blocks);
+  if (ranks > 1) check_for_ranks(scene, plan);
   use_threads(threads, plan.particles());
   const bool retreats = !scene.time.fixed_step;
   const MemoryNeed memory = memory_need(scene, plan, retreats);
@@ -30,7 +32,7 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   Estimate estimate;
   try {
     check_memory(scene, memory);
-    estimate = measure(scene, plan, std::move(blocks), retreats);
+    estimate = measure(scene, plan, std::move(blocks), retreats, ranks);
     estimate.start_seconds = making.count();
   } catch (const SceneError& error) {
     if (json) throw;
@@ -48,12 +50,14 @@ int generate(const std::string& file, const std::string& output, const std::vect
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
   const Scene scene = read_scene(file, overrides);
-  const auto blocks = make_particles(scene, &std::cout);
+  auto blocks = make_particles(scene, &std::cout);
   const Plan plan = make_plan(scene, blocks);
   use_threads(0, plan.particles());
-  Simulation start(scene, plan, blocks);
+  std::vector<std::vector<RestingContact>> contacts;
+  for (const ParticleBlock& block : blocks) contacts.push_back(block.contacts);
+  Simulation start(scene, plan, std::move(blocks));
   Frame frame = start.frame(0);
-  for (std::size_t k = 0; k < blocks.size(); ++k) add_contacts(frame, blocks[k].contacts, start.phases()[k].first_id());
+  for (std::size_t k = 0; k < contacts.size(); ++k) add_contacts(frame, contacts[k], start.phases()[k].first_id());
   write_frame(output, frame, vtu ? FrameFormat::vtu : FrameFormat::vtp, scene.output.compress);
   std::cout << output << ": " << static_cast<long>(plan.particles()) << " particles\n";
   return 0;

@@ -220,8 +220,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   if (!quiet) std::cout << to_text(plan, scene) << std::flush;
   else
     for (const std::string& warning : plan.warnings) std::cerr << "barchan: warning: " << warning << "\n";
-  Simulation simulation(scene, plan, blocks);
-  blocks.clear();  // their memory is needed from now on
+  Simulation simulation(scene, plan, std::move(blocks));
   simulation.check_start();
   listen_to_signals();
   if (first && !lock) {

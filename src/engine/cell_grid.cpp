@@ -52,12 +52,9 @@ void CellGrid::order_interior(const Blocks& blocks) {
   for (std::size_t y0 = low[1]; y0 < high[1]; y0 += across)
     for (std::size_t x0 = low[0]; x0 < high[0]; x0 += wide)
       for (std::size_t z = low[2]; z < high[2]; ++z)
-        for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y) {
-          if (ranks::available()) row_.push_back(static_cast<std::uint32_t>(walk_.size()));
+        for (std::size_t y = y0; y < std::min(y0 + across, high[1]); ++y)
           for (std::size_t x = x0; x < std::min(x0 + wide, high[0]); ++x)
             walk_.push_back(static_cast<std::uint32_t>((z * count_[1] + y) * count_[0] + x));
-        }
-  if (ranks::available()) row_.push_back(static_cast<std::uint32_t>(walk_.size()));
   // Strips as walked; the halo of a periodic side is made row by row, so it is contiguous on either side of them.
   strip_last_.resize(count_[0]);
   for (std::size_t c = 0; c < count_[0]; ++c) {
@@ -85,6 +82,15 @@ void CellGrid::order_interior(const Blocks& blocks) {
 
 void CellGrid::sort(PhaseParticles& particles) {
   if (shared_) migrate(particles);
+  find_order(particles);
+  make_runs();
+  particles.permute(order_.data());
+  if (shared_) make_own_images(particles);
+  else make_images(particles);
+}
+
+/// Fills order_, and begin_ and end_ of the interior cells.
+void CellGrid::find_order(PhaseParticles& particles) {
   const std::size_t n = particles.size();
   if (cell_of_.size() < n) {
     cell_of_.resize(n);
@@ -97,10 +103,6 @@ void CellGrid::sort(PhaseParticles& particles) {
     place_cells();
     fill_cells(particles.id());
   }
-  make_runs();
-  particles.permute(order_.data());
-  if (shared_) make_own_images(particles);
-  else make_images(particles);
 }
 
 /// Wraps, finds the cell of each particle and counts those of each cell in end_. All threads of a team call it.
@@ -290,14 +292,18 @@ void CellGrid::archive(Archive& a) {
     a.array("received", s.slots);
     a.array("own images", s.image_begin);
     for (auto& positions : s.image_search) a.array("search positions of own images", positions);
-    if (a.loads()) own_by_first();
+    if (a.loads()) own_by_first(s);
   }
   if (a.loads()) make_runs();
 }
 
+std::size_t CellGrid::bytes_of_cells() const {
+  return (begin_.size() + end_.size() + walk_.size() + walk_block_.size()) * sizeof(std::uint32_t) +
+         halo_cells_.size() * sizeof(HaloCell);
+}
+
 std::size_t CellGrid::bytes() const {
-  std::size_t total = (begin_.size() + end_.size() + walk_.size() + cell_of_.size() + order_.size()) * 4;
-  total += halo_cells_.size() * sizeof(HaloCell);
+  std::size_t total = bytes_of_cells() + (cell_of_.size() + order_.size()) * 4;
   for (const auto& s : search_) total += s.size() * sizeof(float);
   return total + images_.capacity() * sizeof(Image);
 }

@@ -126,18 +126,15 @@ class CellGrid {
 
   /// Whether this rank has cells of its own and ghosts in the others; image_list() then knows no sources.
   bool is_shared() const { return shared_ != nullptr; }
-  /// Of the phase as one process sorted it: keeps the particles of the cells of this rank alone. Ghosts are missing.
+  /// The first sort, of the particles that every rank has made: keeps those of the cells of this rank alone. Ghosts are
+  /// missing.
+  void sort_and_share(PhaseParticles& particles);
+  /// The same of a phase as one process sorted it.
   void share(PhaseParticles& particles);
   /// All cells are this process' own again: for who loads what one process had, and shares it then.
   void unshare() { shared_.reset(); }
-  /// Marks, by padded cell, the cells of other particles that a search of this radius about the own ones of `about`
-  /// looks into.
-  void mark(const CellGrid& about, float reach, std::vector<char>& needed) const;
-  /// The same about those particles of a phase, whole on every rank, whose row is this rank's by `owners`.
-  void mark(const CellGrid& about, const std::vector<std::int32_t>& owners, float reach,
-            std::vector<char>& needed) const;
-  /// The rank that owns the cell of a search position.
-  std::int32_t rank_of(const std::array<float, 3>& x) const;
+  /// Null: not shared.
+  const CellOwners* owners() const { return shared_.get(); }
   /// Makes ghosts in the marked cells, those beyond periodic sides among them.
   void take_ghosts(const std::vector<char>& needed);
   /// Sends an item of `width` bytes for every ghost that other ranks have of this one's particles: pack(image, item)
@@ -153,7 +150,49 @@ class CellGrid {
   void gather();
   void forget_gathered() { whole_.reset(); }
 
+  // What decides who owns what (engine/cell_owners.cpp). A run on several ranks and a plan of one ask the same.
+
+  /// Cuts the walk between rows of strips so that each rank has about the same number of the particles as sorted last.
+  /// The grid is not shared.
+  CellOwners divided(std::size_t ranks) const;
+  /// Particles of each rank. The grid is not shared.
+  std::vector<std::size_t> particles_by_rank(const CellOwners& owners) const;
+  /// The rank that owns the cell of a search position; of one beyond periodic sides that of the cell it repeats.
+  std::int32_t rank_of(const std::array<float, 3>& x, const CellOwners& owners) const;
+  /// Marks, by padded cell, the cells that a search of this radius (m) looks into about the particles that `rank` has
+  /// of `about` by its owners.
+  void mark(const CellGrid& about, const CellOwners& owners, std::int32_t rank, float reach,
+            std::vector<char>& needed) const;
+  /// The same about those particles of a phase, whole on every rank, whose row is the rank's by `owners`.
+  void mark(const CellGrid& about, const std::vector<std::int32_t>& owners, std::int32_t rank, float reach,
+            std::vector<char>& needed) const;
+  /// f(cell, source, owner) for each marked cell whose particles are ghosts of the rank: those of the cell `source`,
+  /// which is its own where the cell repeats it beyond a periodic side.
+  template <class F>
+  void each_ghost_cell(const CellOwners& owners, std::int32_t rank, const std::vector<char>& needed, F&& f) const {
+    for (std::size_t c = 0; c < begin_.size(); ++c) {
+      if (needed[c] == 0 || owners.owner[c] == rank) continue;
+      const auto cell = static_cast<std::uint32_t>(c);
+      const std::uint32_t source = owners.owner[c] >= 0 ? cell : halo_cells_[halo_number(cell)].source;
+      f(cell, source, owners.owner[source]);
+    }
+  }
+  /// Particles in a cell, as sorted last.
+  std::size_t count(std::uint32_t cell) const { return end_[cell] - begin_[cell]; }
+  /// The cell of each particle as sorted last, in their order. The grid is not shared.
+  std::vector<std::uint32_t> cells_of_particles() const;
+
+  /// Counts what the run's tasks send to images: `width` bytes for each, from sources to images or `back`. A run of one
+  /// process counts what ranks would send.
+  void note_images(std::size_t width, bool back = false) const {
+    ++(back ? use_.returns : use_.fills);
+    (back ? use_.returned : use_.filled) += width;
+  }
+  const ImageUse& use() const { return use_; }
+
   std::size_t bytes() const;
+  /// Of it, of what is of all cells of the domain, on every rank.
+  std::size_t bytes_of_cells() const;
 
   /// Where the particles stood when they were sorted last, so that lists can be made anew as they were.
   void archive(Archive& a);
@@ -181,6 +220,8 @@ class CellGrid {
   }
   double divide(double cell, double reach, const Blocks& blocks);
   void order_interior(const Blocks& blocks);
+  void find_order(PhaseParticles& particles);
+  std::array<std::size_t, 2> take_own_cells();
   void find_halo();
   void find_cells(PhaseParticles& particles);
   void place_cells();
@@ -189,8 +230,9 @@ class CellGrid {
   void make_images(const PhaseParticles& particles);
   void fit_search(std::size_t particles, std::size_t room, std::size_t used);
   // of a run on several ranks
-  void divide(const std::vector<std::int64_t>& particles_by_row);
-  void own_by_first();
+  std::vector<std::uint32_t> rows_of_strips() const;
+  CellOwners divided(const std::vector<std::int64_t>& particles_by_row, std::size_t ranks) const;
+  void own_by_first(CellOwners& owners) const;
   void migrate(PhaseParticles& particles);
   void balance();
   void make_own_images(const PhaseParticles& particles);
@@ -218,9 +260,9 @@ class CellGrid {
   std::vector<std::uint32_t> cell_of_, order_;
   std::vector<Image> images_;
   std::array<AlignedVector<float>, 3> search_;
-  std::vector<std::uint32_t> row_;       // where the rows of strips begin in the walk; on several ranks
   std::unique_ptr<SharedCells> shared_;  // null: all cells are this process' own
   std::optional<SharedCells::Whole> whole_;
+  mutable ImageUse use_;
 };
 
 template <class Pack, class Place>

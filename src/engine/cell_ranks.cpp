@@ -23,40 +23,35 @@ std::size_t sum(const std::vector<std::size_t>& counts) {
 
 }  // namespace
 
-/// Gives each rank rows of about the same number of particles.
-void CellGrid::divide(const std::vector<std::int64_t>& particles_by_row) {
-  SharedCells& s = *shared_;
-  const auto size = static_cast<std::size_t>(ranks::available()->size());
-  const std::int64_t total = std::accumulate(particles_by_row.begin(), particles_by_row.end(), std::int64_t{0});
-  s.first.assign(size + 1, static_cast<std::uint32_t>(walk_.size()));
-  s.first[0] = 0;
-  std::int64_t before = 0;
-  std::size_t rank = 1;
-  for (std::size_t r = 0; r < particles_by_row.size(); ++r) {
-    // A row belongs to the rank in whose share its middle lies.
-    const std::int64_t middle = 2 * before + particles_by_row[r];
-    while (rank < size && middle * static_cast<std::int64_t>(size) >= 2 * total * static_cast<std::int64_t>(rank))
-      s.first[rank++] = row_[r];
-    before += particles_by_row[r];
+/// Divides the cells of one process. From now on begin_ and end_ of this rank's count its own particles; those stood
+/// at first .. second - 1.
+std::array<std::size_t, 2> CellGrid::take_own_cells() {
+  auto shared = std::make_unique<SharedCells>();
+  static_cast<CellOwners&>(*shared) = divided(static_cast<std::size_t>(ranks::available()->size()));
+  shared_ = std::move(shared);
+  const auto [from, to] = own_walk();
+  const std::size_t first = from < to ? begin_[walk_[from]] : 0, last = from < to ? end_[walk_[to - 1]] : 0;
+  for (std::size_t w = from; w < to; ++w) {
+    begin_[walk_[w]] -= static_cast<std::uint32_t>(first);
+    end_[walk_[w]] -= static_cast<std::uint32_t>(first);
   }
-  own_by_first();
+  return {first, last};
 }
 
-void CellGrid::own_by_first() {
-  SharedCells& s = *shared_;
-  s.owner.assign(begin_.size(), -1);
-  for (std::size_t rank = 0; rank + 1 < s.first.size(); ++rank)
-    for (std::size_t w = s.first[rank]; w < s.first[rank + 1]; ++w) s.owner[walk_[w]] = static_cast<std::int32_t>(rank);
+void CellGrid::sort_and_share(PhaseParticles& particles) {
+  find_order(particles);
+  cell_of_ = {};
+  const auto [first, last] = take_own_cells();
+  particles.keep(order_.data() + first, last - first);
+  order_ = {};  // as long as the particles of all ranks
+  make_runs();
+  make_own_images(particles);
 }
 
 void CellGrid::share(PhaseParticles& particles) {
-  shared_ = std::make_unique<SharedCells>();
-  SharedCells& s = *shared_;
-  std::vector<std::int64_t> by_row(row_.size() - 1, 0);
-  for (std::size_t r = 0; r < by_row.size(); ++r)
-    for (std::size_t w = row_[r]; w < row_[r + 1]; ++w) by_row[r] += end_[walk_[w]] - begin_[walk_[w]];
-  divide(by_row);
+  const auto [first, last] = take_own_cells();
   const auto rank = ranks::available()->rank();
+  SharedCells& s = *shared_;
   s.image_begin.assign(1, 0);
   for (const HaloCell& halo : halo_cells_) {
     if (s.owner[halo.source] == rank)
@@ -64,12 +59,6 @@ void CellGrid::share(PhaseParticles& particles) {
         s.image_search[d].insert(s.image_search[d].end(), search_[d].begin() + begin_[halo.cell],
                                  search_[d].begin() + end_[halo.cell]);
     s.image_begin.push_back(static_cast<std::uint32_t>(s.image_search[0].size()));
-  }
-  const auto [from, to] = own_walk();
-  const std::size_t first = from < to ? begin_[walk_[from]] : 0, last = from < to ? end_[walk_[to - 1]] : 0;
-  for (std::size_t w = from; w < to; ++w) {
-    begin_[walk_[w]] -= static_cast<std::uint32_t>(first);
-    end_[walk_[w]] -= static_cast<std::uint32_t>(first);
   }
   for (std::size_t d = 0; d < dimensions_; ++d)  // the memory of the others' goes back
     search_[d] = AlignedVector<float>(search_[d].begin() + static_cast<std::ptrdiff_t>(first),
@@ -87,13 +76,14 @@ void CellGrid::balance() {
   std::int64_t own = 0;
   for (std::size_t w = from; w < to; ++w) own += end_[walk_[w]];
   const std::int64_t most = ranks::largest(own), total = ranks::total(own);
-  const auto size = static_cast<double>(ranks::active()->size());
-  if (!(static_cast<double>(most) * size > SharedCells::imbalance * static_cast<double>(total))) return;
-  std::vector<std::int64_t> by_row(row_.size() - 1, 0);
+  if (!CellOwners::must_rebalance(static_cast<std::size_t>(most), static_cast<std::size_t>(total), shared_->ranks()))
+    return;
+  const std::vector<std::uint32_t> row = rows_of_strips();
+  std::vector<std::int64_t> by_row(row.size() - 1, 0);
   for (std::size_t r = 0; r < by_row.size(); ++r)
-    for (std::size_t w = row_[r]; w < row_[r + 1]; ++w) by_row[r] += end_[walk_[w]];
+    for (std::size_t w = row[r]; w < row[r + 1]; ++w) by_row[r] += end_[walk_[w]];
   ranks::active()->reduce(by_row.data(), by_row.size(), Communicator::Take::sum);
-  divide(by_row);
+  static_cast<CellOwners&>(*shared_) = divided(by_row, shared_->ranks());
 }
 
 /// Particles that stand in cells of other ranks go there.
@@ -136,7 +126,7 @@ void CellGrid::migrate(PhaseParticles& particles) {
 void CellGrid::make_own_images(const PhaseParticles& particles) {
   SharedCells& s = *shared_;
   const std::size_t n = particles.size();
-  const auto rank = ranks::active()->rank();
+  const auto rank = ranks::available()->rank();
   fit_search(n, 0, n);
   std::array<const double*, 3> x{};
   for (std::size_t d = 0; d < dimensions_; ++d) {
@@ -151,58 +141,6 @@ void CellGrid::make_own_images(const PhaseParticles& particles) {
         s.image_search[d].push_back(static_cast<float>(x[d][k] - bounds_.low[d] + halo.shift[d] * period_[d]));
     s.image_begin.push_back(static_cast<std::uint32_t>(s.image_search[0].size()));
   }
-}
-
-/// Marks the cells of a box.
-void CellGrid::mark_box(const std::array<float, 3>& low, const std::array<float, 3>& high,
-                        std::vector<char>& needed) const {
-  std::array<int, 3> first{0, 0, 0}, last{0, 0, 0};
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    first[d] = cell_coordinate(low[d], d);
-    last[d] = cell_coordinate(high[d], d);
-  }
-  for (int z = first[2]; z <= last[2]; ++z)
-    for (int y = first[1]; y <= last[1]; ++y) {
-      const std::size_t row = (static_cast<std::size_t>(z) * count_[1] + static_cast<std::size_t>(y)) * count_[0];
-      std::fill(needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(first[0])),
-                needed.begin() + static_cast<std::ptrdiff_t>(row + static_cast<std::size_t>(last[0]) + 1), char{1});
-    }
-}
-
-void CellGrid::mark(const CellGrid& about, float reach, std::vector<char>& needed) const {
-  const auto [from, to] = about.own_walk();
-  for (std::size_t w = from; w < to; ++w) {
-    const std::uint32_t cell = about.walk_[w];
-    if (about.begin_[cell] == about.end_[cell]) continue;
-    std::array<float, 3> first{}, last{};
-    for (std::size_t d = 0; d < dimensions_; ++d) {
-      const float* x = about.search_position(static_cast<int>(d));
-      const auto [low, high] = std::minmax_element(x + about.begin_[cell], x + about.end_[cell]);
-      first[d] = *low - reach;
-      last[d] = *high + reach;
-    }
-    mark_box(first, last, needed);
-  }
-}
-
-void CellGrid::mark(const CellGrid& about, const std::vector<std::int32_t>& owners, float reach,
-                    std::vector<char>& needed) const {
-  const std::int32_t own = ranks::active()->rank();
-  for (std::size_t k = 0; k < owners.size(); ++k) {
-    if (owners[k] != own) continue;
-    std::array<float, 3> first{}, last{};
-    for (std::size_t d = 0; d < dimensions_; ++d) {
-      first[d] = about.search_[d][k] - reach;
-      last[d] = about.search_[d][k] + reach;
-    }
-    mark_box(first, last, needed);
-  }
-}
-
-std::int32_t CellGrid::rank_of(const std::array<float, 3>& x) const {
-  const SharedCells& s = *shared_;
-  const auto cell = static_cast<std::uint32_t>(cell_of(x));
-  return s.owner[cell] >= 0 ? s.owner[cell] : s.owner[halo_cells_[halo_number(cell)].source];
 }
 
 std::size_t CellGrid::halo_number(std::uint32_t cell) const {
@@ -223,12 +161,9 @@ SharedCells::Question CellGrid::ask_owners(const std::vector<char>& needed) {
   Communicator& all = *ranks::active();
   SharedCells::Question q;
   std::vector<std::vector<std::uint32_t>> from(static_cast<std::size_t>(all.size()));
-  for (std::size_t c = 0; c < begin_.size(); ++c) {
-    if (needed[c] == 0 || s.owner[c] == all.rank()) continue;
-    const auto cell = static_cast<std::uint32_t>(c);
-    const std::int32_t owner = s.owner[c] >= 0 ? s.owner[c] : s.owner[halo_cells_[halo_number(cell)].source];
+  each_ghost_cell(s, all.rank(), needed, [&](std::uint32_t cell, std::uint32_t, std::int32_t owner) {
     from[static_cast<std::size_t>(owner)].push_back(cell);
-  }
+  });
   for (const auto& cells : from) {
     q.ask.insert(q.ask.end(), cells.begin(), cells.end());
     q.ask_counts.push_back(cells.size());

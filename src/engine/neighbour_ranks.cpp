@@ -19,38 +19,21 @@ void Neighbours::share(std::vector<PhaseParticles>& particles) {
   find_contested();
 }
 
-/// A particle of a phase that is whole belongs to the rank whose cells it stands in: those of the first phase that it
-/// looks for and that is shared out.
-void Neighbours::find_owners() {
-  for (std::size_t p = 0; p < grids_.size(); ++p) {
-    std::vector<std::int32_t>& owners = owners_[p];
-    owners.clear();
-    const auto first = std::find_if(directions_.begin(), directions_.end(), [&](const Direction& d) {
-      return d.a == p && !grids_[p]->is_shared() && grids_[d.b]->is_shared();
-    });
-    if (first == directions_.end()) continue;
-    owners.resize(grids_[p]->particles());
-    for (std::size_t k = 0; k < owners.size(); ++k) {
-      std::array<float, 3> x{};
-      for (std::size_t d = 0; d < static_cast<std::size_t>(bounds_.dimensions); ++d)
-        x[d] = grids_[p]->search_position(static_cast<int>(d))[k];
-      owners[k] = grids_[first->b]->rank_of(x);
-    }
-  }
+void Neighbours::find_owners() { owners_ = owners_of_whole(cell_owners()); }
+
+/// Who owns the cells of each phase; null: the phase is whole, or has none.
+std::vector<const CellOwners*> Neighbours::cell_owners() const {
+  std::vector<const CellOwners*> cells;
+  for (const auto& grid : grids_) cells.push_back(grid ? grid->owners() : nullptr);
+  return cells;
 }
 
 void Neighbours::take_ghosts() {
+  const std::vector<const CellOwners*> cells = cell_owners();
   std::vector<char> needed;
   for (std::size_t b = 0; b < grids_.size(); ++b) {
-    if (!grids_[b] || !grids_[b]->is_shared()) continue;
-    needed.assign(grids_[b]->cells(), 0);
-    for (const auto& d : directions_) {
-      if (d.b != b) continue;
-      // A little more than a search looks into (pair_list.cpp).
-      const auto reach = static_cast<float>(d.radius * (1.0 + skin_) * 1.001);
-      if (grids_[d.a]->is_shared()) grids_[b]->mark(*grids_[d.a], reach, needed);
-      else grids_[b]->mark(*grids_[d.a], owners_[d.a], reach, needed);
-    }
+    if (!cells[b]) continue;
+    mark(b, ranks::active()->rank(), cells, owners_, needed);
     grids_[b]->take_ghosts(needed);
   }
 }

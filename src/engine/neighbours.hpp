@@ -4,10 +4,12 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/cell_grid.hpp"
 #include "engine/pair_list.hpp"
+#include "engine/rank_halo.hpp"
 
 namespace barchan {
 
@@ -56,6 +58,17 @@ class Neighbours {
   /// by particle, the rank that has its neighbours of all phases; its rows are empty on the others. Else empty.
   const std::vector<std::int32_t>& owners(std::size_t phase) const { return owners_[phase]; }
 
+  // For a plan (engine/neighbour_owners.cpp), in a run of one process that has made lists.
+
+  /// Who of so many ranks would own the cells of each phase, after a sort of what stands there now; none of a phase
+  /// that is `whole` or has no cells.
+  std::vector<std::optional<CellOwners>> divided(std::size_t ranks, const std::vector<bool>& whole) const;
+  /// Divides those phases anew of which a rank has too many particles (CellOwners::imbalance).
+  void rebalance(std::vector<std::optional<CellOwners>>& owners) const;
+  /// By rank: particles and ghosts of a phase with owners.
+  std::vector<RankHalo> halo_of(std::size_t phase, const std::vector<std::optional<CellOwners>>& owners) const;
+  std::size_t blocks() const { return blocks_.size(); }
+
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
   /// in wide ones particles may go further before blocks that are not adjacent matter.
@@ -75,6 +88,10 @@ class Neighbours {
   bool has_moved(std::size_t phase) const;
   void share(std::vector<PhaseParticles>& particles);
   void find_owners();
+  std::vector<const CellOwners*> cell_owners() const;
+  std::vector<std::vector<std::int32_t>> owners_of_whole(const std::vector<const CellOwners*>& cells) const;
+  void mark(std::size_t b, std::int32_t rank, const std::vector<const CellOwners*>& cells,
+            const std::vector<std::vector<std::int32_t>>& whole, std::vector<char>& needed) const;
   void take_ghosts();
   int places_beside(std::size_t axis, long at, std::array<long, 3>& out) const;
   std::size_t watched() const { return watched_.empty() ? blocks_.size() : watched_.size(); }

@@ -67,6 +67,7 @@ void PhaseRecords::fit(std::size_t particles, std::size_t images) {
 
 void PhaseRecords::fill_images(Record record, const PhaseParticles& particles, const CellGrid& grid) {
   if (label(record).images_of_now || !has(record)) return;
+  grid.note_images(bytes_of_an_image(record));
   switch (record) {
     case Record::compact:
       dimensions_ == 2 ? compact_->fill_images<2>(grid, positions<2>(particles))
@@ -77,6 +78,18 @@ void PhaseRecords::fill_images(Record record, const PhaseParticles& particles, c
     default: array(record).fill_images(grid, dimensions_);
   }
   label(record).images_of_now = true;
+}
+
+std::size_t PhaseRecords::bytes_of_an_image(Record record) const {
+  if (!has(record)) return 0;
+  if (record == Record::compact) return CompactRecords::size * sizeof(float);
+  return record == Record::eddies ? EddyRecords::of_a_particle : array(record).stride() * sizeof(double);
+}
+
+std::size_t PhaseRecords::bytes_of_an_image() const {
+  std::size_t total = 0;
+  for (std::size_t r = 0; r < record_count; ++r) total += bytes_of_an_image(static_cast<Record>(r));
+  return total;
 }
 
 std::size_t PhaseRecords::bytes() const {

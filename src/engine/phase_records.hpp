@@ -36,6 +36,8 @@ class PhaseRecords {
   void fill_images(Record record, const PhaseParticles& particles, const CellGrid& grid);
   void outdate_images(Record record) { label(record).images_of_now = false; }
   std::size_t bytes() const;
+  std::size_t bytes_of_an_image() const;  ///< of all kinds
+  std::size_t bytes_of_an_image(Record record) const;
 
  private:
   RecordLabel& label(Record record);

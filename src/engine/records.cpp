@@ -41,7 +41,7 @@ void EddyRecords::fill_images(std::size_t particles, const CellGrid& grid) {
 
 void EddyRecords::take_ghosts(std::size_t particles, const CellGrid& grid) {
   grid.fill_ghosts(
-      2 * sizeof(double),
+      of_a_particle,
       [&](const Image& image, std::byte* item) {
         const std::array<double, 2> values{root[image.source], touch[image.source]};
         std::memcpy(item, values.data(), sizeof values);

@@ -256,6 +256,7 @@ struct EddyRecords {
   AlignedVector<double> root;   // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]
   AlignedVector<double> touch;  // Pa s, of pairs with grains next to the particle
   RecordLabel label;
+  static constexpr std::size_t of_a_particle = 2 * sizeof(double);  // bytes
   void resize(std::size_t particles, std::size_t images);
   void fill_images(std::size_t particles, const CellGrid& grid);
   /// Gives the motion records of `count` particles, in two dimensions, their roots.

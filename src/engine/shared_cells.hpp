@@ -21,13 +21,26 @@ struct Image {
   bool shifted() const { return shift[0] != 0 || shift[1] != 0 || shift[2] != 0; }
 };
 
-struct SharedCells {
+/// What tasks have sent to images so far: calls, and the bytes of one image in all of them; likewise the way back.
+struct ImageUse {
+  long fills = 0, returns = 0;
+  std::size_t filled = 0, returned = 0;
+};
+
+/// Which rank owns which cells of a grid.
+struct CellOwners {
   /// A rank that has so many times the mean number of particles gives some away at the next sort.
   static constexpr double imbalance = 1.1;
+  static bool must_rebalance(std::size_t most, std::size_t total, std::size_t ranks) {
+    return static_cast<double>(most) * static_cast<double>(ranks) > imbalance * static_cast<double>(total);
+  }
 
-  std::vector<std::uint32_t> row;    // where the rows of strips begin in the walk, and its end
   std::vector<std::uint32_t> first;  // by rank: where its cells begin in the walk, and its end
   std::vector<std::int32_t> owner;   // by padded cell: rank; of cells beyond periodic sides none
+  std::size_t ranks() const { return first.size() - 1; }
+};
+
+struct SharedCells : CellOwners {
   // Search positions (m) of the images of own particles beyond periodic sides, by halo cell.
   std::array<std::vector<float>, 3> image_search;
   std::vector<std::uint32_t> image_begin;

@@ -72,6 +72,7 @@ class Workspace : public Halo {
   /// Gives the records the sizes of the present lists.
   void fit_records();
   std::size_t bytes() const;
+  std::size_t bytes_of_an_image(std::size_t phase) const { return records_[phase]->bytes_of_an_image(); }
   /// The epoch of the lists; loading makes the lists and the records' sizes as they were. `whole`: see Neighbours.
   void archive(Archive& a, bool whole = false);
 

@@ -14,8 +14,9 @@ namespace barchan {
 namespace {
 
 nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
-  return {
-      {"count", ranks.count}, {"messages", ranks.messages}, {"bytes", ranks.bytes}, {"collectives", ranks.collectives}};
+  return {{"count", ranks.count},   {"messages", ranks.messages},
+          {"bytes", ranks.bytes},   {"collectives", ranks.collectives},
+          {"ghosts", ranks.ghosts}, {"most_particles", ranks.most_particles}};
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ struct RunReport {
     int count = 1;
     std::int64_t messages = 0, bytes = 0;  // from rank to rank, of all
     std::int64_t collectives = 0;          // reductions, broadcasts and the like, once for all
+    std::int64_t ghosts = 0;               // at the end, of all ranks
+    std::int64_t most_particles = 0;       // at the end, of a rank
   } ranks;
 
   // the scene and the plan

@@ -82,6 +82,7 @@ std::string to_text(const Estimate& e) {
   t += e.threads == 1 ? "\n" : line(": %.3g s if %d threads share it evenly\n", e.seconds, e.threads);
   if (e.start_seconds > 1.0)
     t += line("start   %.3g s to make the particles, beds that settle included\n", e.start_seconds);
+  if (e.ranks) t += to_text(*e.ranks);
   const double all = e.seconds + e.start_seconds, hour = 3600.0;
   if (all > hour) t += line("warning: the run takes about %.1f hours\n", all / hour);
   return t;
@@ -152,6 +153,7 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
                    {"processor_seconds", estimate.processor_seconds},
                    {"particle_steps_per_second", estimate.particle_steps_per_second},
                    {"bytes", estimate.bytes}};
+  if (estimate.ranks) j["ranks"] = nlohmann::ordered_json::parse(to_json(*estimate.ranks));
   return j.dump(2) + "\n";
 }
 

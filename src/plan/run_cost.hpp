@@ -1,7 +1,10 @@
 // The time and memory of a run, as simulation/measure_cost.hpp measures them.
 #pragma once
 
+#include <optional>
+
 #include "plan/memory_need.hpp"
+#include "plan/rank_plan.hpp"
 
 namespace barchan {
 
@@ -17,6 +20,7 @@ struct Estimate {
   MemoryNeed memory;                                         // of a run, measured; no parts: it was not
   double start_seconds = 0;                                  // s before the first step: particles are made, beds settle
   std::vector<std::pair<std::string, std::uint64_t>> pairs;  // directed pairs by entry
+  std::optional<RankPlan> ranks;                             // of a run on several ranks; none: not asked for
 };
 
 std::string to_text(const Estimate& estimate);

@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/measure_ranks.hpp"
 
 namespace barchan {
 
@@ -49,19 +49,46 @@ double states_kept(double steps) {
                   1.0 + std::floor(steps / static_cast<double>(steps_between_states)));
 }
 
+double bytes_of(const std::vector<ParticleBlock>& blocks) {
+  std::size_t bytes = 0;
+  const auto add = [&](const auto& values) { bytes += values.capacity() * sizeof values[0]; };
+  for (const ParticleBlock& b : blocks) {
+    add(b.position);
+    add(b.velocity);
+    add(b.pressure);
+    add(b.parts);
+    add(b.radius);
+    add(b.contacts);
+    add(b.normal);
+    add(b.depth);
+    add(b.bend);
+  }
+  return static_cast<double>(bytes);
+}
+
+double part_of(const MemoryNeed& need, const std::string& name) {
+  for (const auto& [part, bytes] : need.parts)
+    if (part == name) return bytes;
+  return 0.0;
+}
+
 }  // namespace
 
-Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks, bool retreats) {
+Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks, bool retreats, int ranks) {
   Estimate e;
   e.threads = omp_get_max_threads();
   // One thread does the work: several that wait for each other on a busy machine would count their waiting.
   omp_set_num_threads(1);
   double before = allocated_memory();
-  Simulation simulation(scene, plan, blocks);
-  const double with_blocks = allocated_memory();
-  blocks.clear();
-  before -= with_blocks - allocated_memory();
+  const double of_blocks = bytes_of(blocks);
+  before -= of_blocks;
+  Simulation simulation(scene, plan, std::move(blocks));
   simulation.check_start();
+  std::optional<RankMeasure> on_ranks;
+  if (ranks > 0) {
+    simulation.measure_processor_time();
+    on_ranks.emplace(simulation, ranks);
+  }
   constexpr int batch = 10;
   constexpr long most_steps = 300;
   constexpr double most_seconds = 2.0;
@@ -90,6 +117,10 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
   if (!lengths.empty()) e.steps = scene.time.end / median(lengths);
   e.memory = memory_of_a_run(simulation, before, retreats ? states_kept(e.steps) : 0.0);
+  if (on_ranks)
+    e.ranks =
+        on_ranks->plan(median(seconds), {part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
+                                         part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to")});
   if (lengths.empty()) return e;
   e.measured = true;
   e.processor_seconds = e.steps * median(seconds);

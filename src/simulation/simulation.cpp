@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
@@ -23,7 +24,7 @@ Models joined(Models models, Models more) {
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks, Storage storage,
+Simulation::Simulation(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks, Storage storage,
                        Models more)
     : scene_(scene),
       plan_(plan),
@@ -32,6 +33,7 @@ Simulation::Simulation(const Scene& scene, const Plan& plan, const std::vector<P
       schedule_(make_schedule(models_)) {
   forget_formula_fault();  // those of shapes may have no number somewhere
   make_state(blocks);
+  blocks = {};
   if (storage == Storage::shuffled) shuffle();
   work_ = std::make_unique<Workspace>(scene_, plan_, state_);
   for (const auto& model : models_) model->attach(*work_);
@@ -182,6 +184,8 @@ void Simulation::check_columns() const {
 }
 
 void Simulation::archive(Archive& a) {
+  char once_more = 1;
+  if (saves_whole_) ranks::available()->broadcast(&once_more, 1, 0);
   for (const auto& p : plan_.phases) {
     double speed = p.sound_speed;
     a.number("sound speed of " + p.name, speed);

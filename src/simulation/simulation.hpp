@@ -24,7 +24,8 @@ class Simulation {
   enum class Storage { as_filled, shuffled };
   /// `more`: models beside those of the scene, for programs that use the library; their tasks come behind the others of
   /// a stage.
-  Simulation(const Scene& scene, const Plan& plan, const std::vector<ParticleBlock>& blocks,
+  /// `blocks`: their memory goes back before lists are made.
+  Simulation(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks,
              Storage storage = Storage::as_filled, Models more = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;
@@ -61,6 +62,8 @@ class Simulation {
   void measure_processor_time() { schedule_.measure_processor_time(); }
   const std::vector<double>& processor_seconds() const { return schedule_.processor_seconds(); }
   std::size_t bytes() const;
+  /// Of the records of a phase.
+  std::size_t bytes_of_an_image(std::size_t phase) const { return work_->bytes_of_an_image(phase); }
 
   /// A copy of the state for the writer.
   Frame frame(int index) const;
@@ -120,7 +123,7 @@ class Simulation {
   Models models_;
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
-  bool loads_whole_ = false;
+  bool loads_whole_ = false, saves_whole_ = false;
   std::unique_ptr<Watch> watch_;
   std::optional<Budget> budget_;
 };

@@ -42,16 +42,22 @@ void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written)
   for (FrameField& field : f.fields) gather(field.values, counts, static_cast<std::size_t>(field.components));
 }
 
+/// A rank that is not the first sends its particles as often as the first one calls archive().
 void Simulation::save_whole(const std::function<void()>& save) {
-  if (!ranks::active()) return save();
-  std::vector<PhaseParticles> whole;
-  for (const PhaseParticles& p : state_.phases) whole.push_back(p.gathered());
+  Communicator* const all = ranks::active();
+  if (!all) return save();
   work_->neighbours.gather();
-  if (!ranks::is_first()) return;
-  for (std::size_t k = 0; k < whole.size(); ++k) std::swap(state_.phases[k], whole[k]);
-  save();
-  for (std::size_t k = 0; k < whole.size(); ++k) std::swap(state_.phases[k], whole[k]);
-  work_->neighbours.forget_gathered();
+  char once_more = 0;
+  if (ranks::is_first()) {
+    for (PhaseParticles& p : state_.phases) p.archive_all(true);
+    saves_whole_ = true;
+    save();
+    saves_whole_ = false;
+    for (PhaseParticles& p : state_.phases) p.archive_all(false);
+    work_->neighbours.forget_gathered();
+  }
+  for (all->broadcast(&once_more, 1, 0); once_more != 0; all->broadcast(&once_more, 1, 0))
+    for (const PhaseParticles& p : state_.phases) p.send_to_archive();
 }
 
 void Simulation::load_whole(const std::function<void()>& load) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 
 namespace barchan {
 
@@ -15,8 +16,8 @@ PhaseParticles::PhaseParticles(std::string name, int dimensions, std::size_t siz
       first_id_(first_id),
       mass_(mass),
       id_(size),
-      id_scratch_(size),
-      scratch_(size) {
+      id_scratch_(ranks::available() ? 0 : size),  // on several ranks only a part of the particles stays
+      scratch_(id_scratch_.size()) {
   std::iota(id_.begin(), id_.end(), first_id);
 }
 
@@ -65,6 +66,8 @@ void gather_bytes(const std::byte* from, std::byte* to, std::size_t width, const
 
 void PhaseParticles::permute(const std::uint32_t* order) {
   const auto n = static_cast<std::int64_t>(size_);
+  if (scratch_.size() != size_) scratch_.resize(size_);  // the first time
+  if (id_scratch_.size() != size_) id_scratch_.resize(size_);
 #pragma omp parallel
   {
     // Each column goes into the memory of the one before, which all threads have read by then.
@@ -176,6 +179,7 @@ void PhaseParticles::resize(std::size_t size) {
 }
 
 void PhaseParticles::archive(Archive& a) {
+  if (archives_all_ && !is_whole_) return save_all(&a);
   std::uint64_t count = size_;
   a.number("particles of " + name_, count);
   if (count != size_ && !may_change_ && !is_part_)

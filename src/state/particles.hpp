@@ -109,17 +109,23 @@ class PhaseParticles {
   /// Every rank holds all particles of the phase, moves them, and has the same bits.
   void be_whole() { is_whole_ = true; }
   bool is_whole() const { return is_whole_; }
-  /// From now on it holds those at the places first .. last - 1 alone, and checkpoints may hold other numbers.
+  /// From now on it holds those at the places order[0] .. order[count - 1] alone, in this order. Takes the memory of
+  /// one column more.
+  void keep(const std::uint32_t* order, std::size_t count);
+  /// The same of those at the places first .. last - 1 alone, and checkpoints may hold other numbers.
   void keep_range(std::size_t first, std::size_t last);
   /// Bytes of a particle on its way: id, fields, own columns.
   std::size_t packed_width() const;
   void pack(std::size_t k, std::byte* to) const;
   void unpack(std::size_t k, const std::byte* from);
-  /// The particles of all ranks, one rank after another, on the first rank; none on the others. Of a phase that is
-  /// whole: its particles.
-  PhaseParticles gathered() const;
-  /// The same of those at the places for which `wanted` is true, with these fields, no own columns.
+  /// The particles of all ranks at the places for which `wanted` is true, with these fields, no own columns, one rank
+  /// after another, on the first rank; none on the others. Of a phase that is whole: its particles.
   PhaseParticles gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const;
+  /// On the first rank: from now on archive() saves the particles of all ranks, one rank after another, or those of
+  /// this rank again. A column at a time is gathered, so that no rank holds all; for each archive() the others call
+  /// send_to_archive().
+  void archive_all(bool all) { archives_all_ = all; }
+  void send_to_archive() const;
 
   std::size_t bytes() const;  ///< memory of all columns
 
@@ -136,11 +142,13 @@ class PhaseParticles {
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }
   std::size_t add_own_bytes(const std::string& name, Kept kept, std::size_t width, const void* of_new);
   void find_places();
+  void save_all(Archive* a) const;
 
   std::string name_;
   int dimensions_;
   std::size_t size_;
-  bool may_change_ = false, is_part_ = false, is_whole_ = false, keeps_places_ = false, in_order_ = false;
+  bool may_change_ = false, is_part_ = false, is_whole_ = false, archives_all_ = false, keeps_places_ = false,
+       in_order_ = false;
   std::uint32_t arrangements_ = 0;
   long changes_ = 0;
   std::int64_t first_id_;

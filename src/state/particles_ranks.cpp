@@ -2,52 +2,48 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <type_traits>
 
 #include "base/ranks.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
 
-namespace {
-
-/// Gives back the memory of values that other ranks have now; a little room is left for those that come.
-template <class Values>
-void give_back(Values& values) {
-  const std::size_t room = values.size() + values.size() / 8;
-  if (values.capacity() <= room) return;
-  Values kept;
-  kept.reserve(room);
-  kept.assign(values.begin(), values.end());
-  values.swap(kept);
+void PhaseParticles::keep(const std::uint32_t* order, std::size_t count) {
+  const auto pick = [&](auto& values, std::size_t width) {
+    std::remove_reference_t<decltype(values)> kept;
+    kept.reserve((count + count / 8) * width);
+    kept.resize(count * width);
+    const auto n = static_cast<std::int64_t>(count);
+    auto* const to = kept.data();
+    const auto* const from = values.data();
+#pragma omp parallel for schedule(static)
+    for (std::int64_t k = 0; k < n; ++k)
+      std::copy_n(from + std::size_t{order[k]} * width, width, to + static_cast<std::size_t>(k) * width);
+    values.swap(kept);
+  };
+  id_scratch_ = {};
+  scratch_ = {};
+  own_scratch_ = {};
+  order_ = {};
+  pick(id_, 1);
+  for (auto& columns : columns_)
+    for (auto& column : columns) pick(column, 1);
+  for (OwnValues& v : own_) pick(v.values, v.width);
+  id_scratch_.reserve(id_.capacity());
+  scratch_.reserve(id_.capacity());
+  std::size_t widest = 0;
+  for (const OwnValues& v : own_) widest = std::max(widest, v.values.capacity());
+  own_scratch_.reserve(widest);
+  is_part_ = true;
+  resize(count);
+  find_places();
 }
 
-}  // namespace
-
 void PhaseParticles::keep_range(std::size_t first, std::size_t last) {
-  const auto move = [&](auto& values, std::size_t width) {
-    const auto from = values.begin() + static_cast<std::ptrdiff_t>(first * width);
-    std::copy(from, values.begin() + static_cast<std::ptrdiff_t>(last * width), values.begin());
-  };
-  move(id_, 1);
-  for (auto& columns : columns_)
-    for (auto& column : columns) move(column, 1);
-  for (OwnValues& v : own_) move(v.values, v.width);
-  is_part_ = true;
-  resize(last - first);
-  std::size_t widest = 0;
-  for (auto& columns : columns_)
-    for (auto& column : columns) give_back(column);
-  for (OwnValues& v : own_) {
-    give_back(v.values);
-    widest = std::max(widest, v.values.size());
-  }
-  own_scratch_.resize(widest);
-  give_back(own_scratch_);
-  give_back(id_);
-  give_back(id_scratch_);
-  give_back(scratch_);
-  order_ = {};
-  find_places();
+  std::vector<std::uint32_t> order(last - first);
+  std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(first));
+  keep(order.data(), order.size());
 }
 
 std::size_t PhaseParticles::packed_width() const {
@@ -85,19 +81,39 @@ void PhaseParticles::unpack(std::size_t k, const std::byte* from) {
   }
 }
 
-PhaseParticles PhaseParticles::gathered() const {
-  PhaseParticles whole = *this;
-  Communicator* const all = ranks::active();
-  if (!all || is_whole_) return whole;
-  const std::size_t width = packed_width();
+namespace {
+
+/// Items of `width` values of all ranks, one rank after another, on the first rank. `counts`: of items of each.
+template <class Values>
+Values on_first(const Values& mine, const std::vector<std::size_t>& counts, std::size_t width = 1) {
+  Communicator& all = *ranks::active();
+  const auto rank = static_cast<std::size_t>(all.rank());
+  Values together;
+  if (rank == 0) together.resize(std::accumulate(counts.begin(), counts.end(), std::size_t{0}) * width);
+  all.gather(mine.data(), counts[rank], together.data(), counts, width * sizeof(typename Values::value_type));
+  return together;
+}
+
+}  // namespace
+
+void PhaseParticles::send_to_archive() const {
+  if (!is_whole_) save_all(nullptr);
+}
+
+/// What archive() saves, of all ranks. `a` of the first rank; null on the others.
+void PhaseParticles::save_all(Archive* a) const {
   const std::vector<std::size_t> counts = ranks::each(size_);
-  const std::size_t total = all->rank() == 0 ? std::accumulate(counts.begin(), counts.end(), std::size_t{0}) : 0;
-  std::vector<std::byte> mine(size_ * width), together(total * width);
-  for (std::size_t k = 0; k < size_; ++k) pack(k, mine.data() + k * width);
-  all->gather(mine.data(), size_, together.data(), counts, width);
-  whole.resize(total);
-  for (std::size_t k = 0; k < total; ++k) whole.unpack(k, together.data() + k * width);
-  return whole;
+  std::uint64_t count = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  if (a) a->number("particles of " + name_, count);
+  const auto save = [&](const std::string& name, const auto& values, std::size_t width) {
+    auto all = on_first(values, counts, width);
+    if (a) a->values(name, all.data(), all.size());
+  };
+  save("id of " + name_, id_, 1);
+  for (std::size_t f = 0; f < field_count; ++f)
+    for (const auto& column : columns_[f]) save(name_ + "." + std::string(info(static_cast<Field>(f)).name), column, 1);
+  for (const OwnValues& v : own_)
+    if (v.kept == Kept::state) save(name_ + "." + v.name, v.values, v.width);
 }
 
 PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const {
@@ -114,7 +130,13 @@ PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::funct
     for (int c = 0; c < components(field); ++c)
       for (std::size_t k = 0; k < from.size(); ++k) part.column(field, c)[k] = column(field, c)[from[k]];
   }
-  return part.gathered();
+  if (!ranks::active() || is_whole_) return part;
+  const std::vector<std::size_t> counts = ranks::each(part.size_);
+  part.id_ = on_first(part.id_, counts);
+  for (auto& columns : part.columns_)
+    for (auto& column : columns) column = on_first(column, counts);
+  part.size_ = part.id_.size();
+  return part;
 }
 
 }  // namespace barchan

@@ -1,0 +1,19 @@
+// How a number of ranks would share the particles of a run: who would own them, and whose ghosts each would have.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace barchan {
+
+/// What a rank has of a phase that is shared out, and what it sends of it to others.
+struct RankHalo {
+  std::size_t particles = 0, ghosts = 0;  // ghosts: images of own particles beyond periodic sides among them
+  struct Sent {
+    std::size_t images = 0, cells = 0;  // that another rank has as ghosts; empty cells count
+  };
+  std::map<std::int32_t, Sent> to;  // by the other rank
+};
+
+}  // namespace barchan

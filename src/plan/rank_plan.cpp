@@ -1,0 +1,112 @@
+#include "plan/rank_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/memory.hpp"
+
+namespace barchan {
+
+namespace {
+
+constexpr std::size_t most_rows = 8;
+
+template <class... A>
+std::string line(const char* format, A... a) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, a...);
+  return text;
+}
+
+std::string row(const std::string& name, const RankPlan::Rank& r) {
+  return line("%-8s %11.0f %10.0f %7.3f %10s %9.1f %12.0f\n", name.c_str(), r.particles, r.ghosts, r.halo_share,
+              memory_text(r.memory).c_str(), r.messages, r.bytes);
+}
+
+}  // namespace
+
+RankPlan::Rank of_all(const RankPlan& plan, Spread which) {
+  RankPlan::Rank all = plan.ranks.front();
+  const auto take = [&](double RankPlan::Rank::*value) {
+    double least = all.*value, largest = least, sum = 0.0;
+    for (const RankPlan::Rank& r : plan.ranks) {
+      least = std::min(least, r.*value);
+      largest = std::max(largest, r.*value);
+      sum += r.*value;
+    }
+    all.*value = which == Spread::least     ? least
+                 : which == Spread::largest ? largest
+                                            : sum / static_cast<double>(plan.ranks.size());
+  };
+  for (const auto value :
+       {&RankPlan::Rank::particles, &RankPlan::Rank::ghosts, &RankPlan::Rank::halo_share, &RankPlan::Rank::memory,
+        &RankPlan::Rank::messages, &RankPlan::Rank::bytes, &RankPlan::Rank::seconds})
+    take(value);
+  return all;
+}
+
+namespace {
+
+constexpr std::array<std::pair<const char*, Spread>, 3> spreads{
+    {{"least", Spread::least}, {"mean", Spread::mean}, {"largest", Spread::largest}}};
+
+nlohmann::ordered_json json_of(const RankPlan::Rank& r) {
+  return {{"particles", r.particles}, {"ghosts", r.ghosts}, {"halo_share", r.halo_share}, {"memory", r.memory},
+          {"messages", r.messages},   {"bytes", r.bytes},   {"seconds", r.seconds}};
+}
+
+}  // namespace
+
+std::string to_text(const RankPlan& plan) {
+  using C = RankConstants;
+  std::string t = line("\n%-8s %11s %10s %7s %10s %9s %12s\n", plan.ranks.size() == 1 ? "rank" : "ranks", "particles",
+                       "ghosts", "share", "memory", "messages", "bytes a step");
+  if (plan.ranks.size() <= most_rows)
+    for (std::size_t r = 0; r < plan.ranks.size(); ++r) t += row(std::to_string(r), plan.ranks[r]);
+  else
+    for (const auto& [name, which] : spreads) t += row(name, of_all(plan, which));
+  if (plan.whole_particles > 0)
+    t += line("every rank has %.0f particles of grains and bodies; they take %.0f %% of a step\n", plan.whole_particles,
+              100.0 * plan.whole_share);
+  t += "at the start every rank makes all particles: " + memory_text(plan.start_memory) +
+       "; later the first one has the frames of all\n";
+  if (plan.efficiency > 0)
+    t += line("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
+              plan.efficiency, plan.ranks.size());
+  t += line("predicted with %.3g s a message, %.3g GB/s, %.0f reductions a step, ", C::latency, C::bandwidth * 1e-9,
+            C::reductions);
+  t += line("%.3g MB a step reduced at %.3g GB/s; new lists in %.3g of the steps\n", plan.reduced_bytes * 1e-6,
+            C::reduce_bandwidth * 1e-9, plan.searches_a_step);
+  const auto idle = std::count_if(plan.ranks.begin(), plan.ranks.end(),
+                                  [&](const RankPlan::Rank& r) { return r.particles <= plan.whole_particles; });
+  if (idle > 0)
+    t += line("warning: %ld of %zu ranks have no particles of their own: there are too few rows of cells\n",
+              static_cast<long>(idle), plan.ranks.size());
+  return t;
+}
+
+std::string to_json(const RankPlan& plan) {
+  using C = RankConstants;
+  nlohmann::ordered_json j;
+  j["count"] = plan.ranks.size();
+  j["of"] = nlohmann::ordered_json::array();
+  for (const RankPlan::Rank& r : plan.ranks) j["of"].push_back(json_of(r));
+  for (const auto& [name, which] : spreads) j[name] = json_of(of_all(plan, which));
+  j["whole_particles"] = plan.whole_particles;
+  j["whole_share"] = plan.whole_share;
+  j["start_memory"] = plan.start_memory;
+  j["searches_a_step"] = plan.searches_a_step;
+  j["reduced_bytes"] = plan.reduced_bytes;
+  j["seconds_alone"] = plan.seconds_alone;
+  j["efficiency"] = plan.efficiency;
+  j["constants"] = {{"latency", C::latency},
+                    {"bandwidth", C::bandwidth},
+                    {"reduce_bandwidth", C::reduce_bandwidth},
+                    {"reductions", C::reductions}};
+  return j.dump();
+}
+
+}  // namespace barchan

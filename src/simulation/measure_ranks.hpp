@@ -1,0 +1,56 @@
+// What a run on several ranks would be, measured in one process: who would own which particles, and what would go from
+// rank to rank.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "plan/rank_plan.hpp"
+#include "simulation/simulation.hpp"
+
+namespace barchan {
+
+/// Memory of the run of one process, bytes.
+struct MemoryOfOne {
+  double program = 0;  // without arrays
+  double arrays = 0;   // of the simulation
+  double blocks = 0;   // of the particles as they were made
+  double frame = 0;
+  double states = 0;  // to go back to
+};
+
+class RankMeasure {
+ public:
+  /// Divides the cells among so many ranks as a run does at its first sort: the simulation has made no step yet.
+  RankMeasure(const Simulation& simulation, int ranks);
+
+  /// After some steps. `seconds`: of processor time of a step of one thread; 0: not known.
+  RankPlan plan(double seconds, const MemoryOfOne& memory) const;
+
+ private:
+  /// Of a rank: work of its particles, its part of the arrays of all particles, bytes of its ghosts.
+  struct Part {
+    double work = 0, arrays = 0, ghosts = 0;
+  };
+  void add_halo(RankPlan& plan, std::size_t phase, const std::vector<RankHalo>& halo, double steps) const;
+  void add_moves(RankPlan& plan, std::size_t phase, double steps) const;
+  void add_seconds(RankPlan& plan, const std::vector<Part>& parts) const;
+  void add_memory(RankPlan& plan, const std::vector<Part>& parts, const MemoryOfOne& memory) const;
+  double bytes_of_a_ghost(std::size_t phase) const;
+  double whole_share_of_time() const;
+  double work_of(std::size_t phase) const;
+  std::size_t number_of(std::size_t phase, std::size_t place) const;
+
+  const Simulation& simulation_;
+  std::size_t ranks_;
+  std::vector<bool> whole_;                            // by phase
+  std::vector<std::optional<CellOwners>> owners_;      // by phase, of the start
+  std::vector<std::vector<std::int32_t>> rank_of_id_;  // by phase and number of the particle, at the start
+  // As the counters of the simulation stood at the start.
+  long searches_, steps_;
+  ranks::HandedOn handed_on_;
+  std::vector<ImageUse> use_;    // by phase
+  std::vector<double> seconds_;  // by stage
+};
+
+}  // namespace barchan
