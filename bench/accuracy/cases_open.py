@@ -1,8 +1,8 @@
-"""Flows that enter and leave through sides: a cylinder in a stream, a backward-facing step, a vortex that is carried out."""
+"""Flows that enter and leave through sides: a cylinder in a stream, backward-facing steps, a vortex that is carried out."""
 
 import numpy
 
-from harness import options, report, run, tell
+from harness import local_fit, options, report, run, tell
 
 # ---- round cylinder --------------------------------------------------------------------------------------------------
 
@@ -211,10 +211,49 @@ def step(re, rows=31):
     report(f"open step, Re {re}", "consistent", n, f"against {STEP_OPEN[re]} (step_reference.py), relative", abs(reattachment / STEP_OPEN[re] - 1), .04, seconds)
 
 
+# ---- backward-facing step, turbulent ---------------------------------------------------------------------------------
+
+STEP_MEASURED = 7.4  # x_r/H; Fessler & Eaton 1999, as later papers quote it
+STEP_H, STEP_AT, STEP_BEGINS = .0267, .267, .15  # m, m, s: height and place of the step; the means begin
+
+
+def comes_back(places, u):
+    """The last place at which u changes its sign from below, between two places by a straight line."""
+    k = numpy.flatnonzero((u[:-1] < 0) & (u[1:] >= 0))
+    if not len(k):
+        return numpy.nan
+    k = k[-1]
+    return places[k] + (places[k + 1] - places[k]) * u[k] / (u[k] - u[k + 1])
+
+
+def turbulent_step(n, turbulence):
+    """Where the flow comes back to the floor: sign of the mean velocity half a spacing over it, of the second half of the run and of its quarters."""
+    dx, h = STEP_H / n, STEP_H
+    frames, seconds = run("backward_step_turbulent", [f"spacing={dx!r}", f"phases.air.turbulence={turbulence}"], "air", keep=lambda t: t > STEP_BEGINS)
+    places = numpy.arange(.25, 15, .25)
+
+    def speed(f, x, y):
+        near = abs(f.x[:, 0] - x) < 2.6 * dx
+        return local_fit(f.x[near], f["velocity"][near, 0], (x, y), 2.6 * dx)
+    u = numpy.array([[speed(f, STEP_AT + s * h, .5 * dx) for s in places] for f in frames])
+    back = comes_back(places, u.mean(0))
+    quarters = [comes_back(places, part.mean(0)) for part in numpy.array_split(u, 4)]
+    name, scheme = "turbulent step, Re 18,400", turbulence.replace("mixing-l", "mixing l")
+    report(name, scheme, n, "x_r/H", back, None, seconds)
+    report(name, scheme, n, f"against {STEP_MEASURED} (Fessler & Eaton 1999), relative", abs(back / STEP_MEASURED - 1), .1, seconds)
+    tell(name, scheme, n, "x_r/H of the quarters of the means", ", ".join(f"{q:.2f}" for q in quarters), "", seconds)
+    k = u.mean(0).argmin()
+    tell(name, scheme, n, "fastest reversed flow, z = dx/2, over U", f"{u.mean(0)[k] / 10.5:.2f} at {places[k]:.2f} H", "", seconds)
+    axis = numpy.mean([speed(f, STEP_AT - .25 * h, 1.75 * h) for f in frames])
+    tell(name, scheme, n, "speed on the axis H/4 ahead of the step, m/s", f"{axis:.2f}", "10.5 measured", seconds)
+
+
 CASES = {
     "open-cylinder": (lambda: [case(re, 20) for case in (near_cylinder, cylinder) for re in (20, 100, 200)],
                       "Round cylinder in a stream that enters and leaves"),
     "open-vortex": (lambda: [vortex(s, n) for s in ("consistent", "plain") for n in (50, 100) if n <= options.largest],
                     "A vortex that is carried out of the domain"),
     "open-step": (lambda: [step(re) for re in (100, 200, 400)], "Backward-facing step with open ends, expansion ratio 1.94"),
+    "backward-step-turbulent": (lambda: [*(turbulent_step(n, "k-omega") for n in (8, 12) if n <= options.largest), turbulent_step(8, "mixing-length")],
+                                "Turbulent air behind a backward-facing step in a channel, expansion 5 to 3 (Fessler & Eaton 1999)"),
 }
