@@ -1,8 +1,10 @@
-"""Flows that enter and leave through sides: a cylinder in a stream, a backward-facing step, a vortex that is carried out."""
+"""Flows that enter and leave through sides: a cylinder in a stream, backward-facing steps, a vortex that is carried out."""
+
+import math
 
 import numpy
 
-from harness import options, report, run, tell
+from harness import local_fit, options, report, run, tell
 
 # ---- round cylinder --------------------------------------------------------------------------------------------------
 
@@ -211,10 +213,63 @@ def step(re, rows=31):
     report(f"open step, Re {re}", "consistent", n, f"against {STEP_OPEN[re]} (step_reference.py), relative", abs(reattachment / STEP_OPEN[re] - 1), .04, seconds)
 
 
+# ---- backward-facing step, turbulent ---------------------------------------------------------------------------------
+
+STEP_MEASURED = 7.4  # x_r/H; Fessler & Eaton 1999, as later papers quote it
+STEP_H, STEP_AT, STEP_BEGINS = .0267, .267, .15  # m, m, s: height and place of the step; the means begin
+# Measured y/H: u/U by x/H, points of the profiles of Fessler & Eaton 1999 as read off by github.com/tbellosta/CFD2021, BFS/SU2/RESULTS/EXPERIMENTAL.
+STEP_PROFILES = {
+    2: {.085: -.102, .285: -.127, .399: -.102, .556: -.048, .674: .036, .787: .178, .895: .332, .978: .486, 1.06: .639, 1.167: .793, 1.306: .894,
+        1.484: .954, 1.746: .975, 2.005: .945, 2.103: .915},
+    5: {.03: -.137, .183: -.091, .26: -.046, .343: -.011, .472: .067, .572: .169, .64: .232, .767: .364, .908: .5, .977: .57, 1.126: .699, 1.263: .81,
+        1.43: .902, 1.63: .931, 1.796: .917, 1.957: .879, 2.133: .82},
+    7: {.16: .009, .282: .089, .431: .176, .586: .262, .732: .353, .881: .464, 1.029: .59, 1.177: .687, 1.332: .774, 1.497: .822, 1.681: .855,
+        1.89: .829, 2.052: .781, 2.13: .745},
+    9: {.134: .168, .24: .208, .358: .248, .556: .335, .727: .415, .871: .502, 1.022: .599, 1.187: .69, 1.344: .752, 1.507: .779, 1.691: .785,
+        1.86: .752, 2.017: .711, 2.118: .677},
+    12: {.12: .302, .212: .331, .347: .375, .47: .409, .588: .444, .697: .485, .806: .527, .918: .575, 1.118: .627, 1.348: .71, 1.46: .728,
+         1.643: .742, 1.746: .726, 1.935: .683, 2.101: .636}}
+
+
+def comes_back(places, u):
+    """The last place at which u changes its sign from below, between two places by a straight line."""
+    k = numpy.flatnonzero((u[:-1] < 0) & (u[1:] >= 0))
+    if not len(k):
+        return numpy.nan
+    k = k[-1]
+    return places[k] + (places[k + 1] - places[k]) * u[k] / (u[k] - u[k + 1])
+
+
+def turbulent_step(n, turbulence):
+    """Where the flow comes back to the floor: sign of the mean velocity half a spacing over it, of the second half of the run and of its quarters."""
+    dx, h = STEP_H / n, STEP_H
+    frames, seconds = run("backward_step_turbulent", [f"spacing={dx!r}", f"phases.air.turbulence={turbulence}"], "air", keep=lambda t: t > STEP_BEGINS)
+    places = numpy.arange(.25, 15, .25)
+
+    def speed(f, x, y):
+        near = abs(f.x[:, 0] - x) < 2.6 * dx
+        return local_fit(f.x[near], f["velocity"][near, 0], (x, y), 2.6 * dx)
+    u = numpy.array([[speed(f, STEP_AT + s * h, .5 * dx) for s in places] for f in frames])
+    back = comes_back(places, u.mean(0))
+    quarters = [comes_back(places, part.mean(0)) for part in numpy.array_split(u, 4)]
+    name, scheme = "turbulent step, Re 18,400", turbulence.replace("mixing-l", "mixing l")
+    report(name, scheme, n, "x_r/H", back, None, seconds)
+    report(name, scheme, n, f"against {STEP_MEASURED} (Fessler & Eaton 1999), relative", abs(back / STEP_MEASURED - 1), .1, seconds)
+    tell(name, scheme, n, "x_r/H of the quarters of the means", ", ".join(f"{q:.2f}" for q in quarters), "", seconds)
+    k = u.mean(0).argmin()
+    tell(name, scheme, n, "fastest reversed flow, z = dx/2, over U", f"{u.mean(0)[k] / 10.5:.2f} at {places[k]:.2f} H", "", seconds)
+    off = [numpy.mean([speed(f, STEP_AT + x * h, y * h) for f in frames]) / 10.5 - m for x, table in STEP_PROFILES.items() for y, m in table.items()]
+    tell(name, scheme, n, "mean u - measured u, rms of 75 places at 2, 5, 7, 9, 12 H, over U", f"{math.sqrt(numpy.mean(numpy.square(off))):.3f}", "", seconds)
+    axis = numpy.mean([speed(f, STEP_AT - .25 * h, 1.75 * h) for f in frames])
+    tell(name, scheme, n, "speed on the axis H/4 ahead of the step, m/s", f"{axis:.2f}", "10.5 measured", seconds)
+
+
 CASES = {
     "open-cylinder": (lambda: [case(re, 20) for case in (near_cylinder, cylinder) for re in (20, 100, 200)],
                       "Round cylinder in a stream that enters and leaves"),
     "open-vortex": (lambda: [vortex(s, n) for s in ("consistent", "plain") for n in (50, 100) if n <= options.largest],
                     "A vortex that is carried out of the domain"),
     "open-step": (lambda: [step(re) for re in (100, 200, 400)], "Backward-facing step with open ends, expansion ratio 1.94"),
+    "backward-step-turbulent": (lambda: [*(turbulent_step(n, "k-omega") for n in (8, 12) if n <= options.largest), turbulent_step(8, "mixing-length")],
+                                "Turbulent air behind a backward-facing step in a channel, expansion 5 to 3 (Fessler & Eaton 1999)"),
 }

@@ -38,6 +38,7 @@ LONG = {
     "long-rest": "hydrostatics: nothing moves (exact)",
     "long-wave": "Lamb 1932, Hydrodynamics, section 228",
     "open-step": "bench/accuracy/step_reference.py, finite differences; for an expansion of 2 within 0.7 % of Erturk 2008, Computers & Fluids 37, 633",
+    "backward-step-turbulent": "Fessler & Eaton 1999, J. Fluid Mech. 394, 97, as later papers quote it: back at 7.4 H",
 }
 # Figures that compare with nothing but themselves: parts of them are in their names.
 OWN = ("Re of the flow", "x_r/S", "order from", "runs to the end", "measured places that the run saw", "least and largest", "omega t at the end",

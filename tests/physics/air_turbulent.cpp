@@ -105,6 +105,27 @@ TEST(LogarithmicLayer, StaysWithTwoEquations) {
   EXPECT_LE(std::abs(rate), 0.03);
 }
 
+/// What comes into a box of a wall is put back to its nearest face: free slip has no friction that would stop it there,
+/// and its pressure is that of the air outside. An eddy behind a step threw single particles into the step.
+TEST(TurbulentAir, IsHeldOutsideABox) {
+  Drive drive("verification/backward_step_turbulent", {"spacing=0.006675"});
+  const double face = 0.267, dx = drive.scene().spacing;
+  PhaseParticles& air = drive.phase(0);
+  double *x = air.column(Field::position, 0), *y = air.column(Field::position, 1);
+  std::size_t nearest = 0;
+  for (std::size_t k = 0; k < air.size(); ++k)
+    if (std::hypot(x[k] - face, y[k] - 0.5 * face / 10) < std::hypot(x[nearest] - face, y[nearest] - 0.5 * face / 10))
+      nearest = k;
+  x[nearest] = face - 0.2 * dx;
+  drive.simulation().step(1e-6);
+  double deepest = 0.0;
+  for (std::size_t k = 0; k < air.size(); ++k)
+    if (air.column(Field::position, 1)[k] < face / 10)
+      deepest = std::max(deepest, face - air.column(Field::position, 0)[k]);
+  report("deepest particle inside the step, spacings", deepest / dx, 1e-9);
+  EXPECT_LE(deepest, 1e-9 * dx);
+}
+
 std::string refusal(const std::string& text) {
   try {
     small::simulation(text);

@@ -278,10 +278,8 @@ void FluidPhase::attach(Workspace& w) {
     q.void_pressure = lifted ? -pressure_lift(phase_.density, speed, q.smoothing_length, keys_.viscosity) : 0.0;
   }
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
-  if (plan_.free_surface) {
-    boxes_ = held_boxes(scene_, layout_, number_, *particles_);
-    moving_boxes_ = moving_boxes(w, number_, *particles_);
-  }
+  if (plan_.free_surface || plan_.eddies) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+  if (plan_.free_surface) moving_boxes_ = moving_boxes(w, number_, *particles_);
   if (corrected) relief_ = relief();
   if (plan_.eddies) bind_eddies();
   if (keys_.energy_budget) open_books();
