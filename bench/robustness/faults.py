@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Runs on full disks, and with twelve further faults: message, exit status, earlier frames, and going on after mending.
+"""Runs on full disks, alone and on three ranks, and with twelve further faults: message, exit status, earlier frames, and going on after mending.
 
-    faults.py PROGRAM [--sizes 70]
+    faults.py PROGRAM [--sizes 70] [--ranks-only]
+
+Of the ranks: all end within 10 s, and two ranks go on to the bytes of a run of one process on a disk that is large enough.
 
 Needs root (it mounts small file systems in memory and runs as another user). Prints a line a fault and the figures as JSON; status 1
 when one went wrong.
@@ -23,6 +25,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENE = SOURCE / "scenes/verification/poiseuille.toml"
 SHORT = ["time.end=0.03", "output.every=0.002", "output.checkpoint-every=0.05"]
 LONG = ["time.end=5", "output.every=0.01", "output.checkpoint-every=0.05"]
+MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n"]
 NOBODY = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
 
 
@@ -70,10 +73,10 @@ class Faults:
         self.failures += bool(wrong)
         self.passed.append(not wrong)
 
-    def goes_on(self):
+    def goes_on(self, before=()):
         """Whether the run can be continued, or begun again where nothing was kept."""
         kept = (self.out / "poiseuille.checkpoint").exists() or (self.out / "poiseuille.checkpoint.older").exists()
-        done = self.run(*(["--restart", "latest"] if kept else []), "--set", "time.end=0.5")
+        done = self.run(*(["--restart", "latest"] if kept else []), "--set", "time.end=0.5", before=before)
         return done.status in (0, 2) and ("larger time.end" in done.stderr or done.status == 0) and series_is_whole(self.out)
 
     def fresh(self, owner=0):
@@ -100,6 +103,39 @@ class Faults:
                 runs.command(["umount", self.out], check=True)
             self.check(f"disk of {kilobytes} kB: status {done.status}", *good)
         return full
+
+    def bytes_of(self, folder):
+        """All that has the bits of a run; the checkpoint before the last one is another in a run that was continued."""
+        return {f.name: f.read_bytes() for f in folder.iterdir() if f.name not in ("run.json", "barchan.lock") and not f.name.endswith(".older")}
+
+    def full_disks_of_ranks(self):
+        """The first rank finds its disk full, the others wait for it in a reduction or a gathering."""
+        self.fresh()
+        self.run("--set", "time.end=0.5").checked("a run of one process")
+        reference = self.bytes_of(self.out)
+        shutil.rmtree(self.out)
+        full, slowest = 0, 0.
+        for number in range(self.sizes):
+            kilobytes = 8 + number * 12
+            self.out.mkdir(exist_ok=True)
+            runs.command(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "barchan", self.out], check=True)
+            try:
+                done = self.run(before=[*MPIRUN, 3])
+                full += done.status != 0
+                slowest = max(slowest, done.wall)
+                good = [(done.status in (0, 4), f"status {done.status}"), (done.wall < 10, f"took {done.wall:.1f} s"),
+                        (done.status == 0 or "No space left on device" in done.stderr, "message: " + done.stderr[-300:]),
+                        (series_is_whole(self.out), "a listed frame is not whole"),
+                        (done.status == 0 or not (self.out / "run.json").exists() or self.says().startswith("output failed"), f"run.json says {self.says()!r}")]
+                runs.command(["mount", "-o", "remount,size=20m", self.out], check=True)
+                good.append((self.goes_on(before=[*MPIRUN, 2]), "does not go on after mending"))
+                found = self.bytes_of(self.out)
+                other = sorted(name for name in found.keys() | reference.keys() if found.get(name) != reference.get(name))
+                good.append((not other, "other bytes: " + ", ".join(other)))
+            finally:
+                runs.command(["umount", self.out], check=True)
+            self.check(f"three ranks, disk of {kilobytes} kB: status {done.status}, {done.wall:.1f} s", *good)
+        return full, slowest
 
     def stopped(self, run, status, message):
         try:
@@ -188,6 +224,12 @@ class Faults:
         self.check("no place for the checkpoint", (done.status == 4, f"status {done.status}"), ("poiseuille.checkpoint" in done.stderr, done.stderr[-300:]),
                    (series_is_whole(self.out), "series"))
 
+    def ranks(self):
+        full, slowest = self.full_disks_of_ranks()
+        shutil.rmtree(self.top)
+        print(json.dumps({"disks": len(self.passed), "disks_full": full, "disks_good": sum(self.passed), "slowest": slowest}))
+        return 1 if self.failures else 0
+
     def main(self):
         full = self.full_disks()
         disks, self.passed = self.passed, []
@@ -201,5 +243,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("--sizes", type=int, default=70)
+    parser.add_argument("--ranks-only", action="store_true", help="the full disks of three ranks, and nothing else")
     options = parser.parse_args()
-    sys.exit(Faults(options.program, options.sizes).main())
+    faults = Faults(options.program, options.sizes)
+    sys.exit(faults.ranks() if options.ranks_only else faults.main())

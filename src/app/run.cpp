@@ -143,7 +143,7 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
     simulation.load_whole([&] { simulation.archive(*from); });
     if (run->measurements()) run->measurements()->archive(*from);
     from->finish();
-    simulation.check();
+    simulation.check_aside();
     from.reset();  // its memory is needed from now on
     std::cerr << "barchan: going on at t = " << brief(simulation.time()) << " s after " << simulation.steps()
               << " steps\n";

@@ -101,14 +101,14 @@ void Run::open() {
     history_.emplace(directory_ / "history.csv", columns, continued_, simulation_.time());
     if (measurements_) measurements_->open(directory_, continued_, simulation_.time());
   }
-  const RunReport beginning = report("running");
-  if (series_) write_run_report(directory_ / "run.json", beginning);
+  beginning_ = report("running");
+  if (series_) write_run_report(directory_ / "run.json", beginning_);
 }
 
 int Run::go(Past* past) {
   const int status = loop(past);
   if (clock().last_frame_step != simulation_.steps()) {
-    simulation_.check();
+    simulation_.check_aside();
     write_frame();
   }
   if (reason_ == "end") bring_checkpoint_up_to_date();
@@ -207,7 +207,7 @@ bool Run::checkpoint_is_late() const {
 }
 
 void Run::write_checkpoint() {
-  simulation_.check();
+  simulation_.check_aside();
   if (series_) series_->finish();
   simulation_.save_whole([&] {
     barchan::write_checkpoint(checkpoint_file(directory_, scene_),
@@ -313,7 +313,13 @@ void Run::finish(const std::string& reason) {
 }
 
 void Run::fail(const std::string& reason) {
-  if (ranks::active()) return;  // the others may not be there to count with
+  if (ranks::active()) {  // the others may not be there to count with
+    beginning_.end_reason = reason;
+    beginning_.steps = simulation_.steps();
+    beginning_.simulated_time = simulation_.time();
+    if (series_) try_to_write(directory_ / "run.json", beginning_);
+    return;
+  }
   if (series_) try_to_write(directory_ / "run.json", report(reason));
   course_.progress.end(reason);
 }

@@ -81,7 +81,8 @@ class Run {
   /// For a run that ends with a failed step: the last good state joins the series, the first bad one stands beside it.
   /// Returns what to tell.
   std::string break_down(const std::string& what);
-  /// For a run that ends for another reason: run.json says so if anything can be written.
+  /// For a run that ends for another reason: run.json says so if anything can be written. On several ranks its numbers
+  /// are those of the beginning, but for steps and time.
   void fail(const std::string& reason);
 
  private:
@@ -111,6 +112,7 @@ class Run {
   std::optional<SeriesWriter> series_;  // these two: of the first rank; empty on the others
   std::optional<History> history_;
   std::optional<Measurements> measurements_;  // empty: the scene measures nothing
+  RunReport beginning_;                       // what run.json says while the run goes on
   std::string reason_;
 };
 

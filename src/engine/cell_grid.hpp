@@ -166,6 +166,8 @@ class CellGrid {
   /// The same about those particles of a phase, whole on every rank, whose row is the rank's by `owners`.
   void mark(const CellGrid& about, const std::vector<std::int32_t>& owners, std::int32_t rank, float reach,
             std::vector<char>& needed) const;
+  /// Marks the blocks in which the rank has particles. The grid is not shared.
+  void mark_blocks(const CellOwners& owners, std::size_t rank, std::vector<char>& blocks) const;
   /// f(cell, source, owner) for each marked cell whose particles are ghosts of the rank: those of the cell `source`,
   /// which is its own where the cell repeats it beyond a periodic side.
   template <class F>

@@ -56,6 +56,33 @@ void Neighbours::rebalance(std::vector<std::optional<CellOwners>>& owners) const
   }
 }
 
+/// Marks a block and those beside it with 1.
+void Neighbours::mark_beside(std::size_t block, std::vector<float>& near) const {
+  const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]),
+             at = static_cast<long>(block);
+  std::array<long, 3> xs{}, ys{}, zs{};
+  const auto mx = static_cast<std::size_t>(places_beside(0, at % nx, xs)),
+             my = static_cast<std::size_t>(places_beside(1, at / nx % ny, ys)),
+             mz = static_cast<std::size_t>(places_beside(2, at / (nx * ny), zs));
+  for (std::size_t z = 0; z < mz; ++z)
+    for (std::size_t y = 0; y < my; ++y)
+      for (std::size_t x = 0; x < mx; ++x) near[static_cast<std::size_t>((zs[z] * ny + ys[y]) * nx + xs[x])] = 1.0f;
+}
+
+std::size_t Neighbours::contested(const std::vector<std::optional<CellOwners>>& owners, std::size_t ranks) const {
+  std::vector<float> all(blocks_.size(), 0.0f);
+  for (std::size_t r = 0; r < ranks; ++r) {
+    std::vector<char> own(blocks_.size(), 0);
+    for (std::size_t p = 0; p < grids_.size(); ++p)
+      if (owners[p]) grids_[p]->mark_blocks(*owners[p], r, own);
+    std::vector<float> near(blocks_.size(), 0.0f);
+    for (std::size_t q = 0; q < own.size(); ++q)
+      if (own[q] != 0) mark_beside(q, near);
+    for (std::size_t q = 0; q < all.size(); ++q) all[q] += near[q];
+  }
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](float n) { return n > 1.0f; }));
+}
+
 std::vector<RankHalo> Neighbours::halo_of(std::size_t phase,
                                           const std::vector<std::optional<CellOwners>>& owners) const {
   std::vector<const CellOwners*> cells;

@@ -41,7 +41,6 @@ void Neighbours::take_ghosts() {
 /// Two blocks side by side are compared by every rank that has particles in them. So only blocks in or beside which
 /// several ranks have particles need the displacements of all ranks.
 void Neighbours::find_contested() {
-  const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]);
   std::vector<float> near(blocks_.size(), 0.0f);
   std::vector<char> own(blocks_.size(), 0);
   for (std::size_t q = 0; q < blocks_.size(); ++q) {
@@ -50,14 +49,7 @@ void Neighbours::find_contested() {
     if (std::none_of(grids_.begin(), grids_.end(),
                      [q](const auto& grid) { return grid && grid->is_shared() && !grid->runs(q).empty(); }))
       continue;
-    const auto at = static_cast<long>(q);
-    std::array<long, 3> xs{}, ys{}, zs{};
-    const int mx = places_beside(0, at % nx, xs), my = places_beside(1, at / nx % ny, ys),
-              mz = places_beside(2, at / (nx * ny), zs);
-    for (std::size_t z = 0; z < static_cast<std::size_t>(mz); ++z)
-      for (std::size_t y = 0; y < static_cast<std::size_t>(my); ++y)
-        for (std::size_t x = 0; x < static_cast<std::size_t>(mx); ++x)
-          near[static_cast<std::size_t>((zs[z] * ny + ys[y]) * nx + xs[x])] = 1.0f;
+    mark_beside(q, near);
   }
   ranks::active()->reduce(near.data(), near.size(), Communicator::Take::sum);
   contested_.clear();

@@ -67,7 +67,8 @@ class Neighbours {
   void rebalance(std::vector<std::optional<CellOwners>>& owners) const;
   /// By rank: particles and ghosts of a phase with owners.
   std::vector<RankHalo> halo_of(std::size_t phase, const std::vector<std::optional<CellOwners>>& owners) const;
-  std::size_t blocks() const { return blocks_.size(); }
+  /// Blocks in or beside which several of so many ranks have particles.
+  std::size_t contested(const std::vector<std::optional<CellOwners>>& owners, std::size_t ranks) const;
 
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
@@ -96,6 +97,7 @@ class Neighbours {
   int places_beside(std::size_t axis, long at, std::array<long, 3>& out) const;
   std::size_t watched() const { return watched_.empty() ? blocks_.size() : watched_.size(); }
   std::size_t watched(std::size_t number) const { return watched_.empty() ? number : watched_[number]; }
+  void mark_beside(std::size_t block, std::vector<float>& near) const;
   void find_contested();
   void widen_by_ranks(Range& all);
   void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);

@@ -27,7 +27,7 @@ struct RankPlan {
   double whole_particles = 0;  // that every rank has
   double whole_share = 0;      // of the time of a step, for phases that every rank holds whole
   double searches_a_step = 0;  // how often lists are made anew
-  double reduced_bytes = 0;    // a step: displacements of blocks, which all ranks reduce together
+  double reduced_bytes = 0;    // a step: displacements of blocks near several ranks, which all reduce together
   double seconds_alone = 0;    // of a step of one process with one thread
   double start_memory = 0;     // bytes: at the start every rank makes all particles
   double efficiency = 0;       // seconds_alone over ranks times the seconds of the slowest rank; 0: not measured

@@ -88,11 +88,11 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
   auto owners = owners_;
   simulation_.neighbours().rebalance(owners);
   std::vector<Part> parts(ranks_);
+  const double told = of(simulation_.neighbours().contested(owners, ranks_));
   double arrays = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) arrays += of(simulation_.phases()[p].bytes());
   for (std::size_t p = 0; p < whole_.size(); ++p) {
-    if (simulation_.neighbours().has_grid(p))
-      plan.reduced_bytes += 6.0 * sizeof(float) * of(simulation_.neighbours().blocks());
+    if (owners[p]) plan.reduced_bytes += 6.0 * sizeof(float) * told;
     const double n = of(simulation_.phases()[p].size()), share = of(simulation_.phases()[p].bytes()) / arrays;
     if (!owners[p]) {
       plan.whole_particles += n;

@@ -78,6 +78,8 @@ class Simulation {
   /// Throws BreakdownError if the present state is wrong (simulation/watch.hpp); the watch of step() looks now and then
   /// only.
   void check() { watch_->look_closely(moment()); }
+  /// The same at a moment that a clock chose: leaves no trace in the state.
+  void check_aside() { watch_->look_aside(moment()); }
   /// The same before the first step, when the scene is to blame: throws SceneError.
   void check_start();
   /// The last state that passed all checks: its step and time, and its frame. Needs a check() or check_start() before.

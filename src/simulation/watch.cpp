@@ -243,6 +243,18 @@ void Watch::look_closely(const Moment& now) {
   good_.keep(see_.particles, now.time, now.step);
 }
 
+void Watch::look_aside(const Moment& now) {
+  const double forced = forced_, time = last_time_, fastest = last_fastest_, wall_speed = wall_speed_;
+  const Extreme extreme = extreme_, speed = fastest_;
+  look_closely(now);
+  forced_ = forced;
+  last_time_ = time;
+  last_fastest_ = fastest;
+  wall_speed_ = wall_speed;
+  extreme_ = extreme;
+  fastest_ = speed;
+}
+
 void Watch::explain(const Moment& now) { tell_worst(now); }
 
 double Watch::look_at_phases(const Moment& now) {

@@ -61,6 +61,9 @@ class Watch {
   void look(const Moment& now);
   /// All looks, whatever is due; then keeps the state.
   void look_closely(const Moment& now);
+  /// The same at a moment that a clock chose (a checkpoint, a signal, a restart): what archive() names and what later
+  /// looks depend on stays as the last look left it, so that a run has the same bits without that moment.
+  void look_aside(const Moment& now);
   /// For an acceleration that is not finite: throws BreakdownError with the particle of lowest id.
   void explain(const Moment& now);
   /// Throws BreakdownError with what a model found.

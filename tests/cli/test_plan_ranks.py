@@ -45,7 +45,7 @@ class PlanOfRanks(test_ranks.Folder):
             for ranks in (2, 3, 4):
                 with self.subTest(name, ranks=ranks):
                     def sets(last):
-                        keys = [f"time.end={last!r}", f"output.every={last!r}", *overrides]
+                        keys = [f"time.end={last!r}", f"output.every={last!r}", f"output.history-every={last!r}", *overrides]  # looks of rows are no steps
                         return [word for key in keys for word in ("--set", key)]
                     plan = self.planned(scene, ranks, *sets(end))
                     late = self.report(scene, ranks, f"{name}-{ranks}-late", sets(end))

@@ -37,7 +37,6 @@ inline std::vector<std::string> with_fewer_particles(const std::string& scene) {
       {"rings", {"spacing=2e-3"}},
       {"threshold", {"domain.size=[0.04, 0.032]"}},
       {"verification/cylinder_open", {"spacing=0.16"}},
-      {"verification/cylinder_open_near", {"spacing=0.1"}},
       {"verification/heaving_cylinder", {"constants.across=6"}},
       {"verification/hertz_spheres", {"spacing=4e-3"}},
       {"verification/rings_updated", {"spacing=2e-3"}},

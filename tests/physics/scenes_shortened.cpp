@@ -22,10 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Drive;
 
-/// What the scene will do, without the minutes in which beds settle and fills relax: they stand in rows.
+/// What the scene will do, without the minutes in which its beds settle: they stand as they were filled.
 Plan plan_of_filled(Scene scene) {
   for (auto& fill : scene.fills)
-    if (fill.packing == Packing::settled || fill.packing == Packing::relaxed) fill.packing = Packing::square;
+    if (fill.packing == Packing::settled) fill.packing = Packing::square;
   return make_plan(scene, make_particles(scene));
 }
 

@@ -177,5 +177,20 @@ TEST(Warnings, TellOfTheLargestDensityError) {
     EXPECT_NE(warnings[0].find(part), std::string::npos) << part << " in: " << warnings[0];
 }
 
+/// The state after 300 steps, `aside` or not looked at after each 7th, 14th, ...: as if a clock had asked for
+/// checkpoints.
+std::vector<char> state_after_looks(bool aside) {
+  const auto s = simulation(vortices, {"forcing.0.acceleration=[\"0.3*sin(2*pi*x)\", 0]"});
+  for (int k = 1; k <= 300; ++k) {
+    s->step(1e300);
+    if (aside && k % 7 == 0) s->check_aside();
+  }
+  Archive state;
+  s->archive(state);
+  return state.bytes();
+}
+
+TEST(Watch, LeavesNoTraceAtMomentsThatAClockChose) { EXPECT_EQ(state_after_looks(true), state_after_looks(false)); }
+
 }  // namespace
 }  // namespace barchan

@@ -1,0 +1,124 @@
+#!/usr/bin/python3
+"""Every scene that comes along, shortened, on ranks: the bytes of one process, or refused by name. The table of docs/ranks.md.
+
+    /usr/bin/python3 bench/ranks/every_scene.py PROGRAM [--only SCENE]... [--steps 30] [--write]
+    /usr/bin/python3 bench/ranks/every_scene.py none --only none --write     # the page from the results, runs nothing
+
+Each scene runs for 30 steps as long as the first one: one process of 1 and of 2 threads, 1, 2, 3, 4 and 7 ranks, 2 ranks of 2 threads, and 3 ranks to
+the middle whose checkpoint 2 ranks go on from. All files but run.json must have the bytes of the first. Scenes that take long to fill have the overrides
+of tests/physics/every_scene.hpp. A scene whose result is kept is not run again unless it is named. Exit status 1 when bytes differ or a run ends badly.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+
+RESULTS = ROOT / "bench/ranks/results/every_scene.json"
+PAGE = ROOT / "docs/ranks.md"
+LAUNCH = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "--bind-to", "none", "-n"]
+WAYS = {"2 threads": (0, 2), "1 rank": (1, 1), "2 ranks": (2, 1), "3 ranks": (3, 1), "4 ranks": (4, 1), "7 ranks": (7, 1), "2 ranks of 2 threads": (2, 2)}
+SAME, REFUSED = "same", "refused"
+
+
+def fewer_particles():
+    """Overrides by scene, of the tests that run every scene."""
+    text = (ROOT / "tests/physics/every_scene.hpp").read_text()
+    return {name: re.findall(r'"([^"]*)"', words) for name, words in re.findall(r'\{"([^"]+)", \{([^{}]*)\}\}', text)}
+
+
+def files(folder):
+    """All that has the bits of the run; the checkpoint before the last one is another in a run that was continued."""
+    return {f.name: f.read_bytes() for f in folder.iterdir()
+            if f.is_file() and f.name not in ("run.json", "barchan.lock") and not f.name.endswith(".older")}
+
+
+class Scene:
+    def __init__(self, program, name, sets, steps, top):
+        self.program, self.name, self.sets, self.top = program, name, sets, top
+        planned = run.command([program, "plan", run.scene_file(name), "--json", *run.settings(sets)], timeout=600, check=True)
+        self.step = json.loads(planned.stdout)["step"]
+        self.steps = steps
+
+    def run(self, ranks, threads, out, part=1., options=()):
+        end = self.step * self.steps
+        sets = [*self.sets, f"time.end={part * end!r}", f"output.every={end / 2!r}", f"output.history-every={end / 6!r}", "output.checkpoint-every=1e9"]
+        return run.scene(self.program, self.name, self.top / out, sets, threads=threads, options=options, before=[*LAUNCH, ranks] if ranks else [],
+                         check=False, timeout=900)
+
+    def compare(self, out, reference):
+        found = files(self.top / out)
+        return sorted(name for name in found.keys() | reference.keys() if found.get(name) != reference.get(name))
+
+    def result(self):
+        one = self.run(0, 1, "one").checked(self.name)
+        kept = {"particles": sum(one.report["particles"].values()), "steps": one.report["steps"], "files": len(files(one.out)), "ways": {}}
+        reference = files(one.out)
+        for way, (ranks, threads) in WAYS.items():
+            ended = self.run(ranks, threads, way)
+            kept["ways"][way] = self.outcome(ended, way, reference)
+            if kept["ways"][way].startswith(REFUSED):
+                return kept
+        first = self.run(3, 1, "restart", part=.5)
+        second = self.run(2, 1, "restart", options=["--restart", "latest"])
+        kept["ways"]["3 ranks, then 2"] = self.outcome(first if first.status else second, "restart", reference)
+        return kept
+
+    def outcome(self, ended, out, reference):
+        if ended.status == 2:
+            return f"{REFUSED}: " + next((line for line in ended.stderr.splitlines() if "several ranks" in line), ended.stderr.strip()[:200])
+        if ended.status != 0:
+            return f"status {ended.status}: {ended.stderr.strip()[-200:]}"
+        different = self.compare(out, reference)
+        return SAME if not different else "other bytes: " + ", ".join(different)
+
+
+def measured(program, name, steps):
+    with tempfile.TemporaryDirectory(prefix="barchan_ranks_") as top:
+        return Scene(program, name, fewer_particles().get(name, []), steps, pathlib.Path(top)).result()
+
+
+def says(result):
+    ways = result["ways"]
+    if all(outcome == SAME for outcome in ways.values()):
+        return "the same bytes in all"
+    return "; ".join(f"{way}: {outcome}" for way, outcome in ways.items() if outcome != SAME)
+
+
+def text(results):
+    good = [name for name, r in results.items() if all(o == SAME for o in r["ways"].values())]
+    refused = [name for name, r in results.items() if any(o.startswith(REFUSED) for o in r["ways"].values())]
+    lines = [f"{len(results)} scenes: {len(good)} have the same bytes in all of these runs, {len(refused)} are refused by name, "
+             f"{len(results) - len(good) - len(refused)} differ.", "", table.head("scene", "particles", "steps", "frames, history, checkpoint")]
+    lines += [table.row(f"`{name}`", r["particles"], r["steps"], says(r)) for name, r in sorted(results.items())]
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("--only", action="append")
+    parser.add_argument("--steps", type=int, default=30)
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    every = sorted(str(f.relative_to(ROOT / "scenes").with_suffix("")) for f in (ROOT / "scenes").rglob("*.toml"))
+    results = pages.load(RESULTS, {})
+    asked = [name for name in options.only if name != "none"] if options.only else [name for name in every if name not in results]
+    for name in asked:
+        results[name] = measured(options.program.resolve(), name, options.steps)
+        print(name, says(results[name]), flush=True)
+        pages.keep(RESULTS, results)
+    results = {name: results[name] for name in every if name in results}
+    if options.write:
+        pages.keep(RESULTS, results)
+        pages.fill(PAGE, "every scene", text(results))
+    return any(not (o == SAME or o.startswith(REFUSED)) for r in results.values() for o in r["ways"].values())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
