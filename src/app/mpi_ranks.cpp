@@ -93,7 +93,7 @@ class Mpi final : public Communicator {
       from += count * width;
     }
     const std::size_t kept = send_counts[static_cast<std::size_t>(rank_)] * width;
-    if (kept > 0) std::memcpy(own_to_, own, kept);
+    if (own && own_to_ && kept > 0) std::memcpy(own_to_, own, kept);
     MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   }
   void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
