@@ -70,11 +70,11 @@ def constants(program):
         plans = {n: planned(program, n, pathlib.Path(folder)) for n in PLANNED}
     n, memory, alone, of = ACROSS**3, plans[1]["memory"]["parts"], plans[1]["ranks"], {r: p["ranks"]["mean"] for r, p in plans.items()}
     h = halved(0., 20., lambda h: ghosts(n, 2, "pieces", 0., h)[0] < of[2]["ghosts"])
-    side = halved(5., 50., lambda s: ghosts(n, 16, "pieces", s, h)[0] < of[16]["ghosts"])
+    side = min((s / 10 for s in range(100, 500)), key=lambda s: sum(math.log(ghosts(n, r, "pieces", s, h)[0] / of[r]["ghosts"]) ** 2 for r in PLANNED if r > 2))
     return {"particles": n, "seconds": alone["seconds_alone"] / n, "memory": (memory["arrays"] + memory["states to go back to"]) / n,
             "program": memory["program"], "start": (alone["start_memory"] - memory["program"]) / n, "h": h, "side": side,
             "bytes": of[2]["bytes"] / ghosts(n, 2, "pieces", side, h)[1], "messages": of[2]["messages"] / NEIGHBOURS["pieces"],
-            "reduced": plans[2]["ranks"]["reduced_bytes"] / ACROSS**2, "plan": alone["constants"],
+            "plan": alone["constants"],
             "planned": {str(r): {"ghosts": p["ghosts"], "efficiency": plans[r]["ranks"]["efficiency"], "messages": p["messages"]} for r, p in of.items()}}
 
 
@@ -83,9 +83,9 @@ def on(n, ranks, way, c):
     p, own = c["plan"], n / ranks
     halo, remote = ghosts(n, ranks, way, c["side"], c["h"]) if ranks > 1 else (ghosts(n, 1, way, c["side"], c["h"])[0], 0)
     sent, messages = remote * c["bytes"], 0 if ranks == 1 else c["messages"] * NEIGHBOURS["pieces" if way == "pieces" and ranks < 4 else "blocks"]
-    rounds, reduced = math.ceil(math.log2(ranks)), c["reduced"] * n ** (2 / 3)
+    rounds = math.ceil(math.log2(ranks))
     alone = c["seconds"] * own
-    seconds = alone + messages * p["latency"] + sent / p["bandwidth"] + rounds * (p["reductions"] * p["latency"] + reduced / p["reduce_bandwidth"])
+    seconds = alone + messages * p["latency"] + sent / p["bandwidth"] + rounds * p["reductions"] * p["latency"]
     cells = n / (c["side"] / 16) ** 3 * 20  # begin, end, walk, block and owner of each cell
     return {"particles": own, "share": halo / own, "bytes": sent, "efficiency": alone / seconds, "memory": c["program"] + c["memory"] * own + GHOST * halo + cells,
             "cells": cells, "start": c["program"] + c["start"] * n, "frame": n * FRAME * (1 / p["bandwidth"] + 1 / DISK)}
@@ -98,19 +98,20 @@ def text(results, c):
              f"{c['start']:.0f} bytes a particle at the start, a halo of {c['h']:.2f} spacings, columns of {c['side']:.0f} spacings, {c['bytes']:.0f} bytes a ghost and step, "
              f"{c['messages']:.1f} messages a neighbour and step. Assumed: {FRAME:.0f} bytes a particle in a frame, a disk of {DISK / 1e9:.0f} GB/s, "
              "and between machines the latency and bandwidth that were measured within one.", "",
-             table.head("particles, ranks", "a rank", "ghosts over particles: pieces; blocks", "MB a step a rank", "efficiency", "GB a rank: run", "start, every rank",
-                        "s a frame")]
+             table.head("particles, ranks", "a rank", "ghosts over particles: pieces; blocks", "MB a step a rank", "efficiency",
+                        "GB a rank: run", "start, every rank", "s a frame")]
     for n in SIZES:
         for ranks in RANKS:
             a, b = (results[f"{n:.0e} {ranks} {way}"] for way in ("pieces", "blocks"))
             lines.append(table.row(f"{n:.0e}, {ranks}", f"{a['particles']:.2g}", f"{a['share']:.2f}; {b['share']:.2f}", f"{a['bytes'] / 1e6:.1f}; {b['bytes'] / 1e6:.1f}",
-                                   f"{a['efficiency']:.2f}; {b['efficiency']:.2f}", f"{giga(a['memory'])}; {giga(b['memory'])}", giga(a["start"]), f"{a['frame']:.0f}"))
+                                   f"{a['efficiency']:.2f}; {b['efficiency']:.2f}",
+                                   f"{giga(a['memory'])}; {giga(b['memory'])}", giga(a["start"]), f"{a['frame']:.0f}"))
     return "\n".join(lines)
 
 
 def draw(results, c):
     plot = pages.pyplot()
-    figure, (strong, weak) = plot.subplots(1, 2, figsize=(8, 3.4), layout="constrained")
+    figure, (strong, weak) = plot.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
     for n, style in zip(SIZES, ("-", "--")):
         for way, colour in (("pieces", pages.VERMILION), ("blocks", pages.BLUE)):
             strong.plot(RANKS, [results[f"{n:.0e} {r} {way}"]["efficiency"] for r in RANKS], style, color=colour, marker="o", ms=3,

@@ -166,8 +166,13 @@ class CellGrid {
   /// The same about those particles of a phase, whole on every rank, whose row is the rank's by `owners`.
   void mark(const CellGrid& about, const std::vector<std::int32_t>& owners, std::int32_t rank, float reach,
             std::vector<char>& needed) const;
-  /// Marks the blocks in which the rank has particles. The grid is not shared.
-  void mark_blocks(const CellOwners& owners, std::size_t rank, std::vector<char>& blocks) const;
+  /// f(block, rank, cell) for each walked cell, rank by rank.
+  template <class F>
+  void each_block(const CellOwners& owners, F&& f) const {
+    for (std::size_t r = 0; r < owners.ranks(); ++r)
+      for (std::size_t w = owners.first[r]; w < owners.first[r + 1]; ++w)
+        f(std::size_t{walk_block_[w]}, static_cast<std::int32_t>(r), walk_[w]);
+  }
   /// f(cell, source, owner) for each marked cell whose particles are ghosts of the rank: those of the cell `source`,
   /// which is its own where the cell repeats it beyond a periodic side.
   template <class F>

@@ -58,11 +58,6 @@ std::vector<std::size_t> CellGrid::particles_by_rank(const CellOwners& owners) c
   return counts;
 }
 
-void CellGrid::mark_blocks(const CellOwners& owners, std::size_t rank, std::vector<char>& blocks) const {
-  for (std::size_t w = owners.first[rank]; w < owners.first[rank + 1]; ++w)
-    if (count(walk_[w]) > 0) blocks[walk_block_[w]] = 1;
-}
-
 std::vector<std::uint32_t> CellGrid::cells_of_particles() const {
   std::vector<std::uint32_t> cells;
   cells.reserve(particles());

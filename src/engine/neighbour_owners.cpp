@@ -56,8 +56,8 @@ void Neighbours::rebalance(std::vector<std::optional<CellOwners>>& owners) const
   }
 }
 
-/// Marks a block and those beside it with 1.
-void Neighbours::mark_beside(std::size_t block, std::vector<float>& near) const {
+/// Marks a block and those beside it.
+void Neighbours::mark_beside(std::size_t block, std::vector<char>& near) const {
   const long nx = static_cast<long>(blocks_.count[0]), ny = static_cast<long>(blocks_.count[1]),
              at = static_cast<long>(block);
   std::array<long, 3> xs{}, ys{}, zs{};
@@ -66,21 +66,36 @@ void Neighbours::mark_beside(std::size_t block, std::vector<float>& near) const 
              mz = static_cast<std::size_t>(places_beside(2, at / (nx * ny), zs));
   for (std::size_t z = 0; z < mz; ++z)
     for (std::size_t y = 0; y < my; ++y)
-      for (std::size_t x = 0; x < mx; ++x) near[static_cast<std::size_t>((zs[z] * ny + ys[y]) * nx + xs[x])] = 1.0f;
+      for (std::size_t x = 0; x < mx; ++x) near[static_cast<std::size_t>((zs[z] * ny + ys[y]) * nx + xs[x])] = 1;
 }
 
-std::size_t Neighbours::contested(const std::vector<std::optional<CellOwners>>& owners, std::size_t ranks) const {
-  std::vector<float> all(blocks_.size(), 0.0f);
-  for (std::size_t r = 0; r < ranks; ++r) {
-    std::vector<char> own(blocks_.size(), 0);
-    for (std::size_t p = 0; p < grids_.size(); ++p)
-      if (owners[p]) grids_[p]->mark_blocks(*owners[p], r, own);
-    std::vector<float> near(blocks_.size(), 0.0f);
+std::map<std::int32_t, ToldBlocks> Neighbours::told_blocks(const std::vector<const CellOwners*>& cells,
+                                                           std::int32_t rank) const {
+  std::vector<char> own(blocks_.size(), 0), near(blocks_.size(), 0);
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (cells[p])
+      grids_[p]->each_block(*cells[p], [&](std::size_t block, std::int32_t owner, std::uint32_t) {
+        if (owner == rank) own[block] = 1;
+      });
+  for (std::size_t q = 0; q < own.size(); ++q)
+    if (own[q] != 0) mark_beside(q, near);
+  std::map<std::int32_t, ToldBlocks> told;
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (cells[p])
+      grids_[p]->each_block(*cells[p], [&](std::size_t block, std::int32_t owner, std::uint32_t) {
+        if (owner == rank || near[block] == 0) return;
+        std::vector<std::size_t>& hears = told[owner].hears;
+        if (hears.empty() || hears.back() != block) hears.push_back(block);
+      });
+  for (auto& [other, blocks] : told) {
+    std::sort(blocks.hears.begin(), blocks.hears.end());
+    blocks.hears.erase(std::unique(blocks.hears.begin(), blocks.hears.end()), blocks.hears.end());
+    std::vector<char> beside(blocks_.size(), 0);
+    for (const std::size_t q : blocks.hears) mark_beside(q, beside);
     for (std::size_t q = 0; q < own.size(); ++q)
-      if (own[q] != 0) mark_beside(q, near);
-    for (std::size_t q = 0; q < all.size(); ++q) all[q] += near[q];
+      if (own[q] != 0 && beside[q] != 0) blocks.tells.push_back(q);
   }
-  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](float n) { return n > 1.0f; }));
+  return told;
 }
 
 std::vector<RankHalo> Neighbours::halo_of(std::size_t phase,

@@ -16,7 +16,7 @@ void Neighbours::share(std::vector<PhaseParticles>& particles) {
   ranks::share();
   find_owners();
   take_ghosts();
-  find_contested();
+  find_watched();
 }
 
 void Neighbours::find_owners() { owners_ = owners_of_whole(cell_owners()); }
@@ -38,51 +38,60 @@ void Neighbours::take_ghosts() {
   }
 }
 
-/// Two blocks side by side are compared by every rank that has particles in them. So only blocks in or beside which
-/// several ranks have particles need the displacements of all ranks.
-void Neighbours::find_contested() {
-  std::vector<float> near(blocks_.size(), 0.0f);
-  std::vector<char> own(blocks_.size(), 0);
-  for (std::size_t q = 0; q < blocks_.size(); ++q) {
-    if (std::any_of(grids_.begin(), grids_.end(), [q](const auto& grid) { return grid && !grid->runs(q).empty(); }))
-      own[q] = 1;
-    if (std::none_of(grids_.begin(), grids_.end(),
-                     [q](const auto& grid) { return grid && grid->is_shared() && !grid->runs(q).empty(); }))
-      continue;
-    mark_beside(q, near);
+void Neighbours::find_watched() {
+  const std::vector<const CellOwners*> cells = cell_owners();
+  std::vector<std::vector<std::uint32_t>> pieces;
+  for (const CellOwners* owners : cells)
+    if (owners) pieces.push_back(owners->first);
+  if (pieces != told_for_) {
+    told_blocks_ = told_blocks(cells, ranks::active()->rank());
+    told_for_ = std::move(pieces);
   }
-  ranks::active()->reduce(near.data(), near.size(), Communicator::Take::sum);
-  contested_.clear();
+  std::vector<char> watched(blocks_.size(), 0);
+  for (std::size_t q = 0; q < blocks_.size(); ++q)
+    watched[q] = std::any_of(grids_.begin(), grids_.end(), [q](const auto& g) { return g && !g->runs(q).empty(); });
+  for (const auto& [rank, blocks] : told_blocks_)
+    for (const std::size_t q : blocks.hears) watched[q] = 1;
   watched_.clear();
-  for (std::size_t q = 0; q < near.size(); ++q) {
-    if (near[q] > 1.0f) contested_.push_back(q);
-    if (near[q] > 1.0f || own[q] != 0) watched_.push_back(q);
-  }
+  for (std::size_t q = 0; q < watched.size(); ++q)
+    if (watched[q] != 0) watched_.push_back(q);
   for (auto& ranges : ranges_)  // of blocks that nobody watches any more
     for (Range& range : ranges) range.clear();
 }
 
-/// Makes `all` the range of all ranks, and likewise the ranges of contested blocks.
+/// Makes `all` the range of all ranks, and the ranges of blocks in and beside the own ones those of all ranks.
 void Neighbours::widen_by_ranks(Range& all) {
   Communicator* const others = ranks::active();
   if (!others) return;
-  std::vector<Range*> told{&all};
+  std::vector<std::vector<Range>*> shared;
   for (std::size_t p = 0; p < grids_.size(); ++p)
-    if (grids_[p] && grids_[p]->is_shared())
-      for (const std::size_t q : contested_) told.push_back(&ranges_[p][q]);
+    if (grids_[p] && grids_[p]->is_shared()) shared.push_back(&ranges_[p]);
   told_.clear();
-  for (const Range* range : told)
-    for (std::size_t d = 0; d < 3; ++d) {
-      told_.push_back(-range->low[d]);
-      told_.push_back(range->high[d]);
-    }
-  others->reduce(told_.data(), told_.size(), Communicator::Take::largest);
-  std::size_t k = 0;
-  for (Range* range : told)
-    for (std::size_t d = 0; d < 3; ++d) {
-      range->low[d] = -told_[k++];
-      range->high[d] = told_[k++];
-    }
+  told_counts_.assign(static_cast<std::size_t>(others->size()), 0);
+  heard_counts_ = told_counts_;
+  std::size_t heard = 0;
+  for (const auto& [rank, blocks] : told_blocks_) {
+    for (const std::vector<Range>* ranges : shared)
+      for (const std::size_t q : blocks.tells) told_.push_back((*ranges)[q]);
+    told_counts_[static_cast<std::size_t>(rank)] = blocks.tells.size() * shared.size();
+    heard += heard_counts_[static_cast<std::size_t>(rank)] = blocks.hears.size() * shared.size();
+  }
+  heard_.resize(heard);
+  others->exchange(told_.data(), told_counts_, heard_.data(), heard_counts_, sizeof(Range));
+  const Range* from = heard_.data();
+  for (const auto& [rank, blocks] : told_blocks_)
+    for (std::vector<Range>* ranges : shared)
+      for (const std::size_t q : blocks.hears) (*ranges)[q].widen(*from++);
+  std::array<float, 6> bounds{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    bounds[2 * d] = -all.low[d];
+    bounds[2 * d + 1] = all.high[d];
+  }
+  others->reduce(bounds.data(), bounds.size(), Communicator::Take::largest);
+  for (std::size_t d = 0; d < 3; ++d) {
+    all.low[d] = -bounds[2 * d];
+    all.high[d] = bounds[2 * d + 1];
+  }
 }
 
 void Neighbours::gather() {

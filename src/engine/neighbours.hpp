@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -67,8 +68,10 @@ class Neighbours {
   void rebalance(std::vector<std::optional<CellOwners>>& owners) const;
   /// By rank: particles and ghosts of a phase with owners.
   std::vector<RankHalo> halo_of(std::size_t phase, const std::vector<std::optional<CellOwners>>& owners) const;
-  /// Blocks in or beside which several of so many ranks have particles.
-  std::size_t contested(const std::vector<std::optional<CellOwners>>& owners, std::size_t ranks) const;
+  /// By the other rank: the blocks whose displacements a rank tells it in every step, and hears from it. A rank hears
+  /// of the blocks in and beside those of its own cells: two particles that no list holds come within the radius in the
+  /// same or adjacent blocks first, and the rank of either looks at both. `cells`: owners by phase; null: it is whole.
+  std::map<std::int32_t, ToldBlocks> told_blocks(const std::vector<const CellOwners*>& cells, std::int32_t rank) const;
 
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
@@ -97,8 +100,8 @@ class Neighbours {
   int places_beside(std::size_t axis, long at, std::array<long, 3>& out) const;
   std::size_t watched() const { return watched_.empty() ? blocks_.size() : watched_.size(); }
   std::size_t watched(std::size_t number) const { return watched_.empty() ? number : watched_[number]; }
-  void mark_beside(std::size_t block, std::vector<float>& near) const;
-  void find_contested();
+  void mark_beside(std::size_t block, std::vector<char>& near) const;
+  void find_watched();
   void widen_by_ranks(Range& all);
   void search(const std::vector<PhaseParticles>& particles, const std::function<void()>& beside);
 
@@ -114,9 +117,12 @@ class Neighbours {
   std::vector<Chunk> chunks_;  // of all lists
   Blocks blocks_;
   std::vector<std::vector<Range>> ranges_;  // by phase, block
-  std::vector<std::size_t> contested_;      // blocks in or beside which several ranks have particles
-  std::vector<std::size_t> watched_;        // blocks of this rank's particles, and contested ones; none: all blocks
-  std::vector<float> told_;                 // to the other ranks: bounds of ranges
+  std::vector<std::size_t> watched_;        // blocks of this rank's particles, and those it hears of; none: all blocks
+  // On several ranks: what is told in every step, for these pieces of the walks, and where it is told.
+  std::map<std::int32_t, ToldBlocks> told_blocks_;
+  std::vector<std::vector<std::uint32_t>> told_for_;
+  std::vector<Range> told_, heard_;
+  std::vector<std::size_t> told_counts_, heard_counts_;  // by rank
   std::size_t padding_;
   double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
   bool adapts_ = false;

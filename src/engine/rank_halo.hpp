@@ -16,4 +16,9 @@ struct RankHalo {
   std::map<std::int32_t, Sent> to;  // by the other rank
 };
 
+/// Blocks whose displacements a rank tells another one, and those that it hears from it; both in ascending order.
+struct ToldBlocks {
+  std::vector<std::size_t> tells, hears;
+};
+
 }  // namespace barchan

@@ -76,10 +76,8 @@ std::string to_text(const RankPlan& plan) {
   if (plan.efficiency > 0)
     t += line("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
               plan.efficiency, plan.ranks.size());
-  t += line("predicted with %.3g s a message, %.3g GB/s, %.0f reductions a step, ", C::latency, C::bandwidth * 1e-9,
-            C::reductions);
-  t += line("%.3g MB a step reduced at %.3g GB/s; new lists in %.3g of the steps\n", plan.reduced_bytes * 1e-6,
-            C::reduce_bandwidth * 1e-9, plan.searches_a_step);
+  t += line("predicted with %.3g s a message, %.3g GB/s, %.0f reductions a step; new lists in %.3g of the steps\n",
+            C::latency, C::bandwidth * 1e-9, C::reductions, plan.searches_a_step);
   const auto idle = std::count_if(plan.ranks.begin(), plan.ranks.end(),
                                   [&](const RankPlan::Rank& r) { return r.particles <= plan.whole_particles; });
   if (idle > 0)
@@ -99,13 +97,9 @@ std::string to_json(const RankPlan& plan) {
   j["whole_share"] = plan.whole_share;
   j["start_memory"] = plan.start_memory;
   j["searches_a_step"] = plan.searches_a_step;
-  j["reduced_bytes"] = plan.reduced_bytes;
   j["seconds_alone"] = plan.seconds_alone;
   j["efficiency"] = plan.efficiency;
-  j["constants"] = {{"latency", C::latency},
-                    {"bandwidth", C::bandwidth},
-                    {"reduce_bandwidth", C::reduce_bandwidth},
-                    {"reductions", C::reductions}};
+  j["constants"] = {{"latency", C::latency}, {"bandwidth", C::bandwidth}, {"reductions", C::reductions}};
   return j.dump();
 }
 

@@ -10,8 +10,7 @@ namespace barchan {
 struct RankConstants {
   static constexpr double latency = 2.5e-6;   // s, of a message, and of each of the log2(N) rounds of a reduction
   static constexpr double bandwidth = 5.0e9;  // bytes/s, of what a rank sends
-  static constexpr double reduce_bandwidth = 1.3e9;  // bytes/s, of arrays that are reduced, in each round
-  static constexpr double reductions = 14;           // a step
+  static constexpr double reductions = 14;    // a step
 };
 
 struct RankPlan {
@@ -27,7 +26,6 @@ struct RankPlan {
   double whole_particles = 0;  // that every rank has
   double whole_share = 0;      // of the time of a step, for phases that every rank holds whole
   double searches_a_step = 0;  // how often lists are made anew
-  double reduced_bytes = 0;    // a step: displacements of blocks near several ranks, which all reduce together
   double seconds_alone = 0;    // of a step of one process with one thread
   double start_memory = 0;     // bytes: at the start every rank makes all particles
   double efficiency = 0;       // seconds_alone over ranks times the seconds of the slowest rank; 0: not measured

@@ -88,11 +88,9 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
   auto owners = owners_;
   simulation_.neighbours().rebalance(owners);
   std::vector<Part> parts(ranks_);
-  const double told = of(simulation_.neighbours().contested(owners, ranks_));
   double arrays = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) arrays += of(simulation_.phases()[p].bytes());
   for (std::size_t p = 0; p < whole_.size(); ++p) {
-    if (owners[p]) plan.reduced_bytes += 6.0 * sizeof(float) * told;
     const double n = of(simulation_.phases()[p].size()), share = of(simulation_.phases()[p].bytes()) / arrays;
     if (!owners[p]) {
       plan.whole_particles += n;
@@ -118,6 +116,7 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
     plan.ranks[r].messages += sums;
     plan.ranks[r].bytes += bytes;
   }
+  add_displacements(plan, owners);
   for (RankPlan::Rank& rank : plan.ranks) rank.halo_share = rank.particles > 0.0 ? rank.ghosts / rank.particles : 0.0;
   add_seconds(plan, parts);
   add_memory(plan, parts, memory);
@@ -153,6 +152,18 @@ void RankMeasure::add_halo(RankPlan& plan, std::size_t phase, const std::vector<
   add_moves(plan, phase, steps);
 }
 
+/// Bounds of the displacements of blocks: six numbers a block and phase, in every step.
+void RankMeasure::add_displacements(RankPlan& plan, const std::vector<std::optional<CellOwners>>& owners) const {
+  std::vector<const CellOwners*> cells;
+  for (const auto& one : owners) cells.push_back(one ? &*one : nullptr);
+  const double width = 6.0 * sizeof(float) * of(std::count_if(cells.begin(), cells.end(), [](auto* c) { return c; }));
+  for (std::size_t r = 0; r < ranks_; ++r)
+    for (const auto& [to, blocks] : simulation_.neighbours().told_blocks(cells, static_cast<std::int32_t>(r))) {
+      plan.ranks[r].messages += 1.0;
+      plan.ranks[r].bytes += width * of(blocks.tells.size());
+    }
+}
+
 /// Particles that have come into cells of another rank since the start, as sorted last.
 void RankMeasure::add_moves(RankPlan& plan, std::size_t phase, double steps) const {
   const std::vector<std::uint32_t> cells = simulation_.neighbours().grid(phase).cells_of_particles();
@@ -178,7 +189,7 @@ void RankMeasure::add_seconds(RankPlan& plan, const std::vector<Part>& parts) co
   for (const Part& part : parts) all += part.work;
   if (seconds <= 0.0) return;
   const double rounds = std::ceil(std::log2(of(ranks_))), whole = all > 0.0 ? whole_share_of_time() : 1.0;
-  const double reducing = rounds * (C::reductions * C::latency + plan.reduced_bytes / C::reduce_bandwidth);
+  const double reducing = rounds * C::reductions * C::latency;
   double slowest = 0.0;
   for (std::size_t r = 0; r < ranks_; ++r) {
     RankPlan::Rank& rank = plan.ranks[r];

@@ -33,6 +33,7 @@ class RankMeasure {
     double work = 0, arrays = 0, ghosts = 0;
   };
   void add_halo(RankPlan& plan, std::size_t phase, const std::vector<RankHalo>& halo, double steps) const;
+  void add_displacements(RankPlan& plan, const std::vector<std::optional<CellOwners>>& owners) const;
   void add_moves(RankPlan& plan, std::size_t phase, double steps) const;
   void add_seconds(RankPlan& plan, const std::vector<Part>& parts) const;
   void add_memory(RankPlan& plan, const std::vector<Part>& parts, const MemoryOfOne& memory) const;

@@ -2,6 +2,8 @@
 // sent is what arrives, and a strip has no more ghosts than stand in the cells on its sides.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 #include <tuple>
@@ -98,6 +100,41 @@ TEST_P(RankHalos, AreThoseOfTheListsAndOfTheCellsAboutThem) {
       EXPECT_EQ(sent, 0u);
       EXPECT_LE(ghosts, c.neighbours.grid(0).images()) << "no more than the images of one process";
     }
+  }
+}
+
+/// Two ranks that have two neighbours apart hear of each other's blocks, and each tells what the other one hears.
+TEST_P(RankHalos, TellDisplacementsToTheRanksBeside) {
+  const Cast c = cast();
+  const CellGrid& grid = c.neighbours.grid(0);
+  const std::vector<std::uint32_t> cells = grid.cells_of_particles();
+  for (const std::size_t ranks : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}}) {
+    const auto owners = c.neighbours.divided(ranks, {false, true});
+    std::vector<std::map<std::int32_t, ToldBlocks>> told;
+    for (std::size_t r = 0; r < ranks; ++r)
+      told.push_back(c.neighbours.told_blocks({&*owners[0], nullptr}, static_cast<std::int32_t>(r)));
+    for (std::size_t r = 0; r < ranks; ++r)
+      for (const auto& [other, blocks] : told[r]) {
+        ASSERT_NE(other, static_cast<std::int32_t>(r));
+        EXPECT_EQ(blocks.tells, told[static_cast<std::size_t>(other)][static_cast<std::int32_t>(r)].hears);
+      }
+    std::vector<std::size_t> block_of(grid.cells());
+    grid.each_block(*owners[0], [&](std::size_t block, std::int32_t, std::uint32_t cell) { block_of[cell] = block; });
+    std::size_t apart = 0;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const auto row = c.list(0).row(k);
+      for (const auto* entry = row.begin; entry != row.end; ++entry) {
+        std::size_t q = *entry / PairList::stride;
+        if (q == c.motion[0].dummy()) continue;
+        if (q >= cells.size()) q = grid.image_list()[q - cells.size()].source;
+        const std::int32_t own = owners[0]->owner[cells[k]], other = owners[0]->owner[cells[q]];
+        if (own == other) continue;
+        ++apart;
+        const auto& hears = told[static_cast<std::size_t>(own)][other].hears;
+        ASSERT_TRUE(std::binary_search(hears.begin(), hears.end(), block_of[cells[q]]));
+      }
+    }
+    EXPECT_EQ(apart > 0, ranks > 1);
   }
 }
 
