@@ -60,6 +60,14 @@ void Forces::add(PhaseParticles& p, double time, bool numbers) const {
     }
 }
 
+Vec3 Forces::at(const Vec3& x, double time, int dimensions) const {
+  Vec3 sum{};
+  for (const Force& force : forces_)
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d)
+      if (holds(force.box, x, dimensions)) sum[d] += force.acceleration[d](x, time);
+  return sum;
+}
+
 namespace {
 
 /// Rate of a zone at a place (1/s); what is not finite goes on to the watch.

@@ -21,6 +21,8 @@ class Forces {
   /// Adds to the accelerations the components that are formulas of place and time; `numbers`: those that are numbers
   /// too.
   void add(PhaseParticles& p, double time, bool numbers) const;
+  /// The acceleration at a place (m/s2), numbers too.
+  Vec3 at(const Vec3& x, double time, int dimensions) const;
   /// Adds what brings the phase to the velocities of its zones. dt (s): a step takes half of the difference at most.
   void relax(PhaseParticles& p, double time, double dt) const;
   /// Sum over the particles of all that the [[forcing]] entries give them now, numbers too (m/s2).

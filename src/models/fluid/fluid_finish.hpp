@@ -247,7 +247,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     outer = V(1.0) - inner;
     if (q.least_viscosity > 0.0) {
       beside_it = beside_surface<Dim, V>(outer, place.normal);
-      viscosity = least_viscosity<V>(V(mu), beside_it, q);
+      viscosity = least_viscosity<Dim, V>(V(mu), beside_it, beside_surface<Dim, V>(V(1.0), place.normal), q);
     }
   }
   const V laplace_v = V(-2.0 * Dim) * viscosity / (weighted_trace * rho), laplace_p = V(-2.0 * Dim) * per_trace;
@@ -282,7 +282,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     std::array<V, Dim> f;
     for (std::size_t d = 0; d < Dim; ++d)
       f[d] = simd::fma(inner, grad_p[d], outer * simd::fma(twice_p, s.concentration[d], V(0.0) - s.pressure[d]));
-    if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, across, outer, q);
+    if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, across, outer, place.normal, q);
     return f;
   };
   if constexpr (ends) force = pushed(stressed ? V(2.0) * stress.normal : V(0.0));

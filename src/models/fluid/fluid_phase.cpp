@@ -174,7 +174,8 @@ void FluidPhase::rate() {
 
 void FluidPhase::find_surface() {
   const FluidNeighbour& own = neighbours_.front();
-  surface_->find(*particles_, w_->neighbours.grid(number_), *own.list, own.radius, surface_wholeness(keys_.scheme));
+  surface_->find(*particles_, w_->neighbours.grid(number_), *own.list, own.radius, surface_wholeness(keys_.scheme),
+                 calmed(scene_, layout_, number_) ? plan_.spacing : 0.0);
 }
 
 // ---- limits, history, state

@@ -14,7 +14,9 @@ namespace barchan {
 
 /// Finds the free surface. fluid_rates left the wholeness of every particle, and B = sum V F r (1/m, inwards) in
 /// `surface_normal`. Of every particle nearer than `reach` kernel radii to a particle of the surface, `surface_normal`
-/// becomes the sum of B over those particles of the surface; of all others zero.
+/// becomes the sum of B over those particles of the surface; of all others zero. With a `spacing` (m; of a calm heavy
+/// fluid) its length is made one over the distance of a particle of the surface to the row below it, and of the others
+/// that are near one over the spacing.
 ///
 /// Costs two walks over the rows of the particles at the surface; nothing elsewhere. No memory is taken once warm, and
 /// every sum has the order of a particle's row, so that threads change nothing.
@@ -23,13 +25,15 @@ class SurfaceFinder {
   static constexpr double reach = 0.7;  // of the kernel radius
 
   /// `own`: the list of the fluid with itself. `radius`: its kernel radius (m). `threshold`: of the wholeness.
-  void find(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
+  void find(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold,
+            double spacing = 0.0);
 
  private:
   void take_members(const double* chi, std::size_t n, std::size_t ghosts, std::size_t dimensions, double threshold);
   void return_marks(const CellGrid& grid, std::size_t n);
   template <int Dim>
-  void find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold);
+  void find_in(PhaseParticles& fluid, const CellGrid& grid, const PairList& own, double radius, double threshold,
+               double spacing);
   std::vector<std::uint8_t> near_;      // by particle; on several ranks ghosts follow
   std::vector<std::uint32_t> members_;  // particles of the surface
   std::vector<double> inwards_;         // by particle and component

@@ -138,11 +138,22 @@ void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
     else bend_.values.insert(bend_.values.end(), b.begin(), b.end());
 }
 
+/// The fluids that feel a wall.
+static std::vector<std::size_t> fluids_at(const Layout& layout, std::size_t wall) {
+  std::vector<std::size_t> fluids;
+  for (const auto& e : layout.entries)
+    if (e.extends && e.other == wall) fluids.push_back(e.fluid);
+  return fluids;
+}
+
 void Wall::attach(Workspace& w) {
   w_ = &w;
   if (!extended_) return;
   sources_ = extension_sources(w, number_);
-  contact_.emplace(w, number_);
+  contact_.emplace(w, number_, sources_, rule_);
+  const auto fluids = fluids_at(layout_, number_);
+  if (fluids.size() != 1 || !calmed(scene_, layout_, fluids[0])) return;
+  if (Forces forces(scene_, scene_.phases[fluids[0]].name); forces.any()) forces_.emplace(std::move(forces));
 }
 
 void Wall::schedule(Schedule& s) {
@@ -167,11 +178,30 @@ void Wall::slide() {
   }
 }
 
+/// What [[forcing]] gives to a fluid across the wall makes a gradient of the pressure there, as weight does: what it
+/// gives in front of the wall, as far from the surface as the particle is behind it (a box may end at the wall).
+void Wall::force() {
+  const PhaseParticles& wall = w_->particles(number_);
+  const auto dim = static_cast<std::size_t>(layout_.dimensions);
+  const double* depth = wall.column(Field::wall_depth);
+  forced_.assign(wall.size() * dim, 0.0);
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    Vec3 x{}, normal{};
+    for (std::size_t d = 0; d < dim; ++d) {
+      normal[d] = wall.column(Field::wall_normal, static_cast<int>(d))[k];
+      x[d] = wall.column(Field::position, static_cast<int>(d))[k] + 2.0 * depth[k] * normal[d];
+    }
+    const double across = dot(forces_->at(x, w_->state.time, layout_.dimensions), normal);
+    for (std::size_t d = 0; d < dim; ++d) forced_[k * dim + d] = across * normal[d];
+  }
+}
+
 void Wall::extend() {
   const PhaseParticles& wall = w_->particles(number_);
   RecordArray& records = w_->to_write(number_, Record::extended);
-  extend_into_solid(wall, records, sources_, scene_.domain.gravity, rule_, bend_);
-  contact_->cut(wall, records);
+  if (forces_) force();
+  extend_into_solid(wall, records, sources_, scene_.domain.gravity, rule_, bend_, forced_);
+  contact_->end(wall, forced_, records);
   share_extended(*w_, number_);
 }
 
@@ -214,14 +244,6 @@ void share_extended(Workspace& w, std::size_t solid) {
   const RecordArray& extended = w.records(solid, Record::extended);
   const std::size_t count = w.particles(solid).size();
   w.layout.dimensions == 2 ? compact->copy<2>(extended, count) : compact->copy<3>(extended, count);
-}
-
-/// The fluids that feel a wall.
-static std::vector<std::size_t> fluids_at(const Layout& layout, std::size_t wall) {
-  std::vector<std::size_t> fluids;
-  for (const auto& e : layout.entries)
-    if (e.extends && e.other == wall) fluids.push_back(e.fluid);
-  return fluids;
 }
 
 /// A wall is faced away from itself and from those that the same fluids feel: grains that are fixed are nothing to air.

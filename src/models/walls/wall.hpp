@@ -34,6 +34,7 @@ class Wall : public Model {
  private:
   void slide();
   void extend();
+  void force();
 
   const Scene& scene_;
   const Layout& layout_;
@@ -47,6 +48,8 @@ class Wall : public Model {
   SurfaceBend bend_;
   ExtensionRule rule_;
   std::optional<ContactLine> contact_;  // of a wall that a fluid is extended into
+  std::optional<Forces> forces_;  // of the only fluid that is extended into it, if that is calm and heavy (calmed())
+  std::vector<double> forced_;    // m/s2, of forces_ across the wall, by particle and component
 };
 
 /// Normals of the walls inside the domain, where some wall's surface must know which way it faces: once all walls have

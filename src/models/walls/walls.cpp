@@ -8,7 +8,7 @@ namespace {
 
 template <int Dim, bool Curved, bool OneSided = false>
 void extend(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids, const Vec3& gravity,
-            const ExtensionRule& rule, const SurfaceBend& bend) {
+            const ExtensionRule& rule, const SurfaceBend& bend, std::span<const double> forced) {
   using Law = Extension<Curved, OneSided>;
   using R = MotionRecord<Dim>;
   std::array<PairEntry<Law>, most_entries> entries{};
@@ -33,6 +33,7 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
       w.velocity[d] = Lanes(velocity[d][k]);
       w.normal[d] = Lanes(depth ? normal[d][k] : 0.0);
       w.pull[d] = Lanes(gravity[d] - (acceleration[d] ? acceleration[d][k] : 0.0));
+      if (!forced.empty()) w.pull[d] += Lanes(forced[k * Dim + d]);
     }
     w.behind = Lanes(-(depth ? depth[k] : 0.0));
   };
@@ -68,13 +69,14 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
 }  // namespace
 
 void extend_into_solid(const PhaseParticles& solid, RecordArray& own, std::span<const ExtensionSource> fluids,
-                       const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend) {
+                       const Vec3& gravity, const ExtensionRule& rule, const SurfaceBend& bend,
+                       std::span<const double> forced) {
   const bool curved = rule.slip == Slip::free_slip && !bend.values.empty();
   const auto one_sided = solid.dimensions() == 2 ? extend<2, false, true> : extend<3, false, true>;
   const auto extended = rule.one_sided            ? one_sided
                         : solid.dimensions() == 2 ? (curved ? extend<2, true> : extend<2, false>)
                                                   : (curved ? extend<3, true> : extend<3, false>);
-  extended(solid, own, fluids, gravity, rule, bend);
+  extended(solid, own, fluids, gravity, rule, bend, forced);
 }
 
 }  // namespace barchan::BARCHAN_TARGET

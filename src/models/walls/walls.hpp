@@ -42,10 +42,12 @@ struct ExtensionRule {
 };
 
 /// Writes velocity and pressure into the solid's motion records `own` (position and volume are there already), by the
-/// formulas of laws/extension.hpp.
+/// formulas of laws/extension.hpp. `forced`: what else accelerates the fluid there (m/s2), by particle and component;
+/// empty: nothing.
 BARCHAN_PER_INSTRUCTION_SET(extend_into_solid,
                             void extend_into_solid(const PhaseParticles& solid, RecordArray& own,
                                                    std::span<const ExtensionSource> fluids, const Vec3& gravity,
-                                                   const ExtensionRule& rule, const SurfaceBend& bend = {});)
+                                                   const ExtensionRule& rule, const SurfaceBend& bend = {},
+                                                   std::span<const double> forced = {});)
 
 }  // namespace barchan
