@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "base/ranks.hpp"
 #include "engine/integrate.hpp"
@@ -244,15 +245,9 @@ void Watch::look_closely(const Moment& now) {
 }
 
 void Watch::look_aside(const Moment& now) {
-  const double forced = forced_, time = last_time_, fastest = last_fastest_, wall_speed = wall_speed_;
-  const Extreme extreme = extreme_, speed = fastest_;
+  const std::tuple kept(forced_, last_time_, last_fastest_, wall_speed_, extreme_, fastest_);
   look_closely(now);
-  forced_ = forced;
-  last_time_ = time;
-  last_fastest_ = fastest;
-  wall_speed_ = wall_speed;
-  extreme_ = extreme;
-  fastest_ = speed;
+  std::tie(forced_, last_time_, last_fastest_, wall_speed_, extreme_, fastest_) = kept;
 }
 
 void Watch::explain(const Moment& now) { tell_worst(now); }
