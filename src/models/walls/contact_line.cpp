@@ -35,11 +35,9 @@ void add_contact_touches(const Scene& scene, const Layout& layout, std::size_t w
     touches.push_back({layout.phases[e->fluid].name, {position, wholeness, surface_normal}, {}});
 }
 
-namespace {
-
 /// Sums of velocity and pressure over the fluid about a wall's particle, and how they vary with the way up t (m).
 template <int Dim>
-struct Rising {
+struct ContactLine::Rising {
   static constexpr std::size_t dim = Dim, values = dim + 1;
   double weight = 0.0, way = 0.0, square = 0.0;
   std::array<double, values> sum{}, sloped{};  // velocity, then pressure
@@ -62,8 +60,6 @@ struct Rising {
     return more;
   }
 };
-
-}  // namespace
 
 /// g - a_w of a wall's particle, with what [[forcing]] adds (m/s2): what the extension of the pressure follows.
 template <std::size_t Dim>

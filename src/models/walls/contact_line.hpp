@@ -53,6 +53,8 @@ class ContactLine {
   };
   template <int Dim>
   void end_in(const PhaseParticles& wall, std::span<const double> forced, RecordArray& records, const Fluid& fluid);
+  template <int Dim>
+  struct Rising;
   template <int Dim, class Surface>
   void raise(const PhaseParticles& wall, std::span<const double> forced, double* record, const Fluid& fluid,
              const Surface& surface, std::size_t k, double share);
