@@ -1,20 +1,13 @@
 // The plan as a person reads it, and as JSON.
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "plan/formatted.hpp"
 #include "plan/run_cost.hpp"
 
 namespace barchan {
 
 namespace {
-
-template <class... A>
-std::string line(const char* format, A... a) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, a...);
-  return text;
-}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
@@ -25,47 +18,47 @@ std::string joined(const std::vector<std::string>& words) {
 /// In steps of the planned length (s).
 std::string calls_of(const RepeatCount& r, double step) {
   const double each = step / r.interval;
-  if (each > 1.0 + 1e-9) return line("%.0f in a step", std::ceil(each * (1.0 - 1e-9)));
+  if (each > 1.0 + 1e-9) return formatted("%.0f in a step", std::ceil(each * (1.0 - 1e-9)));
   const double steps = std::ceil(1.0 / each * (1.0 - 1e-9));
-  return steps > 1.0 ? line("one in %.0f steps", steps) : "one in a step";
+  return steps > 1.0 ? formatted("one in %.0f steps", steps) : "one in a step";
 }
 
 }  // namespace
 
 std::string to_text(const Plan& plan, const Scene& scene) {
   std::string t = scene.title.empty() ? scene.name + "\n" : scene.title + "\n";
-  t += line("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, scene.spacing, plan.particles(),
-            scene.time.end);
-  t += line("%-12s %-8s %10s %10s %12s %10s  %s\n", "phase", "kind", "particles", "dx [m]", "mass [kg]", "c [m/s]",
-            "fields");
+  t += formatted("%dD, dx = %g m, %.0f particles, %g s\n\n", plan.dimensions, scene.spacing, plan.particles(),
+                 scene.time.end);
+  t += formatted("%-12s %-8s %10s %10s %12s %10s  %s\n", "phase", "kind", "particles", "dx [m]", "mass [kg]", "c [m/s]",
+                 "fields");
   for (const auto& p : plan.phases) {
     std::vector<std::string> names;
     for (const Field f : p.fields) names.emplace_back(info(f).name);
-    t += line("%-12s %-8s %10zu %10.4g %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.spacing, p.mass,
-              p.sound_speed);
+    t += formatted("%-12s %-8s %10zu %10.4g %12.4g %10.4g  ", p.name.c_str(), p.kind.c_str(), p.count, p.spacing,
+                   p.mass, p.sound_speed);
     t += joined(names) + "\n";
   }
-  t += line("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
-            "gradient", "(on a lattice; the truth is 1 and 1)");
+  t += formatted("\n%-16s %-10s %-13s %6s %11s %8s %8s  %s\n", "entry", "law", "kernel", "r/dx", "neighbours", "sum VW",
+                 "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
-    t += line("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), e.law.c_str(),
-              e.kernel_word == "none" ? "-" : e.kernel_word.c_str(), e.radius / e.spacing, e.consistency.neighbours,
-              e.consistency.volume_sum, e.consistency.gradient_sum, e.meaning.c_str());
+    t += formatted("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), e.law.c_str(),
+                   e.kernel_word == "none" ? "-" : e.kernel_word.c_str(), e.radius / e.spacing,
+                   e.consistency.neighbours, e.consistency.volume_sum, e.consistency.gradient_sum, e.meaning.c_str());
   t += "\n";
   for (const auto& p : plan.phases)
     if (!p.enclosure.empty())
-      t += line("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
+      t += formatted("%s is %senclosed: %s\n", p.name.c_str(), p.enclosed ? "" : "not ", p.enclosure.c_str());
   t += "passes  " + joined(plan.passes) + "\nskipped " + joined(plan.skipped) + "\n";
   for (const auto& r : plan.repeats)
-    t += line("repeats %s of %s: one in %.4g s, %s\n", r.name.c_str(), r.owner.c_str(), r.interval,
-              calls_of(r, plan.step()).c_str());
+    t += formatted("repeats %s of %s: one in %.4g s, %s\n", r.name.c_str(), r.owner.c_str(), r.interval,
+                   calls_of(r, plan.step()).c_str());
   for (const auto& i : plan.instruments)
     t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
   t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
-  if (plan.fixed_step > 0) t += line("step    %.4g s, fixed by the scene\n", plan.fixed_step);
+  if (plan.fixed_step > 0) t += formatted("step    %.4g s, fixed by the scene\n", plan.fixed_step);
   for (const auto& l : plan.limits)
-    t += line("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value,
-              l.name.c_str(), l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
+    t += formatted("%-7s %.4g s  %-18s %s%s\n", &l == plan.limits.data() && plan.fixed_step <= 0 ? "step" : "", l.value,
+                   l.name.c_str(), l.reason.c_str(), l.value <= plan.step() * (1 + 1e-12) ? "   <- rules" : "");
   for (const auto& w : plan.warnings) t += "warning: " + w + "\n";
   return t + "\n";
 }
@@ -74,17 +67,17 @@ std::string to_text(const Estimate& e) {
   if (!e.measured) return "not measured: " + e.failure + "\n";
   std::string t = e.failure.empty() ? "pairs  " : "measured as far as it goes: " + e.failure + "\npairs  ";
   for (const auto& [name, count] : e.pairs)
-    t += line(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
+    t += formatted(" %s %llu ", name.c_str(), static_cast<unsigned long long>(count));
   t += "\n" + to_text(e.memory);
-  t +=
-      line("run     about %.0f steps, %.3g s of processor time at %.2f M particle-steps/s (medians of the first steps)",
-           e.steps, e.processor_seconds, e.particle_steps_per_second * 1e-6);
-  t += e.threads == 1 ? "\n" : line(": %.3g s if %d threads share it evenly\n", e.seconds, e.threads);
+  t += formatted(
+      "run     about %.0f steps, %.3g s of processor time at %.2f M particle-steps/s (medians of the first steps)",
+      e.steps, e.processor_seconds, e.particle_steps_per_second * 1e-6);
+  t += e.threads == 1 ? "\n" : formatted(": %.3g s if %d threads share it evenly\n", e.seconds, e.threads);
   if (e.start_seconds > 1.0)
-    t += line("start   %.3g s to make the particles, beds that settle included\n", e.start_seconds);
+    t += formatted("start   %.3g s to make the particles, beds that settle included\n", e.start_seconds);
   if (e.ranks) t += to_text(*e.ranks);
   const double all = e.seconds + e.start_seconds, hour = 3600.0;
-  if (all > hour) t += line("warning: the run takes about %.1f hours\n", all / hour);
+  if (all > hour) t += formatted("warning: the run takes about %.1f hours\n", all / hour);
   return t;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/memory.hpp"
+#include "plan/formatted.hpp"
 
 namespace barchan {
 
@@ -14,16 +14,9 @@ namespace {
 
 constexpr std::size_t most_rows = 8;
 
-template <class... A>
-std::string line(const char* format, A... a) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, a...);
-  return text;
-}
-
 std::string row(const std::string& name, const RankPlan::Rank& r) {
-  return line("%-8s %11.0f %10.0f %7.3f %10s %9.1f %12.0f\n", name.c_str(), r.particles, r.ghosts, r.halo_share,
-              memory_text(r.memory).c_str(), r.messages, r.bytes);
+  return formatted("%-8s %11.0f %10.0f %7.3f %10s %9.1f %12.0f\n", name.c_str(), r.particles, r.ghosts, r.halo_share,
+                   memory_text(r.memory).c_str(), r.messages, r.bytes);
 }
 
 }  // namespace
@@ -62,27 +55,27 @@ nlohmann::ordered_json json_of(const RankPlan::Rank& r) {
 
 std::string to_text(const RankPlan& plan) {
   using C = RankConstants;
-  std::string t = line("\n%-8s %11s %10s %7s %10s %9s %12s\n", plan.ranks.size() == 1 ? "rank" : "ranks", "particles",
-                       "ghosts", "share", "memory", "messages", "bytes a step");
+  std::string t = formatted("\n%-8s %11s %10s %7s %10s %9s %12s\n", plan.ranks.size() == 1 ? "rank" : "ranks",
+                            "particles", "ghosts", "share", "memory", "messages", "bytes a step");
   if (plan.ranks.size() <= most_rows)
     for (std::size_t r = 0; r < plan.ranks.size(); ++r) t += row(std::to_string(r), plan.ranks[r]);
   else
     for (const auto& [name, which] : spreads) t += row(name, of_all(plan, which));
   if (plan.whole_particles > 0)
-    t += line("every rank has %.0f particles of grains and bodies; they take %.0f %% of a step\n", plan.whole_particles,
-              100.0 * plan.whole_share);
+    t += formatted("every rank has %.0f particles of grains and bodies; they take %.0f %% of a step\n",
+                   plan.whole_particles, 100.0 * plan.whole_share);
   t += "at the start every rank makes all particles: " + memory_text(plan.start_memory) +
        "; later the first one has the frames of all\n";
   if (plan.efficiency > 0)
-    t += line("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
-              plan.efficiency, plan.ranks.size());
-  t += line("predicted with %.3g s a message, %.3g GB/s, %.0f reductions a step; new lists in %.3g of the steps\n",
-            C::latency, C::bandwidth * 1e-9, C::reductions, plan.searches_a_step);
+    t += formatted("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
+                   plan.efficiency, plan.ranks.size());
+  t += formatted("predicted with %.3g s a message, %.3g GB/s, %.0f reductions a step; new lists in %.3g of the steps\n",
+                 C::latency, C::bandwidth * 1e-9, C::reductions, plan.searches_a_step);
   const auto idle = std::count_if(plan.ranks.begin(), plan.ranks.end(),
                                   [&](const RankPlan::Rank& r) { return r.particles <= plan.whole_particles; });
   if (idle > 0)
-    t += line("warning: %ld of %zu ranks have no particles of their own: there are too few rows of cells\n",
-              static_cast<long>(idle), plan.ranks.size());
+    t += formatted("warning: %ld of %zu ranks have no particles of their own: there are too few rows of cells\n",
+                   static_cast<long>(idle), plan.ranks.size());
   return t;
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uintmax_t most = std::uintmax_t{1} << 26;  // bytes
 
 /// Between commas, without blanks about them.
-std::vector<std::string_view> fields_of(std::string_view line) {
+std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
@@ -44,7 +44,7 @@ VelocityProfile::VelocityProfile(std::string_view text, const std::string& what)
   const auto refuse = [&](const std::string& why) { throw SceneError(what + why); };
   mesh::Lines lines(text);
   if (!lines.next_with_words()) refuse("is empty; expected a table with the names of its columns in the first line");
-  const auto names = fields_of(lines.line());
+  const auto names = cells_of(lines.line());
   const int y = column_of(names, "y");
   std::array<int, 3> v{};
   for (std::size_t d = 0; d < 3; ++d) {
@@ -55,7 +55,7 @@ VelocityProfile::VelocityProfile(std::string_view text, const std::string& what)
   if (y < 0 || v[0] < 0)
     refuse("has no column y and velocity_mean_x (or velocity_x); expected profile_NAME.csv of a [[profile]]");
   while (lines.next_with_words()) {
-    const auto fields = fields_of(lines.line());
+    const auto fields = cells_of(lines.line());
     const std::string line = "line " + std::to_string(lines.number());
     if (fields.size() != names.size())
       refuse(line + " has " + std::to_string(fields.size()) + " fields; expected " + std::to_string(names.size()) +

@@ -77,17 +77,19 @@ def twins(src):
 
 def clashes(src):
     """Names that two files of a folder give in namespaces without a name: some presets compile a folder's files together
-    (cmake/options.cmake). Functions are not looked at, since they may be overloaded."""
+    (cmake/options.cmake). Functions clash when the types of their arguments are the same too."""
     found = []
     for folder in sorted({f.parent for f in src.rglob("*.cpp")}):
         where = {}
         for f in sorted(folder.glob("*.cpp")):
             text = f.read_text()
             outer = re.search(r"^namespace (barchan\S*)", text, re.M)
-            for inner in re.findall(r"^namespace {$(.*?)^}", text, re.M | re.S):
+            for inner in re.findall(r"^namespace {$(.*?)^}  // namespace$", text, re.M | re.S):
                 names = set(re.findall(r"^(?:struct|class|enum class|enum|using) (\w+)(?: [:={]|;)", inner, re.M))
                 for line in re.findall(r"^(?:static |inline )?(?:constexpr|const) ([^(]*?=.*?);", inner, re.M | re.S):
                     names |= set(re.findall(r"(?<!:)\b([a-z_]\w*)(?:\[\w*\])?\s*(?:=[^=]|$)", re.sub(r"{[^{}]*}", "", line)))
+                for name, arguments in re.findall(r"^[a-z][\w:<>&*, ]*?\b(\w+)\(([^(){};]*)\)(?: const)? {", inner, re.M):
+                    names.add(name + "(" + ", ".join(re.sub(r"\s*\w+$", "", " ".join(a.split())) for a in arguments.split(",")) + ")")
                 for name in names:
                     where.setdefault((name, outer and outer[1]), []).append(f.name)
         found += [f"{folder.relative_to(src)}: {name} in {' and '.join(files)}"
@@ -147,10 +149,11 @@ class Layers(unittest.TestCase):
             src = pathlib.Path(scratch)
             for name, text in {"a/x.cpp": "constexpr double room = 0.02, far = 0.2;  // m\nstruct S {\n};\n",
                                "a/y.cpp": "constexpr double far = 0.2;\nstruct S {\n  int room = 1;\n};\n",
-                               "b/z.cpp": "constexpr double room = 1.0;\n"}.items():
+                               "b/z.cpp": "constexpr double room = 1.0;\nint f(double x) {\n}\nint g(int a,\n      int b) {\n}\n",
+                               "b/w.cpp": "int f(float x) {\n}\nint g(int c, int d) {\n}\n"}.items():
                 (src / name).parent.mkdir(exist_ok=True)
                 (src / name).write_text(f"namespace barchan {{\n\nnamespace {{\n\n{text}\n}}  // namespace\n\n}}\n")
-            self.assertEqual(clashes(src), ["a: S in x.cpp and y.cpp", "a: far in x.cpp and y.cpp"])
+            self.assertEqual(clashes(src), ["a: S in x.cpp and y.cpp", "a: far in x.cpp and y.cpp", "b: g(int, int) in w.cpp and z.cpp"])
 
     def test_no_circle_of_includes(self):
         self.assertEqual(circles(ROOT / "src"), [])

@@ -63,8 +63,8 @@ void stress_of(const ReferenceBody<T>& reference, TotalWork<T>& work, const Tota
 }
 
 template <int Dim, class T>
-void forces_of(PhaseParticles& body, const ReferenceBody<T>& reference, const TotalWork<T>& work,
-               const TotalParameters& q) {
+void forces_along(PhaseParticles& body, const ReferenceBody<T>& reference, const TotalWork<T>& work,
+                  const TotalParameters& q) {
   using V = LanesOf<T>;
   constexpr std::size_t width = static_cast<std::size_t>(V::width);
   std::array<double*, Dim> a{};
@@ -132,11 +132,11 @@ void along_stress(const ReferenceBody<double>& reference, TotalWork<double>& wor
 
 void along_forces(PhaseParticles& body, const ReferenceBody<float>& reference, const TotalWork<float>& work,
                   const TotalParameters& q) {
-  body.dimensions() == 2 ? forces_of<2>(body, reference, work, q) : forces_of<3>(body, reference, work, q);
+  body.dimensions() == 2 ? forces_along<2>(body, reference, work, q) : forces_along<3>(body, reference, work, q);
 }
 void along_forces(PhaseParticles& body, const ReferenceBody<double>& reference, const TotalWork<double>& work,
                   const TotalParameters& q) {
-  body.dimensions() == 2 ? forces_of<2>(body, reference, work, q) : forces_of<3>(body, reference, work, q);
+  body.dimensions() == 2 ? forces_along<2>(body, reference, work, q) : forces_along<3>(body, reference, work, q);
 }
 
 void along_energy(const ReferenceBody<float>& reference, const TotalWork<float>& work, const TotalParameters& q,
