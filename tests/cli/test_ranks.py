@@ -158,6 +158,7 @@ SCENES = {
     "spheres on a belt": ("hopper_belt", 0.0003),
     "spheres that sleep under water, and an influx": ("water_over_sand", 0.0003),
     "an elastic block on a wall": ("bouncing_block", 0.0003),
+    "a fork whose prongs touch": ("verification/self_contact", 1e-4),
     "rigid bodies that touch": ("gears", 0.0005),
     "a rigid disc in a plain fluid": ("verification/sinking_disc", 0.001),
     "a settled bed under a wind": ("threshold", 0.0001, "domain.size=[0.016, 0.032]"),
