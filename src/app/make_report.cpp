@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "base/errors.hpp"
+#include "base/memory.hpp"
 #include "base/ranks.hpp"
 #include "base/version.hpp"
 #include "output/folder_lock.hpp"
@@ -107,6 +108,9 @@ RunReport::Ranks traffic(const Simulation& simulation) {
   }
   r.ghosts = ranks::total(ghosts);
   r.most_particles = ranks::largest(particles);
+  const double memory = most_resident_memory();
+  r.memory_of_first = ranks::of_first(true, memory);
+  r.most_memory_of_others = ranks::largest(ranks::is_first() ? 0.0 : memory);
   return r;
 }
 

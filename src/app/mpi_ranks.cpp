@@ -24,7 +24,13 @@ namespace {
 constexpr int tag = 1;
 
 MPI_Op operation(Communicator::Take how) {
-  return how == Communicator::Take::largest ? MPI_MAX : how == Communicator::Take::least ? MPI_MIN : MPI_SUM;
+  switch (how) {
+    case Communicator::Take::largest: return MPI_MAX;
+    case Communicator::Take::least: return MPI_MIN;
+    case Communicator::Take::sum: return MPI_SUM;
+    case Communicator::Take::bits: break;
+  }
+  return MPI_BOR;
 }
 
 /// Items of so many bytes, so that a count of items may be large.
@@ -55,9 +61,14 @@ class Mpi final : public Communicator {
   Mpi() {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    MPI_Comm here = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    MPI_Comm_size(here, &on_this_machine_);
+    MPI_Comm_free(&here);
   }
   int rank() const override { return rank_; }
   int size() const override { return size_; }
+  int on_this_machine() const override { return on_this_machine_; }
   void reduce(double* values, std::size_t count, Take how) override { all(values, count, how, MPI_DOUBLE); }
   void reduce(float* values, std::size_t count, Take how) override { all(values, count, how, MPI_FLOAT); }
   void reduce(std::int64_t* values, std::size_t count, Take how) override { all(values, count, how, MPI_INT64_T); }
@@ -122,7 +133,7 @@ class Mpi final : public Communicator {
     traffic_.bytes += static_cast<std::int64_t>(bytes);
   }
   Traffic traffic_;
-  int rank_ = 0, size_ = 1;
+  int rank_ = 0, size_ = 1, on_this_machine_ = 1;
   char* own_to_ = nullptr;
   std::vector<MPI_Request> requests_;
 };
@@ -167,11 +178,7 @@ void join_ranks(const Launch& launch, const std::string& command, const std::str
 
 int threads_of_a_rank() {
   if (!ranks::available()) return 0;
-  MPI_Comm here = MPI_COMM_NULL;
-  int neighbours = 1;
-  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
-  MPI_Comm_size(here, &neighbours);
-  MPI_Comm_free(&here);
+  const int neighbours = ranks::available()->on_this_machine();
   // A launcher that binds each rank to cores has shared them out already.
   const bool bound = omp_get_num_procs() < ::sysconf(_SC_NPROCESSORS_ONLN);
   return std::max(1, bound ? omp_get_max_threads() : omp_get_max_threads() / neighbours);

@@ -22,7 +22,7 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
-  enum class Take { largest, least, sum };
+  enum class Take { largest, least, sum, bits };  // bits: those that any rank has set, of whole numbers
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
@@ -48,6 +48,8 @@ class Communicator {
     std::int64_t messages = 0, bytes = 0, collectives = 0;
   };
   virtual Traffic traffic() const { return {}; }
+  /// How many of the ranks are processes of this machine.
+  virtual int on_this_machine() const { return size(); }
 };
 
 namespace ranks {
@@ -59,7 +61,8 @@ inline bool shared = false;
 
 /// Of the program; null: one process.
 inline Communicator* available() { return detail::given; }
-/// Null as long as every process holds all particles: the particles are shared out when they are sorted first.
+/// Null as long as every process holds all particles. They are shared out when they are sorted first, or before any is
+/// made (scene/shared_start.hpp).
 inline Communicator* active() { return detail::shared ? detail::given : nullptr; }
 inline void give(Communicator* communicator) { detail::given = communicator; }
 inline void share() { detail::shared = detail::given != nullptr; }
@@ -160,6 +163,40 @@ inline std::string text_of(int rank, std::string text) {
   text.resize(size);
   all->broadcast(text.data(), size, rank);
   return text;
+}
+
+/// Items for each rank, one rank after another; `counts`: for how many each. Returns those that all ranks have for this
+/// one, one rank after another.
+template <class T>
+std::vector<T> exchanged(const std::vector<T>& items, const std::vector<std::size_t>& counts) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Communicator& all = *active();
+  const std::vector<std::size_t> ones(counts.size(), 1);
+  std::vector<std::size_t> coming(counts.size(), 0);
+  all.exchange(counts.data(), ones, coming.data(), ones, sizeof(std::size_t));
+  std::size_t total = 0;
+  for (const std::size_t n : coming) total += n;
+  std::vector<T> come(total);
+  all.exchange(items.data(), counts, come.data(), coming, sizeof(T));
+  return come;
+}
+
+/// Of what all ranks hold together, the share that stands on this machine.
+inline double share_of_machine() {
+  return active() ? static_cast<double>(active()->on_this_machine()) / active()->size() : 1.0;
+}
+
+/// A part of a sequence: `number` of `count`, about as long as the others.
+struct Share {
+  std::size_t number = 0, count = 1;
+  /// Where it begins in a sequence of n, and where it ends.
+  std::size_t begin(std::size_t n) const { return n * number / count; }
+  std::size_t end(std::size_t n) const { return n * (number + 1) / count; }
+};
+/// That of this rank; of one process all.
+inline Share own_share() {
+  if (!active()) return {};
+  return {static_cast<std::size_t>(active()->rank()), static_cast<std::size_t>(active()->size())};
 }
 
 /// What `candidate` is best by `better`, a strict order; equal ones: the first rank's. Returns the rank.

@@ -129,6 +129,9 @@ class CellGrid {
   /// The first sort, of the particles that every rank has made: keeps those of the cells of this rank alone. Ghosts are
   /// missing.
   void sort_and_share(PhaseParticles& particles);
+  /// The first sort, of particles of which each rank has made some: brings them to the ranks in whose cells they are.
+  /// Ghosts are missing.
+  void sort_pieces(PhaseParticles& particles);
   /// The same of a phase as one process sorted it.
   void share(PhaseParticles& particles);
   /// All cells are this process' own again: for who loads what one process had, and shares it then.
@@ -238,7 +241,8 @@ class CellGrid {
   void fit_search(std::size_t particles, std::size_t room, std::size_t used);
   // of a run on several ranks
   std::vector<std::uint32_t> rows_of_strips() const;
-  CellOwners divided(const std::vector<std::int64_t>& particles_by_row, std::size_t ranks) const;
+  std::vector<std::int64_t> particles_by_row() const;
+  CellOwners divided(const std::vector<std::int64_t>& by_row, std::size_t ranks) const;
   void own_by_first(CellOwners& owners) const;
   void migrate(PhaseParticles& particles);
   void balance();

@@ -48,6 +48,31 @@ void CellGrid::sort_and_share(PhaseParticles& particles) {
   make_own_images(particles);
 }
 
+void CellGrid::sort_pieces(PhaseParticles& particles) {
+  cell_of_.resize(particles.size());
+  order_.resize(particles.size());
+#pragma omp parallel
+  find_cells(particles);
+  shared_ = std::make_unique<SharedCells>();
+  static_cast<CellOwners&>(*shared_) =
+      divided(particles_by_row(), static_cast<std::size_t>(ranks::available()->size()));
+  migrate(particles);
+  find_order(particles);
+  particles.keep(order_.data(), particles.size());
+  make_runs();
+  make_own_images(particles);
+}
+
+/// Of all ranks, in each row of strips; find_cells() has counted those of each cell.
+std::vector<std::int64_t> CellGrid::particles_by_row() const {
+  const std::vector<std::uint32_t> row = rows_of_strips();
+  std::vector<std::int64_t> by_row(row.size() - 1, 0);
+  for (std::size_t r = 0; r < by_row.size(); ++r)
+    for (std::size_t w = row[r]; w < row[r + 1]; ++w) by_row[r] += end_[walk_[w]];
+  ranks::active()->reduce(by_row.data(), by_row.size(), Communicator::Take::sum);
+  return by_row;
+}
+
 void CellGrid::share(PhaseParticles& particles) {
   const auto [first, last] = take_own_cells();
   const auto rank = ranks::available()->rank();
@@ -78,12 +103,7 @@ void CellGrid::balance() {
   const std::int64_t most = ranks::largest(own), total = ranks::total(own);
   if (!CellOwners::must_rebalance(static_cast<std::size_t>(most), static_cast<std::size_t>(total), shared_->ranks()))
     return;
-  const std::vector<std::uint32_t> row = rows_of_strips();
-  std::vector<std::int64_t> by_row(row.size() - 1, 0);
-  for (std::size_t r = 0; r < by_row.size(); ++r)
-    for (std::size_t w = row[r]; w < row[r + 1]; ++w) by_row[r] += end_[walk_[w]];
-  ranks::active()->reduce(by_row.data(), by_row.size(), Communicator::Take::sum);
-  static_cast<CellOwners&>(*shared_) = divided(by_row, shared_->ranks());
+  static_cast<CellOwners&>(*shared_) = divided(particles_by_row(), shared_->ranks());
 }
 
 /// Particles that stand in cells of other ranks go there.

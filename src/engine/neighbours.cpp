@@ -234,7 +234,8 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force, cons
     if (!grids_[p] || (!first && !has_moved(p) && !shared)) continue;
     PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
     const bool first_on_ranks = ranks::available() && !grids_[p]->is_shared() && !particles[p].is_whole();
-    first_on_ranks ? grids_[p]->sort_and_share(particles[p]) : grids_[p]->sort(particles[p]);
+    if (!first_on_ranks) grids_[p]->sort(particles[p]);
+    else particles[p].is_part() ? grids_[p]->sort_pieces(particles[p]) : grids_[p]->sort_and_share(particles[p]);
   }
   if (ranks::available()) share(particles);
   search(particles, beside);

@@ -107,7 +107,10 @@ void OpenSides::begin(State& state, const std::vector<ParticleBlock>&) {
   state.departed.back().phase = static_cast<std::int64_t>(phase_);
   PhaseParticles& p = state.phases[phase_];
   p.number_may_change();
-  for (std::size_t k = 0; k < p.size(); ++k) start_mass_ += p.mass_of(k);
+  const ranks::Alone alone(!p.is_part());
+  ranks::in_turn(start_mass_, [&] {
+    for (std::size_t k = 0; k < p.size(); ++k) start_mass_ += p.mass_of(k);
+  });
 }
 
 void OpenSides::attach(Workspace& w) { w_ = &w; }

@@ -14,9 +14,14 @@ namespace barchan {
 namespace {
 
 nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
-  return {{"count", ranks.count},   {"messages", ranks.messages},
-          {"bytes", ranks.bytes},   {"collectives", ranks.collectives},
-          {"ghosts", ranks.ghosts}, {"most_particles", ranks.most_particles}};
+  return {{"count", ranks.count},
+          {"messages", ranks.messages},
+          {"bytes", ranks.bytes},
+          {"collectives", ranks.collectives},
+          {"ghosts", ranks.ghosts},
+          {"most_particles", ranks.most_particles},
+          {"memory_of_first", ranks.memory_of_first},
+          {"most_memory_of_others", ranks.most_memory_of_others}};
 }
 
 }  // namespace

@@ -25,6 +25,9 @@ struct RunReport {
     std::int64_t collectives = 0;          // reductions, broadcasts and the like, once for all
     std::int64_t ghosts = 0;               // at the end, of all ranks
     std::int64_t most_particles = 0;       // at the end, of a rank
+    // Bytes that a rank has held at the most, shared libraries included: of the first one, which has frames and
+    // checkpoints, and the most of the others.
+    double memory_of_first = 0, most_memory_of_others = 0;
   } ranks;
 
   // the scene and the plan

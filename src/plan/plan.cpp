@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "models/catalogue.hpp"
 #include "models/grains/grain_source.hpp"
 #include "output/numbers.hpp"
@@ -45,7 +46,8 @@ double driven_speed(const Scene& scene, const Motion& motion, const std::vector<
   return speed + reach * largest_in_time(scene, motion.angular_velocity->about);
 }
 
-/// m/s, that an inflow gives, at a hundred or so of its particles and 17 times.
+/// m/s, that an inflow gives, at a hundred or so of its particles and 17 times. On ranks that share a fluid out: at
+/// those of this one.
 double entering_speed(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   double speed = 0.0;
   for (std::size_t k = 0; k < scene.phases.size(); ++k)
@@ -53,8 +55,8 @@ double entering_speed(const Scene& scene, const std::vector<ParticleBlock>& bloc
       if (!end.inflow) continue;
       const GivenVelocity velocity(scene, end);
       const auto& places = blocks[k].position;
-      const std::size_t stride = 1 + places.size() / 4000;
-      for (std::size_t i = 0; i < places.size(); i += stride)
+      const std::size_t stride = 1 + blocks[k].count() / 4000, before = blocks[k].first();
+      for (std::size_t i = (stride - before % stride) % stride; i < places.size(); i += stride)
         for (int q = 0; q <= 16 && end.beyond(places[i][end.axis()]) > 0.0; ++q)
           speed = std::max(speed, norm(velocity(places[i], scene.time.end * q / 16.0)));
     }
@@ -86,7 +88,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
   for (const PlanPhase& p : plan.phases) speed = std::max(speed, p.surface_speed);
   for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion, blocks));
-  speed = std::max({speed, entering_speed(scene, blocks), influx_speed(scene)});
+  speed = ranks::largest(std::max({speed, entering_speed(scene, blocks), influx_speed(scene)}));
   double height = 0;
   for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
@@ -193,7 +195,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     const Phase& p = scene.phases[k];
     PlanPhase q;
     q.name = p.name;
-    q.count = blocks[k].position.size();
+    q.count = blocks[k].count();
     q.spacing = q.size = q.largest_size = p.spacing;
     q.mass = (p.density > 0 ? p.density : 1.0) * std::pow(p.spacing, scene.dimensions);
     plan.phases.push_back(q);

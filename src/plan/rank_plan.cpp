@@ -64,8 +64,10 @@ std::string to_text(const RankPlan& plan) {
   if (plan.whole_particles > 0)
     t += formatted("every rank has %.0f particles of grains and bodies; they take %.0f %% of a step\n",
                    plan.whole_particles, 100.0 * plan.whole_share);
-  t += "at the start every rank makes all particles: " + memory_text(plan.start_memory) +
-       "; later the first one has the frames of all\n";
+  t += "at the start every rank makes " +
+       (plan.why_start_is_whole.empty() ? "its part of the fluids, and all other particles"
+                                        : "all particles, because " + plan.why_start_is_whole) +
+       ": " + memory_text(plan.start_memory) + "; later the first one has the frames of all\n";
   if (plan.efficiency > 0)
     t += formatted("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
                    plan.efficiency, plan.ranks.size());
@@ -89,6 +91,7 @@ std::string to_json(const RankPlan& plan) {
   j["whole_particles"] = plan.whole_particles;
   j["whole_share"] = plan.whole_share;
   j["start_memory"] = plan.start_memory;
+  j["why_start_is_whole"] = plan.why_start_is_whole;
   j["searches_a_step"] = plan.searches_a_step;
   j["seconds_alone"] = plan.seconds_alone;
   j["efficiency"] = plan.efficiency;

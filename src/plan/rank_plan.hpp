@@ -23,12 +23,13 @@ struct RankPlan {
     double seconds = 0;              // of a step; 0: not measured
   };
   std::vector<Rank> ranks;
-  double whole_particles = 0;  // that every rank has
-  double whole_share = 0;      // of the time of a step, for phases that every rank holds whole
-  double searches_a_step = 0;  // how often lists are made anew
-  double seconds_alone = 0;    // of a step of one process with one thread
-  double start_memory = 0;     // bytes: at the start every rank makes all particles
-  double efficiency = 0;       // seconds_alone over ranks times the seconds of the slowest rank; 0: not measured
+  double whole_particles = 0;      // that every rank has
+  double whole_share = 0;          // of the time of a step, for phases that every rank holds whole
+  double searches_a_step = 0;      // how often lists are made anew
+  double seconds_alone = 0;        // of a step of one process with one thread
+  double start_memory = 0;         // bytes of a rank, until particles are sorted first
+  std::string why_start_is_whole;  // every rank makes all particles; empty: a part of those of fluids
+  double efficiency = 0;           // seconds_alone over ranks times the seconds of the slowest rank; 0: not measured
 };
 
 /// The least, mean or largest of each value over the ranks.

@@ -139,11 +139,13 @@ void leave_out_beyond_flow_ends(const Scene& scene, const Phase& phase, std::vec
     std::erase_if(places, [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 1e-6 * phase.spacing; });
 }
 
-void continue_beyond_flow_ends(const Scene& scene, const Phase& phase, const std::vector<Vec3>& places,
-                               std::size_t first, ParticleBlock& block) {
+std::vector<std::size_t> continue_beyond_flow_ends(const Scene& scene, const Phase& phase,
+                                                   const std::vector<Vec3>& places, std::size_t first,
+                                                   ParticleBlock& block) {
   const double dx = phase.spacing;
+  std::vector<std::size_t> counts;
   for (const FlowEnd& end : ends_of(scene, phase)) {
-    const std::size_t axis = end.axis();
+    const std::size_t axis = end.axis(), before = block.position.size();
     for (std::size_t k = 0; k < places.size(); ++k) {
       const double inside = -end.beyond(places[k][axis]);
       if (inside < -1e-6 * dx || inside >= (1.0 - 1e-6) * dx) continue;
@@ -160,7 +162,9 @@ void continue_beyond_flow_ends(const Scene& scene, const Phase& phase, const std
         copy_value(block.bend, from);
       }
     }
+    counts.push_back(block.position.size() - before);
   }
+  return counts;
 }
 
 }  // namespace barchan

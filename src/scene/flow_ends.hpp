@@ -60,8 +60,9 @@ class GivenVelocity {
 void leave_out_beyond_flow_ends(const Scene& scene, const Phase& phase, std::vector<Vec3>& places);
 /// Continues a fill beyond the sides with a flow: appends copies of the particles from `first` on whose place (before
 /// they were disturbed) is in the last row of the domain, with all that they have. Fluids through their own ends,
-/// walls through all; other phases are not continued.
-void continue_beyond_flow_ends(const Scene& scene, const Phase& phase, const std::vector<Vec3>& places,
-                               std::size_t first, ParticleBlock& block);
+/// walls through all; other phases are not continued. Returns how many were appended, by end of the phase.
+std::vector<std::size_t> continue_beyond_flow_ends(const Scene& scene, const Phase& phase,
+                                                   const std::vector<Vec3>& places, std::size_t first,
+                                                   ParticleBlock& block);
 
 }  // namespace barchan

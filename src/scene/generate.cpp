@@ -17,6 +17,7 @@
 #include "scene/random.hpp"
 #include "scene/region.hpp"
 #include "scene/shapes.hpp"
+#include "scene/shared_start.hpp"
 
 namespace barchan {
 namespace {
@@ -42,10 +43,12 @@ bool inside_domain(const Scene& scene, const Vec3& x, double spacing) {
   return true;
 }
 
-void perturb(std::vector<Vec3>& places, const Fill& fill, const Scene& scene) {
+/// `first`: number of the first of these places in the fill.
+void perturb(std::vector<Vec3>& places, const Fill& fill, const Scene& scene, std::size_t first) {
   if (fill.perturb <= 0.0) return;
   const PeriodicSpace space(scene.domain);
   Random random(fill.seed);
+  random.skip(first * static_cast<std::size_t>(scene.dimensions));
   const double most = fill.perturb * spacing_of(scene, fill);
   for (Vec3& x : places) {
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
@@ -107,23 +110,23 @@ bool may_overlap(const Scene& scene, const Fill& a, const Fill& b) {
   return ground_and_spheres(*p, *q) || ground_and_spheres(*q, *p);
 }
 
+/// `at`: becomes the number of the place that is looked at.
 void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& scene, PhaseKind kind,
-                  const Occupied& occupied) {
+                  const Occupied& occupied, std::size_t& at) {
   const std::string phase = " of phase \"" + scene.fills[k].phase + "\"";
   const double dx = spacing_of(scene, scene.fills[k]);
-  if (places.empty())
-    fail(scene, k,
-         "no particle" + phase + "; expected a larger shape, a smaller spacing, or an earlier place in the file");
   std::vector<bool> apart;  // by fill: that this one may overlap
   for (const Fill& fill : scene.fills) apart.push_back(may_overlap(scene, scene.fills[k], fill));
-  for (const Vec3& x : places) {
+  for (at = 0; at < places.size(); ++at) {
+    const Vec3& x = places[at];
     if (kind != PhaseKind::wall && !inside_domain(scene, x, dx))
       fail(scene, k,
            "a particle" + phase + " at " + point_text(x, scene.dimensions) +
                " m lies outside the domain; expected a shape inside it");
     constexpr double least = (1.0 - 1e-6) * overlap_distance;
     const int other =
-        std::max(occupied.inside.owner_near(x, dx, least, apart), occupied.outside.owner_near(x, dx, least, apart));
+        std::max({occupied.inside.owner_near(x, dx, least, apart), occupied.outside.owner_near(x, dx, least, apart),
+                  occupied.of_fluids.owner_near(x, dx, least, apart)});
     if (other < 0) continue;
     fail(scene, k,
          "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
@@ -148,10 +151,12 @@ void check_points(const std::vector<Vec3>& places, std::size_t k, const Scene& s
   }
 }
 
-/// Names the formula behind a velocity or pressure that is not finite.
-void check_values(const ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene) {
+/// Names the formula behind a velocity or pressure that is not finite. `at`: becomes the number of the particle in the
+/// fill that is looked at.
+void check_values(const ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene, std::size_t& at) {
   const Fill& fill = scene.fills[k];
   for (std::size_t i = first; i < block.position.size(); ++i) {
+    at = i - first;
     const auto check = [&](double value, const Expression& expression, const char* key) {
       if (std::isfinite(value)) return;
       const std::string cause = expression.is_formula() ? "the formula \"" + shortened(expression.formula) + "\" gives "
@@ -183,7 +188,7 @@ void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& f
   }
 }
 
-/// Adds the rotation about the mean place of the new particles.
+/// Adds the rotation about the mean place of the new particles, of a rigid body.
 void turn(ParticleBlock& block, std::size_t first, const AxialExpression& rate) {
   const Vec3 w{Formula(rate.about[0])({}), Formula(rate.about[1])({}), Formula(rate.about[2])({})};
   Vec3 centre{};
@@ -237,6 +242,75 @@ void append_border(ParticleBlock& block, std::size_t first, std::size_t k, const
   }
 }
 
+/// The places of a fill, while it is made.
+struct FillPlaces {
+  std::vector<Vec3> places, even;  // even: before they were disturbed
+  SettledGrains settled{};
+  bool shared = false;    // ranks share them out
+  ParticlePiece piece{};  // those of this rank, where they are shared
+};
+
+void refuse_none(const Scene& scene, std::size_t k, std::size_t count) {
+  if (count == 0)
+    fail(scene, k,
+         "no particle of phase \"" + scene.fills[k].phase +
+             "\"; expected a larger shape, a smaller spacing, or an earlier place in the file");
+}
+
+/// Places of a fill of a fluid that comes in rows: on several ranks of a part of them.
+void make_in_rows(FillPlaces& made, const Scene& scene, std::size_t k, Occupied& occupied, ParticleNumbers& numbers) {
+  made.places = places_of(scene, k, occupied, ranks::own_share());
+  made.piece = numbers.follow(made.places.size());
+  refuse_none(scene, k, made.piece.total);
+  made.even = made.places;
+  perturb(made.places, scene.fills[k], scene, made.piece.first);
+  check_together(made.piece.first,
+                 [&](std::size_t& at) { check_places(made.places, k, scene, PhaseKind::fluid, occupied, at); });
+}
+
+/// Places of any other fill, on all ranks; of a fluid that is shared out each keeps its part.
+void make_whole(FillPlaces& made, const Scene& scene, std::size_t k, const Phase& phase, const Settle& settle,
+                const std::vector<ParticleBlock>& before, Occupied& occupied, ParticleNumbers& numbers) {
+  const Fill& fill = scene.fills[k];
+  const bool from_file = std::holds_alternative<FileShape>(fill.shape);
+  occupied.ask_own();
+  if (fill.packing == Packing::settled || from_file) {
+    if (!settle) fail(scene, k, "a settled packing or a file cannot be made here");
+    made.settled = settle(scene, k, before);
+    if (!from_file) keep_inside(scene, k, made.settled);
+    made.places = made.settled.position;
+  } else {
+    made.places = places_of(scene, k, occupied);
+    leave_out_beyond_flow_ends(scene, phase, made.places);
+    made.even = made.places;
+    perturb(made.places, fill, scene, 0);
+  }
+  refuse_none(scene, k, made.places.size());
+  check_together(0, [&](std::size_t& at) { check_places(made.places, k, scene, phase.kind(), occupied, at); });
+  if (std::holds_alternative<PointsShape>(fill.shape)) check_points(made.places, k, scene);
+  if (!made.shared) return;
+  const ranks::Share share = ranks::own_share();
+  for (std::vector<Vec3>* places : {&made.places, &made.even}) {
+    const std::size_t n = places->size();
+    *places = std::vector<Vec3>(places->begin() + static_cast<std::ptrdiff_t>(share.begin(n)),
+                                places->begin() + static_cast<std::ptrdiff_t>(share.end(n)));
+  }
+  made.piece = numbers.follow(made.places.size());
+}
+
+/// Adds what a wall or spheres have beside places and velocities.
+void append_own(ParticleBlock& block, std::size_t first, std::size_t k, const Scene& scene, const Phase& phase) {
+  const Fill& fill = scene.fills[k];
+  if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
+    append_surface(block, first, *bed, scene, phase.spacing);
+  else if (phase.if_wall() && fill.packing == Packing::relaxed) append_border(block, first, k, scene, phase.spacing);
+  else if (!block.depth.empty()) {
+    block.normal.resize(block.position.size(), Vec3{});
+    block.depth.resize(block.position.size(), 0.0);
+  }
+  if (!block.bend.empty()) block.bend.resize(block.position.size(), {});
+}
+
 }  // namespace
 
 std::vector<double> fitted_heights(const Scene& scene, const std::array<int, 2>& counts) {
@@ -257,55 +331,41 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     const std::string misfit = scene.domain.periodic[axis] ? misfit_of_period(scene, axis) : "";
     if (!misfit.empty()) throw SceneError(located(scene, "domain.size") + ": " + misfit);
   }
-  const PeriodicSpace space(scene.domain);
   double widest = 0.0;
   for (const Fill& fill : scene.fills) widest = std::max(widest, spacing_of(scene, fill));
-  Occupied occupied{Places(space, widest), Places(space, widest)};
+  Occupied occupied(PeriodicSpace(scene.domain), widest);
   std::vector<ParticleBlock> blocks(scene.phases.size());
+  std::vector<ParticleNumbers> numbers(scene.phases.size());
+  const auto is_shared = [](const Phase& phase) { return ranks::active() && phase.kind() == PhaseKind::fluid; };
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     const Fill& fill = scene.fills[k];
     const auto phase =
         std::find_if(scene.phases.begin(), scene.phases.end(), [&](const Phase& p) { return p.name == fill.phase; });
     if (phase == scene.phases.end()) fail(scene, k, "there is no phase \"" + fill.phase + "\"");
-    std::vector<Vec3> places, even;  // even: before they were disturbed
-    SettledGrains settled;
-    const bool from_file = std::holds_alternative<FileShape>(fill.shape);
-    if (fill.packing == Packing::settled || from_file) {
-      if (!settle) fail(scene, k, "a settled packing or a file cannot be made here");
-      settled = settle(scene, k, blocks);
-      if (!from_file) keep_inside(scene, k, settled);
-      places = settled.position;
-    } else {
-      places = places_of(scene, k, occupied);
-      leave_out_beyond_flow_ends(scene, *phase, places);
-      even = places;
-      perturb(places, fill, scene);
-    }
-    check_places(places, k, scene, phase->kind(), occupied);
-    if (std::holds_alternative<PointsShape>(fill.shape)) check_points(places, k, scene);
-    if (k + 1 < scene.fills.size())
-      for (const Vec3& x : places)
+    const auto number = static_cast<std::size_t>(phase - scene.phases.begin());
+    FillPlaces made;
+    made.shared = is_shared(*phase);
+    if (made.shared && comes_in_rows(fill)) make_in_rows(made, scene, k, occupied, numbers[number]);
+    else make_whole(made, scene, k, *phase, settle, blocks, occupied, numbers[number]);
+    if (k + 1 < scene.fills.size() && made.shared) occupied.fluids.add(k, phase->spacing, made.places);
+    if (k + 1 < scene.fills.size() && !made.shared)
+      for (const Vec3& x : made.places)
         (inside_domain(scene, x, phase->spacing) ? occupied.inside : occupied.outside)
             .add(x, phase->spacing, static_cast<int>(k));
-    ParticleBlock& block = blocks[static_cast<std::size_t>(phase - scene.phases.begin())];
+    ParticleBlock& block = blocks[number];
     const std::size_t first = block.position.size();
     block.parts.push_back({k, first});
-    append(block, places, fill, scene);
+    append(block, made.places, fill, scene);
     if (fill.angular_velocity) turn(block, first, *fill.angular_velocity);
-    append_settled(block, first, settled);
+    append_settled(block, first, made.settled);
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
-    check_values(block, first, k, scene);
-    if (const auto* bed = std::get_if<BedShape>(&fill.shape); bed && fill.packing == Packing::fitted)
-      append_surface(block, first, *bed, scene, phase->spacing);
-    else if (phase->if_wall() && fill.packing == Packing::relaxed)
-      append_border(block, first, k, scene, phase->spacing);
-    else if (!block.depth.empty()) {
-      block.normal.resize(block.position.size(), Vec3{});
-      block.depth.resize(block.position.size(), 0.0);
-    }
-    if (!block.bend.empty()) block.bend.resize(block.position.size(), {});
-    continue_beyond_flow_ends(scene, *phase, even, first, block);
+    check_together(made.piece.first, [&](std::size_t& at) { check_values(block, first, k, scene, at); });
+    append_own(block, first, k, scene, *phase);
+    for (const std::size_t count : continue_beyond_flow_ends(scene, *phase, made.even, first, block))
+      if (made.shared) numbers[number].follow(count);
   }
+  for (std::size_t p = 0; p < blocks.size(); ++p)
+    if (is_shared(scene.phases[p])) numbers[p].deal(blocks[p]);
   return blocks;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -15,6 +16,11 @@ struct RestingContact {
   Vec3 branch{};             // m, from its centre to that of the other, or to the nearest place of a side of the domain
   Vec3 force{};              // N, tangential, on it
   Vec3 torque{};             // N m, of the rolling resistance, on it
+};
+
+/// Which of the particles of a phase, or of a fill, a rank has: `first` and those that follow, of `total`.
+struct ParticlePiece {
+  std::size_t first = 0, total = 0;
 };
 
 struct ParticleBlock {
@@ -31,10 +37,16 @@ struct ParticleBlock {
   std::vector<double> depth{};  // m, the distance to it; both empty when no fill of the phase is such a wall
   std::vector<std::array<double, 3>>
       bend{};  // 1/m, of fitted walls: second derivatives of the height, over sqrt(1 + slope^2)
+  std::optional<ParticlePiece> piece{};  // of a fluid whose particles ranks share out; else all are here
+
+  /// Of the phase: particles, and the number of the first one here.
+  std::size_t count() const { return piece ? piece->total : position.size(); }
+  std::size_t first() const { return piece ? piece->first : 0; }
 };
 
 /// Carries out the fills of the scene in order. Two-dimensional scenes have z = 0. Particle k of the scene gets id k,
-/// counted through the blocks in order; the same scene gives the same particles bit for bit.
+/// counted through the blocks in order; the same scene gives the same particles bit for bit. On ranks that share
+/// particles out (ranks::active(), where why_start_is_whole() is empty) each makes a piece of the fluids' blocks.
 /// Throws SceneError when a periodic bed's rows do not fit the domain (and names the nearest size that does), when a
 /// fill makes no particle, or when particles of different fills overlap (closer than 0.5 spacings).
 /// Fills with packing = "settled" and those of a file take their places from `settle`, which gets the number of the

@@ -16,6 +16,7 @@ constexpr double round_off = 1e-9;                // in spacings
 /// Whole numbers k with lower <= anchor + k pitch < upper, round-off apart: [first, end).
 struct Range {
   long first, end;
+  std::size_t size() const { return static_cast<std::size_t>(std::max(end - first, 0l)); }
 };
 Range range(double anchor, double pitch, double lower, double upper, double spacing) {
   const double slack = round_off * spacing / pitch;
@@ -28,25 +29,36 @@ bool odd(long k) { return k % 2 != 0; }
 }  // namespace
 
 std::vector<Vec3> lattice(Packing packing, int dimensions, double spacing, const Vec3& anchor, const Vec3& lower,
-                          const Vec3& upper) {
+                          const Vec3& upper, const ranks::Share& share) {
   const bool close = packing == Packing::hexagonal;
   const bool solid = dimensions == 3;
   const double pitch_y = spacing * (!close ? 1.0 : solid ? layer_pitch : row_pitch);
   const double pitch_z = spacing * (close ? row_pitch : 1.0);
-  std::vector<Vec3> places;
-  const Range layers = range(anchor[1], pitch_y, lower[1], upper[1], spacing);
-  for (long j = layers.first; j < layers.end; ++j) {
-    const double y = anchor[1] + static_cast<double>(j) * pitch_y;
-    const double z_shift = close && solid && odd(j) ? pitch_z / 3.0 : 0.0;
-    const Range rows = solid ? range(anchor[2] + z_shift, pitch_z, lower[2], upper[2], spacing) : Range{0, 1};
-    for (long k = rows.first; k < rows.end; ++k) {
-      const double z = solid ? anchor[2] + z_shift + static_cast<double>(k) * pitch_z : 0.0;
-      const double x_shift = close && odd(solid ? j + k : j) ? 0.5 * spacing : 0.0;
-      const Range columns = range(anchor[0] + x_shift, spacing, lower[0], upper[0], spacing);
-      for (long i = columns.first; i < columns.end; ++i)
-        places.push_back({anchor[0] + x_shift + static_cast<double>(i) * spacing, y, z});
+  const auto each_row = [&](auto&& row) {  // row(shift of its places along x, their numbers, y, z)
+    const Range layers = range(anchor[1], pitch_y, lower[1], upper[1], spacing);
+    for (long j = layers.first; j < layers.end; ++j) {
+      const double y = anchor[1] + static_cast<double>(j) * pitch_y;
+      const double z_shift = close && solid && odd(j) ? pitch_z / 3.0 : 0.0;
+      const Range rows = solid ? range(anchor[2] + z_shift, pitch_z, lower[2], upper[2], spacing) : Range{0, 1};
+      for (long k = rows.first; k < rows.end; ++k) {
+        const double z = solid ? anchor[2] + z_shift + static_cast<double>(k) * pitch_z : 0.0;
+        const double x_shift = close && odd(solid ? j + k : j) ? 0.5 * spacing : 0.0;
+        row(x_shift, range(anchor[0] + x_shift, spacing, lower[0], upper[0], spacing), y, z);
+      }
     }
-  }
+  };
+  std::size_t all = 0, before = 0;
+  if (share.count > 1) each_row([&](double, const Range& r, double, double) { all += r.size(); });
+  const std::size_t begin = share.begin(all), end = share.count > 1 ? share.end(all) : static_cast<std::size_t>(-1);
+  std::vector<Vec3> places;
+  places.reserve(share.count > 1 ? end - begin : 0);
+  each_row([&](double x_shift, const Range& r, double y, double z) {
+    const std::size_t first = std::clamp(begin, before, before + r.size()) - before,
+                      last = std::clamp(end, before, before + r.size()) - before;
+    for (long i = r.first + static_cast<long>(first); i < r.first + static_cast<long>(last); ++i)
+      places.push_back({anchor[0] + x_shift + static_cast<double>(i) * spacing, y, z});
+    before += r.size();
+  });
   return places;
 }
 

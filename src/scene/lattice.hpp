@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/ranks.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -15,9 +16,10 @@ namespace barchan {
 ///              3D: close-packed layers (rows along x, sqrt(3)/2 dx apart in z) stacked along y, sqrt(2/3) dx apart,
 ///              each second one shifted into the hollows of the one below: hexagonal close packing.
 /// The lattice has a particle on `anchor`, and all places with lower <= x < upper are returned, by rows: x runs
-/// fastest, then z, then y. A place that round-off puts within 1e-9 dx of a bound counts as on it.
+/// fastest, then z, then y. A place that round-off puts within 1e-9 dx of a bound counts as on it. `share`: of all
+/// these places, in this order, the part that is returned.
 std::vector<Vec3> lattice(Packing packing, int dimensions, double spacing, const Vec3& anchor, const Vec3& lower,
-                          const Vec3& upper);
+                          const Vec3& upper, const ranks::Share& share = {});
 
 /// Length after which the packing repeats itself along an axis.
 double period_of(Packing packing, int dimensions, std::size_t axis, double spacing);

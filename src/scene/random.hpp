@@ -17,6 +17,9 @@ class Random {
     return z ^ (z >> 31);
   }
 
+  /// As if next() had been called so many times.
+  void skip(std::uint64_t numbers) { state_ += numbers * 0x9e3779b97f4a7c15ull; }
+
   /// Uniform in [low, high), from the upper 53 bits.
   double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(next() >> 11) * 0x1p-53); }
 

@@ -126,10 +126,11 @@ std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spac
 }
 
 /// Places of a lattice of the region. That of spheres is widened along periodic axes until whole rows fit.
-std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const Region& region, double dx) {
+std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const Region& region, double dx,
+                                    const ranks::Share& share) {
   const Phase* phase = find_phase(scene, fill.phase);
   if (!phase || !phase->diameter() || !hangs_on_origin(fill.shape))
-    return lattice(fill.packing, scene.dimensions, dx, region.anchor, region.lower, region.upper);
+    return lattice(fill.packing, scene.dimensions, dx, region.anchor, region.lower, region.upper, share);
   Vec3 stretch{1, 1, 1}, anchor = region.anchor, lower = region.lower, upper = region.upper;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const double low = scene.domain.origin[axis], size = scene.domain.size[axis];
@@ -164,10 +165,11 @@ void check_room(const Scene& scene, std::size_t k, double cells) {
   const bool fills_bounds =
       std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<TheRestShape>(fill.shape);
   const double least = fills_bounds ? 150.0 : sizeof(Vec3);  // bytes a cell
-  if (const AvailableMemory there = available_memory(); cells * least > there.bytes)
+  const double bytes = cells * least * ranks::share_of_machine();
+  if (const AvailableMemory there = available_memory(); bytes > there.bytes)
     throw SceneError(located(scene, "fill." + std::to_string(k)) + ": room for " +
                      std::to_string(static_cast<long>(cells)) + " particles of phase \"" + fill.phase + "\" takes " +
-                     memory_text(cells * least) + " at least, " + there.of + " leaves " + memory_text(there.bytes) +
+                     memory_text(bytes) + " at least, " + there.of + " leaves " + memory_text(there.bytes) +
                      "; expected a larger spacing or a smaller shape");
 }
 
@@ -206,9 +208,9 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
                                        [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
   const Ground ground(scene);
   const double slack = 1e-9 * dx;
-  std::erase_if(places, [&](const Vec3& x) {
+  leave_out(places, occupied.by_all, [&](const Vec3& x) {
     if (over_ground && x[1] - scene.domain.origin[1] < ground.height(x[0], x[2]) - slack) return true;
-    return occupied.inside.owner_near(x, dx, rest_distance) >= 0;
+    return occupied.is_taken(x, dx, rest_distance);
   });
 }
 
@@ -237,7 +239,14 @@ void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains) {
   for (RestingContact& c : grains.contacts) c.sphere = number[c.sphere];
 }
 
-std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& occupied) {
+double reach_of_overlaps(const Scene& scene, std::size_t k) {
+  double widest = 0.0;
+  for (const Fill& fill : scene.fills) widest = std::max(widest, spacing_of(scene, fill));
+  return 1.01 * widest + scene.fills[k].perturb * spacing_of(scene, scene.fills[k]) * std::sqrt(3.0);
+}
+
+std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupied,
+                            const std::optional<ranks::Share>& share) {
   const Fill& fill = scene.fills[k];
   const double dx = spacing_of(scene, fill);
   std::vector<Vec3> places;
@@ -247,8 +256,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
       places = fitted_wall(scene, *bed, dx);
     } else if (below >= 0) {
       places = fitted_fluid(scene, std::get<BedShape>(scene.fills[static_cast<std::size_t>(below)].shape), dx);
-      std::erase_if(places,
-                    [&](const Vec3& x) { return occupied.inside.owner_near(x, dx, rest_distance, below) >= 0; });
+      leave_out(places, occupied.by_all, [&](const Vec3& x) { return occupied.is_taken(x, dx, rest_distance, below); });
     }
   } else if (fill.packing == Packing::relaxed) {
     const Solid region = region_of_fill(scene, k, 0.0);
@@ -270,8 +278,9 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, const Occupied& o
     if (fill.packing == Packing::random) {
       places = random_places(scene, region, cells, fill.seed, dx, occupied);
     } else {
-      places = stretched_lattice(scene, fill, region, dx);
+      places = stretched_lattice(scene, fill, region, dx, share.value_or(ranks::Share{}));
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
+      if (share) occupied.ask_near(places, reach_of_overlaps(scene, k));
     }
     if (std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills)
       keep_the_rest(places, scene, k, dx, occupied);

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "scene/shared_start.hpp"
 #include "simulation/measure_ranks.hpp"
 
 namespace barchan {
@@ -118,9 +119,9 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   if (!lengths.empty()) e.steps = scene.time.end / median(lengths);
   e.memory = memory_of_a_run(simulation, before, retreats ? states_kept(e.steps) : 0.0);
   if (on_ranks)
-    e.ranks =
-        on_ranks->plan(median(seconds), {part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
-                                         part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to")});
+    e.ranks = on_ranks->plan(median(seconds), {part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
+                                               part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to"),
+                                               why_start_is_whole(scene)});
   if (lengths.empty()) return e;
   e.measured = true;
   e.processor_seconds = e.steps * median(seconds);

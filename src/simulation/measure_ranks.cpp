@@ -209,20 +209,39 @@ double RankMeasure::bytes_of_a_ghost(std::size_t phase) const {
          2.0 * of(simulation_.bytes_of_an_image(phase));
 }
 
+/// Of a rank, until the particles are sorted first. `cells`: bytes of what is of all cells.
+double RankMeasure::memory_at_start(const MemoryOfOne& memory, double cells) const {
+  const Plan& plan = simulation_.plan();
+  const bool shared = memory.why_start_is_whole.empty();
+  double particles = 0.0, made = 0.0, columns = 0.0, order = 0.0, moving = 0.0;
+  for (std::size_t p = 0; p < whole_.size(); ++p) {
+    const PhaseParticles& phase = simulation_.phases()[p];
+    const bool in_parts = shared && plan.phases[p].flows;
+    const double n = of(phase.size()), here = in_parts ? n / of(ranks_) : n;
+    particles += n;
+    made += here;
+    columns += here * of(phase.packed_width());
+    if (!simulation_.neighbours().has_grid(p)) continue;
+    order = std::max(order, 2.0 * sizeof(std::uint32_t) * here);
+    // What leaves, what comes, and room for it.
+    if (in_parts) moving = std::max(moving, 2.5 * here * of(phase.packed_width()) * (1.0 - 1.0 / of(ranks_)));
+  }
+  const double blocks = particles > 0.0 ? memory.blocks * made / particles : 0.0;
+  return memory.program + columns + std::max(blocks, cells + order + moving);
+}
+
 /// What of one process is of all cells, a rank has too; the rest is its part of the particles, with ghosts. Before that
-/// every rank has made all particles and found their order.
+/// it has made particles and found their order.
 void RankMeasure::add_memory(RankPlan& plan, const std::vector<Part>& parts, const MemoryOfOne& memory) const {
   const Neighbours& neighbours = simulation_.neighbours();
   const double dimensions = simulation_.plan().dimensions;
-  double cells = 0.0, owners = 0.0, images = 0.0, packed = 0.0, order = 0.0, gathered = 0.0;
+  double cells = 0.0, owners = 0.0, images = 0.0, gathered = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) {
     const PhaseParticles& particles = simulation_.phases()[p];
     const double n = of(particles.size());
-    packed += n * of(particles.packed_width());
     if (!neighbours.has_grid(p)) continue;
     const CellGrid& grid = neighbours.grid(p);
     cells += of(grid.bytes_of_cells());
-    order = std::max(order, 2.0 * sizeof(std::uint32_t) * n);
     if (!owners_[p]) continue;
     owners += of(grid.cells()) * sizeof(std::int32_t);
     images += of(grid.images()) * bytes_of_a_ghost(p);
@@ -231,7 +250,8 @@ void RankMeasure::add_memory(RankPlan& plan, const std::vector<Part>& parts, con
         n * sizeof(double) + 2.0 * of(grid.cells()) * sizeof(std::uint32_t) + 2.0 * n * dimensions * sizeof(float);
   }
   const double rest = std::max(memory.arrays - cells - images, 0.0);
-  plan.start_memory = memory.program + packed + std::max(memory.blocks, cells + order);
+  plan.start_memory = memory_at_start(memory, cells);
+  plan.why_start_is_whole = memory.why_start_is_whole;
   for (std::size_t r = 0; r < ranks_; ++r) {
     const Part& part = parts[r];
     const double own = memory.program + cells + owners + part.arrays * (rest + memory.states) + part.ghosts;

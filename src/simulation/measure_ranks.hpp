@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "plan/rank_plan.hpp"
@@ -16,7 +17,8 @@ struct MemoryOfOne {
   double arrays = 0;   // of the simulation
   double blocks = 0;   // of the particles as they were made
   double frame = 0;
-  double states = 0;  // to go back to
+  double states = 0;               // to go back to
+  std::string why_start_is_whole;  // scene/shared_start.hpp
 };
 
 class RankMeasure {
@@ -37,6 +39,7 @@ class RankMeasure {
   void add_moves(RankPlan& plan, std::size_t phase, double steps) const;
   void add_seconds(RankPlan& plan, const std::vector<Part>& parts) const;
   void add_memory(RankPlan& plan, const std::vector<Part>& parts, const MemoryOfOne& memory) const;
+  double memory_at_start(const MemoryOfOne& memory, double cells) const;
   double bytes_of_a_ghost(std::size_t phase) const;
   double whole_share_of_time() const;
   double work_of(std::size_t phase) const;

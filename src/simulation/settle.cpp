@@ -16,6 +16,7 @@
 #include "scene/places.hpp"
 #include "scene/settling_scene.hpp"
 #include "scene/shapes.hpp"
+#include "scene/shared_start.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/settle_room.hpp"
 #include "simulation/simulation.hpp"
@@ -274,6 +275,7 @@ void SettledBeds::archive(Archive& a, const Scene& scene) {
 
 std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words, SettledBeds* beds) {
   refuse_beds_in_one_place(scene);
+  if (why_start_is_whole(scene).empty()) ranks::share();
   return generate(scene, [&](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
     if (of.fills[fill].packing != Packing::settled) return grains_of_file(of, fill);
     if (!beds) return settle(of, fill, words);

@@ -69,11 +69,12 @@ void Simulation::make_state(const std::vector<ParticleBlock>& blocks) {
   std::int64_t first = 0;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const PlanPhase& q = plan_.phases[k];
-    PhaseParticles p(q.name, plan_.dimensions, q.count, q.mass, first);
+    PhaseParticles p(q.name, plan_.dimensions, blocks[k].position.size(), q.mass, first);
+    if (blocks[k].piece) p.be_piece(blocks[k].first());
     first += static_cast<std::int64_t>(q.count);
     for (const Field f : q.fields) p.add(f);
     for (int d = 0; d < plan_.dimensions; ++d)
-      for (std::size_t i = 0; i < q.count; ++i) {
+      for (std::size_t i = 0; i < p.size(); ++i) {
         p.column(Field::position, d)[i] = blocks[k].position[i][static_cast<std::size_t>(d)];
         p.column(Field::velocity, d)[i] = blocks[k].velocity[i][static_cast<std::size_t>(d)];
       }

@@ -109,6 +109,10 @@ class PhaseParticles {
   /// Every rank holds all particles of the phase, moves them, and has the same bits.
   void be_whole() { is_whole_ = true; }
   bool is_whole() const { return is_whole_; }
+  /// The particles of the start that are here are those with the ids first_id() + first, first_id() + first + 1, ...
+  void be_piece(std::size_t first);
+  /// It holds some of its particles, and other ranks the others.
+  bool is_part() const { return is_part_; }
   /// From now on it holds those at the places order[0] .. order[count - 1] alone, in this order. Takes the memory of
   /// one column more.
   void keep(const std::uint32_t* order, std::size_t count);

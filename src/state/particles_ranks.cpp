@@ -9,6 +9,11 @@
 
 namespace barchan {
 
+void PhaseParticles::be_piece(std::size_t first) {
+  is_part_ = true;
+  std::iota(id_.begin(), id_.end(), first_id_ + static_cast<std::int64_t>(first));
+}
+
 void PhaseParticles::keep(const std::uint32_t* order, std::size_t count) {
   const auto pick = [&](auto& values, std::size_t width) {
     std::remove_reference_t<decltype(values)> kept;

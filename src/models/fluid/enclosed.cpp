@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 
+#include "base/ranks.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -26,7 +29,12 @@ class Cells {
       counts_[axis] = std::max(1l, std::lround(domain_.size[axis] / coarsest(scene)));
       stored_[axis] = counts_[axis] + (domain_.periodic[axis] ? 0 : 2);
     }
-    taken_.assign(static_cast<std::size_t>(stored_[0] * stored_[1] * stored_[2]), false);
+    taken_.assign(static_cast<std::size_t>(stored_[0] * stored_[1] * stored_[2] + 63) / 64, 0);
+  }
+
+  /// On several ranks: what any of them has taken is taken.
+  void join_ranks() {
+    if (Communicator* all = ranks::active()) all->reduce(taken_.data(), taken_.size(), Communicator::Take::bits);
   }
 
   /// Along closed axes -1 and the count are the layers outside; farther cells are cut off.
@@ -41,7 +49,7 @@ class Cells {
   }
 
   void take(const Cell& cell) {
-    if (stored(cell)) taken_[index(cell)] = true;
+    if (stored(cell)) taken_[index(cell) / 64] |= bit(index(cell));
   }
 
   /// Whether a cell is taken within so many cells along each axis; not along the axis `flat`.
@@ -54,7 +62,7 @@ class Cells {
           Cell cell{centre[0] + x, centre[1] + y, centre[2] + z};
           for (std::size_t axis = 0; axis < dimensions_; ++axis)
             if (domain_.periodic[axis]) cell[axis] = (cell[axis] % counts_[axis] + counts_[axis]) % counts_[axis];
-          if (stored(cell) && taken_[index(cell)]) return true;
+          if (stored(cell) && (taken_[index(cell) / 64] & bit(index(cell))) != 0) return true;
         }
     return false;
   }
@@ -69,6 +77,7 @@ class Cells {
   }
 
  private:
+  static std::int64_t bit(std::size_t k) { return static_cast<std::int64_t>(std::uint64_t{1} << k % 64); }
   std::size_t index(const Cell& cell) const {
     std::size_t index = 0;
     for (std::size_t axis = 3; axis-- > 0;)
@@ -87,7 +96,7 @@ class Cells {
   const Domain& domain_;
   std::size_t dimensions_;
   Cell counts_{1, 1, 1}, stored_{1, 1, 1};
-  std::vector<bool> taken_;
+  std::vector<std::int64_t> taken_;  // a bit a cell
 };
 
 std::string place_text(const Vec3& x, int dimensions) {
@@ -107,7 +116,7 @@ bool flows_through(const Scene& scene, const Phase& fluid, std::size_t axis, boo
 /// row of solids, as in a hill of fitted rows, is three cells from the fluid.
 std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t fluid) {
   double room = 1.0, particles = 0.0;
-  for (const ParticleBlock& block : blocks) particles += static_cast<double>(block.position.size());
+  for (const ParticleBlock& block : blocks) particles += static_cast<double>(block.count());
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
     room *= scene.domain.size[axis] / coarsest(scene);
   if (room > 27.0 * particles) return "most of the domain";  // more cells than the particles are neighbours of
@@ -115,13 +124,38 @@ std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>
   for (const ParticleBlock& block : blocks)
     for (const Vec3& x : block.position) all.take(all.cell_of(x));
   for (const Vec3& x : blocks[fluid].position) own.take(own.cell_of(x));
+  all.join_ranks();
+  own.join_ranks();
   const Cells::Cell& n = all.counts();
-  for (long z = 0; z < n[2]; ++z)
-    for (long y = 0; y < n[1]; ++y)
-      for (long x = 0; x < n[0]; ++x)
-        if (!all.taken_about({x, y, z}, 1) && own.taken_about({x, y, z}, 2))
-          return place_text(all.centre({x, y, z}), scene.dimensions);
-  return "";
+  const auto cells = static_cast<std::size_t>(n[0] * n[1] * n[2]);
+  const auto cell = [&n](std::size_t k) {
+    const auto q = static_cast<long>(k);
+    return Cells::Cell{q % n[0], q / n[0] % n[1], q / (n[0] * n[1])};
+  };
+  const ranks::Share share = ranks::own_share();
+  std::size_t first = share.begin(cells);
+  while (first < share.end(cells) && (all.taken_about(cell(first), 1) || !own.taken_about(cell(first), 2))) ++first;
+  if (first == share.end(cells)) first = cells;
+  first = static_cast<std::size_t>(ranks::reduced(static_cast<std::int64_t>(first), Communicator::Take::least));
+  return first < cells ? place_text(all.centre(cell(first)), scene.dimensions) : "";
+}
+
+/// Where the fluid stands at a side of the domain and no wall beyond it, of those in `walls`; the first such particle.
+std::optional<Vec3> find_open_side(const Scene& scene, const Phase& phase, const std::vector<Vec3>& places,
+                                   const Cells& walls) {
+  const auto ends = flow_ends(scene, phase);
+  for (const Vec3& x : places) {
+    if (std::any_of(ends.begin(), ends.end(), [&](const FlowEnd& e) { return e.beyond(x[e.axis()]) > 0.0; })) continue;
+    const Cells::Cell cell = walls.cell_of(x);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
+      for (const long side : {0l, walls.counts()[axis] - 1}) {
+        if (scene.domain.periodic[axis] || cell[axis] != side || flows_through(scene, phase, axis, side > 0)) continue;
+        Cells::Cell beyond = cell;
+        beyond[axis] += side == 0 ? -1 : 1;
+        if (!walls.taken_about(beyond, 1, axis)) return x;
+      }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -146,23 +180,18 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
   for (std::size_t k = 0; k < blocks.size(); ++k)
     if (!layout.phases[k].moves && entry_between(scene, phase, scene.phases[k]))
       for (const Vec3& x : blocks[k].position) walls.take(walls.cell_of(x));
-  const auto ends = flow_ends(scene, phase);
-  for (const Vec3& x : blocks[fluid].position) {
-    if (std::any_of(ends.begin(), ends.end(), [&](const FlowEnd& e) { return e.beyond(x[e.axis()]) > 0.0; })) continue;
-    const Cells::Cell cell = walls.cell_of(x);
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
-      for (const long side : {0l, walls.counts()[axis] - 1}) {
-        if (scene.domain.periodic[axis] || cell[axis] != side || flows_through(scene, phase, axis, side > 0)) continue;
-        Cells::Cell beyond = cell;
-        beyond[axis] += side == 0 ? -1 : 1;
-        if (!walls.taken_about(beyond, 1, axis)) {
-          result.why = "no wall that it feels beyond " + place_text(x, scene.dimensions);
-          result.open = true;
-          return result;
-        }
-      }
+  struct Found {
+    bool any = false;
+    Vec3 at{};
+  } found;
+  if (const auto x = find_open_side(scene, phase, blocks[fluid].position, walls)) found = {true, *x};
+  found = ranks::of_first(found.any, found);
+  if (found.any) {
+    result.why = "no wall that it feels beyond " + place_text(found.at, scene.dimensions);
+    result.open = true;
+    return result;
   }
-  if (!ends.empty()) return result.why = "it flows through a side", result;
+  if (!flow_ends(scene, phase).empty()) return result.why = "it flows through a side", result;
   if (!piston.empty()) return result.why = piston + " moves, and the room with it", result;
   result.shut_in = true;
   result.why = walled ? "shut in by walls, and no free space" : "no free space, and every side is periodic";

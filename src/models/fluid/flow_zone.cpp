@@ -44,6 +44,7 @@ void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
     p.own(where_)[k] = d > 0.0 ? beyond : d > -reach_ ? near : away;
     if (d > end_.length - (1.0 + 1e-6) * dx_ && d <= end_.length) outermost.push_back(x);
   }
+  if (p.is_part()) ranks::join(outermost);
   lanes_ = FlowLanes(std::move(outermost), end_.axis(), dx_, periods());
   lane_.assign(lanes_.size(), {});
   sums_.resize(lanes_.size());

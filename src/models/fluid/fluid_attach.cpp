@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/enclosed.hpp"
@@ -38,7 +39,8 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
   p.takes_momentum = p.gives_energy = !p.flow_ends.empty();
   for (const FlowEnd& end : p.flow_ends) {
     const auto& places = blocks[fluid].position;
-    if (std::any_of(places.begin(), places.end(), [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 0.0; }))
+    if (ranks::any(
+            std::any_of(places.begin(), places.end(), [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 0.0; })))
       continue;
     throw SceneError(located(scene, end.inflow ? "inflow" : "outflow") + ": no particle of \"" + p.name +
                      "\" stands in the last row at the side \"" + word_of(end.side) +
@@ -198,7 +200,8 @@ namespace {
 
 /// From now on the fluid keeps the mean velocity along periodic axes that it has.
 void hold_as_it_is(BulkHold& hold, const PhaseParticles& fluid, const Bounds& bounds) {
-  for (int d = 0; d < fluid.dimensions() && fluid.size() > 0; ++d) {
+  const bool any = ranks::total(fluid.size()) > 0;
+  for (int d = 0; d < fluid.dimensions() && any; ++d) {
     const auto c = static_cast<std::size_t>(d);
     hold.axes[c] = bounds.periodic[c];
     if (hold.axes[c]) hold.velocity[c] = reproducible_mean(fluid.column(Field::velocity, d), fluid.size());

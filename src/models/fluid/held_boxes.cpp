@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -65,7 +66,7 @@ std::vector<HeldBox> held_boxes(const Scene& scene, const Layout& layout, std::s
     bool empty = true;
     for (std::size_t k = 0; k < particles.size(); ++k)
       empty = empty && !is_in(held, place_of(particles, k), layout.dimensions);
-    if (empty) boxes.push_back(held);
+    if (!ranks::any(!empty)) boxes.push_back(held);
   }
   return boxes;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.hpp"
 #include "models/fluid/fluid_phase.hpp"
 
 namespace barchan {
@@ -36,14 +37,14 @@ Column column_of(const Scene& scene, const Layout& layout, const ParticleBlock& 
     column.hydrostatic = column.hydrostatic || f.hydrostatic;
     perturbed = perturbed || f.perturb > 0;
   }
-  if (!layout.phases[k].flows || block.position.empty()) column.hydrostatic = false;
+  if (!layout.phases[k].flows || block.count() == 0) column.hydrostatic = false;
   if (!column.hydrostatic) return column;
   column.density = s.density;
   column.sound_speed = layout.phases[k].sound_speed;
   column.linear = s.fluid().equation_of_state == EquationOfState::linear;
-  const auto highest = std::min_element(block.position.begin(), block.position.end(),
-                                        [&](const Vec3& a, const Vec3& b) { return dot(g, a) < dot(g, b); });
-  column.potential = dot(g, *highest) - 0.5 * layout.phases[k].spacing * norm(g);
+  double highest = 1e300;
+  for (const Vec3& x : block.position) highest = std::min(highest, dot(g, x));
+  column.potential = ranks::least(highest) - 0.5 * layout.phases[k].spacing * norm(g);
   for (std::size_t d = 0; d < 3; ++d) {  // disturbed rows: where the lattice has its surface
     if (!perturbed || g[d] == 0 || std::abs(g[d]) < norm(g)) continue;
     const double row = column.potential / g[d] - scene.domain.origin[d];
