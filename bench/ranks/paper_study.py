@@ -65,6 +65,11 @@ def halved(low, high, too_small):
     return low
 
 
+def cells_of(n, side):
+    """Bytes of begin, end, walk, block and owner of each cell of the domain."""
+    return n / (side / 16) ** 3 * 20
+
+
 def constants(program):
     with tempfile.TemporaryDirectory() as folder:
         plans = {n: planned(program, n, pathlib.Path(folder)) for n in PLANNED}
@@ -72,7 +77,7 @@ def constants(program):
     h = halved(0., 20., lambda h: ghosts(n, 2, "pieces", 0., h)[0] < of[2]["ghosts"])
     side = min((s / 10 for s in range(100, 500)), key=lambda s: sum(math.log(ghosts(n, r, "pieces", s, h)[0] / of[r]["ghosts"]) ** 2 for r in PLANNED if r > 2))
     return {"particles": n, "seconds": alone["seconds_alone"] / n, "memory": (memory["arrays"] + memory["states to go back to"]) / n,
-            "program": memory["program"], "start": (alone["start_memory"] - memory["program"]) / n, "h": h, "side": side,
+            "program": memory["program"], "start": (plans[8]["ranks"]["start_memory"] - memory["program"] - cells_of(n, side)) / (n / 8), "h": h, "side": side,
             "bytes": of[2]["bytes"] / ghosts(n, 2, "pieces", side, h)[1], "messages": of[2]["messages"] / NEIGHBOURS["pieces"],
             "plan": alone["constants"],
             "planned": {str(r): {"ghosts": p["ghosts"], "efficiency": plans[r]["ranks"]["efficiency"], "messages": p["messages"]} for r, p in of.items()}}
@@ -86,20 +91,20 @@ def on(n, ranks, way, c):
     rounds = math.ceil(math.log2(ranks))
     alone = c["seconds"] * own
     seconds = alone + messages * p["latency"] + sent / p["bandwidth"] + rounds * p["reductions"] * p["latency"]
-    cells = n / (c["side"] / 16) ** 3 * 20  # begin, end, walk, block and owner of each cell
+    cells = cells_of(n, c["side"])
     return {"particles": own, "share": halo / own, "bytes": sent, "efficiency": alone / seconds, "memory": c["program"] + c["memory"] * own + GHOST * halo + cells,
-            "cells": cells, "start": c["program"] + c["start"] * n, "frame": n * FRAME * (1 / p["bandwidth"] + 1 / DISK)}
+            "cells": cells, "start": c["program"] + c["start"] * own + cells, "frame": n * FRAME * (1 / p["bandwidth"] + 1 / DISK)}
 
 
 def text(results, c):
     def giga(x):
         return f"{x / 1e9:.3g}"
     lines = [f"Constants, measured with {c['particles']:.0e} particles: {c['seconds'] * 1e9:.0f} ns a particle and step, {c['memory']:.0f} bytes a particle, "
-             f"{c['start']:.0f} bytes a particle at the start, a halo of {c['h']:.2f} spacings, columns of {c['side']:.0f} spacings, {c['bytes']:.0f} bytes a ghost and step, "
+             f"{c['start']:.0f} bytes a particle that a rank makes at the start, a halo of {c['h']:.2f} spacings, columns of {c['side']:.0f} spacings, {c['bytes']:.0f} bytes a ghost and step, "
              f"{c['messages']:.1f} messages a neighbour and step. Assumed: {FRAME:.0f} bytes a particle in a frame, a disk of {DISK / 1e9:.0f} GB/s, "
              "and between machines the latency and bandwidth that were measured within one.", "",
              table.head("particles, ranks", "a rank", "ghosts over particles: pieces; blocks", "MB a step a rank", "efficiency",
-                        "GB a rank: run", "start, every rank", "s a frame")]
+                        "GB a rank: run", "start", "s a frame")]
     for n in SIZES:
         for ranks in RANKS:
             a, b = (results[f"{n:.0e} {ranks} {way}"] for way in ("pieces", "blocks"))

@@ -131,6 +131,51 @@ every = 0.03
 history-every = 0.01
 """
 
+# A drop in a lighter fluid, both disturbed, over a floor that comes after the drop in the file.
+DROP = """
+dimensions = 2
+spacing = 0.04
+[domain]
+size = [2, 1]
+periodic = ["x"]
+gravity = [0, -1]
+[phases.water]
+kind = "fluid"
+density = 1000
+sound-speed = 20
+[phases.oil]
+kind = "fluid"
+density = 800
+sound-speed = 20
+[phases.wall]
+kind = "wall"
+[interactions]
+kernel = "wendland-c2"
+water-water = 2.6
+oil-oil = 2.6
+water-oil = 2.6
+water-wall = 2.6
+oil-wall = 2.6
+[[fill]]
+phase = "water"
+shape = { disc = { centre = [0.9, 0.5], radius = 0.33 } }
+perturb = 0.2
+seed = 3
+[[fill]]
+phase = "wall"
+shape = { sides = ["bottom", "top"] }
+[[fill]]
+phase = "oil"
+shape = "the-rest"
+perturb = 0.1
+velocity = ["0.1*sin(pi*y)", 0]
+[time]
+end = 0.02
+[output]
+every = 0.01
+history-every = 0.005
+"""
+
 # Scenes of scenes/, shortened, by what they show: file, end (s), overrides. Frames at the middle, on three ranks, and at the end, on two.
 SCENES = {
     "eddies over rough, fitted ground": ("verification/rough_hill", 0.016, "spacing=0.05"),
@@ -251,6 +296,19 @@ class Ranks(Folder):
 
     def test_consistent_fluid_between_walls(self):
         self.compare(channel("consistent"), 2, 3)
+
+    def test_fills_of_two_fluids(self):
+        self.compare(DROP, 2, 3)
+
+    def test_a_mistake_of_the_fills_is_told_once_and_in_the_same_words(self):
+        for wrong in ('[[fill]]\nphase = "oil"\nshape = { box = { min = [0.92, 0.6], max = [1.8, 0.9] } }\n',
+                      '[[fill]]\nphase = "oil"\nshape = { formula = "-1" }\n'):
+            text = DROP + wrong
+            one, many = self.start(0, text, "out"), self.start(3, text, "out")
+            self.assertEqual((one.returncode, many.returncode), (2, 2), many.stderr)
+            told = next(line for line in one.stderr.splitlines() if "fill." in line)
+            self.assertEqual(many.stderr.count(told), 1, many.stderr)
+            self.assertFalse((self.at / "out").exists())
 
     def test_three_dimensions(self):
         self.compare(channel("consistent", solid=True), 2, 3)
