@@ -58,10 +58,11 @@ void ElasticInFluid::schedule(Schedule& s) {
     loaded.push_back({other, {position, velocity, pressure}, {}});
   }
   s.add({stage::walls, name + ", border", held, [this] { hold(); }});
-  s.add({stage::extend_solids,
-         name + ", surface",
-         {{name, {position, acceleration}, {wall_normal, wall_depth, surface_velocity, surface_acceleration}}},
-         [this] { move_surface(); }});
+  s.add(
+      {stage::extend_solids,
+       name + ", surface",
+       {{name, {position, velocity, acceleration}, {wall_normal, wall_depth, surface_velocity, surface_acceleration}}},
+       [this] { move_surface(); }});
   s.add({stage::reaction, name + ", border", loaded, [this] { load(); }});
 }
 
