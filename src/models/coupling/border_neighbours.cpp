@@ -28,6 +28,7 @@ void BorderNeighbours::look_from(const Workspace& w, const std::vector<PiecePlac
   w_ = &w;
   pieces_ = &pieces;
   found_.resize(std::max(found_.size(), static_cast<std::size_t>(omp_get_max_threads())));
+  for (auto& found : found_) found.reserve(w.layout.dimensions == 2 ? 64 : 256);  // twice as many as on a lattice
   if (!ranks::active()) return;
   find_owners();
   exchange();
