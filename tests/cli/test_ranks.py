@@ -150,7 +150,7 @@ water-water = {}
 water-ball = {}
 [[fill]]
 phase = "ball"
-shape = { ball = { centre = [0, 0.6, 0], radius = 0.25 } }
+shape = { sphere = { centre = [0.3, 0.6, 0.3], radius = 0.25 } }
 velocity = [0.5, 0.2, 0]
 [[fill]]
 phase = "water"
@@ -197,7 +197,7 @@ SCENES = {
     "a cylinder that floats, consistent": ("verification/heaving_cylinder", 0.01, "constants.across=10"),
     "a disc that sinks, consistent": ("verification/settling_disc", 0.01, "spacing=0.125"),
     "a cylinder in a shear flow": ("verification/sheared_cylinder", 0.1),
-    "a cylinder across a periodic side": ("verification/sheared_cylinder", 0.1, "fill.0.shape.disc.centre=[-4, 0.3]"),
+    "a cylinder beside a periodic side": ("verification/sheared_cylinder", 0.1, "fill.0.shape.disc.centre=[-3.4, 0.3]"),
     "a plate that a flow bends, its cylinder": ("verification/turek_hron_fsi2", 0.01, "constants.ramp=0.01"),
     "books of the energy of a free surface": ("verification/dam_break", 0.03, "spacing=5.715e-3", "phases.water.energy-budget=true"),
     "books of the energy, plain": ("verification/dam_break", 0.03, "spacing=5.715e-3", "phases.water.energy-budget=true",
@@ -322,7 +322,7 @@ class Ranks(Folder):
                     self.run_on(n, text, f"{scheme}-{n}")
                     self.same(f"{scheme}-1", f"{scheme}-{n}")
 
-    def test_a_ball_across_periodic_sides(self):
+    def test_a_ball_beside_periodic_sides(self):
         self.compare(BALL, 2, 3)
 
     def test_bodies_of_a_consistent_fluid_with_threads_beside_ranks(self):
