@@ -120,6 +120,65 @@ def dam_pressure(n):
     both("pressure of a dam", n, case)
 
 
+# Lobovsky et al. 2014, J. Fluids Struct. 48, 407: 0.3 m of water, 0.6 m long, in a tank of 1.61 m; sensors of 4.2 mm on the far wall. Table 2: the largest
+# pressure of each of 100 runs in mbar, by the height of the sensor's middle (mm): median, 2.5 % and 97.5 % of the runs.
+PEAKS = {3: (91.44, 75.06, 130.98), 15: (57.49, 53.26, 63.31), 30: (43.76, 39.79, 49.62), 80: (30.15, 24.18, 36.32)}
+# The record of the sensor at 30 mm, t sqrt(g/H) against p/(rho g H), every few points of what PySPH keeps (pysph/examples/db_exp_data.py).
+RECORD = ((2.461, .006), (2.516, .083), (2.538, .395), (2.564, .778), (2.592, 1.092), (2.624, 1.372), (2.671, 1.495), (2.774, 1.518), (2.848, 1.480),
+          (2.937, 1.306), (3.039, 1.131), (3.119, .962), (3.193, .779), (3.342, .625), (3.548, .572), (3.753, .592), (4.008, .564), (4.250, .564), (4.509, .605),
+          (4.713, .568), (5.021, .591), (5.329, .576), (5.636, .623), (5.824, .687), (5.932, .874), (6.025, .796), (6.158, .896), (6.300, .805), (6.508, .798),
+          (6.684, .710), (6.814, .710), (6.966, .649))
+COLUMN_PRESSURE = 997 * GRAVITY * .3  # Pa, rho g H of the experiment
+
+
+def sensors_scene(n, scheme, seed):
+    """dam_gate.toml with n spacings over the depth, disturbed, up to the second impact, and the force on the far wall behind each sensor."""
+    scene, dx = document("dam_gate"), .3 / n
+    length = dx * round(1.61 / dx)
+    scene["spacing"], scene["domain"]["size"] = dx, [length, .6]
+    scene["fill"][1]["shape"]["box"]["max"] = [.6 + 5 * dx, .45]
+    scene["fill"][2] |= {"perturb": .1, "seed": seed}
+    if scheme != "consistent":
+        scene["phases"]["water"]["scheme"] = "plain"
+        scene["interactions"] |= {"water-water": 3., "water-tank": 3., "water-gate": 3.}
+    scene["force"] = []
+    rows = {}
+    for z in PEAKS:
+        inside = [j for j in range(n) if abs((j + .5) * dx - 1e-3 * z) < max(dx, 2.1e-3)]
+        low, high = inside[0] * dx, (inside[-1] + 1) * dx
+        rows[z] = high - low
+        scene["force"].append({"name": f"at{z}", "phase": "tank", "box": {"min": [length, low], "max": [length + 4 * dx, high]}})
+    scene["time"] = {"end": 1.25, "largest-speed": 4.5}
+    scene["output"] = {"every": .5, "history-every": 2.5e-4, "walls": False}
+    return toml(scene), rows
+
+
+def dam_sensors(n):
+    """Five runs that differ by their disturbance: the largest pressure at each sensor, the impulse and the time of the first impact."""
+    def case(scheme, _):
+        runs = []
+        for seed in range(1, 6):
+            scene, rows = sensors_scene(n, scheme, seed)
+            (h,), seconds = run(scene, [], "water", files=("history.csv",))
+            runs.append((h["time [s]"] * math.sqrt(GRAVITY / .3), {z: h[f"at{z}_force_x [N]"] / high / (1000 * GRAVITY * .3) for z, high in rows.items()}))
+        name = "dam, sensors of Lobovsky et al."
+        for z, measured in PEAKS.items():
+            middle, low, high = (100 * m / COLUMN_PRESSURE for m in measured)
+            peaks = sorted(p[z].max() for _, p in runs)
+            outside = max(low - peaks[2], peaks[2] - high, 0)
+            report(name, scheme, n, f"{z} mm: largest pressure/(rho g H), median of five runs {peaks[2]:.2f} ({peaks[0]:.2f} to {peaks[-1]:.2f}), beside {middle:.2f} "
+                   f"({low:.2f} to {high:.2f} of 100 runs): outside by", outside, 0, seconds)
+        times, measured = numpy.array(RECORD).T
+        impulses = sorted(impulse(t, p[30], 2.4, 6.9) for t, p in runs)
+        report(name, scheme, n, f"30 mm: impulse of t sqrt(g/H) = 2.4 to 6.9, median {impulses[2]:.2f} ({impulses[0]:.2f} to {impulses[-1]:.2f}), beside "
+               f"{impulse(times, measured, 2.461, 6.9):.2f}: error", abs(impulses[2] / impulse(times, measured, 2.461, 6.9) - 1), .1, seconds)
+        arrivals = sorted(t[numpy.argmax(p[30] > .3)] for t, p in runs)
+        tell(name, scheme, n, "30 mm: t sqrt(g/H) at which the pressure passes 0.3 rho g H, from the gate's start", f"{arrivals[2]:.2f}", "2.53", seconds)
+        second = sorted(p[30][t > 5.2].max() for t, p in runs)
+        tell(name, scheme, n, "30 mm: second peak/(rho g H)", f"{second[2]:.2f} ({second[0]:.2f} to {second[-1]:.2f})", ".90", seconds)
+    both("dam, sensors of Lobovsky et al.", n, case)
+
+
 # ---- rest and waves, for long -------------------------------------------------------------------------------------------
 
 def long_rest(dimensions, n):
@@ -175,6 +234,7 @@ CASES = {
     "far-front": (lambda: [far_front(ratio, n) for ratio in (1, 2) for n in (20, 40, 80) if n <= options.largest],
                   "The front of a dam, far (Martin & Moyce 1952)"),
     "dam-pressure": (lambda: [dam_pressure(n) for n in (20, 40, 80) if n <= options.largest], "The pressure of a dam on a wall (Buchner 2002)"),
+    "dam-sensors": (lambda: [dam_sensors(n) for n in (40, 80) if n <= options.largest], "The pressure of a dam with a gate at four sensors (Lobovsky et al. 2014)"),
     "long-rest": (lambda: [long_rest(2, n) for n in (12, 25, 50)] + [long_rest(3, n) for n in (8, 12, 16)], "Water at rest, 1000 crossings of sound"),
     "long-wave": (lambda: [long_wave(n) for n in (25, 50, 100) if n <= options.largest], "Standing gravity wave, 30 periods"),
 }

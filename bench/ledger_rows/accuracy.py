@@ -35,6 +35,8 @@ LONG = {
     "sloshing": "Lamb 1932, Hydrodynamics, section 257; resonance: Faltinsen & Timokha 2009, Sloshing, chapter 5",
     "far-front": "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244, 312, a = 2.25 in: n^2 = 1 by Xie 2021, arXiv:2108.08769; n^2 = 2, figure 3",
     "dam-pressure": "Buchner 2002, thesis, Delft, as TrixiParticles.jl keeps it; sensor 45 mm lower: Greco 2001, Adami et al. 2012",
+    "dam-sensors": "Lobovsky et al. 2014, J. Fluids Struct. 48, 407, table 2; the record at 30 mm as PySPH keeps it",
+    "elastic-gate": "Antoci, Gallati & Sibilla 2007, Comput. Struct. 85, 879, as Ng et al. 2020 draw it",
     "long-rest": "hydrostatics: nothing moves (exact)",
     "long-wave": "Lamb 1932, Hydrodynamics, section 228",
     "open-step": "bench/accuracy/step_reference.py, finite differences; for an expansion of 2 within 0.7 % of Erturk 2008, Computers & Fluids 37, 633",
@@ -90,6 +92,8 @@ def one(name, r, source, file):
         return row(what, case, reference, float(value), source, file)
     if what == "amplitude of the lift coefficient":   # told beside the literature's range, which it misses; nothing was asked of it
         return row(what, case, "0.32 to 0.34", float(value), source, file, bias=100 * (float(value) / .34 - 1))
+    if what == "runs to the end":  # it broke down
+        return row("runs that came to their end, of one", case, 1, 0., source, file, bound=">= 1", met=False)
     if isinstance(value, str):
         try:
             value = float(value)

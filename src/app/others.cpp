@@ -8,7 +8,6 @@
 #include "base/errors.hpp"
 #include "output/compare.hpp"
 #include "output/series.hpp"
-#include "plan/rank_limits.hpp"
 #include "scene/reader.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/measure_cost.hpp"
@@ -24,7 +23,6 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   auto blocks = make_particles(scene, json ? nullptr : &std::cout);
   const std::chrono::duration<double> making = std::chrono::steady_clock::now() - start;
   Plan plan = make_plan(scene, blocks);
-  if (ranks > 1) check_for_ranks(scene, plan);
   use_threads(threads, plan.particles());
   const bool retreats = !scene.time.fixed_step;
   const MemoryNeed memory = memory_need(scene, plan, retreats);

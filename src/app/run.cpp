@@ -22,7 +22,6 @@
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
 #include "plan/memory_need.hpp"
-#include "plan/rank_limits.hpp"
 #include "scene/identity.hpp"
 #include "scene/reader.hpp"
 #include "simulation/settle.hpp"
@@ -214,7 +213,6 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   if (from) beds.archive(*from, scene);
   auto blocks = make_particles(scene, quiet ? nullptr : &std::cout, &beds);
   const Plan plan = make_plan(scene, blocks);
-  if (ranks::available()) check_for_ranks(scene, plan);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
   use_threads(options.threads > 0 ? options.threads : threads_of_a_rank(), plan.particles());
   if (!quiet) std::cout << to_text(plan, scene) << std::flush;

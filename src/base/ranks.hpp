@@ -71,15 +71,18 @@ inline void share() { detail::shared = detail::given != nullptr; }
 /// with the same bits, so that nothing is to be shared out or reduced.
 class Alone {
  public:
-  explicit Alone(bool alone = true) {
-    if (alone) detail::given = nullptr;
+  explicit Alone(bool alone = true) : all_(alone ? detail::given : nullptr) {
+    if (all_)
+      detail::given = nullptr;  // without others nothing is written: simulations of one process run side by side
   }
-  ~Alone() { detail::given = all_; }
+  ~Alone() {
+    if (all_) detail::given = all_;
+  }
   Alone(const Alone&) = delete;
   Alone& operator=(const Alone&) = delete;
 
  private:
-  Communicator* all_ = detail::given;
+  Communicator* all_;  // who comes back, or null
 };
 
 inline bool is_first() { return !detail::given || detail::given->rank() == 0; }

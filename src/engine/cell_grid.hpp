@@ -79,6 +79,16 @@ class CellGrid {
       cell = cell * count_[d] + static_cast<std::size_t>(cell_coordinate(x[d], d));
     return cell;
   }
+  /// Number of the cell of a particle as sorted last.
+  std::uint32_t cell_of_particle(std::size_t k) const {
+    std::size_t cell = 0;
+    for (std::size_t d = dimensions_; d-- > 0;) {
+      int c = cell_coordinate(search_[d][k], d);
+      if (bounds_.periodic[d]) c = std::clamp(c, halo_[d], static_cast<int>(count_[d]) - halo_[d] - 1);
+      cell = cell * count_[d] + static_cast<std::size_t>(c);
+    }
+    return static_cast<std::uint32_t>(cell);
+  }
 
   /// Calls f(begin, end) for runs of candidates (particles, then images) that cover all balls of radius `radius` about
   /// points of the box from `low` to `high`.

@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "base/ranks.hpp"
 
 namespace barchan {
 
-/// Every rank gets items of `width` doubles from their owners: at(k) is where item k begins, owners[k] the rank that
-/// has it. All ranks know all owners. Without owners nothing is shared.
+/// Every rank gets items of `width` values from their owners: at(k) is where item k begins, owners[k] the rank that has
+/// it. All ranks know all owners. Without owners nothing is shared.
 template <class At>
 void share_items(const std::vector<std::int32_t>& owners, std::size_t width, At&& at) {
   if (owners.empty() || !ranks::active()) return;
   const std::int32_t own = ranks::active()->rank();
   std::vector<std::size_t> next(static_cast<std::size_t>(ranks::active()->size()) + 1, 0);
-  std::vector<double> items;
+  std::vector<std::remove_cvref_t<decltype(*at(0))>> items;
   for (std::size_t k = 0; k < owners.size(); ++k) {
     next[static_cast<std::size_t>(owners[k]) + 1] += width;
     if (owners[k] == own) items.insert(items.end(), at(k), at(k) + width);

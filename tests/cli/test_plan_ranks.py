@@ -81,12 +81,6 @@ class PlanOfRanks(test_ranks.Folder):
         self.assertTrue(all(rank["particles"] >= plan["whole_particles"] for rank in plan["of"]))
         self.assertLess(plan["efficiency"], 0.6)
 
-    def test_what_ranks_refuse_the_plan_refuses(self):
-        ended = self.plan(SOURCE / "scenes/verification/heaving_cylinder.toml", "--ranks", "2")
-        self.assertEqual(ended.returncode, 2)
-        self.assertIn("a body in a fluid of the consistent scheme cannot run on several ranks yet", ended.stderr)
-        self.assertEqual(self.plan(SOURCE / "scenes/verification/heaving_cylinder.toml", "--ranks", "1").returncode, 0)
-
     def test_a_wrong_number(self):
         for wrong in ("0", "-3", "two", "5000"):
             ended = self.plan(PERIODIC.format(scheme="plain", precision=""), "--ranks", wrong)

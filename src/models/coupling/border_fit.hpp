@@ -2,12 +2,24 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
+#include <cmath>
 #include <optional>
+
+#include "base/vec3.hpp"
 
 namespace barchan {
 
 /// How far about a place of a border the fluid is fitted, in spacings.
 constexpr double border_fit_radius = 3.0;
+
+/// Two unit vectors across a normal; in 2D the first one.
+inline std::array<Vec3, 2> along_border(const Vec3& normal, int dimensions) {
+  if (dimensions == 2) return {Vec3{-normal[1], normal[0], 0.0}, Vec3{}};
+  const Vec3 other = std::abs(normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, first = cross(normal, other);
+  const Vec3 along = 1.0 / norm(first) * first;
+  return {along, cross(normal, along)};
+}
 
 /// Fits values to `N` functions of the place. Values: numbers of a sample.
 template <int N, int Values>

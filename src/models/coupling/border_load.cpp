@@ -6,7 +6,6 @@
 #include "base/errors.hpp"
 #include "engine/hold_inside.hpp"
 #include "models/coupling/border_fit.hpp"
-#include "models/coupling/border_search.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "scene/located.hpp"
 
@@ -26,10 +25,8 @@ BorderLoad::BorderLoad(const Scene& scene, const Layout& layout, const PlanEntry
       free_surface_(layout.phases[fluid_].free_surface),
       spacing_(layout.phases[fluid_].spacing),
       radius_(border_fit_radius * spacing_),
-      viscosity_(pair_viscosity(scene, layout, solid_, fluid_)) {
-  for (const PlanEntry& e : layout.entries)
-    if (e.searched) slack_ = std::max(slack_, layout.skin * e.radius);
-}
+      viscosity_(pair_viscosity(scene, layout, solid_, fluid_)),
+      neighbours_(layout, fluid_, radius_) {}
 
 void BorderLoad::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   const std::vector<Vec3>& x = blocks[solid_].position;
@@ -37,9 +34,9 @@ void BorderLoad::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   const auto first = std::find_if(state.bodies.begin(), state.bodies.end(),
                                   [&](const RigidBody& body) { return body.phase == solid_; });
   first_body_ = static_cast<std::size_t>(first - state.bodies.begin());
-  std::size_t most = 0;
+  std::size_t pieces = 0;
   for (const RigidBody& body : layout_.phases[solid_].rigid_bodies) {
-    Border border{BodyBorder(body, scene_, layout_.phases[solid_].spacing, width, radius_ + spacing_), {}};
+    Border border{BodyBorder(body, scene_, layout_.phases[solid_].spacing, width, radius_ + spacing_), {}, pieces};
     const OwnAxes axes(body);
     for (const BodyBorder::Piece& piece : border.body.pieces()) {
       const Vec3 at = body.first_place + axes.to_space(piece.arm);
@@ -48,10 +45,11 @@ void BorderLoad::begin(State& state, const std::vector<ParticleBlock>& blocks) {
         if (norm(x[k] - at) < norm(x[nearest] - at)) nearest = k;
       border.anchors.push_back({nearest, axes.to_own(at - x[nearest])});
     }
-    most = std::max(most, border.anchors.size());
+    pieces += border.anchors.size();
     borders_.push_back(std::move(border));
   }
-  stress_.resize(most);
+  places_.resize(pieces);
+  stress_.resize(pieces);
 }
 
 void BorderLoad::attach(Workspace& w) {
@@ -115,11 +113,24 @@ void BorderLoad::hold() {
 }
 
 void BorderLoad::load() {
+  find_places();
+  neighbours_.look_from(*w_, places_);
   for (std::size_t b = 0; b < borders_.size(); ++b) {
-    RigidBody& body = w_->state.bodies[first_body_ + b];
-    if (layout_.dimensions == 2) find_stress<2>(body, borders_[b]);
-    else find_stress<3>(body, borders_[b]);
-    sum(body, borders_[b]);
+    const RigidBody& body = w_->state.bodies[first_body_ + b];
+    layout_.dimensions == 2 ? find_stress<2>(body, borders_[b]) : find_stress<3>(body, borders_[b]);
+  }
+  neighbours_.share(stress_);
+  for (std::size_t b = 0; b < borders_.size(); ++b) sum(w_->state.bodies[first_body_ + b], borders_[b]);
+}
+
+void BorderLoad::find_places() {
+  const std::uint32_t* const at = w_->particles(solid_).places();
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    const OwnAxes axes(w_->state.bodies[first_body_ + b]);
+    const std::vector<Anchor>& anchors = borders_[b].anchors;
+    for (std::size_t q = 0; q < anchors.size(); ++q)
+      places_[borders_[b].first + q] =
+          piece_place(*w_, solid_, at[anchors[q].particle], axes.to_space(anchors[q].to_piece));
   }
 }
 
@@ -128,47 +139,44 @@ void BorderLoad::find_stress(const RigidBody& body, const Border& border) {
   const OwnAxes axes(body);
   const auto count = static_cast<std::int64_t>(border.anchors.size());
 #pragma omp parallel for schedule(static)
-  for (std::int64_t q = 0; q < count; ++q)
-    stress_[static_cast<std::size_t>(q)] = stress_at<Dim>(body, axes, border, static_cast<std::size_t>(q));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto q = static_cast<std::size_t>(i);
+    const std::size_t number = border.first + q;
+    if (neighbours_.is_own(number)) stress_[number] = stress_at<Dim>(body, axes, border, q, neighbours_.of(number));
+  }
 }
 
 template <int Dim>
 BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& axes, const Border& border,
-                                         std::size_t number) const {
+                                         std::size_t number, const std::vector<BorderNeighbour>& about) const {
   using Vector = typename BorderSample<Dim>::Vector;
-  const PhaseParticles& fluid = w_->particles(fluid_);
   const BodyBorder::Piece& piece = border.body.pieces()[number];
   const Vec3 arm = axes.to_space(piece.arm), normal = axes.to_space(piece.normal),
              rate = axes.to_space(own_angular_velocity(body));
   const auto along = along_border(normal, Dim);
-  const double* pressure = fluid.column(Field::pressure);
   BorderSample<Dim> sample;
   double lowest = 0.0;
-  const auto look = [&](std::size_t b, const Vec3& at) {
-    Vec3 r{};
-    for (std::size_t d = 0; d < Dim; ++d) r[d] = fluid.column(Field::position, static_cast<int>(d))[b] - at[d];
+  for (const BorderNeighbour& near : about) {
+    const Vec3& r = near.from;
     const double share = 1.0 - dot(r, r) / (radius_ * radius_);
-    if (!(share > 0.0)) return;
+    if (!(share > 0.0)) continue;
     const auto gap = border.body.gap(axes, arm + r);
-    if (!gap) return;
+    if (!gap) continue;
     Vector scaled, u;
     const Vec3 carried = body.now.velocity + cross(rate, arm + r);
     for (std::size_t d = 0; d < Dim; ++d) {
       const auto c = static_cast<Eigen::Index>(d);
       scaled[c] = r[d] / spacing_;
-      u[c] = fluid.column(Field::velocity, static_cast<int>(d))[b] - carried[d];
+      u[c] = near.velocity[d] - carried[d];
     }
     const double w = share * share;
-    lowest = std::min(lowest, pressure[b]);
-    sample.press(scaled, w, pressure[b] - scene_.phases[fluid_].density * dot(scene_.domain.gravity, r));
-    if (!(gap->distance > 0.0) || !(dot(normal, r) > 0.0)) return;
+    lowest = std::min(lowest, near.pressure);
+    sample.press(scaled, w, near.pressure - scene_.phases[fluid_].density * dot(scene_.domain.gravity, r));
+    if (!(gap->distance > 0.0) || !(dot(normal, r) > 0.0)) continue;
     Eigen::Matrix<double, Dim - 1, 1> beside;
     for (std::size_t d = 0; d + 1 < Dim; ++d) beside[static_cast<Eigen::Index>(d)] = dot(along[d], r) / spacing_;
     sample.rub(gap->distance / spacing_, beside, w, u);
-  };
-  const Anchor& anchor = border.anchors[number];
-  each_near<Dim>(*w_, fluid_, solid_, w_->particles(solid_).places()[anchor.particle], axes.to_space(anchor.to_piece),
-                 radius_, slack_, look);
+  }
   if (!sample.any()) return {};
   Stress s{true, sample.pressure(), {}};
   if (free_surface_) s.pressure = std::max(s.pressure, lowest);
@@ -182,20 +190,21 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
 /// it is zero.
 void BorderLoad::sum(RigidBody& body, const Border& border) const {
   const auto& pieces = border.body.pieces();
+  const Stress* const stress = stress_.data() + border.first;
   double wet = 0.0, mean = 0.0;
   for (std::size_t q = 0; q < pieces.size(); ++q) {
-    if (!stress_[q].wet) continue;
+    if (!stress[q].wet) continue;
     wet += pieces[q].content;
-    mean += pieces[q].content * stress_[q].pressure;
+    mean += pieces[q].content * stress[q].pressure;
   }
   if (!(wet > 0.0)) return;
   mean = free_surface_ ? 0.0 : mean / wet;
   const OwnAxes axes(body);
   Vec3 force{}, torque{};
   for (std::size_t q = 0; q < pieces.size(); ++q) {
-    if (!stress_[q].wet) continue;
+    if (!stress[q].wet) continue;
     const Vec3 normal = axes.to_space(pieces[q].normal),
-               push = pieces[q].content * (stress_[q].friction - (stress_[q].pressure - mean) * normal);
+               push = pieces[q].content * (stress[q].friction - (stress[q].pressure - mean) * normal);
     force = force + push;
     torque = torque + cross(axes.to_space(pieces[q].arm), push);
   }

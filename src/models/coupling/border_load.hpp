@@ -2,6 +2,7 @@
 #pragma once
 
 #include "models/bodies/body_border.hpp"
+#include "models/coupling/border_neighbours.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -36,22 +37,27 @@ class BorderLoad : public Model {
   struct Border {
     BodyBorder body;
     std::vector<Anchor> anchors;  // by piece
+    std::size_t first;            // number of its first piece among those of all bodies
   };
   void hold();
   void load();
+  void find_places();
   template <int Dim>
   void find_stress(const RigidBody& body, const Border& border);
   template <int Dim>
-  Stress stress_at(const RigidBody& body, const OwnAxes& axes, const Border& border, std::size_t piece) const;
+  Stress stress_at(const RigidBody& body, const OwnAxes& axes, const Border& border, std::size_t piece,
+                   const std::vector<BorderNeighbour>& about) const;
   void sum(RigidBody& body, const Border& border) const;
 
   const Scene& scene_;
   const Layout& layout_;
   std::size_t fluid_, solid_, first_body_ = 0;
-  bool free_surface_;                                  // beyond which nothing presses
-  double spacing_, radius_, viscosity_, slack_ = 0.0;  // m, m, Pa s, m
-  std::vector<Border> borders_;                        // by body
-  std::vector<Stress> stress_;                         // by piece, of the body that is looked at
+  bool free_surface_;                    // beyond which nothing presses
+  double spacing_, radius_, viscosity_;  // m, m, Pa s
+  BorderNeighbours neighbours_;
+  std::vector<Border> borders_;     // by body
+  std::vector<PiecePlace> places_;  // by piece of all bodies
+  std::vector<Stress> stress_;
   Workspace* w_ = nullptr;
 };
 

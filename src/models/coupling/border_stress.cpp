@@ -15,11 +15,4 @@ BorderFluid border_fluid(const Scene& scene, const Layout& layout, const PlanEnt
           fluid.sound_speed};
 }
 
-double widest_skin(const Layout& layout) {
-  double widest = 0.0;
-  for (const PlanEntry& e : layout.entries)
-    if (e.searched) widest = std::max(widest, layout.skin * e.radius);
-  return widest;
-}
-
 }  // namespace barchan

@@ -15,9 +15,9 @@ constexpr std::uint32_t inner = 0xffffffffu;
 
 ElasticInFluid::ElasticInFluid(const Scene& scene, const Layout& layout, std::size_t solid)
     : scene_(scene), layout_(layout), solid_(solid) {
-  slack_ = widest_skin(layout);
   for (const PlanEntry& e : layout.entries)
     if (e.extends && e.other == solid && e.corrected) fluids_.push_back(border_fluid(scene, layout, e));
+  for (const BorderFluid& fluid : fluids_) neighbours_.emplace_back(layout, fluid.phase, fluid.radius);
 }
 
 void ElasticInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks) {
@@ -58,10 +58,11 @@ void ElasticInFluid::schedule(Schedule& s) {
     loaded.push_back({other, {position, velocity, pressure}, {}});
   }
   s.add({stage::walls, name + ", border", held, [this] { hold(); }});
-  s.add({stage::extend_solids,
-         name + ", surface",
-         {{name, {position, acceleration}, {wall_normal, wall_depth, surface_velocity, surface_acceleration}}},
-         [this] { move_surface(); }});
+  s.add(
+      {stage::extend_solids,
+       name + ", surface",
+       {{name, {position, velocity, acceleration}, {wall_normal, wall_depth, surface_velocity, surface_acceleration}}},
+       [this] { move_surface(); }});
   s.add({stage::reaction, name + ", border", loaded, [this] { load(); }});
 }
 
@@ -149,18 +150,12 @@ void ElasticInFluid::move_surface() {
 
 void ElasticInFluid::load() {
   std::fill(force_.begin(), force_.end(), Vec3{});
-  const auto& pieces = border_.pieces();
   const std::uint32_t* const places = w_->particles(solid_).places();
-  const auto count = static_cast<std::int64_t>(pieces.size());
+  places_.clear();
+  for (const ElasticBorder::Piece& piece : border_.pieces())
+    places_.push_back(piece_place(*w_, solid_, places[piece.anchor], piece.beside));
   for (std::size_t c = 0; c < fluids_.size(); ++c) {
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < count; ++i) {
-      const auto q = static_cast<std::size_t>(i);
-      const ElasticBorder::Piece& piece = pieces[q];
-      const BorderPlace at{places[piece.anchor], piece.beside, piece.normal, piece.velocity, piece.spin};
-      stress_[q] = layout_.dimensions == 2 ? border_stress<2>(*w_, fluids_[c], solid_, at, slack_)
-                                           : border_stress<3>(*w_, fluids_[c], solid_, at, slack_);
-    }
+    find_stress(c);
     radiate(fluids_[c], parted_[c]);
     sum(fluids_[c]);
   }
@@ -170,6 +165,22 @@ void ElasticInFluid::load() {
     for (std::size_t id = 0; id < force_.size(); ++id)
       a[places[id]] += force_[id][static_cast<std::size_t>(d)] / p.mass();
   }
+}
+
+void ElasticInFluid::find_stress(std::size_t fluid) {
+  BorderNeighbours& near = neighbours_[fluid];
+  near.look_from(*w_, places_);
+  const auto& pieces = border_.pieces();
+  const auto count = static_cast<std::int64_t>(pieces.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto q = static_cast<std::size_t>(i);
+    if (!near.is_own(q)) continue;
+    const BorderMotion border{pieces[q].normal, pieces[q].velocity, pieces[q].spin};
+    stress_[q] = layout_.dimensions == 2 ? border_stress<2>(scene_.domain.gravity, fluids_[fluid], near.of(q), border)
+                                         : border_stress<3>(scene_.domain.gravity, fluids_[fluid], near.of(q), border);
+  }
+  near.share(stress_);
 }
 
 /// p -= rho c (w - mean of w), w the speed with which the fluid goes off the border. The mean is that of h/c: over 20

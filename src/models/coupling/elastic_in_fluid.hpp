@@ -29,6 +29,7 @@ class ElasticInFluid : public Model {
   void hold();
   void move_surface();
   void load();
+  void find_stress(std::size_t fluid);
   void radiate(const BorderFluid& fluid, std::vector<double>& parted);
   void sum(const BorderFluid& fluid);
 
@@ -36,9 +37,10 @@ class ElasticInFluid : public Model {
   const Layout& layout_;
   std::size_t solid_;
   std::vector<BorderFluid> fluids_;
-  double slack_ = 0.0;  // m
+  std::vector<BorderNeighbours> neighbours_;  // by fluid
   ElasticBorder border_;
   OwnColumn<std::uint32_t> nearest_;         // piece of the surface by particle; `inner`: none is near
+  std::vector<PiecePlace> places_;           // by piece
   std::vector<BorderStress> stress_;         // by piece, of the fluid that is looked at
   std::vector<std::vector<double>> parted_;  // m/s by fluid and piece: mean speed of parting
   std::vector<Vec3> force_;                  // N by particle (id from the phase's first)

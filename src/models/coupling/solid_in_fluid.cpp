@@ -58,6 +58,7 @@ void SolidInFluid::extend() {
 }
 
 void SolidInFluid::react() {
+  if (felt_.empty()) return;
   PhaseParticles& solid = w_->particles(solid_);
   const RecordArray& extended = w_->records(solid_, Record::extended);
   for (const auto& fluid : felt_) fluid_reaction(solid, extended, fluid, separate_);

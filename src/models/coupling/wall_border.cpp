@@ -6,7 +6,8 @@
 namespace barchan {
 
 WallBorder::WallBorder(const Scene& scene, const Layout& layout, const PlanEntry& entry, const ParticleBlock& block)
-    : wall_(entry.other), fluid_(border_fluid(scene, layout, entry)), slack_(widest_skin(layout)) {
+    : wall_(entry.other), fluid_(border_fluid(scene, layout, entry)) {
+  neighbours_.emplace(layout, fluid_.phase, fluid_.radius);
   const double width = piece_width(layout.dimensions) * fluid_.spacing;
   for (const ParticleBlock::Part& part : block.parts) {
     const auto points = free_border(scene, part.fill, width);
@@ -24,14 +25,38 @@ WallBorder::WallBorder(const Scene& scene, const Layout& layout, const PlanEntry
   }
 }
 
-WallBorder::Load WallBorder::load(const Workspace& w, const Vec3& about) const {
+/// On several ranks a particle of the wall is one rank's.
+void WallBorder::find_places(const Workspace& w) {
+  struct Found {
+    std::size_t piece;
+    PiecePlace place;
+  };
+  std::vector<Found> found;
+  const std::uint32_t* const places = w.state.phases[wall_].places();
+  for (std::size_t q = 0; q < pieces_.size(); ++q)
+    if (const std::uint32_t at = places[pieces_[q].anchor]; at != PhaseParticles::elsewhere)
+      found.push_back({q, piece_place(w, wall_, at, pieces_[q].beside)});
+  ranks::join(found);
+  places_.resize(pieces_.size());
+  for (const Found& one : found) places_[one.piece] = one.place;
+}
+
+WallBorder::Load WallBorder::load(const Workspace& w, const Vec3& about) {
+  if (places_.empty()) find_places(w);
+  neighbours_->look_from(w, places_);
+  const Vec3& gravity = w.scene.domain.gravity;
+  stress_.resize(pieces_.size());
+  for (std::size_t q = 0; q < pieces_.size(); ++q) {
+    if (!neighbours_->is_own(q)) continue;
+    const BorderMotion border{pieces_[q].normal, {}, {}};
+    stress_[q] = w.layout.dimensions == 2 ? border_stress<2>(gravity, fluid_, neighbours_->of(q), border)
+                                          : border_stress<3>(gravity, fluid_, neighbours_->of(q), border);
+  }
+  neighbours_->share(stress_);
   Load sum;
-  const PhaseParticles& wall = w.state.phases[wall_];
-  for (const Piece& piece : pieces_) {
-    const BorderPlace at{wall.places()[piece.anchor], piece.beside, piece.normal, {}, {}};
-    const BorderStress s = w.layout.dimensions == 2 ? border_stress<2>(w, fluid_, wall_, at, slack_)
-                                                    : border_stress<3>(w, fluid_, wall_, at, slack_);
-    const Vec3 push = piece.content * (s.friction - s.pressure * piece.normal);
+  for (std::size_t q = 0; q < pieces_.size(); ++q) {
+    const Piece& piece = pieces_[q];
+    const Vec3 push = piece.content * (stress_[q].friction - stress_[q].pressure * piece.normal);
     sum.force = sum.force + push;
     sum.torque = sum.torque + cross(piece.at - about, push);
   }

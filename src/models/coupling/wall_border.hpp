@@ -1,6 +1,7 @@
 // The load of a fluid on the border of a wall that stays, from the fluid before it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "models/coupling/border_stress.hpp"
@@ -20,9 +21,11 @@ class WallBorder {
   struct Load {
     Vec3 force{}, torque{};
   };
-  Load load(const Workspace& w, const Vec3& about) const;
+  Load load(const Workspace& w, const Vec3& about);
 
  private:
+  void find_places(const Workspace& w);
+
   struct Piece {
     Vec3 at, normal;     // m
     double content;      // m (2D) or m2
@@ -31,8 +34,10 @@ class WallBorder {
   };
   std::size_t wall_ = 0;
   BorderFluid fluid_{};
-  double slack_ = 0.0;  // m
   std::vector<Piece> pieces_;
+  std::vector<PiecePlace> places_;  // by piece; empty until the particles have been sorted: the wall stays
+  std::optional<BorderNeighbours> neighbours_;
+  std::vector<BorderStress> stress_;  // by piece
 };
 
 }  // namespace barchan

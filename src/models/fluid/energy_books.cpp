@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/errors.hpp"
+#include "base/ranks.hpp"
 #include "engine/means.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "scene/couplings.hpp"
@@ -79,13 +80,17 @@ void check_energy_budget(const Scene& scene, std::size_t fluid, const Layout& la
   }
 }
 
-EnergyBooks::EnergyBooks(Fluid fluid, PhaseParticles& particles) : fluid_(std::move(fluid)), particles_(&particles) {
-  const std::size_t n = particles.size();
-  parts_.fit(n, particles.dimensions());
+EnergyBooks::EnergyBooks(Fluid fluid, PhaseParticles& particles) : fluid_(std::move(fluid)), particles_(&particles) {}
+
+/// Room for the particles of now: on several ranks their number comes and goes.
+void EnergyBooks::fit() {
+  const std::size_t n = particles_->size();
+  if (terms_.size() >= n) return;
+  parts_.fit(n, particles_->dimensions());
   for (auto* column : {&terms_, &slopes_[0], &slopes_[1], &slopes_[2]}) column->resize(n);
   if (tears()) density_.resize(n);
   if (!fluid_.may_take[held_at_walls]) return;
-  for (std::size_t d = 0; d < static_cast<std::size_t>(particles.dimensions()); ++d)
+  for (std::size_t d = 0; d < static_cast<std::size_t>(particles_->dimensions()); ++d)
     for (auto* column : {&place_[d], &speed_[d]}) column->resize(n);
 }
 
@@ -109,6 +114,7 @@ double EnergyBooks::whole_energy() {
 }
 
 void EnergyBooks::begin_step(double dt) {
+  fit();  // the particles may be those of a checkpoint
   Numbers& b = numbers_;
   const double half = 0.5 * dt;
   for (std::size_t i = 0; i < pushes; ++i) b.taken[pushed[i]] -= half * (b.power[i] + 0.5 * half * b.square[i]);
@@ -153,12 +159,14 @@ void EnergyBooks::held() {
         });
   }
   if (!leaves()) return;
-  number_before_ = particles_->size();
+  number_before_ = ranks::total(particles_->size());
   energy_before_ = whole_energy();
 }
 
 void EnergyBooks::find_left() {
-  if (leaves() && number_before_ > particles_->size()) numbers_.taken[open_sides] += energy_before_ - whole_energy();
+  fit();
+  if (leaves() && number_before_ > ranks::total(particles_->size()))
+    numbers_.taken[open_sides] += energy_before_ - whole_energy();
   number_before_ = 0;
 }
 

@@ -84,6 +84,7 @@ class EnergyBooks {
     double sinking = 0.0;  // W, sum m g.du
   };
 
+  void fit();
   template <class F>
   double total(F&& f);
   template <class Term>
