@@ -15,7 +15,8 @@ import sys
 
 import numpy as np
 from paraview import servermanager
-from paraview.simple import Calculator, Clip, PVDReader, Threshold, XMLPolyDataReader, XMLUnstructuredGridReader
+from paraview.simple import (Calculator, Clip, PVDReader, Threshold, XMLPartitionedPolydataReader, XMLPartitionedUnstructuredGridReader,
+                             XMLPolyDataReader, XMLUnstructuredGridReader)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from barchan_numbers import nice_ceiling, percentile, within_reach
@@ -51,7 +52,7 @@ def find_series(state_file):
 
 
 def open_reader(path, name):
-    """The reader of a series (.pvd) or of a single frame (.vtp, .vtu)."""
+    """The reader of a series (.pvd) or of a single frame (.vtp, .vtu; in pieces .pvtp, .pvtu)."""
     ending = os.path.splitext(path)[1]
     if ending == ".pvd":
         return PVDReader(registrationName=name, FileName=path)
@@ -59,7 +60,11 @@ def open_reader(path, name):
         return XMLPolyDataReader(registrationName=name, FileName=[path])
     if ending == ".vtu":
         return XMLUnstructuredGridReader(registrationName=name, FileName=[path])
-    raise Wrong(f"{path}: expected a series (.pvd) or a frame (.vtp, .vtu)")
+    if ending == ".pvtp":
+        return XMLPartitionedPolydataReader(registrationName=name, FileName=[path])
+    if ending == ".pvtu":
+        return XMLPartitionedUnstructuredGridReader(registrationName=name, FileName=[path])
+    raise Wrong(f"{path}: expected a series (.pvd) or a frame (.vtp, .vtu; in pieces .pvtp, .pvtu)")
 
 
 def kind_of(name):

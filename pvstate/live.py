@@ -24,11 +24,12 @@ def newest(series):
 
 """
 SCRIPT = NEWEST + """
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPPolyDataReader, vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 name = newest({path!r})
 if name:
-    reader = vtkXMLUnstructuredGridReader() if name.endswith(".vtu") else vtkXMLPolyDataReader()
+    readers = {{".vtu": vtkXMLUnstructuredGridReader, ".pvtp": vtkXMLPPolyDataReader, ".pvtu": vtkXMLPUnstructuredGridReader}}
+    reader = readers.get(os.path.splitext(name)[1], vtkXMLPolyDataReader)()
     reader.SetFileName(os.path.join({folder!r}, name))
     part = vtkGeometryFilter()
     part.SetInputConnection(reader.GetOutputPort())

@@ -1,9 +1,10 @@
-"""One frame of a run as NumPy arrays (.vtp, .vtu), grids (.vti), and the frames that a scene takes for the shape of a fill.
+"""One frame of a run as NumPy arrays (.vtp, .vtu; in pieces .pvtp, .pvtu), grids (.vti), and the frames that a scene takes for the shape of a fill.
 
 This is the one file of the package that knows VTK.
 """
 
 import pathlib
+import xml.etree.ElementTree as ElementTree
 
 import numpy
 
@@ -43,17 +44,15 @@ class Frame:
         self.path = pathlib.Path(path)
         if not self.path.is_file():
             raise Unreadable(f"{path}: there is no such frame")
-        reader = vtkXMLUnstructuredGridReader() if self.path.suffix == ".vtu" else vtkXMLPolyDataReader()
-        data = _read(reader, self.path)
-        if data is None or data.GetPoints() is None:
-            raise Unreadable(f"{path}: no particles: the file is damaged or no frame (.vtp or .vtu)")
-        arrays, about = data.GetPointData(), data.GetFieldData()
+        files = pieces(self.path)
+        parts = [_particles(file, self.path) for file in files or [self.path]]
+        about = parts[0].about
         own = numbers(about.GetArray("TimeValue"))
         self.time = float(own[0]) if time is None and len(own) else time
-        self.x = vtk_to_numpy(data.GetPoints().GetData())
-        self.arrays = {arrays.GetArrayName(k): vtk_to_numpy(arrays.GetArray(k)) for k in range(arrays.GetNumberOfArrays()) if arrays.GetArray(k)}
-        if any(len(values) != len(self.x) for values in self.arrays.values()):
-            raise Unreadable(f"{path}: damaged: a field has another length than the positions")
+        if files:
+            self.x, self.arrays = _together(parts, files, self.path)
+        else:
+            self.x, self.arrays = parts[0].x, parts[0].arrays
         self.names = strings(about.GetAbstractArray("phase_names"))
         self.kinds = strings(about.GetAbstractArray("phase_kinds"))
         self.units = dict((line + " ").split(" ", 1) for line in strings(about.GetAbstractArray("units")) if line)
@@ -131,6 +130,46 @@ class Frame:
         if "phase" in frame and self.names:
             frame["phase"] = pandas.Categorical.from_codes(frame["phase"], list(self.names))
         return frame.set_index("id") if "id" in frame else frame
+
+
+class _particles:
+    """What stands in one file: `x`, `arrays`, `about` (VTK's field data). `frame`: the file of the frame, for messages."""
+
+    def __init__(self, path, frame):
+        if not path.is_file():
+            raise Unreadable(f"{frame}: its piece {path} is not there" if path != frame else f"{path}: there is no such frame")
+        data = _read(vtkXMLUnstructuredGridReader() if path.suffix == ".vtu" else vtkXMLPolyDataReader(), path)
+        if data is None or data.GetPoints() is None:
+            raise Unreadable(f"{path}: no particles: the file is damaged or no frame (.vtp or .vtu, in pieces .pvtp or .pvtu)")
+        arrays, self.about = data.GetPointData(), data.GetFieldData()
+        self.x = vtk_to_numpy(data.GetPoints().GetData())
+        self.arrays = {arrays.GetArrayName(k): vtk_to_numpy(arrays.GetArray(k)) for k in range(arrays.GetNumberOfArrays()) if arrays.GetArray(k)}
+        if any(len(values) != len(self.x) for values in self.arrays.values()):
+            raise Unreadable(f"{path}: damaged: a field has another length than the positions")
+
+
+def _together(parts, files, frame):
+    """Positions and arrays of the pieces of a frame, by phase, of a phase piece by piece: the order of a frame in one file."""
+    def moment(part):
+        return [numbers(part.about.GetArray(name)).tolist() for name in ("TimeValue", "step", "frame")]
+
+    for part, file in zip(parts, files):
+        if moment(part) != moment(parts[0]) or list(part.arrays) != list(parts[0].arrays):
+            raise Unreadable(f"{frame}: its pieces {files[0].name} and {file.name} are of different frames")
+    x = numpy.concatenate([part.x for part in parts])
+    arrays = {name: numpy.concatenate([part.arrays[name] for part in parts]) for name in parts[0].arrays}
+    order = numpy.argsort(arrays["phase"], kind="stable") if "phase" in arrays else slice(None)
+    return x[order], {name: values[order] for name, values in arrays.items()}
+
+
+def pieces(path):
+    """The files that the list of a frame in pieces (.pvtp, .pvtu) names; of another file none. Throws Unreadable."""
+    if path.suffix not in (".pvtp", ".pvtu"):
+        return []
+    try:
+        return [path.parent / piece.get("Source") for piece in ElementTree.parse(path).getroot().iter("Piece")]
+    except (ElementTree.ParseError, TypeError, ValueError) as error:
+        raise Unreadable(f"{path}: {error}") from error
 
 
 def _read(reader, path):

@@ -138,7 +138,7 @@ class Series:
     def bad(self):
         """The first bad state of a run that broke down (barchan.Frame), None if there is none."""
         from .frame import Frame
-        found = [f for end in (".vtp", ".vtu") if (f := self.folder / f"{self.name}_bad{end}").exists()]
+        found = [f for end in (".vtp", ".vtu", ".pvtp", ".pvtu") if (f := self.folder / f"{self.name}_bad{end}").exists()]
         return Frame(found[0]) if found else None
 
 
@@ -154,7 +154,7 @@ def open(where):
     where = pathlib.Path(where)
     if where.is_file():
         if where.suffix != ".pvd":
-            more = f"; one frame is read with barchan.Frame({str(where)!r})" if where.suffix in (".vtp", ".vtu") else ""
+            more = f"; one frame is read with barchan.Frame({str(where)!r})" if where.suffix in (".vtp", ".vtu", ".pvtp", ".pvtu") else ""
             raise NoSeries(f"{where}: expected the folder of a run or a .pvd{more}")
         return Series(where)
     if not where.is_dir():

@@ -133,8 +133,8 @@ int dispatch(int argc, char** argv) {
   c_generate->callback([&] { status = barchan::generate(barchan::scene_file(scene), file_a, overrides); });
 
   auto* c_compare = app.add_subcommand("compare", "compare two frames or two series, particle by particle");
-  c_compare->add_option("a", file_a, ".vtp, .vtu or .pvd")->type_name("FILE")->required();
-  c_compare->add_option("b", file_b, ".vtp, .vtu or .pvd")->type_name("FILE")->required();
+  c_compare->add_option("a", file_a, ".vtp, .vtu, .pvtp, .pvtu or .pvd")->type_name("FILE")->required();
+  c_compare->add_option("b", file_b, ".vtp, .vtu, .pvtp, .pvtu or .pvd")->type_name("FILE")->required();
   c_compare->add_option("--tolerance", tolerance, "relative difference that still counts as the same (default 0)")
       ->type_name("NUMBER")
       ->check([](const std::string& text) {

@@ -21,6 +21,7 @@
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
+#include "output/pieces.hpp"
 #include "plan/memory_need.hpp"
 #include "scene/identity.hpp"
 #include "scene/reader.hpp"
@@ -67,7 +68,7 @@ std::optional<Archive> find_checkpoint(const std::string& restart, const fs::pat
 void clear(const fs::path& directory, const Scene& scene, const Plan& plan, bool continued) {
   std::error_code ignored;
   fs::remove(directory / "TERMINATE", ignored);
-  for (const char* suffix : {"_bad.vtp", "_bad.vtu"}) fs::remove(directory / (scene.name + suffix), ignored);
+  remove_frame(directory, bad_stem(scene));
   if (continued) return;
   remove_checkpoints(checkpoint_file(directory, scene));
   std::vector<std::string> ours;
@@ -111,7 +112,7 @@ class Retreater {
     std::cerr << "barchan: step " << failed << " failed: " << why << "\nbarchan: going back to t = " << brief(s.time())
               << " s, step " << s.steps() << ", and on with " << brief(share)
               << " of the step until t = " << brief(s.retreat().until) << " s\n";
-    run.checkpoint_of_retreat();  // those on the disk may be of the steps that are given up
+    run.files_of_retreat();
     return true;
   }
 

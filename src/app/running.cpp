@@ -1,8 +1,10 @@
 #include "app/running.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
+#include <thread>
 
 #include "app/make_report.hpp"
 #include "app/signals.hpp"
@@ -40,9 +42,16 @@ std::vector<SeriesWriter::Entry> kept_frames(const fs::path& directory, const Sc
     refuse(" is the series of another run: frame " + std::to_string(clock.frames - 1) + " is at " +
            brief(frames.back().time) + " s; expected " + brief(clock.last_frame_time) + " s");
   std::error_code ignored;
-  for (const auto& frame : frames)
-    if (!fs::is_regular_file(directory / frame.file, ignored))
-      refuse(" lists " + frame.file + ", which is not there; expected all frames of the run");
+  const auto expect = [&](const fs::path& file) {
+    if (!fs::is_regular_file(file, ignored))
+      refuse(" lists " + file.lexically_relative(directory).string() +
+             ", which is not there; expected all frames of the run");
+  };
+  for (const auto& frame : frames) {
+    expect(directory / frame.file);
+    if (is_list_of_pieces(frame.file))
+      for (const fs::path& piece : pieces_of(directory / frame.file)) expect(piece);
+  }
   return frames;
 }
 
@@ -52,9 +61,7 @@ fs::path checkpoint_file(const fs::path& directory, const Scene& scene) {
   return directory / (scene.name + ".checkpoint");
 }
 
-fs::path bad_file(const fs::path& directory, const Scene& scene) {
-  return directory / (scene.name + (scene.output.format == FrameFormat::vtp ? "_bad.vtp" : "_bad.vtu"));
-}
+std::string bad_stem(const Scene& scene) { return scene.name + "_bad"; }
 
 void Past::keep(Simulation& simulation, Measurements* measurements) {
   State& state = states_[states_[0].step <= states_[1].step ? 0 : 1];
@@ -88,7 +95,8 @@ Run::Run(Course& course, bool continued)
       scene_(course.scene),
       simulation_(course.simulation),
       directory_(course.directory),
-      continued_(continued) {
+      continued_(continued),
+      pieces_(course.directory, course.scene.output.format, course.scene.output.compress) {
   const Plan& plan = simulation_.plan();
   if (!plan.instruments.empty()) measurements_.emplace(plan.instruments, plan.bounds, densities(scene_));
 }
@@ -180,12 +188,25 @@ bool Run::is_terminated() const {
 
 /// Every rank may have got a signal; the clock and the folder are those of the first one.
 void Run::agree() {
-  if (!ranks::active()) return;
+  if (!ranks::active()) {
+    if (unlisted_ && pieces_.is_done()) list_pieces();
+    return;
+  }
   const bool first = ranks::is_first(), asked = checkpoint_was_asked_for();
-  std::array<std::int64_t, 3> asks{stop_signal(), asked || (first && checkpoint_is_late()) ? 1 : 0,
-                                   first && is_terminated() ? 1 : 0};
+  std::string error;
+  std::int64_t pieces = 0;  // 1: mine is not on the disk yet, 2: it never will be
+  try {
+    pieces = pieces_.is_done() ? 0 : 1;
+  } catch (const OutputError& e) {
+    error = e.what();
+    pieces = 2;
+  }
+  std::array<std::int64_t, 4> asks{stop_signal(), asked || (first && checkpoint_is_late()) ? 1 : 0,
+                                   first && is_terminated() ? 1 : 0, pieces};
   ranks::active()->reduce(asks.data(), asks.size(), Communicator::Take::largest);
   course_.agreed = {static_cast<int>(asks[0]), asks[1] != 0, asks[2] != 0};
+  if (asks[3] == 2) throw_of_one(error);
+  if (unlisted_ && asks[3] == 0) list_pieces();
 }
 
 int Run::stop(const std::string& why, int status) {
@@ -208,7 +229,7 @@ bool Run::checkpoint_is_late() const {
 
 void Run::write_checkpoint() {
   simulation_.check_aside();
-  if (series_) series_->finish();
+  finish_series();
   simulation_.save_whole([&] {
     barchan::write_checkpoint(checkpoint_file(directory_, scene_),
                               {version() + " (" + commit() + ")",
@@ -232,7 +253,8 @@ void Run::bring_checkpoint_up_to_date() {
   if (course_.checkpoint_step != simulation_.steps() || course_.checkpoint_frames != clock().frames) write_checkpoint();
 }
 
-void Run::checkpoint_of_retreat() {
+void Run::files_of_retreat() {
+  finish_series();
   const fs::path file = checkpoint_file(directory_, scene_);
   if (!ranks::any(ranks::is_first() && fs::exists(file))) return;
   write_checkpoint();
@@ -245,9 +267,8 @@ std::string Run::break_down(const std::string& what) {
   const long good = simulation_.good_step();
   if (good > clock().last_frame_step) {
     finish_series();
-    Frame frame = simulation_.good_frame(static_cast<int>(clock().frames++));
+    hand_over(simulation_.good_frame(static_cast<int>(clock().frames++)));
     if (series_) {
-      series_->write(std::move(frame));
       if (measurements_) measurements_->write(directory_, simulation_.good_time());
       simulation_.write_results(directory_.string(), simulation_.good_time());
     }
@@ -255,12 +276,22 @@ std::string Run::break_down(const std::string& what) {
     clock().last_frame_time = simulation_.good_time();
   }
   finish_series();
-  const fs::path bad = bad_file(directory_, scene_);
+  const OutputControl& output = scene_.output;
   const Frame frame = simulation_.frame(static_cast<int>(clock().frames));
-  if (series_) barchan::write_frame(bad, frame, scene_.output.format, scene_.output.compress);
+  const std::string stem = bad_stem(scene_), bad = frame_name(stem, frame.in_pieces, output.format);
+  if (frame.in_pieces) {
+    std::string error;
+    try {
+      write_piece(directory_, stem, frame, output.format, output.compress);
+    } catch (const OutputError& e) { error = e.what(); }
+    if (ranks::any(!error.empty())) throw_of_one(error);
+    if (series_) write_list_of_pieces(directory_, stem, frame, output.format);
+  } else if (series_) {
+    barchan::write_frame(directory_ / bad, frame, output.format, output.compress);
+  }
   std::string message = what + "; last good state: " + (series_ ? series_->last_file() : "") +
                         " (t = " + brief(clock().last_frame_time) + " s, step " +
-                        std::to_string(clock().last_frame_step) + "), first bad state: " + bad.filename().string() +
+                        std::to_string(clock().last_frame_step) + "), first bad state: " + bad +
                         " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";
   finish("breakdown: " + message);
   return message;
@@ -268,14 +299,61 @@ std::string Run::break_down(const std::string& what) {
 
 void Run::write_frame() {
   finish_series();  // one frame at a time is in memory
-  Frame frame = simulation_.frame(static_cast<int>(clock().frames++));
+  hand_over(simulation_.frame(static_cast<int>(clock().frames++)));
   if (series_) {
-    series_->write(std::move(frame));
     if (measurements_) measurements_->write(directory_, simulation_.time());
     simulation_.write_results(directory_.string(), simulation_.time());
   }
   clock().last_frame_step = simulation_.steps();
   clock().last_frame_time = simulation_.time();
+}
+
+void Run::hand_over(Frame&& frame) {
+  if (!frame.in_pieces) {
+    if (series_) series_->write(std::move(frame));
+    return;
+  }
+  if (!wrote_pieces_) refuse_other_folders();
+  wrote_pieces_ = true;
+  unlisted_.emplace(frame.without_particles());
+  pieces_.write(frame_stem(scene_.name, frame.index), std::move(frame));
+}
+
+void Run::list_pieces() {
+  if (series_) series_->write(std::move(*unlisted_));
+  unlisted_.reset();
+}
+
+void Run::throw_of_one(const std::string& error) {
+  const std::vector<char> failed = ranks::each(static_cast<char>(error.empty() ? 0 : 1));
+  const auto rank = std::find(failed.begin(), failed.end(), 1) - failed.begin();
+  throw OutputError(ranks::text_of(static_cast<int>(rank), error));
+}
+
+void Run::refuse_other_folders() const {
+  if (!ranks::active()) return;
+  const fs::path file = directory_ / "run.json";  // the first rank has written it
+  const std::string mine = run_of_report(beginning_.process, beginning_.host), first = ranks::text_of(0, mine);
+  bool there = false;
+  // A file system of a network may show a new file late.
+  for (int k = 0; k < 300 && !(there = run_of_report(file) == first); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  if (ranks::any(!there))
+    throw SceneError("output.pieces-from: frames in pieces need a folder that all ranks write into; \"" +
+                     directory_.string() + "\" is not the same for all of them; expected an --out that all machines " +
+                     "see, or a larger output.pieces-from");
+}
+
+void Run::finish_series() {
+  std::string error;
+  try {
+    pieces_.finish();
+  } catch (const OutputError& e) { error = e.what(); }
+  if (unlisted_) {  // no rank lists a frame before all have written their pieces
+    if (ranks::any(!error.empty())) throw_of_one(error);
+    list_pieces();
+  }
+  if (series_) series_->finish();
 }
 
 void Run::write_row() {
@@ -287,6 +365,10 @@ void Run::write_row() {
 RunReport Run::report(const std::string& reason) const {
   RunReport r = make_report(simulation_, series_ ? &*series_ : nullptr, measurements_ ? &*measurements_ : nullptr,
                             course_.progress);
+  if (const double seconds = pieces_.seconds_writing(); seconds > 0.0) {
+    r.seconds.emplace_back("pieces of frames (waiting)", pieces_.seconds_waiting());
+    r.seconds.emplace_back("pieces of frames (behind)", seconds);
+  }
   r.end_reason = reason;
   r.threads = course_.team.most();
   r.thread_uses = course_.team.uses();
@@ -320,6 +402,9 @@ void Run::fail(const std::string& reason) {
     if (series_) try_to_write(directory_ / "run.json", beginning_);
     return;
   }
+  try {
+    finish_series();                  // a frame that is whole is listed
+  } catch (const std::exception&) {}  // NOLINT(bugprone-empty-catch): the reason of the end is another one
   if (series_) try_to_write(directory_ / "run.json", report(reason));
   course_.progress.end(reason);
 }

@@ -11,6 +11,7 @@
 #include "engine/team.hpp"
 #include "measure/measurements.hpp"
 #include "output/history.hpp"
+#include "output/pieces.hpp"
 #include "output/run_report.hpp"
 #include "output/series.hpp"
 #include "plan/memory_need.hpp"
@@ -38,8 +39,8 @@ struct Course {
 };
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);
-/// Where the first bad state of a run goes; not listed in the series.
-std::filesystem::path bad_file(const std::filesystem::path& directory, const Scene& scene);
+/// What the name of the first bad state of a run begins with; it is not listed in the series.
+std::string bad_stem(const Scene& scene);
 
 /// States of the past that a run can go back to, in memory: two, so that one is old enough.
 class Past {
@@ -76,8 +77,9 @@ class Run {
   int go(Past* past);
   /// The state as it is now, in place of the last checkpoint. Frames that it counts are on the disk.
   void write_checkpoint();
-  /// The same after going back, when those on the disk may be of steps that are given up.
-  void checkpoint_of_retreat();
+  /// After going back: frames that were handed over are listed, and the checkpoint is written anew where there is one,
+  /// because those on the disk may be of steps that are given up.
+  void files_of_retreat();
   /// For a run that ends with a failed step: the last good state joins the series, the first bad one stands beside it.
   /// Returns what to tell.
   std::string break_down(const std::string& what);
@@ -98,9 +100,16 @@ class Run {
   void bring_checkpoint_up_to_date();
   void write_frame();
   void write_row();
-  void finish_series() {
-    if (series_) series_->finish();
-  }
+  /// Hands a frame over, or a piece of it.
+  void hand_over(Frame&& frame);
+  /// Lists the frame of which all pieces are on the disk.
+  void list_pieces();
+  /// Throws on every rank what went wrong on one or several of them ("" where nothing did). All ranks call it.
+  [[noreturn]] static void throw_of_one(const std::string& error);
+  /// Pieces make a frame only where all ranks write into one folder. Throws SceneError, on every rank.
+  void refuse_other_folders() const;
+  /// Waits until all frames are on the disk and listed.
+  void finish_series();
   RunReport report(const std::string& reason) const;
   void finish(const std::string& reason);
 
@@ -109,6 +118,9 @@ class Run {
   Simulation& simulation_;
   const std::filesystem::path& directory_;
   bool continued_;
+  PieceWriter pieces_;
+  bool wrote_pieces_ = false;
+  std::optional<Frame> unlisted_;       // without particles: what pieces_ writes, on all ranks
   std::optional<SeriesWriter> series_;  // these two: of the first rank; empty on the others
   std::optional<History> history_;
   std::optional<Measurements> measurements_;  // empty: the scene measures nothing

@@ -65,7 +65,10 @@ inline Communicator* available() { return detail::given; }
 /// made (scene/shared_start.hpp).
 inline Communicator* active() { return detail::shared ? detail::given : nullptr; }
 inline void give(Communicator* communicator) { detail::given = communicator; }
-inline void share() { detail::shared = detail::given != nullptr; }
+/// What is shared out stays so: who calls this where it is Alone changes nothing.
+inline void share() {
+  if (detail::given) detail::shared = true;
+}
 
 /// As long as it lives, `alone` makes this process one without others: for what every rank holds and computes itself,
 /// with the same bits, so that nothing is to be shared out or reduced.

@@ -28,7 +28,7 @@ struct FrameDifference {
 /// Compares particle by particle. Positions count as a field "position".
 FrameDifference compare(const Frame& a, const Frame& b, double tolerance);
 
-/// The same for files: two .vtp/.vtu, or two .pvd (frame by frame; a different number of frames is a remark).
+/// The same for files: two frames, or two .pvd (frame by frame; a different number of frames is a remark).
 /// Throws OutputError when a file cannot be read.
 std::vector<FrameDifference> compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
                                            double tolerance);

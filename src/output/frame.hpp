@@ -16,7 +16,9 @@ struct FrameField {
 };
 
 struct Frame {
-  int index = 0;  // number in the series
+  int index = 0;              // number in the series
+  bool in_pieces = false;     // it is written in pieces (output/pieces.hpp); what is here is
+  int piece = 0, pieces = 1;  // this one, of so many: one a rank
   long step = 0;
   double time = 0.0;               // s
   std::array<double, 6> domain{};  // m, lower and upper bound along x, y, z in turn; along z 0, 0 in 2D
@@ -29,6 +31,18 @@ struct Frame {
   std::vector<FrameField>
       contacts;  // of a settled bed, by contact: contact_particle (an id), contact_branch, _force, _torque
   std::size_t size() const { return id.size(); }
+  /// What concerns the frame as a whole, and the names of its fields.
+  Frame without_particles() const {
+    Frame about;
+    about.index = index;
+    about.step = step;
+    about.time = time;
+    about.in_pieces = in_pieces;
+    about.piece = piece;
+    about.pieces = pieces;
+    for (const FrameField& f : fields) about.fields.push_back({f.name, f.unit, f.components, {}});
+    return about;
+  }
   /// Memory of the arrays.
   std::size_t bytes() const {
     std::size_t all =

@@ -41,6 +41,7 @@
 
 #include "base/errors.hpp"
 #include "output/frame_read.hpp"
+#include "output/pieces.hpp"
 #include "output/series.hpp"
 #include "output/whole_file.hpp"
 
@@ -337,8 +338,9 @@ Frame read_frame(const std::filesystem::path& file) {
   };
   errno = 0;
   if (!std::ifstream(file, std::ios::binary)) fail(std::strerror(errno != 0 ? errno : EIO));
+  if (is_list_of_pieces(file)) return read_pieces(file);
   const auto suffix = file.extension();
-  if (suffix != ".vtp" && suffix != ".vtu") fail("a frame's name ends in .vtp or .vtu");
+  if (suffix != ".vtp" && suffix != ".vtu") fail("a frame's name ends in .vtp or .vtu (in pieces: .pvtp, .pvtu)");
   if (!has_its_end(file)) fail("the file is incomplete");
   try {
     if (auto frame = read_appended(read_text(file), suffix)) return std::move(*frame);

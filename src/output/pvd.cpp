@@ -9,20 +9,6 @@
 #include "output/xml_tags.hpp"
 
 namespace barchan {
-namespace {
-
-std::string escape(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    std::string_view written(&c, 1);
-    for (const auto& [character, entity] : xml_entities)
-      if (c == character) written = entity;
-    escaped += written;
-  }
-  return escaped;
-}
-
-}  // namespace
 
 std::vector<SeriesWriter::Entry> parse_pvd(std::string_view text) {
   std::vector<SeriesWriter::Entry> entries;

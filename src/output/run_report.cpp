@@ -120,14 +120,29 @@ bool is_measured(const std::string& file) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
+/// The document in a file; null where there is none or it is damaged.
+nlohmann::json read_json(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
+  std::ifstream stream(file, std::ios::binary);
+  return nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+}
+
 }  // namespace
+
+std::string run_of_report(const std::filesystem::path& file) {
+  const auto json = read_json(file);
+  if (!json.is_object() || !json.contains("process") || !json.contains("host") ||
+      !json["process"].is_number_integer() || !json["host"].is_string())
+    return "";
+  return run_of_report(json["process"].get<long>(), json["host"].get<std::string>());
+}
+
+std::string run_of_report(long process, const std::string& host) { return std::to_string(process) + "@" + host; }
 
 std::vector<std::string> measured_files(const std::filesystem::path& file) {
   std::vector<std::string> files;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return files;
-  std::ifstream stream(file, std::ios::binary);
-  const auto json = nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const auto json = read_json(file);
   if (!json.is_object() || !json.contains("measured") || !json["measured"].is_array()) return files;
   for (const auto& measured : json["measured"]) {
     if (!measured.is_object() || !measured.contains("files") || !measured["files"].is_array()) continue;

@@ -79,6 +79,10 @@ void write_run_report(const std::filesystem::path& file, const RunReport& report
 /// there. Returns whether it could.
 bool overwrite_run_report(const std::filesystem::path& file, const RunReport& report);
 
+/// Who writes into a folder, for comparison: process and host; of the report in a file, "" where there is none.
+std::string run_of_report(long process, const std::string& host);
+std::string run_of_report(const std::filesystem::path& file);
+
 /// The files of instruments that the report of an earlier run names; none when there is no such report.
 std::vector<std::string> measured_files(const std::filesystem::path& file);
 

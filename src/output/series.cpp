@@ -1,6 +1,8 @@
 // The writer's thread of a series, and the .pvd that lists what it has written.
 #include "output/series.hpp"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cctype>
 #include <chrono>
@@ -8,11 +10,13 @@
 #include <cstdio>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <thread>
 
 #include "base/errors.hpp"
+#include "output/pieces.hpp"
 #include "output/pvd.hpp"
 #include "output/whole_file.hpp"
 
@@ -37,21 +41,30 @@ class Timed {
   Clock::time_point begin_;
 };
 
-std::string frame_file(const std::string& name, int index, FrameFormat format) {
-  char number[16];
-  std::snprintf(number, sizeof number, "_%06d", index);
-  return name + number + (format == FrameFormat::vtp ? ".vtp" : ".vtu");
-}
-
-/// NAME_000000.vtp or .vtu, with any number of digits from six on; also while it is being written.
-bool is_frame_of(const std::string& name, std::string file) {
-  if (file.ends_with(WholeFile::suffix)) file.resize(file.size() - WholeFile::suffix.size());
-  if (!file.starts_with(name + "_") || !(file.ends_with(".vtp") || file.ends_with(".vtu"))) return false;
-  const std::string number = file.substr(name.size() + 1, file.size() - name.size() - 5);
+/// NAME_000000, with any number of digits from six on.
+bool is_stem_of(const std::string& name, const std::string& stem) {
+  if (!stem.starts_with(name + "_")) return false;
+  const std::string number = stem.substr(name.size() + 1);
   return number.size() >= 6 && number.find_first_not_of("0123456789") == std::string::npos;
 }
 
+/// The file of a frame or the list of its pieces, also while it is being written; the folder of its pieces.
+bool is_of_series(const std::string& name, const std::filesystem::directory_entry& entry) {
+  std::string file = entry.path().filename().string();
+  if (is_folder_of_pieces(entry)) return is_stem_of(name, file);
+  if (!entry.is_regular_file()) return false;
+  if (file.ends_with(WholeFile::suffix)) file.resize(file.size() - WholeFile::suffix.size());
+  const std::filesystem::path path(file), suffix = path.extension();
+  return (suffix == ".vtp" || suffix == ".vtu" || is_list_of_pieces(path)) && is_stem_of(name, path.stem().string());
+}
+
 }  // namespace
+
+std::string frame_stem(const std::string& name, int index) {
+  std::array<char, 16> number{};
+  std::snprintf(number.data(), number.size(), "_%06d", index);
+  return name + number.data();
+}
 
 void make_directory(const std::filesystem::path& directory) {
   std::error_code failed;
@@ -94,19 +107,24 @@ void SeriesWriter::Work::prepare() {
   if (entries.empty()) std::filesystem::remove(pvd(), failed);
   else write_pvd(pvd(), entries);
   std::set<std::string> kept;
-  for (const auto& entry : entries) kept.insert(entry.file);
+  for (const auto& entry : entries) {
+    kept.insert(entry.file);
+    if (const std::filesystem::path file(entry.file); is_list_of_pieces(file)) kept.insert(file.stem().string());
+  }
   std::vector<std::filesystem::path> stale;
   for (const auto& file : std::filesystem::directory_iterator(directory, failed))
-    if (const auto n = file.path().filename().string();
-        file.is_regular_file() && is_frame_of(name, n) && !kept.contains(n))
-      stale.push_back(file);
-  for (const auto& file : stale) std::filesystem::remove(file, failed);
+    if (is_of_series(name, file) && !kept.contains(file.path().filename().string())) stale.push_back(file);
+  std::ranges::sort(stale, std::greater());  // a list (NAME_000010.pvtp) goes before its folder (NAME_000010)
+  for (const auto& file : stale)
+    if (is_folder_of_pieces(file)) remove_pieces(file);
+    else std::filesystem::remove(file, failed);
 }
 
 void SeriesWriter::Work::write_first(const Frame& frame) {
   const Timed timed(writing);
-  const std::string file = frame_file(name, frame.index, format);
-  write_frame(directory / file, frame, format, compress);
+  const std::string stem = frame_stem(name, frame.index), file = frame_name(stem, frame.in_pieces, format);
+  if (frame.in_pieces) write_list_of_pieces(directory, stem, frame, format);
+  else write_frame(directory / file, frame, format, compress);
   entries.push_back({frame.time, file});
   write_pvd(pvd(), entries);
   whole = static_cast<long>(entries.size());

@@ -26,7 +26,8 @@ class SeriesWriter {
                std::vector<Entry> kept = {});
   ~SeriesWriter();  ///< finishes what waits; swallows errors (call finish() to see them)
 
-  /// Hands a frame over. Throws OutputError if an earlier frame could not be written; earlier frames stay whole.
+  /// Hands a frame over. Of one in pieces, which are on the disk, the list is written (output/pieces.hpp). Throws
+  /// OutputError if an earlier frame could not be written; earlier frames stay whole.
   void write(Frame&& frame);
   /// Waits until all is on the disk. Throws OutputError.
   void finish();
@@ -41,6 +42,9 @@ class SeriesWriter {
   std::unique_ptr<Work> work_;
 };
 
+/// NAME_000010: what the name of a frame's file begins with.
+std::string frame_stem(const std::string& name, int index);
+
 /// Makes the folder of a run where there is none. Throws OutputError.
 void make_directory(const std::filesystem::path& directory);
 
@@ -53,7 +57,7 @@ std::vector<SeriesWriter::Entry> read_pvd(const std::filesystem::path& pvd);
 /// UInt8 text with a newline between, because meshio reads no strings. Throws OutputError.
 void write_frame(const std::filesystem::path& file, const Frame& frame, FrameFormat format, bool compress);
 
-/// Reads a frame back (.vtp or .vtu). Throws OutputError.
+/// Reads a frame back (.vtp or .vtu; .pvtp or .pvtu with its pieces). Throws OutputError.
 Frame read_frame(const std::filesystem::path& file);
 
 }  // namespace barchan

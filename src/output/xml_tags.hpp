@@ -15,6 +15,17 @@ namespace barchan {
 inline constexpr std::array<std::pair<char, std::string_view>, 5> xml_entities{
     {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&apos;"}}};
 
+inline std::string escape(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    std::string_view written(&c, 1);
+    for (const auto& [character, entity] : xml_entities)
+      if (c == character) written = entity;
+    escaped += written;
+  }
+  return escaped;
+}
+
 inline std::string unescape(std::string_view text) {
   std::string plain;
   while (!text.empty()) {

@@ -67,7 +67,9 @@ std::string to_text(const RankPlan& plan) {
   t += "at the start every rank makes " +
        (plan.why_start_is_whole.empty() ? "its part of the fluids, and all other particles"
                                         : "all particles, because " + plan.why_start_is_whole) +
-       ": " + memory_text(plan.start_memory) + "; later the first one has the frames of all\n";
+       ": " + memory_text(plan.start_memory) +
+       (plan.frames_in_pieces ? "; later each one writes its piece of the frames\n"
+                              : "; later the first one has the frames of all\n");
   if (plan.efficiency > 0)
     t += formatted("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
                    plan.efficiency, plan.ranks.size());
@@ -92,6 +94,7 @@ std::string to_json(const RankPlan& plan) {
   j["whole_share"] = plan.whole_share;
   j["start_memory"] = plan.start_memory;
   j["why_start_is_whole"] = plan.why_start_is_whole;
+  j["frames_in_pieces"] = plan.frames_in_pieces;
   j["searches_a_step"] = plan.searches_a_step;
   j["seconds_alone"] = plan.seconds_alone;
   j["efficiency"] = plan.efficiency;

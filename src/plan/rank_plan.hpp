@@ -29,6 +29,7 @@ struct RankPlan {
   double seconds_alone = 0;        // of a step of one process with one thread
   double start_memory = 0;         // bytes of a rank, until particles are sorted first
   std::string why_start_is_whole;  // every rank makes all particles; empty: a part of those of fluids
+  bool frames_in_pieces = false;   // each rank writes its own particles; else the first one has those of all
   double efficiency = 0;           // seconds_alone over ranks times the seconds of the slowest rank; 0: not measured
 };
 

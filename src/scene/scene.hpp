@@ -422,6 +422,7 @@ struct OutputControl {
   bool compress{};
   bool walls{};               // write wall particles too
   double checkpoint_every{};  // s of wall time between checkpoints; 0: at the end and at signals only
+  int pieces_from{};          // particles: frames of as many or more are written in pieces, one a rank
 };
 
 struct Scene {

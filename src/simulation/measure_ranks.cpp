@@ -252,10 +252,12 @@ void RankMeasure::add_memory(RankPlan& plan, const std::vector<Part>& parts, con
   const double rest = std::max(memory.arrays - cells - images, 0.0);
   plan.start_memory = memory_at_start(memory, cells);
   plan.why_start_is_whole = memory.why_start_is_whole;
+  plan.frames_in_pieces = simulation_.frames_are_in_pieces();
   for (std::size_t r = 0; r < ranks_; ++r) {
     const Part& part = parts[r];
     const double own = memory.program + cells + owners + part.arrays * (rest + memory.states) + part.ghosts;
-    const double gathers = r == 0 ? std::max(memory.frame, gathered) : part.arrays * memory.frame;
+    const double own_frame = part.arrays * memory.frame, frame = plan.frames_in_pieces ? own_frame : memory.frame;
+    const double gathers = r == 0 ? std::max(frame, gathered) : own_frame;
     plan.ranks[r].memory = std::max(own + gathers, plan.start_memory);
   }
 }

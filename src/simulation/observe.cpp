@@ -44,6 +44,13 @@ std::size_t Simulation::shown_of(std::size_t phase) const {
   return n;
 }
 
+std::vector<std::size_t> Simulation::written_phases() const {
+  std::vector<std::size_t> written;
+  for (std::size_t k = 0; k < state_.phases.size(); ++k)
+    if (plan_.phases[k].moves || scene_.output.walls) written.push_back(k);
+  return written;
+}
+
 Frame Simulation::frame(int index) const {
   for (const auto& model : models_) model->derive();
   Frame f;
@@ -54,15 +61,20 @@ Frame Simulation::frame(int index) const {
     f.domain[2 * d] = plan_.domain.low[d];
     f.domain[2 * d + 1] = plan_.domain.high[d];
   }
-  std::size_t n = 0;
-  std::vector<std::size_t> written;
   for (std::size_t k = 0; k < state_.phases.size(); ++k) {
     f.phase_names.push_back(state_.phases[k].name());
     f.phase_kinds.push_back(plan_.phases[k].kind);
-    if (!plan_.phases[k].moves && !scene_.output.walls) continue;
-    written.push_back(k);
-    n += shown_of(k);
   }
+  std::vector<std::size_t> written = written_phases();
+  f.in_pieces = is_in_pieces(written);
+  if (f.in_pieces) {
+    const ranks::Share own = ranks::own_share();
+    f.piece = static_cast<int>(own.number);
+    f.pieces = static_cast<int>(own.count);
+    if (own.number > 0) std::erase_if(written, [&](std::size_t k) { return state_.phases[k].is_whole(); });
+  }
+  std::size_t n = 0;
+  for (const std::size_t k : written) n += shown_of(k);
   f.points.reserve(3 * n);
   f.id.reserve(n);
   f.phase.reserve(n);
@@ -85,7 +97,7 @@ Frame Simulation::frame(int index) const {
     }
   }
   for (const Field field : frame_fields(scene_)) f.fields.push_back(values_of(field, written, n));
-  if (ranks::active()) gather_frame(f, written);
+  if (ranks::active() && !f.in_pieces) gather_frame(f, written);
   return f;
 }
 

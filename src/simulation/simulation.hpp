@@ -67,6 +67,8 @@ class Simulation {
 
   /// A copy of the state for the writer.
   Frame frame(int index) const;
+  /// Whether it is written in pieces, as the state is now.
+  bool frames_are_in_pieces() const { return is_in_pieces(written_phases()); }
   /// The present contacts of the spheres of a phase; numbers count its particles by their ids.
   std::vector<RestingContact> resting_contacts(std::size_t phase) const;
   /// One row of history.csv: names and values.
@@ -112,6 +114,8 @@ class Simulation {
   void check_columns() const;
   FrameField values_of(Field field, const std::vector<std::size_t>& written, std::size_t n) const;
   void gather_frame(Frame& f, const std::vector<std::size_t>& written) const;
+  std::vector<std::size_t> written_phases() const;
+  bool is_in_pieces(const std::vector<std::size_t>& written) const;
   bool is_shown(const PhaseParticles& p, std::size_t k) const;
   std::size_t shown_of(std::size_t phase) const;
   /// What all phases that move have in a row of history.csv.

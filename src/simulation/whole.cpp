@@ -32,6 +32,14 @@ void gather(std::vector<T>& values, const std::vector<Held>& phases, std::size_t
 
 }  // namespace
 
+/// Whether a frame of these phases has so many particles that each rank writes its own.
+bool Simulation::is_in_pieces(const std::vector<std::size_t>& written) const {
+  std::size_t n = 0;
+  for (const std::size_t k : written)
+    if (!state_.phases[k].is_whole() || ranks::is_first()) n += shown_of(k);
+  return ranks::total(n) >= static_cast<std::size_t>(scene_.output.pieces_from);
+}
+
 /// The frame of all ranks on the first one; an empty one on the others.
 void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written) const {
   std::vector<Held> counts;

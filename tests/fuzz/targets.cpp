@@ -10,6 +10,7 @@
 #include "base/errors.hpp"
 #include "output/checkpoint.hpp"
 #include "output/frame_read.hpp"
+#include "output/pieces.hpp"
 #include "output/pvd.hpp"
 #include "scene/formula.hpp"
 #include "scene/mesh_texts.hpp"
@@ -67,6 +68,9 @@ void frame(std::string_view text) {
 void series(std::string_view text) {
   try {
     parse_pvd(text);
+  } catch (const OutputError&) {}
+  try {
+    parse_pieces(text);
   } catch (const OutputError&) {}
 }
 
