@@ -390,7 +390,7 @@ constexpr Key rows_of_keys[] = {
     {"output", "format", at<&OutputControl::format>(FrameFormat::vtp), "", "File format of the frames."},
     {"output", "compress", at<&OutputControl::compress>(true), "", "Compress the frames."},
     {"output", "walls", at<&OutputControl::walls>(true), "", "Write wall particles too."},
-    {"output", "pieces-from", at<&OutputControl::pieces_from>(20000000), "",
+    {"output", "pieces-from", at<&OutputControl::pieces_from>(20000000).like("5000000"), "",
      "Particles. A frame of as many or more is written in pieces: a .pvtp (.pvtu) that names a .vtp (.vtu) of each rank. 0: every frame.", {.at_least = 0}},
 };
 // clang-format on
