@@ -47,8 +47,8 @@ void KeptState::exchange(std::vector<PhaseParticles>& particles) {
   }
   for (std::size_t k = 0; k < ids_.size(); ++k) {
     if (!kept_[k]) continue;
-    particles[k].resize(now[k]);  // the ids of the present state go into ids_[k]
-    particles[k].set_ids(ids_[k]);
+    particles[k].set_ids(ids_[k]);  // as many as were kept; the ids of the present state go into ids_[k]
+    ids_[k].resize(now[k]);
   }
 }
 

@@ -425,6 +425,8 @@ class Ranks(Folder):
         self.assertEqual((one.returncode, many.returncode), (3, 3), many.stderr)
         self.assertIn(one.stderr.splitlines()[-1], many.stderr)
         self.assertEqual(many.stderr.count("first bad state"), 1)
+        for name in ("scene_000001.vtp", "scene_bad.vtp"):  # the last good state, though particles have changed their rank since, and the bad one
+            self.assertEqual((self.at / "one" / name).read_bytes(), (self.at / "of-3" / name).read_bytes(), name)
 
     def test_a_folder_that_cannot_be_written_ends_all_ranks(self):
         (self.at / "file").write_text("")
