@@ -13,7 +13,6 @@
 namespace barchan {
 namespace {
 
-using testing::Drive;
 using testing::report;
 
 double value(const Simulation& s, const std::string& column) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace barchan {
 namespace {
 
@@ -25,7 +27,7 @@ TEST(KOmega, ALogarithmicLayerStays) {
 TEST(KOmega, HomogeneousTurbulenceDecays) {
   double k = 1.0, omega = 100.0;
   const double dt = 1e-5, end = 0.5;
-  for (int step = 0; step < static_cast<int>(end / dt + 0.5); ++step) {
+  for (int step = 0; step < static_cast<int>(std::lround(end / dt)); ++step) {
     const KOmegaPlace place{k, omega, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     step_k_omega(place, dt, k, omega);
   }

@@ -137,8 +137,8 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
 /// On several ranks: the places of the ghosts of each phase that is seen, none of which is marked yet.
 void VoidFinder::take_ghosts(std::span<const Seen> seen) {
   if (ghosts_.size() < seen.size()) ghosts_.resize(seen.size());
-  for (std::size_t s = 0; s < seen.size(); ++s)
-    for (int d = 0; d < seen[s].particles->dimensions(); ++d) seen[s].grid->note_images(sizeof(double));
+  for (const Seen& one : seen)
+    for (int d = 0; d < one.particles->dimensions(); ++d) one.grid->note_images(sizeof(double));
   if (!seen.front().grid->is_shared()) return;
   for (std::size_t s = 0; s < seen.size(); ++s)
     for (int d = 0; seen[s].grid->is_shared() && d < seen[s].particles->dimensions(); ++d)
