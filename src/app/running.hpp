@@ -1,12 +1,12 @@
 // A run in its folder: steps, and what is written when.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/past.hpp"
 #include "app/progress.hpp"
 #include "engine/team.hpp"
 #include "measure/measurements.hpp"
@@ -14,7 +14,6 @@
 #include "output/pieces.hpp"
 #include "output/run_report.hpp"
 #include "output/series.hpp"
-#include "plan/memory_need.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 
@@ -41,28 +40,6 @@ struct Course {
 std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);
 /// What the name of the first bad state of a run begins with; it is not listed in the series.
 std::string bad_stem(const Scene& scene);
-
-/// States of the past that a run can go back to, in memory: two, so that one is old enough.
-class Past {
- public:
-  static constexpr long every = steps_between_states;
-  /// A particle that is wrong is found within 20 steps of it; states that are not this much older are not trusted.
-  static constexpr long distance = 64;  // steps
-
-  bool due(long step) const { return newest().step < 0 || step >= newest().step + every; }
-  void keep(Simulation& simulation, Measurements* measurements);
-  /// Loads the newest state that is old enough; false when there is none.
-  bool go_back(Simulation& simulation, Measurements* measurements, long failed);
-
- private:
-  struct State {
-    long step = -1;
-    Archive archive;
-  };
-  const State& newest() const { return states_[0].step >= states_[1].step ? states_[0] : states_[1]; }
-  std::array<State, most_states> states_;
-  long trusted_ = -1;  // step of the first that was kept, or that the run went back to: it was looked at closely
-};
 
 class Run {
  public:

@@ -15,9 +15,10 @@ namespace barchan {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
+using Instant = std::chrono::steady_clock::time_point;
 
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+Instant now() { return std::chrono::steady_clock::now(); }
+double since(Instant begin) { return std::chrono::duration<double>(now() - begin).count(); }
 
 const char* ending(FrameFormat format) { return format == FrameFormat::vtp ? "vtp" : "vtu"; }
 
@@ -197,7 +198,7 @@ PieceWriter::PieceWriter(fs::path directory, FrameFormat format, bool compress)
 void PieceWriter::write(std::string stem, Frame&& piece) {
   finish();
   work_ = std::async(std::launch::async, [this, stem = std::move(stem), piece = std::move(piece)] {
-    const Clock::time_point begin = Clock::now();
+    const Instant begin = now();
     write_piece(directory_, stem, piece, format_, compress_);
     return since(begin);
   });
@@ -211,7 +212,7 @@ bool PieceWriter::is_done() {
 
 void PieceWriter::finish() {
   if (!work_.valid()) return;
-  const Clock::time_point begin = Clock::now();
+  const Instant begin = now();
   work_.wait();
   waiting_ += since(begin);
   writing_ += work_.get();

@@ -1,7 +1,6 @@
-// The rows of the table of keys: one a key, in the order of docs/scenes.md.
-// To add a key: its member in scene.hpp, without a default; its row here; the model that consumes it. A key that acts
-// only beside other keys has a case in tests/cli/key_consumers_cases.inc too, in which it changes the results.
-// BARCHAN_WRITE_DOCS=1 test_unit brings docs/scenes.md up to date.
+// The rows of the table of keys: one a key, in the order of docs/scenes.md. To add a key: its member in scene.hpp,
+// without a default; its row here; the model that consumes it. A key that acts only beside other keys has a case in
+// tests/cli/key_consumers_cases.inc too. BARCHAN_WRITE_DOCS=1 test_unit brings docs/scenes.md up to date.
 #include "scene/scene_slots.hpp"
 
 namespace barchan {
@@ -12,9 +11,8 @@ using namespace slots;
 constexpr NumberBounds positive{.above = 0.0};
 constexpr NumberBounds not_negative{.at_least = 0.0};
 
-// Columns: section, name, the member that it is read into with its default, unit, meaning; then bounds, variables of a
-// formula and the kind of phase that may leave it out, where they apply. A key of phases is a member of one kind or of
-// several.
+// Columns: section, name, member that it is read into with its default, unit, meaning; then bounds, variables of a
+// formula, kind of phase that may leave it out, where they apply. A key of phases is a member of one or several kinds.
 // clang-format off
 constexpr Key rows_of_keys[] = {
     {"", "title", at<&Scene::title>("the file's name").like("\"Wind over a small dune\""), "", "What the scene shows, in a few words."},
