@@ -13,6 +13,7 @@ namespace {
 template <class T>
 void add_ranks(std::vector<T>& sums) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::int64_t) == 0);
+  if (sums.empty()) return;  // on all ranks
   std::vector<std::int64_t> numbers(sums.size() * sizeof(T) / sizeof(std::int64_t));
   std::memcpy(numbers.data(), sums.data(), sums.size() * sizeof(T));
   ranks::active()->reduce(numbers.data(), numbers.size(), Communicator::Take::sum);
