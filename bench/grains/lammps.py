@@ -76,9 +76,9 @@ def scene(dim, size, fill, end, every, step=""):
                         friction=FRICTION, young=YOUNG, poisson=POISSON, fill=fill, end=end, every=every, step=step)
 
 
-def barchan(program, folder, text):
-    """A run of a scene's text."""
-    return run.scene(program, run.scene_file(text, folder, "bed.toml"), folder / "out", shown=True)
+def barchan(program, folder, text, before=()):
+    """A run of a scene's text; `before`: the words of a launcher of ranks."""
+    return run.scene(program, run.scene_file(text, folder, "bed.toml"), folder / "out", shown=True, before=before)
 
 
 def waves(x, dim):
@@ -102,7 +102,7 @@ def gamma(mass, stiffness):
     return alpha * math.sqrt(stiffness / mass)  # alpha sqrt(m* k_n) delta^(1/4) R*^(1/4) at a mean overlap: the cost is the same
 
 
-def lammps(program, folder, dim, size, x, radius, v, step, steps, skin):
+def lammps(program, folder, dim, size, x, radius, v, step, steps, skin, before=()):
     low, high = (-.5 * D, .5 * D) if dim == 2 else (0, size[2])
     rows = [f"{k + 1} 1 {2 * r:.17g} {DENSITY:.17g} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}" for k, (p, r) in enumerate(zip(x, radius))]
     speeds = [f"{k + 1} {u[0]:.17g} {u[1]:.17g} {u[2]:.17g} 0 0 0" for k, u in enumerate(v)]
@@ -131,14 +131,16 @@ timestep {step}
 thermo {steps}
 run {steps}
 """)
-    said = run.command([program, "-in", folder / "in.bed", "-log", "none"], folder=folder)
+    said = run.command([*before, program, "-in", folder / "in.bed", "-log", "none"], folder=folder)
     text = said.stdout
     if said.status:
         raise SystemExit(f"lammps.py: {program} failed\n{text}\n{said.stderr}")
     return float(re.search(r"Loop time of ([\d.e+-]+)", text)[1]), int(re.search(r"Neighbor list builds = (\d+)", text)[1])
 
 
-def measure(program, lmp, dim, grains, steps, rounds, scratch):
+def dense_bed(program, dim, grains, scratch):
+    """About `grains` grains: a small bed settles and is put side by side. Returns places, radii (m), the size of the domain and the fill of a scene, which
+    reads a file in the folder `scratch`."""
     depth, side = (30 * D, .3) if dim == 2 else (15 * D, .012)
     size = [side, 2 * depth] + ([side] if dim == 3 else [])
     box = json.dumps({"min": [0] * dim, "max": [side, depth] + [side] * (dim - 2)}).replace(":", " =").replace('"', "")
@@ -153,13 +155,18 @@ def measure(program, lmp, dim, grains, steps, rounds, scratch):
     x, radius = numpy.concatenate([x + s for s in shifts]), numpy.tile(radius, len(shifts))
     size = [side * across, 2 * depth] + ([side * across] if dim == 3 else [])
     write_particles(scratch / f"bed{dim}.vtp", x, "sand", radius=radius)
+    return x, radius, size, f"shape = {{ file = \"{scratch}/bed{dim}.vtp\" }}\nvelocity = {formulas(dim)}"
+
+
+def measure(program, lmp, dim, grains, steps, rounds, scratch, before=()):
+    """`before`: the words of a launcher that starts both programs on ranks."""
+    x, radius, size, fill = dense_bed(program, dim, grains, scratch)
     v = waves(x, dim)
     ours, theirs, end = [], {skin: [] for skin in SKINS}, 2e-3
     for turn in range(rounds + 1):  # the first, short, tells the step
         folder = scratch / f"run{dim}_{turn}"
         folder.mkdir()
-        fill = f"shape = {{ file = \"{scratch}/bed{dim}.vtp\" }}\nvelocity = {formulas(dim)}"
-        report = barchan(program, folder, scene(dim, size, fill, end, end)).report
+        report = barchan(program, folder, scene(dim, size, fill, end, end), before).report
         contact_steps = report["steps"] * SUBSTEPS
         contact_step = report["simulated_time"] / contact_steps
         if turn == 0:
@@ -168,7 +175,7 @@ def measure(program, lmp, dim, grains, steps, rounds, scratch):
         spent = sum(t for name, t in report["seconds"].items() if not name.startswith("output"))
         ours.append(len(x) * contact_steps / spent)
         for skin in SKINS:
-            seconds, builds = lammps(lmp, folder, dim, size, x, radius, v, contact_step, steps, skin)
+            seconds, builds = lammps(lmp, folder, dim, size, x, radius, v, contact_step, steps, skin, before)
             theirs[skin].append(len(x) * steps / seconds)
             print(f"{dim}D round {turn}: Barchan {ours[-1] / 1e6:.2f}, LAMMPS skin {skin} d {theirs[skin][-1] / 1e6:.2f} M grain-steps/s, {builds} builds",
                   flush=True)

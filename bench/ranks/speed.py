@@ -5,16 +5,19 @@
 
 Every case runs by turns: two ranks of one thread, one process of two threads; one rank, one process of one thread (the cost of MPI); and, for weak
 scaling, one process with half of the particles. Particle-steps a second are those of run.json. Prints the median of the ratios of neighbouring runs, with
-their range. All runs of a case must write the same checkpoint. With --write the results go to bench/ranks/results/speed.json and the page.
+their range. Of weak scaling, two processes with half of the particles run side by side besides: what the machine gives to two programs that do not know of
+each other. All runs of a case must write the same checkpoint. With --write the results go to bench/ranks/results/speed.json and the page.
 """
 
 import argparse
+import concurrent.futures
 import pathlib
 import statistics
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parents[1] / "grains")]
+import lammps as beds  # noqa: E402
 from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/speed.json"
@@ -52,12 +55,18 @@ def air(dimensions, across, end, wide=1):
     return AIR.format(dimensions=dimensions, spacing=1 / across, size=size, axes=str(axes).replace("'", '"'), third=", 0" if dimensions == 3 else "", end=end)
 
 
-# name: scene, overrides; the same with half of the particles, or none
+def grains(program, folder):
+    """A dense bed of 5e5 spheres."""
+    _, _, size, fill = beds.dense_bed(program, 3, 5e5, folder)
+    return beds.scene(3, size, fill, 4e-4, 1)
+
+
+# name: scene or what makes it, overrides; the same with half of the particles, or none
 CASES = {
-    "air 2D, 1e6": (air(2, 1000, .003), [], air(2, 1000, .003, .5)),
-    "air 3D, 1e6": (air(3, 100, .012), [], air(3, 100, .012, .5)),
+    "air 2D, 1e6": (air(2, 1000, .004), [], air(2, 1000, .004, .5)),
+    "air 3D, 1e6": (air(3, 100, .04), [], air(3, 100, .04, .5)),
     "dam break 2D, 9.4e4": ("dam_break", ["spacing=5e-4", "time.end=0.01", "output.every=1"], None),
-    "grains 3D": ("splash_3d", ["time.end=0.002", "output.every=1"], None),
+    "grains 3D, 5e5": (grains, [], None),
     "dune": ("dune", ["time.end=0.01", "output.every=1"], None),
 }
 
@@ -71,30 +80,42 @@ def rate(ended):
     return ended.report["particle_steps_per_second"]
 
 
+def side_by_side(program, scene, sets, folder):
+    """Particle-steps a second of two processes of one thread that run at the same time."""
+    with concurrent.futures.ThreadPoolExecutor(2) as both:
+        return sum(both.map(lambda number: rate(on_ranks(0, 1, program, scene, sets, folder / f"half{number}")), (0, 1)))
+
+
 def measured(program, name, rounds):
     scene, sets, half = CASES[name]
-    kinds = {"ranks": (2, 1, scene), "threads": (0, 2, scene), "one rank": (1, 1, scene), "one process": (0, 1, scene)}
-    if half:
-        kinds["half"] = (0, 1, half)
-    rates, kept, result = {kind: [] for kind in kinds}, {}, {}
-    for number in range(rounds):
-        for kind, (ranks, threads, text) in kinds.items():
-            with tempfile.TemporaryDirectory() as folder:
-                ended = on_ranks(ranks, threads, program, text, sets, pathlib.Path(folder) / "out")
+    kinds = {"ranks": (2, 1), "threads": (0, 2), "one rank": (1, 1), "one process": (0, 1)}
+    rates, kept, result = {kind: [] for kind in [*kinds, *(["half", "two halves"] if half else [])]}, {}, {}
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = pathlib.Path(folder)
+        text = scene(program, scratch) if callable(scene) else scene
+        for number in range(rounds):
+            for kind, (ranks, threads) in kinds.items():
+                ended = on_ranks(ranks, threads, program, text, sets, scratch / f"{kind}{number}")
                 rates[kind].append(rate(ended))
-                if number == 0 and kind != "half":
-                    kept[kind] = next(ended.out.glob("*.checkpoint")).read_bytes()
+                if number == 0:
+                    kept[kind] = next(ended.out.glob("*.checkpoint"))
                 if kind == "ranks":
                     result.update(steps=ended.report["steps"], particles=sum(ended.report["particles"].values()), of_ranks=ended.report["ranks"])
-        print(name, number, {kind: f"{values[-1] / 1e6:.3f}" for kind, values in rates.items()}, flush=True)
-    if len(set(kept.values())) != 1:
-        raise RuntimeError(f"{name}: ranks, threads and one process have other bits")
+            if half:
+                rates["half"].append(rate(on_ranks(0, 1, program, half, sets, scratch / f"half{number}")))
+                rates["two halves"].append(side_by_side(program, half, sets, scratch / f"halves{number}"))
+            print(name, number, {kind: f"{values[-1] / 1e6:.3f}" for kind, values in rates.items()}, flush=True)
+        first, *others = kept.values()
+        for other in others:
+            run.command([program, "compare", first, other], check=True)
     result["rates"] = {kind: statistics.median(values) for kind, values in rates.items()}
-    pairs = {"kept": ("ranks", "threads"), "with MPI": ("one rank", "one process")} | ({"weak": ("ranks", "half")} if half else {})
+    pairs = {"kept": ("ranks", "threads"), "with MPI": ("one rank", "one process")}
+    pairs |= {"weak": ("ranks", "half"), "side by side": ("two halves", "half")} if half else {}
     for figure, (over, under) in pairs.items():
         of = sorted(a / b for a, b in zip(rates[over], rates[under]))
         result[figure] = [statistics.median(of), of[0], of[-1]]
-    result["weak"] = [x / 2 for x in result["weak"]] if half else None
+    for figure in ("weak", "side by side"):
+        result[figure] = [x / 2 for x in result[figure]] if half else None
     return result
 
 
@@ -105,10 +126,12 @@ def text(results):
             return ""
         return f"{value[0]:.3f} ({value[1]:.3f} to {value[2]:.3f})" + ("" if value[0] >= bound else ", **not met**")
     lines = [table.head("case", "particles, steps", "2 ranks, 2 threads: million particle-steps a second", "2 ranks over 2 threads, >= 0.95",
-                        "1 rank over 1 process, >= 0.99", "weak: 2 ranks over 2 times half of it, >= 0.93", "messages; MB a step of all ranks")]
+                        "1 rank over 1 process, >= 0.99", "weak: 2 ranks over 2 times half of it, >= 0.93", "two processes of half side by side, the same",
+                        "messages; MB a step of all ranks")]
     for name, r in results.items():
         lines.append(table.row(name, f"{r['particles']}, {r['steps']}", f"{r['rates']['ranks'] / 1e6:.2f}, {r['rates']['threads'] / 1e6:.2f}",
                                figure(r["kept"], .95), figure(r["with MPI"], .99), figure(r["weak"], .93),
+                               figure(r.get("side by side"), 0),
                                f"{r['of_ranks']['messages'] / r['steps']:.1f}; {r['of_ranks']['bytes'] / r['steps'] / 1e6:.2f}"))
     return "\n".join(lines)
 

@@ -7,6 +7,8 @@
 #include <optional>
 #include <sstream>
 #include <streambuf>
+#include <utility>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/guard.hpp"
@@ -14,6 +16,7 @@
 #include "app/make_report.hpp"
 #include "app/mpi_ranks.hpp"
 #include "app/running.hpp"
+#include "app/seats.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/instructions.hpp"
@@ -216,7 +219,9 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   const Plan plan = make_plan(scene, blocks);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
   use_threads(options.threads > 0 ? options.threads : threads_of_a_rank(), plan.particles());
-  if (!quiet) std::cout << to_text(plan, scene) << std::flush;
+  std::vector<RunReport::Seat> seats = seats_of_ranks(omp_get_max_threads());
+  for (const std::string& warning : warnings_of(seats)) std::cerr << "barchan: warning: " << warning << "\n";
+  if (!quiet) std::cout << to_text(plan, scene) << to_text(seats) << std::flush;
   else
     for (const std::string& warning : plan.warnings) std::cerr << "barchan: warning: " << warning << "\n";
   Simulation simulation(scene, plan, std::move(blocks));
@@ -229,9 +234,13 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   if (first && !lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
   if (first) clear(directory, scene, plan, continued);
-  Course course{scene,     simulation,
-                directory, Progress(scene.time.end, plan.particles(), quiet),
-                beds,      Team(omp_get_max_threads(), options.threads == 0)};
+  Course course{scene,
+                simulation,
+                directory,
+                Progress(scene.time.end, plan.particles(), quiet),
+                beds,
+                Team(omp_get_max_threads(), options.threads == 0),
+                std::move(seats)};
   return run_to_the_end(course, std::move(from), options.retreats);
 }
 

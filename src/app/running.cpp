@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/make_report.hpp"
+#include "app/seats.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/instructions.hpp"
@@ -347,6 +348,8 @@ RunReport Run::report(const std::string& reason) const {
   r.threads = course_.team.most();
   r.thread_uses = course_.team.uses();
   r.thread_switches = course_.team.switches();
+  r.ranks.seats = course_.seats;
+  for (const std::string& warning : warnings_of(course_.seats)) r.warnings.push_back(warning);
   r.retreats = course_.retreats;
   r.retreat_count = simulation_.state().retreat.count;
   if (r.retreat_count > 0)

@@ -27,6 +27,7 @@ struct Course {
   Progress progress;
   SettledBeds& beds;
   Team team;
+  std::vector<RunReport::Seat> seats;                 // of ranks
   double last_checkpoint = 0.0;                       // s of the run's wall time
   long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
   std::vector<RunReport::Retreat> retreats{};

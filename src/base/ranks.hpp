@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace barchan {
@@ -160,16 +161,17 @@ inline std::size_t before(std::size_t count) {
   return sum;
 }
 
-/// The text of one rank.
-inline std::string text_of(int rank, std::string text) {
-  Communicator* const all = active();
-  if (!all) return text;
+/// The text that one rank has, before anything is shared out too. There are ranks.
+inline std::string told_by(int rank, std::string text) {
+  Communicator& all = *available();
   std::uint64_t size = text.size();
-  all->broadcast(&size, sizeof size, rank);
+  all.broadcast(&size, sizeof size, rank);
   text.resize(size);
-  all->broadcast(text.data(), size, rank);
+  all.broadcast(text.data(), size, rank);
   return text;
 }
+/// The text of one rank; of one process its own.
+inline std::string text_of(int rank, std::string text) { return active() ? told_by(rank, std::move(text)) : text; }
 
 /// Items for each rank, one rank after another; `counts`: for how many each. Returns those that all ranks have for this
 /// one, one rank after another.

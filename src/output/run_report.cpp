@@ -14,7 +14,11 @@ namespace barchan {
 namespace {
 
 nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
+  auto seats = nlohmann::ordered_json::array();
+  for (const RunReport::Seat& seat : ranks.seats)
+    seats.push_back({{"ranks", seat.ranks}, {"host", seat.host}, {"cores", seat.cores}, {"threads", seat.threads}});
   return {{"count", ranks.count},
+          {"seats", seats},
           {"messages", ranks.messages},
           {"bytes", ranks.bytes},
           {"collectives", ranks.collectives},

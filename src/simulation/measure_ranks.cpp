@@ -14,18 +14,21 @@ double of(std::size_t count) { return static_cast<double>(count); }
 }  // namespace
 
 RankMeasure::RankMeasure(const Simulation& simulation, int ranks)
-    : simulation_(simulation),
-      ranks_(static_cast<std::size_t>(ranks)),
-      searches_(simulation.neighbours().rebuilds()),
-      steps_(simulation.steps()),
-      handed_on_(ranks::handed_on),
-      seconds_(simulation.processor_seconds()) {
-  const Neighbours& neighbours = simulation.neighbours();
-  const std::size_t phases = simulation.phases().size();
-  for (std::size_t p = 0; p < phases; ++p) whole_.push_back(simulation.plan().is_whole(p));
-  owners_ = neighbours.divided(ranks_, whole_);
-  rank_of_id_.resize(phases);
-  use_.resize(phases);
+    : simulation_(simulation), ranks_(static_cast<std::size_t>(ranks)) {
+  for (std::size_t p = 0; p < simulation.phases().size(); ++p) whole_.push_back(simulation.plan().is_whole(p));
+  owners_ = simulation.neighbours().divided(ranks_, whole_);
+  begin();
+}
+
+void RankMeasure::begin() {
+  const Neighbours& neighbours = simulation_.neighbours();
+  const std::size_t phases = simulation_.phases().size();
+  searches_ = neighbours.rebuilds();
+  steps_ = simulation_.steps();
+  handed_on_ = ranks::handed_on;
+  seconds_ = simulation_.processor_seconds();
+  rank_of_id_.assign(phases, {});
+  use_.assign(phases, {});
   for (std::size_t p = 0; p < phases; ++p) {
     if (!owners_[p]) continue;
     use_[p] = neighbours.grid(p).use();

@@ -26,6 +26,9 @@ class RankMeasure {
   /// Divides the cells among so many ranks as a run does at its first sort: the simulation has made no step yet.
   RankMeasure(const Simulation& simulation, int ranks);
 
+  /// Counts anew from the present step on: the first steps look for wrong particles more often than those of a run do.
+  void begin();
+
   /// After some steps. `seconds`: of processor time of a step of one thread; 0: not known.
   RankPlan plan(double seconds, const MemoryOfOne& memory) const;
 
@@ -49,9 +52,9 @@ class RankMeasure {
   std::size_t ranks_;
   std::vector<bool> whole_;                            // by phase
   std::vector<std::optional<CellOwners>> owners_;      // by phase, of the start
-  std::vector<std::vector<std::int32_t>> rank_of_id_;  // by phase and number of the particle, at the start
-  // As the counters of the simulation stood at the start.
-  long searches_, steps_;
+  std::vector<std::vector<std::int32_t>> rank_of_id_;  // by phase and number of the particle, at begin()
+  // As the counters of the simulation stood at begin().
+  long searches_ = 0, steps_ = 0;
   ranks::HandedOn handed_on_;
   std::vector<ImageUse> use_;    // by phase
   std::vector<double> seconds_;  // by stage

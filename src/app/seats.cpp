@@ -1,0 +1,103 @@
+#include "app/seats.hpp"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <map>
+#include <sstream>
+
+#include "base/ranks.hpp"
+#include "output/folder_lock.hpp"
+
+namespace barchan {
+
+namespace {
+
+/// Cores that this process may use; none where the system does not say.
+std::set<int> own_cores() {
+  std::set<int> cores;
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) return cores;
+  for (int k = 0; k < CPU_SETSIZE; ++k)
+    if (CPU_ISSET(k, &allowed)) cores.insert(k);
+  return cores;
+}
+
+std::string number_of(std::size_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string list_of_cores(const std::set<int>& cores) {
+  std::string text;
+  for (auto at = cores.begin(); at != cores.end();) {
+    const int first = *at;
+    int last = first;
+    for (++at; at != cores.end() && *at == last + 1; ++at) last = *at;
+    text += (text.empty() ? "" : ",") + std::to_string(first);
+    if (last > first) text += "-" + std::to_string(last);
+  }
+  return text;
+}
+
+std::set<int> cores_of_list(const std::string& list) {
+  std::set<int> cores;
+  std::istringstream parts(list);
+  for (std::string part; std::getline(parts, part, ',');) {
+    int first = 0, last = 0;
+    const char* const end = part.data() + part.size();
+    const auto [dash, wrong] = std::from_chars(part.data(), end, first);
+    if (wrong != std::errc{}) continue;
+    if (dash == end || std::from_chars(dash + 1, end, last).ec != std::errc{}) last = first;
+    for (int k = first; k <= last; ++k) cores.insert(k);
+  }
+  return cores;
+}
+
+std::vector<RunReport::Seat> seats_of_ranks(int threads) {
+  std::vector<RunReport::Seat> seats;
+  Communicator* const all = ranks::available();
+  if (!all) return seats;
+  const std::string host = host_name(), cores = list_of_cores(own_cores());
+  for (int r = 0; r < all->size(); ++r) {
+    RunReport::Seat seat{1, ranks::told_by(r, host), ranks::told_by(r, cores), threads};
+    all->broadcast(&seat.threads, sizeof seat.threads, r);
+    if (!seats.empty() && seats.back().is_like(seat)) ++seats.back().ranks;
+    else seats.push_back(seat);
+  }
+  return seats;
+}
+
+std::string to_text(const std::vector<RunReport::Seat>& seats) {
+  std::string text;
+  for (const RunReport::Seat& seat : seats)
+    text += "  " + number_of(static_cast<std::size_t>(seat.ranks), "rank") + " on " + seat.host + ", " +
+            number_of(static_cast<std::size_t>(seat.threads), "thread") + (seat.ranks == 1 ? "" : " each") +
+            (seat.cores.empty() ? "" : ", cores " + seat.cores) + "\n";
+  return text.empty() ? text : "ranks\n" + text;
+}
+
+std::vector<std::string> warnings_of(const std::vector<RunReport::Seat>& seats) {
+  struct Machine {
+    std::set<int> cores;
+    long threads = 0;
+  };
+  std::map<std::string, Machine> machines;
+  for (const RunReport::Seat& seat : seats) {
+    machines[seat.host].cores.merge(cores_of_list(seat.cores));
+    machines[seat.host].threads += long{seat.ranks} * seat.threads;
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [host, machine] : machines)
+    if (const auto cores = static_cast<long>(machine.cores.size()); cores > 0 && machine.threads > cores)
+      warnings.push_back("the ranks on " + host + " have " + std::to_string(machine.threads) + " threads on " +
+                         number_of(machine.cores.size(), "core") +
+                         ": they take turns and wait for each other; expected at most one thread for each core "
+                         "(fewer ranks, or --threads)");
+  return warnings;
+}
+
+}  // namespace barchan

@@ -1,0 +1,27 @@
+// Where the ranks of a run compute: on which machine, on which of its cores, with how many threads.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "output/run_report.hpp"
+
+namespace barchan {
+
+/// Numbers of cores as a list: "0-3,8".
+std::string list_of_cores(const std::set<int>& cores);
+/// The numbers in such a list, as a launcher gives them.
+std::set<int> cores_of_list(const std::string& list);
+
+/// Of all ranks, one after another; neighbours that say the same are one entry. `threads`: of this rank. Every rank
+/// calls it. Without ranks none.
+std::vector<RunReport::Seat> seats_of_ranks(int threads);
+
+/// A line for each entry.
+std::string to_text(const std::vector<RunReport::Seat>& seats);
+
+/// What a user should know of them: more threads than cores on a machine.
+std::vector<std::string> warnings_of(const std::vector<RunReport::Seat>& seats);
+
+}  // namespace barchan

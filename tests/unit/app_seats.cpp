@@ -1,0 +1,33 @@
+// Where the ranks of a run compute: lists of cores, lines, warnings.
+#include <gtest/gtest.h>
+
+#include "app/seats.hpp"
+
+namespace barchan {
+namespace {
+
+TEST(Seats, ListsOfCores) {
+  EXPECT_EQ(list_of_cores({}), "");
+  EXPECT_EQ(list_of_cores({0}), "0");
+  EXPECT_EQ(list_of_cores({0, 1, 2, 3, 8, 10, 11}), "0-3,8,10-11");
+  EXPECT_EQ(cores_of_list("0-3,8,10-11"), (std::set<int>{0, 1, 2, 3, 8, 10, 11}));
+  EXPECT_EQ(cores_of_list(""), std::set<int>{});
+}
+
+TEST(Seats, ALineForRanksThatSayTheSame) {
+  EXPECT_EQ(to_text({}), "");
+  EXPECT_EQ(to_text({{2, "dune1", "0-1", 1}, {1, "dune2", "0-7", 8}}),
+            "ranks\n  2 ranks on dune1, 1 thread each, cores 0-1\n  1 rank on dune2, 8 threads, cores 0-7\n");
+}
+
+TEST(Seats, WarnsOfMoreThreadsThanCores) {
+  EXPECT_TRUE(warnings_of({{2, "dune1", "0-1", 1}}).empty());
+  EXPECT_TRUE(warnings_of({{4, "dune1", "", 1}}).empty());  // a system that does not say
+  EXPECT_TRUE(warnings_of({{1, "dune1", "0-3", 4}, {1, "dune1", "4-7", 4}}).empty());
+  const auto warnings = warnings_of({{2, "dune1", "0-1", 1}, {1, "dune1", "0-1", 1}, {1, "dune2", "0-7", 8}});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("the ranks on dune1 have 3 threads on 2 cores"), std::string::npos) << warnings[0];
+}
+
+}  // namespace
+}  // namespace barchan
