@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "app/make_report.hpp"
-#include "app/seats.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/instructions.hpp"
@@ -16,6 +15,7 @@
 #include "base/version.hpp"
 #include "output/checkpoint.hpp"
 #include "output/numbers.hpp"
+#include "output/seats.hpp"
 
 namespace barchan {
 

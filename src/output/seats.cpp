@@ -1,4 +1,4 @@
-#include "app/seats.hpp"
+#include "output/seats.hpp"
 
 #include <sched.h>
 #include <unistd.h>

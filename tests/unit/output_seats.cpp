@@ -1,7 +1,7 @@
 // Where the ranks of a run compute: lists of cores, lines, warnings.
 #include <gtest/gtest.h>
 
-#include "app/seats.hpp"
+#include "output/seats.hpp"
 
 namespace barchan {
 namespace {
@@ -15,8 +15,8 @@ TEST(Seats, ListsOfCores) {
 }
 
 TEST(Seats, ALineForRanksThatSayTheSame) {
-  EXPECT_EQ(to_text({}), "");
-  EXPECT_EQ(to_text({{2, "dune1", "0-1", 1}, {1, "dune2", "0-7", 8}}),
+  EXPECT_EQ(to_text(std::vector<RunReport::Seat>{}), "");
+  EXPECT_EQ(to_text(std::vector<RunReport::Seat>{{2, "dune1", "0-1", 1}, {1, "dune2", "0-7", 8}}),
             "ranks\n  2 ranks on dune1, 1 thread each, cores 0-1\n  1 rank on dune2, 8 threads, cores 0-7\n");
 }
 
