@@ -349,7 +349,8 @@ RunReport Run::report(const std::string& reason) const {
   r.thread_uses = course_.team.uses();
   r.thread_switches = course_.team.switches();
   r.ranks.seats = course_.seats;
-  for (const std::string& warning : warnings_of(course_.seats)) r.warnings.push_back(warning);
+  const std::vector<std::string> of_seats = warnings_of(course_.seats);
+  r.warnings.insert(r.warnings.begin(), of_seats.begin(), of_seats.end());
   r.retreats = course_.retreats;
   r.retreat_count = simulation_.state().retreat.count;
   if (r.retreat_count > 0)
@@ -365,7 +366,8 @@ void Run::finish(const std::string& reason) {
   finish_series();
   const RunReport r = report(reason);
   if (!series_) return;
-  for (std::size_t k = simulation_.plan().warnings.size(); k < r.warnings.size(); ++k)  // those were told at the start
+  const std::size_t told = simulation_.plan().warnings.size() + warnings_of(course_.seats).size();  // at the start
+  for (std::size_t k = told; k < r.warnings.size(); ++k)
     std::cerr << "barchan: warning: " << r.warnings[k] << '\n';
   write_run_report(directory_ / "run.json", r);
   course_.progress.end(reason);
