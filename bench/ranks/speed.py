@@ -40,7 +40,7 @@ air-air = 2.1
 phase = "air"
 shape = "the-rest"
 perturb = 0.2
-velocity = ["-cos(2*pi*x)*sin(2*pi*y)", "sin(2*pi*x)*cos(2*pi*y)"{third}]
+velocity = ["-cos(2*pi*x)*sin({wave}*pi*y)", "{along}*sin(2*pi*x)*cos({wave}*pi*y)"{third}]
 [time]
 end = {end!r}
 largest-speed = 1
@@ -50,9 +50,11 @@ every = 1
 
 
 def air(dimensions, across, end, wide=1):
-    """Periodic air; `wide`: how many times as long as it is high, of `across` particles."""
+    """Periodic air; `wide`: how many times as long as it is high, of `across` particles. Waves of half of a square are half as long."""
+    along = wide if dimensions == 2 and wide < 1 else 1
     size, axes = ([1, wide], ["x", "y"]) if dimensions == 2 else ([1, 1, wide], ["x", "y", "z"])
-    return AIR.format(dimensions=dimensions, spacing=1 / across, size=size, axes=str(axes).replace("'", '"'), third=", 0" if dimensions == 3 else "", end=end)
+    return AIR.format(dimensions=dimensions, spacing=1 / across, size=size, axes=str(axes).replace("'", '"'), third=", 0" if dimensions == 3 else "",
+                      wave=2 / along, along=along, end=end)
 
 
 def grains(program, folder):

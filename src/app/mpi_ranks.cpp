@@ -83,29 +83,15 @@ class Mpi final : public Communicator {
   }
   void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                 const std::vector<std::size_t>& receive_counts, std::size_t width) override {
-    const Item item(width);
-    requests_.clear();
-    const char* from = static_cast<const char*>(send);
-    char* to = static_cast<char*>(receive);
-    const char* own = nullptr;
-    for (int r = 0; r < size_; ++r) {
-      const std::size_t count = receive_counts[static_cast<std::size_t>(r)];
-      if (count > 0 && r != rank_)
-        MPI_Irecv(to, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
-      if (r == rank_) own_to_ = to;
-      to += count * width;
-    }
-    for (int r = 0; r < size_; ++r) {
-      const std::size_t count = send_counts[static_cast<std::size_t>(r)];
-      if (count > 0 && r != rank_) note(count * width);
-      if (count > 0 && r != rank_)
-        MPI_Isend(from, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
-      if (r == rank_) own = from;
-      from += count * width;
-    }
-    const std::size_t kept = send_counts[static_cast<std::size_t>(rank_)] * width;
-    if (own && own_to_ && kept > 0) std::memcpy(own_to_, own, kept);
-    MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+    start(send, send_counts, receive, receive_counts, width);
+    wait();
+  }
+  void exchange_beside(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
+                       const std::vector<std::size_t>& receive_counts, std::size_t width,
+                       const std::function<void()>& beside) override {
+    start(send, send_counts, receive, receive_counts, width);
+    beside();
+    wait();
   }
   void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
               std::size_t width) override {
@@ -128,6 +114,32 @@ class Mpi final : public Communicator {
     ++traffic_.collectives;
     MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
   }
+  void start(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
+             const std::vector<std::size_t>& receive_counts, std::size_t width) {
+    const Item item(width);
+    requests_.clear();
+    const char* from = static_cast<const char*>(send);
+    char* to = static_cast<char*>(receive);
+    const char* own = nullptr;
+    for (int r = 0; r < size_; ++r) {
+      const std::size_t count = receive_counts[static_cast<std::size_t>(r)];
+      if (count > 0 && r != rank_)
+        MPI_Irecv(to, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
+      if (r == rank_) own_to_ = to;
+      to += count * width;
+    }
+    for (int r = 0; r < size_; ++r) {
+      const std::size_t count = send_counts[static_cast<std::size_t>(r)];
+      if (count > 0 && r != rank_) note(count * width);
+      if (count > 0 && r != rank_)
+        MPI_Isend(from, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
+      if (r == rank_) own = from;
+      from += count * width;
+    }
+    const std::size_t kept = send_counts[static_cast<std::size_t>(rank_)] * width;
+    if (own && own_to_ && kept > 0) std::memcpy(own_to_, own, kept);
+  }
+  void wait() { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
   void note(std::size_t bytes) {
     ++traffic_.messages;
     traffic_.bytes += static_cast<std::int64_t>(bytes);

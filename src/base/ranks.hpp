@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <type_traits>
@@ -38,6 +39,13 @@ class Communicator {
   /// Items of `width` bytes: send_counts[r] of them to rank r, one rank after another; likewise what comes.
   virtual void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                         const std::vector<std::size_t>& receive_counts, std::size_t width) = 0;
+  /// The same; `beside` is called while the items are on their way, and touches none of them.
+  virtual void exchange_beside(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
+                               const std::vector<std::size_t>& receive_counts, std::size_t width,
+                               const std::function<void()>& beside) {
+    exchange(send, send_counts, receive, receive_counts, width);
+    beside();
+  }
   /// Items of all ranks, one rank after another, on rank 0; `counts` (there): of each rank.
   virtual void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
                       std::size_t width) = 0;

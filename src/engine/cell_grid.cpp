@@ -82,6 +82,7 @@ void CellGrid::order_interior(const Blocks& blocks) {
 
 void CellGrid::sort(PhaseParticles& particles) {
   if (shared_) migrate(particles);
+  else count_cells(particles);
   find_order(particles);
   make_runs();
   particles.permute(order_.data());
@@ -89,48 +90,66 @@ void CellGrid::sort(PhaseParticles& particles) {
   else make_images(particles);
 }
 
-/// Fills order_, and begin_ and end_ of the interior cells.
-void CellGrid::find_order(PhaseParticles& particles) {
-  const std::size_t n = particles.size();
-  if (cell_of_.size() < n) {
-    cell_of_.resize(n);
-    order_.resize(n);
-  }
+/// The cell of each particle, and in end_ how many each cell has.
+void CellGrid::count_cells(PhaseParticles& particles) {
+  make_room(particles.size());
+#pragma omp parallel
+  find_cells(particles);
+}
+
+void CellGrid::make_room(std::size_t particles) {
+  if (cell_of_.size() >= particles) return;
+  cell_of_.resize(particles);
+  order_.resize(particles);
+}
+
+/// Fills order_, and begin_ and end_ of the interior cells, from what count_cells() has found.
+void CellGrid::find_order(const PhaseParticles& particles) {
 #pragma omp parallel
   {
-    find_cells(particles);
 #pragma omp single
     place_cells();
     fill_cells(particles.id());
   }
 }
 
-/// Wraps, finds the cell of each particle and counts those of each cell in end_. All threads of a team call it.
+/// Wraps a position and finds its cell.
+std::uint32_t CellGrid::find_cell(const std::array<double*, 3>& x, std::size_t k) const {
+  std::size_t cell = 0;
+  for (std::size_t d = dimensions_; d-- > 0;) {
+    double& place = x[d][k];
+    if (bounds_.periodic[d] && !(place >= bounds_.low[d] && place < bounds_.high[d])) {
+      place -= period_[d] * std::floor((place - bounds_.low[d]) / period_[d]);
+      if (place < bounds_.low[d] || place >= bounds_.high[d]) place = bounds_.low[d];  // rounding at a side
+    }
+    // Rounding may put a wrapped position onto the upper bound: the interior range is enforced for periodic sides.
+    int c = cell_coordinate(static_cast<float>(place - bounds_.low[d]), d);
+    if (bounds_.periodic[d]) c = std::clamp(c, halo_[d], static_cast<int>(count_[d]) - halo_[d] - 1);
+    cell = cell * count_[d] + static_cast<std::size_t>(c);
+  }
+  return static_cast<std::uint32_t>(cell);
+}
+
+/// Finds the cell of each particle and counts those of each cell in end_. All threads of a team call it.
 void CellGrid::find_cells(PhaseParticles& particles) {
   const auto n = static_cast<std::int64_t>(particles.size()), cells = static_cast<std::int64_t>(end_.size());
   const bool alone = omp_get_num_threads() == 1;
-  std::array<double*, 3> x{};
-  for (std::size_t d = 0; d < dimensions_; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
+  const std::array<double*, 3> x = positions_of(particles);
 #pragma omp for schedule(static)
   for (std::int64_t c = 0; c < cells; ++c) end_[static_cast<std::size_t>(c)] = 0;
 #pragma omp for schedule(static)
   for (std::int64_t k = 0; k < n; ++k) {
-    std::size_t cell = 0;
-    for (std::size_t d = dimensions_; d-- > 0;) {
-      double& place = x[d][k];
-      if (bounds_.periodic[d] && !(place >= bounds_.low[d] && place < bounds_.high[d])) {
-        place -= period_[d] * std::floor((place - bounds_.low[d]) / period_[d]);
-        if (place < bounds_.low[d] || place >= bounds_.high[d]) place = bounds_.low[d];  // rounding at a side
-      }
-      // Rounding may put a wrapped position onto the upper bound: the interior range is enforced for periodic sides.
-      int c = cell_coordinate(static_cast<float>(place - bounds_.low[d]), d);
-      if (bounds_.periodic[d]) c = std::clamp(c, halo_[d], static_cast<int>(count_[d]) - halo_[d] - 1);
-      cell = cell * count_[d] + static_cast<std::size_t>(c);
-    }
-    cell_of_[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(cell);
+    const std::uint32_t cell = find_cell(x, static_cast<std::size_t>(k));
+    cell_of_[static_cast<std::size_t>(k)] = cell;
     if (alone) ++end_[cell];
     else std::atomic_ref(end_[cell]).fetch_add(1, std::memory_order_relaxed);
   }
+}
+
+std::array<double*, 3> CellGrid::positions_of(PhaseParticles& particles) const {
+  std::array<double*, 3> x{};
+  for (std::size_t d = 0; d < dimensions_; ++d) x[d] = particles.column(Field::position, static_cast<int>(d));
+  return x;
 }
 
 /// From the counts in end_: where each cell begins, in the order of the walk, also in end_.

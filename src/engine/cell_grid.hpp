@@ -240,7 +240,11 @@ class CellGrid {
   }
   double divide(double cell, double reach, const Blocks& blocks);
   void order_interior(const Blocks& blocks);
-  void find_order(PhaseParticles& particles);
+  void make_room(std::size_t particles);
+  void count_cells(PhaseParticles& particles);
+  void find_order(const PhaseParticles& particles);
+  std::array<double*, 3> positions_of(PhaseParticles& particles) const;
+  std::uint32_t find_cell(const std::array<double*, 3>& x, std::size_t k) const;
   std::array<std::size_t, 2> take_own_cells();
   void find_halo();
   void find_cells(PhaseParticles& particles);
@@ -255,12 +259,14 @@ class CellGrid {
   CellOwners divided(const std::vector<std::int64_t>& by_row, std::size_t ranks) const;
   void own_by_first(CellOwners& owners) const;
   void migrate(PhaseParticles& particles);
+  void fill_places(PhaseParticles& particles, const std::vector<std::uint32_t>& leavers, std::size_t kept);
   void balance();
   void make_own_images(const PhaseParticles& particles);
   void mark_box(const std::array<float, 3>& low, const std::array<float, 3>& high, std::vector<char>& needed) const;
   std::size_t halo_number(std::uint32_t cell) const;
   SharedCells::Question ask_owners(const std::vector<char>& needed);
   std::size_t place_ghosts(const SharedCells::Question& question);
+  const std::vector<std::uint32_t>& cells_at_border(float reach) const;
   void bring_search_positions(const SharedCells::Question& question, std::size_t n);
   void answer(const std::vector<std::uint32_t>& asked, const std::vector<std::size_t>& asked_counts);
   std::array<std::size_t, 2> own_walk() const;
@@ -289,16 +295,32 @@ class CellGrid {
 template <class Pack, class Place>
 void CellGrid::fill_ghosts(std::size_t width, Pack&& pack, Place&& place) const {
   SharedCells& s = *shared_;
-  const auto sent = static_cast<std::int64_t>(s.sends.size()), come = static_cast<std::int64_t>(s.slots.size());
-  if (s.out.size() < s.sends.size() * width) s.out.resize(s.sends.size() * width);
+  const SharedCells::OwnImages& own = s.own_images;
+  const std::size_t away = s.sends.size() - own.count, come = s.slots.size() - own.count;
+  if (s.out.size() < away * width) s.out.resize(away * width);
   if (s.in.size() < s.slots.size() * width) s.in.resize(s.slots.size() * width);
+  const auto behind = [](std::size_t k, std::size_t first, std::size_t count) { return k < first ? k : k + count; };
 #pragma omp parallel for schedule(static)
-  for (std::int64_t k = 0; k < sent; ++k)
-    pack(s.sends[static_cast<std::size_t>(k)], s.out.data() + static_cast<std::size_t>(k) * width);
-  ranks::active()->exchange(s.out.data(), s.send_counts, s.in.data(), s.receive_counts, width);
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(away); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    pack(s.sends[behind(i, own.sends, own.count)], s.out.data() + i * width);
+  }
+  // While they are on their way: images of this rank's own particles.
+  const auto fill_own = [&] {
+    std::byte* const items = s.in.data() + come * width;
 #pragma omp parallel for schedule(static)
-  for (std::int64_t k = 0; k < come; ++k)
-    place(std::size_t{s.slots[static_cast<std::size_t>(k)]}, s.in.data() + static_cast<std::size_t>(k) * width);
+    for (std::int64_t k = 0; k < static_cast<std::int64_t>(own.count); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      pack(s.sends[own.sends + i], items + i * width);
+      place(std::size_t{s.slots[own.slots + i]}, items + i * width);
+    }
+  };
+  ranks::active()->exchange_beside(s.out.data(), s.away_counts, s.in.data(), s.come_counts, width, fill_own);
+#pragma omp parallel for schedule(static)
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(come); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    place(std::size_t{s.slots[behind(i, own.slots, own.count)]}, s.in.data() + i * width);
+  }
 }
 
 template <class Pack, class Place>

@@ -1,5 +1,6 @@
 // Which rank owns which cells of a grid, and whose particles a rank needs as ghosts: of a run and of its plan.
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "engine/cell_grid.hpp"
@@ -88,10 +89,8 @@ void CellGrid::mark_box(const std::array<float, 3>& low, const std::array<float,
 
 void CellGrid::mark(const CellGrid& about, const CellOwners& owners, std::int32_t rank, float reach,
                     std::vector<char>& needed) const {
-  const auto r = static_cast<std::size_t>(rank);
-  for (std::size_t w = owners.first[r]; w < owners.first[r + 1]; ++w) {
-    const std::uint32_t cell = about.walk_[w];
-    if (about.begin_[cell] == about.end_[cell]) continue;
+  const auto mark_about = [&](std::uint32_t cell) {
+    if (about.begin_[cell] == about.end_[cell]) return;
     std::array<float, 3> first{}, last{};
     for (std::size_t d = 0; d < dimensions_; ++d) {
       const float* x = about.search_position(static_cast<int>(d));
@@ -100,7 +99,43 @@ void CellGrid::mark(const CellGrid& about, const CellOwners& owners, std::int32_
       last[d] = *high + reach;
     }
     mark_box(first, last, needed);
+  };
+  // Of the division in use only cells near those of others count: marks of own cells say nothing.
+  if (&about == this && &owners == shared_.get()) {
+    for (const std::uint32_t cell : cells_at_border(reach)) mark_about(cell);
+    return;
   }
+  const auto r = static_cast<std::size_t>(rank);
+  for (std::size_t w = owners.first[r]; w < owners.first[r + 1]; ++w) mark_about(about.walk_[w]);
+}
+
+/// Own cells within `reach` (m) of cells of others, or beyond periodic sides.
+const std::vector<std::uint32_t>& CellGrid::cells_at_border(float reach) const {
+  SharedCells& s = *shared_;
+  int width = 0;
+  for (std::size_t d = 0; d < dimensions_; ++d)
+    width = std::max(width, static_cast<int>(std::ceil(reach * inverse_cell_[d])) + 1);
+  if (width <= s.border_width && s.border_of == s.first) return s.border;
+  const std::int32_t rank = ranks::active()->rank();
+  std::vector<char> near(s.owner.size()), wider(s.owner.size());
+  for (std::size_t c = 0; c < near.size(); ++c) near[c] = s.owner[c] != rank ? 1 : 0;
+  std::size_t stride = 1;
+  for (std::size_t d = 0; d < dimensions_; stride *= count_[d++]) {  // axis by axis
+    for (std::size_t c = 0; c < near.size(); ++c) {
+      const auto at = static_cast<long>(c / stride % count_[d]), last = static_cast<long>(count_[d]) - 1;
+      const long from = std::max(-at, long{-width}), to = std::min(last - at, long{width});
+      wider[c] = 0;
+      for (long k = from; k <= to && wider[c] == 0; ++k)
+        wider[c] = near[static_cast<std::size_t>(static_cast<long>(c) + k * static_cast<long>(stride))];
+    }
+    near.swap(wider);
+  }
+  s.border.clear();
+  for (std::size_t w = s.first[static_cast<std::size_t>(rank)]; w < s.first[static_cast<std::size_t>(rank) + 1]; ++w)
+    if (near[walk_[w]] != 0) s.border.push_back(walk_[w]);
+  s.border_width = width;
+  s.border_of = s.first;
+  return s.border;
 }
 
 void CellGrid::mark(const CellGrid& about, const std::vector<std::int32_t>& owners, std::int32_t rank, float reach,

@@ -21,6 +21,10 @@ std::size_t sum(const std::vector<std::size_t>& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
+std::size_t sum_before(const std::vector<std::size_t>& counts, std::size_t number) {
+  return std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(number), std::size_t{0});
+}
+
 }  // namespace
 
 /// Divides the cells of one process. From now on begin_ and end_ of this rank's count its own particles; those stood
@@ -39,6 +43,7 @@ std::array<std::size_t, 2> CellGrid::take_own_cells() {
 }
 
 void CellGrid::sort_and_share(PhaseParticles& particles) {
+  count_cells(particles);
   find_order(particles);
   cell_of_ = {};
   const auto [first, last] = take_own_cells();
@@ -49,10 +54,7 @@ void CellGrid::sort_and_share(PhaseParticles& particles) {
 }
 
 void CellGrid::sort_pieces(PhaseParticles& particles) {
-  cell_of_.resize(particles.size());
-  order_.resize(particles.size());
-#pragma omp parallel
-  find_cells(particles);
+  count_cells(particles);
   shared_ = std::make_unique<SharedCells>();
   static_cast<CellOwners&>(*shared_) =
       divided(particles_by_row(), static_cast<std::size_t>(ranks::available()->size()));
@@ -106,40 +108,50 @@ void CellGrid::balance() {
   static_cast<CellOwners&>(*shared_) = divided(particles_by_row(), shared_->ranks());
 }
 
-/// Particles that stand in cells of other ranks go there.
+/// Particles that stand in cells of other ranks go there. Those that come stand behind those that stay, in no order;
+/// the cells of all are known and counted.
 void CellGrid::migrate(PhaseParticles& particles) {
-  if (cell_of_.size() < particles.size()) {
-    cell_of_.resize(particles.size());
-    order_.resize(particles.size());
-  }
-#pragma omp parallel
-  find_cells(particles);
+  count_cells(particles);
   balance();
   Communicator& all = *ranks::active();
   const SharedCells& s = *shared_;
   const std::size_t n = particles.size(), width = particles.packed_width();
+  std::vector<std::uint32_t> leavers;
   std::vector<std::size_t> leaving(static_cast<std::size_t>(all.size()), 0);
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::int32_t to = s.owner[cell_of_[k]];
-    if (to == all.rank()) order_[kept++] = static_cast<std::uint32_t>(k);
-    else ++leaving[static_cast<std::size_t>(to)];
-  }
+  for (std::size_t k = 0; k < n; ++k)
+    if (const std::int32_t to = s.owner[cell_of_[k]]; to != all.rank()) {
+      leavers.push_back(static_cast<std::uint32_t>(k));
+      ++leaving[static_cast<std::size_t>(to)];
+      --end_[cell_of_[k]];
+    }
   const std::vector<std::size_t> coming = counts_from_others(leaving);
   std::vector<std::size_t> next(leaving.size(), 0);
   std::partial_sum(leaving.begin(), leaving.end() - 1, next.begin() + 1);
-  std::vector<std::byte> out((n - kept) * width), in(sum(coming) * width);
-  std::size_t last = kept;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::int32_t to = s.owner[cell_of_[k]];
-    if (to == all.rank()) continue;
-    order_[last++] = static_cast<std::uint32_t>(k);
-    particles.pack(k, out.data() + next[static_cast<std::size_t>(to)]++ * width);
-  }
+  std::vector<std::byte> out(leavers.size() * width), in(sum(coming) * width);
+  for (const std::uint32_t k : leavers)
+    particles.pack(k, out.data() + next[static_cast<std::size_t>(s.owner[cell_of_[k]])]++ * width);
   all.exchange(out.data(), leaving, in.data(), coming, width);
-  if (kept < n) particles.permute(order_.data());
+  const std::size_t kept = n - leavers.size();
+  fill_places(particles, leavers, kept);
   particles.resize(kept + sum(coming));
+  make_room(particles.size());
   for (std::size_t k = 0; k < sum(coming); ++k) particles.unpack(kept + k, in.data() + k * width);
+  const std::array<double*, 3> x = positions_of(particles);
+  for (std::size_t k = kept; k < particles.size(); ++k) ++end_[cell_of_[k] = find_cell(x, k)];
+}
+
+/// Moves the last particles that stay into the places of those that leave (ascending), so that the first `kept` stay.
+void CellGrid::fill_places(PhaseParticles& particles, const std::vector<std::uint32_t>& leavers, std::size_t kept) {
+  std::vector<std::byte> one(particles.packed_width());
+  auto leaver = std::lower_bound(leavers.begin(), leavers.end(), kept);
+  std::size_t from = kept;
+  for (const std::uint32_t to : leavers) {
+    if (to >= kept) break;
+    for (; leaver != leavers.end() && *leaver == from; ++leaver) ++from;
+    particles.pack(from, one.data());
+    particles.unpack(to, one.data());
+    cell_of_[to] = cell_of_[from++];
+  }
 }
 
 /// After a sort: search positions of the particles, and of their images beyond periodic sides.
@@ -232,6 +244,13 @@ std::size_t CellGrid::place_ghosts(const SharedCells::Question& question) {
         ++s.receive_counts[r];
       }
     }
+  const auto own = static_cast<std::size_t>(rank);
+  s.own_images.count = s.receive_counts[own];
+  s.own_images.slots = sum_before(s.receive_counts, own);
+  s.own_images.sends = sum_before(s.send_counts, own);
+  s.away_counts = s.send_counts;
+  s.come_counts = s.receive_counts;
+  s.away_counts[own] = s.come_counts[own] = 0;
   fit_search(n, total - n, total);
   return n;
 }
@@ -246,18 +265,20 @@ void CellGrid::bring_search_positions(const SharedCells::Question& question, std
     const std::uint32_t source = beyond ? halo_cells_[halo_number(c)].source : c;
     for (std::size_t k = 0; k < end_[source] - begin_[source]; ++k) begins.push_back(first + k);
   }
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    const float* own = search_[d].data();
-    const float* beyond = s.image_search[d].data();
-    const Image* const first = s.sends.data();
-    fill_ghosts(
-        sizeof(float),
-        [&](const Image& image, std::byte* to) {
-          const std::size_t at = begins[static_cast<std::size_t>(&image - first)];
-          std::memcpy(to, (image.shifted() ? beyond : own) + at, sizeof(float));
-        },
-        [&](std::size_t slot, const std::byte* come) { std::memcpy(&search_[d][n + slot], come, sizeof(float)); });
-  }
+  const Image* const first = s.sends.data();
+  fill_ghosts(
+      dimensions_ * sizeof(float),
+      [&](const Image& image, std::byte* to) {
+        const std::size_t at = begins[static_cast<std::size_t>(&image - first)];
+        for (std::size_t d = 0; d < dimensions_; ++d) {
+          const float* const from = image.shifted() ? s.image_search[d].data() : search_[d].data();
+          std::memcpy(to + d * sizeof(float), from + at, sizeof(float));
+        }
+      },
+      [&](std::size_t slot, const std::byte* come) {
+        for (std::size_t d = 0; d < dimensions_; ++d)
+          std::memcpy(&search_[d][n + slot], come + d * sizeof(float), sizeof(float));
+      });
 }
 
 void CellGrid::take_values(const double* column, std::vector<double>& ghosts) const {

@@ -49,6 +49,16 @@ struct SharedCells : CellOwners {
   std::vector<std::size_t> send_counts, receive_counts;  // by rank
   std::vector<std::uint32_t> slots;
   std::vector<std::byte> out, in;  // buffers
+  /// Of them, images of own particles beyond periodic sides, which no message brings: where they begin in `sends` and
+  /// in `slots`. The counts without them, by rank.
+  struct OwnImages {
+    std::size_t sends = 0, slots = 0, count = 0;
+  } own_images;
+  std::vector<std::size_t> away_counts, come_counts;
+  /// Own cells with cells of others, or beyond periodic sides, no more than `border_width` cells away along each axis,
+  /// in the order of the walk; found again when the division has changed.
+  std::vector<std::uint32_t> border, border_of;  // border_of: `first` as it was then
+  int border_width = -1;
 
   /// Cells that this rank asks others for, and cells that others ask of it.
   struct Question {

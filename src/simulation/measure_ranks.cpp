@@ -145,7 +145,7 @@ void RankMeasure::add_halo(RankPlan& plan, std::size_t phase, const std::vector<
     for (const auto& [to, sent] : halo[r].to) {
       RankPlan::Rank& other = plan.ranks[static_cast<std::size_t>(to)];
       const double images = of(sent.images), cells = of(sent.cells), some = sent.images > 0 ? 1.0 : 0.0;
-      rank.messages += some * (fills + searches * dimensions) + searches;
+      rank.messages += some * (fills + searches) + searches;
       rank.bytes +=
           images * (filled + searches * dimensions * sizeof(float)) + searches * cells * sizeof(std::uint32_t);
       other.messages += some * returns + searches;
