@@ -80,8 +80,8 @@ void CellGrid::order_interior(const Blocks& blocks) {
   }
 }
 
-void CellGrid::sort(PhaseParticles& particles) {
-  if (shared_) migrate(particles);
+void CellGrid::sort(PhaseParticles& particles, Division division) {
+  if (shared_) migrate(particles, division);
   find_order(particles);
   make_runs();
   particles.permute(order_.data());
@@ -89,13 +89,16 @@ void CellGrid::sort(PhaseParticles& particles) {
   else make_images(particles);
 }
 
+/// Room for the cells of so many particles, and for their order.
+void CellGrid::fit_order(std::size_t particles) {
+  if (cell_of_.size() >= particles) return;
+  cell_of_.resize(particles);
+  order_.resize(particles);
+}
+
 /// Fills order_, and begin_ and end_ of the interior cells.
 void CellGrid::find_order(PhaseParticles& particles) {
-  const std::size_t n = particles.size();
-  if (cell_of_.size() < n) {
-    cell_of_.resize(n);
-    order_.resize(n);
-  }
+  fit_order(particles.size());
 #pragma omp parallel
   {
     find_cells(particles);
