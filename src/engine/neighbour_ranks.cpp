@@ -11,7 +11,7 @@ namespace barchan {
 namespace {
 
 /// What a step does once for a particle takes as long as so many entries of its rows: measured in a dam break in 3D.
-constexpr double particle_entries = 4.0;
+constexpr double entries_a_particle = 4.0;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void Neighbours::share(std::vector<PhaseParticles>& particles) {
 
 /// What a step does for the particles of a phase, in entries of rows. The lists are those of the steps so far.
 double Neighbours::work_of(std::size_t phase, std::size_t particles) const {
-  double work = particle_entries * static_cast<double>(particles);
+  double work = entries_a_particle * static_cast<double>(particles);
   for (std::size_t q = 0; q < directions_.size(); ++q)
     if (directions_[q].a == phase) work += static_cast<double>(lists_[q].padded_entries());
   return work;
@@ -39,7 +39,7 @@ double Neighbours::work_of(std::size_t phase, std::size_t particles) const {
 /// The same of each of these particles, in whole numbers; `unit`: of an entry. Where particles were made or removed
 /// since the lists, all have the same.
 std::vector<std::int64_t> Neighbours::weights_of(std::size_t phase, std::size_t particles, double unit) const {
-  std::vector<double> work(particles, particle_entries);
+  std::vector<double> work(particles, entries_a_particle);
   for (std::size_t q = 0; q < directions_.size(); ++q) {
     if (directions_[q].a != phase || searches_[q].size_a != particles) continue;
     for (std::size_t k = 0; k < particles; ++k) {

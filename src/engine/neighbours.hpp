@@ -89,8 +89,6 @@ class Neighbours {
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
   /// in wide ones particles may go further before blocks that are not adjacent matter.
   static constexpr double block_width = 1.5;
-  /// What a step does once for a particle takes as long as so many entries of its rows; measured.
-  static constexpr double entries_a_particle = 16.0;
 
   /// Displacements since the last sort: bounds of their components.
   struct Range {
