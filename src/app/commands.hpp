@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/division.hpp"
 #include "plan/plan.hpp"
 
 namespace barchan {
@@ -16,6 +17,7 @@ struct RunOptions {
   std::string restart;                 // empty, "latest" or a checkpoint
   std::string instructions;            // empty: the best that the machine has
   int retreats = 10;                   // how often a run may go back after a failed step
+  Division division = Division::time;  // of cells among ranks
   bool quiet = false;
 };
 

@@ -98,12 +98,21 @@ int dispatch(int argc, char** argv) {
   c_run->add_option("--retreats", run.retreats, "how often to go back after a failed step and take smaller ones (10)")
       ->type_name("N")
       ->check(CLI::Range(0, 1000));
+  std::string division = name_of(run.division);
+  c_run
+      ->add_option("--division", division,
+                   "ranks (mpirun -n N) share cells by the time of their steps, or by particles (default time)")
+      ->type_name("time|particles")
+      ->check([](const std::string& text) {
+        return text == "time" || text == "particles" ? "" : text + " not in {time,particles}";
+      });
   c_run->add_flag("--quiet", run.quiet, "print warnings and errors only");
   bool dry = false;
   c_run->add_flag("--dry", dry, "run nothing: the same as barchan plan");
   add_set(c_run);
   c_run->callback([&] {
     run.overrides = overrides;
+    run.division = division == "time" ? barchan::Division::time : barchan::Division::particles;
     run.scene = barchan::scene_file(run.scene);
     status = dry ? barchan::plan(run.scene, overrides, run.threads, false) : barchan::run(run);
   });

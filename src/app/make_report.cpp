@@ -10,6 +10,7 @@
 #include "base/memory.hpp"
 #include "base/ranks.hpp"
 #include "base/version.hpp"
+#include "engine/rank_load.hpp"
 #include "output/folder_lock.hpp"
 
 namespace barchan {
@@ -111,6 +112,14 @@ RunReport::Ranks traffic(const Simulation& simulation) {
   const double memory = most_resident_memory();
   r.memory_of_first = ranks::of_first(true, memory);
   r.most_memory_of_others = ranks::largest(ranks::is_first() ? 0.0 : memory);
+  const RankLoad& load = simulation.neighbours().load();
+  for (const RankLoad::Seconds& seconds : ranks::each(load.seconds())) {
+    r.busy_seconds.push_back(seconds.busy);
+    r.waiting_seconds.push_back(seconds.waiting);
+  }
+  r.division = name_of(simulation.neighbours().division());
+  r.divisions = load.divisions();
+  r.dividing_seconds = ranks::largest(load.seconds_dividing());
   return r;
 }
 

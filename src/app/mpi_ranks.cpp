@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "base/errors.hpp"
 
 namespace barchan {
@@ -56,6 +57,24 @@ int count_of(std::size_t count) {
   return static_cast<int>(count);
 }
 
+/// Adds the time of a block to what a rank has waited.
+class Waiting {
+ public:
+  explicit Waiting(Communicator::Waits& waits) : waits_(waits), processor_(thread_seconds()), begin_(Clock::now()) {}
+  ~Waiting() {
+    waits_.seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
+    waits_.processor_seconds += thread_seconds() - processor_;
+  }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Communicator::Waits& waits_;
+  double processor_;
+  Clock::time_point begin_;
+};
+
 class Mpi final : public Communicator {
  public:
   Mpi() {
@@ -73,24 +92,32 @@ class Mpi final : public Communicator {
   void reduce(float* values, std::size_t count, Take how) override { all(values, count, how, MPI_FLOAT); }
   void reduce(std::int64_t* values, std::size_t count, Take how) override { all(values, count, how, MPI_INT64_T); }
   Traffic traffic() const override { return traffic_; }
+  Waits waits() const override { return waits_; }
   void all_gather(const void* mine, std::size_t bytes, void* all) override {
+    const Waiting waiting(waits_);
     ++traffic_.collectives;
     MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
   }
   void broadcast(void* data, std::size_t bytes, int from) override {
+    const Waiting waiting(waits_);
     ++traffic_.collectives;
     MPI_Bcast(data, count_of(bytes), MPI_BYTE, from, MPI_COMM_WORLD);
   }
   void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                 const std::vector<std::size_t>& receive_counts, std::size_t width) override {
+    const Waiting waiting(waits_);
     start(send, send_counts, receive, receive_counts, width);
     wait();
   }
   void exchange_beside(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                        const std::vector<std::size_t>& receive_counts, std::size_t width,
                        const std::function<void()>& beside) override {
-    start(send, send_counts, receive, receive_counts, width);
+    {
+      const Waiting waiting(waits_);
+      start(send, send_counts, receive, receive_counts, width);
+    }
     beside();
+    const Waiting waiting(waits_);
     wait();
   }
   void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
@@ -101,16 +128,19 @@ class Mpi final : public Communicator {
     exchange(mine, to, all, from, width);
   }
   void send(const void* data, std::size_t bytes, int to) override {
+    const Waiting waiting(waits_);
     note(bytes);
     MPI_Send(data, count_of(bytes), MPI_BYTE, to, tag, MPI_COMM_WORLD);
   }
   void receive(void* data, std::size_t bytes, int from) override {
+    const Waiting waiting(waits_);
     MPI_Recv(data, count_of(bytes), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   }
 
  private:
   template <class T>
   void all(T* values, std::size_t count, Take how, MPI_Datatype type) {
+    const Waiting waiting(waits_);
     ++traffic_.collectives;
     MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
   }
@@ -145,6 +175,7 @@ class Mpi final : public Communicator {
     traffic_.bytes += static_cast<std::int64_t>(bytes);
   }
   Traffic traffic_;
+  Waits waits_;
   int rank_ = 0, size_ = 1, on_this_machine_ = 1;
   char* own_to_ = nullptr;
   std::vector<MPI_Request> requests_;

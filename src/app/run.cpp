@@ -196,8 +196,8 @@ class Silence {
 
 /// All that decides what a run computes, for ranks to compare.
 std::string command_of(const RunOptions& options) {
-  std::string text =
-      options.scene + "\n" + options.restart + "\n" + options.instructions + "\n" + std::to_string(options.retreats);
+  std::string text = options.scene + "\n" + options.restart + "\n" + options.instructions + "\n" +
+                     std::to_string(options.retreats) + "\n" + name_of(options.division);
   for (const std::string& one : options.overrides) text += "\n" + one;
   return text;
 }
@@ -225,6 +225,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   else
     for (const std::string& warning : plan.warnings) std::cerr << "barchan: warning: " << warning << "\n";
   Simulation simulation(scene, plan, std::move(blocks));
+  simulation.divide_by(options.division);
   simulation.check_start();
   listen_to_signals();
   if (first && !lock) {

@@ -57,6 +57,12 @@ class Communicator {
     std::int64_t messages = 0, bytes = 0, collectives = 0;
   };
   virtual Traffic traffic() const { return {}; }
+  /// What this rank has spent in calls of its communicator so far: wall time, and processor time of the thread that
+  /// makes them (s).
+  struct Waits {
+    double seconds = 0, processor_seconds = 0;
+  };
+  virtual Waits waits() const { return {}; }
   /// How many of the ranks are processes of this machine.
   virtual int on_this_machine() const { return size(); }
 };

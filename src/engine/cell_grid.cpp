@@ -80,8 +80,8 @@ void CellGrid::order_interior(const Blocks& blocks) {
   }
 }
 
-void CellGrid::sort(PhaseParticles& particles) {
-  if (shared_) migrate(particles);
+void CellGrid::sort(PhaseParticles& particles, Division division) {
+  if (shared_) migrate(particles, division);
   else count_cells(particles);
   find_order(particles);
   make_runs();

@@ -18,6 +18,7 @@
 
 #include "base/aligned.hpp"
 #include "base/ranks.hpp"
+#include "engine/division.hpp"
 #include "engine/shared_cells.hpp"
 #include "state/particles.hpp"
 
@@ -54,8 +55,9 @@ class CellGrid {
   CellGrid(const Bounds& bounds, double cell, double reach, const Blocks& blocks, std::size_t most = most_cells);
 
   /// Wraps positions into the periodic domain, sorts the phase by cell and makes the images. Positions outside the
-  /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm.
-  void sort(PhaseParticles& particles);
+  /// bounds of a non-periodic side are put into the outermost cells. Allocates nothing once warm. On several ranks
+  /// particles change their rank; divided by the number of particles, cells do where a rank has too many.
+  void sort(PhaseParticles& particles, Division division = Division::particles);
 
   /// The runs of a block, as sorted last, side by side.
   std::span<const BlockRun> runs(std::size_t block) const {
@@ -144,6 +146,9 @@ class CellGrid {
   void sort_pieces(PhaseParticles& particles);
   /// The same of a phase as one process sorted it.
   void share(PhaseParticles& particles);
+  /// Before a sort of a shared grid: cuts the walk so that each rank has about the same sum of weights, and brings the
+  /// particles to their new ranks. `weights`: of the particles of this rank, by their places.
+  void divide(PhaseParticles& particles, const std::vector<std::int64_t>& weights);
   /// All cells are this process' own again: for who loads what one process had, and shares it then.
   void unshare() { shared_.reset(); }
   /// Null: not shared.
@@ -168,6 +173,10 @@ class CellGrid {
   /// Cuts the walk between rows of strips so that each rank has about the same number of the particles as sorted last.
   /// The grid is not shared.
   CellOwners divided(std::size_t ranks) const;
+  /// The same for about equal sums of the weights that the rows of strips have, in the order of the walk.
+  CellOwners divided(const std::vector<std::int64_t>& weights, std::size_t ranks) const;
+  /// Where the rows of strips begin in the walk, and its end.
+  std::vector<std::uint32_t> rows_of_strips() const;
   /// Particles of each rank. The grid is not shared.
   std::vector<std::size_t> particles_by_rank(const CellOwners& owners) const;
   /// The rank that owns the cell of a search position; of one beyond periodic sides that of the cell it repeats.
@@ -254,11 +263,12 @@ class CellGrid {
   void make_images(const PhaseParticles& particles);
   void fit_search(std::size_t particles, std::size_t room, std::size_t used);
   // of a run on several ranks
-  std::vector<std::uint32_t> rows_of_strips() const;
+  template <class Of>
+  std::vector<std::int64_t> by_row(Of&& of_cell) const;
   std::vector<std::int64_t> particles_by_row() const;
-  CellOwners divided(const std::vector<std::int64_t>& by_row, std::size_t ranks) const;
   void own_by_first(CellOwners& owners) const;
-  void migrate(PhaseParticles& particles);
+  void migrate(PhaseParticles& particles, Division division);
+  void move_to_owners(PhaseParticles& particles);
   void fill_places(PhaseParticles& particles, const std::vector<std::uint32_t>& leavers, std::size_t kept);
   void balance();
   void make_own_images(const PhaseParticles& particles);

@@ -7,7 +7,6 @@
 
 namespace barchan {
 
-/// Where the rows of strips begin in the walk, and its end.
 std::vector<std::uint32_t> CellGrid::rows_of_strips() const {
   const std::size_t low = bounds_.periodic[0] ? static_cast<std::size_t>(halo_[0]) : 0;
   std::vector<std::uint32_t> rows;
@@ -25,21 +24,20 @@ CellOwners CellGrid::divided(std::size_t ranks) const {
   return divided(by_row, ranks);
 }
 
-/// Gives each rank rows of about the same number of particles.
-CellOwners CellGrid::divided(const std::vector<std::int64_t>& by_row, std::size_t ranks) const {
+CellOwners CellGrid::divided(const std::vector<std::int64_t>& weights, std::size_t ranks) const {
   const std::vector<std::uint32_t> row = rows_of_strips();
-  const std::int64_t total = std::accumulate(by_row.begin(), by_row.end(), std::int64_t{0});
+  const std::int64_t total = std::accumulate(weights.begin(), weights.end(), std::int64_t{0});
   CellOwners owners;
   owners.first.assign(ranks + 1, static_cast<std::uint32_t>(walk_.size()));
   owners.first[0] = 0;
   std::int64_t before = 0;
   std::size_t rank = 1;
-  for (std::size_t r = 0; r < by_row.size(); ++r) {
+  for (std::size_t r = 0; r < weights.size(); ++r) {
     // A row belongs to the rank in whose share its middle lies.
-    const std::int64_t middle = 2 * before + by_row[r];
+    const std::int64_t middle = 2 * before + weights[r];
     while (rank < ranks && middle * static_cast<std::int64_t>(ranks) >= 2 * total * static_cast<std::int64_t>(rank))
       owners.first[rank++] = row[r];
-    before += by_row[r];
+    before += weights[r];
   }
   own_by_first(owners);
   return owners;

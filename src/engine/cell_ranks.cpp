@@ -58,21 +58,35 @@ void CellGrid::sort_pieces(PhaseParticles& particles) {
   shared_ = std::make_unique<SharedCells>();
   static_cast<CellOwners&>(*shared_) =
       divided(particles_by_row(), static_cast<std::size_t>(ranks::available()->size()));
-  migrate(particles);
+  migrate(particles, Division::particles);
   find_order(particles);
   particles.keep(order_.data(), particles.size());
   make_runs();
   make_own_images(particles);
 }
 
-/// Of all ranks, in each row of strips; find_cells() has counted those of each cell.
-std::vector<std::int64_t> CellGrid::particles_by_row() const {
+/// Sums of what the cells of all ranks have, in each row of strips.
+template <class Of>
+std::vector<std::int64_t> CellGrid::by_row(Of&& of_cell) const {
   const std::vector<std::uint32_t> row = rows_of_strips();
-  std::vector<std::int64_t> by_row(row.size() - 1, 0);
-  for (std::size_t r = 0; r < by_row.size(); ++r)
-    for (std::size_t w = row[r]; w < row[r + 1]; ++w) by_row[r] += end_[walk_[w]];
-  ranks::active()->reduce(by_row.data(), by_row.size(), Communicator::Take::sum);
-  return by_row;
+  std::vector<std::int64_t> sums(row.size() - 1, 0);
+  for (std::size_t r = 0; r < sums.size(); ++r)
+    for (std::size_t w = row[r]; w < row[r + 1]; ++w) sums[r] += of_cell(walk_[w]);
+  ranks::active()->reduce(sums.data(), sums.size(), Communicator::Take::sum);
+  return sums;
+}
+
+/// find_cells() has counted those of each cell.
+std::vector<std::int64_t> CellGrid::particles_by_row() const {
+  return by_row([this](std::uint32_t cell) { return std::int64_t{end_[cell]}; });
+}
+
+void CellGrid::divide(PhaseParticles& particles, const std::vector<std::int64_t>& weights) {
+  count_cells(particles);
+  std::vector<std::int64_t> of_cell(begin_.size(), 0);
+  for (std::size_t k = 0; k < weights.size(); ++k) of_cell[cell_of_[k]] += weights[k];
+  static_cast<CellOwners&>(*shared_) = divided(by_row([&](std::uint32_t c) { return of_cell[c]; }), shared_->ranks());
+  move_to_owners(particles);
 }
 
 void CellGrid::share(PhaseParticles& particles) {
@@ -108,11 +122,16 @@ void CellGrid::balance() {
   static_cast<CellOwners&>(*shared_) = divided(particles_by_row(), shared_->ranks());
 }
 
-/// Particles that stand in cells of other ranks go there. Those that come stand behind those that stay, in no order;
-/// the cells of all are known and counted.
-void CellGrid::migrate(PhaseParticles& particles) {
+/// Particles that stand in cells of other ranks go there.
+void CellGrid::migrate(PhaseParticles& particles, Division division) {
   count_cells(particles);
-  balance();
+  if (division == Division::particles) balance();
+  move_to_owners(particles);
+}
+
+/// count_cells() has found the cells of the particles. Those that come stand behind those that stay, in no order; then
+/// the cells of all are known and counted again.
+void CellGrid::move_to_owners(PhaseParticles& particles) {
   Communicator& all = *ranks::active();
   const SharedCells& s = *shared_;
   const std::size_t n = particles.size(), width = particles.packed_width();

@@ -1,10 +1,19 @@
 // Grids and lists of a run on several ranks.
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "engine/neighbours.hpp"
+#include "engine/rank_load.hpp"
 
 namespace barchan {
+
+namespace {
+
+/// What a step does once for a particle takes as long as so many entries of its rows: measured in a dam break in 3D.
+constexpr double entries_a_particle = 4.0;
+
+}  // namespace
 
 /// After the grids have been sorted: the particles of this rank, and the ghosts about them. Phases that are whole stay.
 void Neighbours::share(std::vector<PhaseParticles>& particles) {
@@ -17,6 +26,46 @@ void Neighbours::share(std::vector<PhaseParticles>& particles) {
   find_owners();
   take_ghosts();
   find_watched();
+}
+
+/// What a step does for the particles of a phase, in entries of rows. The lists are those of the steps so far.
+double Neighbours::work_of(std::size_t phase, std::size_t particles) const {
+  double work = entries_a_particle * static_cast<double>(particles);
+  for (std::size_t q = 0; q < directions_.size(); ++q)
+    if (directions_[q].a == phase) work += static_cast<double>(lists_[q].padded_entries());
+  return work;
+}
+
+/// The same of each of these particles, in whole numbers; `unit`: of an entry. Where particles were made or removed
+/// since the lists, all have the same.
+std::vector<std::int64_t> Neighbours::weights_of(std::size_t phase, std::size_t particles, double unit) const {
+  std::vector<double> work(particles, entries_a_particle);
+  for (std::size_t q = 0; q < directions_.size(); ++q) {
+    if (directions_[q].a != phase || searches_[q].size_a != particles) continue;
+    for (std::size_t k = 0; k < particles; ++k) {
+      const PairList::Row row = lists_[q].row(k);
+      work[k] += static_cast<double>(row.end - row.begin);
+    }
+  }
+  std::vector<std::int64_t> weights;
+  weights.reserve(particles);
+  for (const double w : work) weights.push_back(std::llround(unit * w));
+  return weights;
+}
+
+/// Divides the cells of all phases that are shared out by the time of the steps, if a rank takes too long.
+void Neighbours::divide_anew(std::vector<PhaseParticles>& particles) {
+  if (!ranks::active()) return;
+  const auto is_divided = [this](std::size_t p) { return grids_[p] && grids_[p]->is_shared(); };
+  double work = 0.0;
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (is_divided(p)) work += work_of(p, particles[p].size());
+  const std::optional<double> cost = load_->look(work);
+  if (!cost) return;
+  constexpr double fineness = 16.0;  // of weights, which are whole numbers
+  for (std::size_t p = 0; p < grids_.size(); ++p)
+    if (is_divided(p)) grids_[p]->divide(particles[p], weights_of(p, particles[p].size(), fineness * *cost));
+  load_->divided();
 }
 
 void Neighbours::find_owners() { owners_ = owners_of_whole(cell_owners()); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/rank_load.hpp"
 #include "simd/vec.hpp"
 
 namespace barchan {
@@ -18,7 +19,8 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
       ranges_(spacings.size()),
       padding_(padding),
       skin_(skin),
-      widest_skin_(skin) {
+      widest_skin_(skin),
+      load_(std::make_unique<RankLoad>()) {
   for (const auto& d : directions_) widest_ = std::max(widest_, d.radius * (1.0 + skin_));
   const std::size_t few = std::min(particles, CellGrid::most_cells);
   const std::size_t most_blocks = std::max(blocks_a_particle * few, least_blocks);
@@ -42,6 +44,10 @@ Neighbours::Neighbours(const Bounds& bounds, std::vector<Direction> directions, 
     ranges_[p].resize(blocks_.size());
   }
 }
+
+Neighbours::~Neighbours() = default;
+Neighbours::Neighbours(Neighbours&&) noexcept = default;
+Neighbours& Neighbours::operator=(Neighbours&&) noexcept = default;
 
 void Neighbours::Range::clear() {
   low.fill(std::numeric_limits<float>::max());
@@ -229,12 +235,13 @@ bool Neighbours::update(std::vector<PhaseParticles>& particles, bool force, cons
     choose_skin();
   }
   kept_ = 0;
+  if (division_ == Division::time) divide_anew(particles);
   for (std::size_t p = 0; p < grids_.size(); ++p) {
     const bool shared = ranks::active() && !particles[p].is_whole();  // then others may have gone elsewhere
     if (!grids_[p] || (!first && !has_moved(p) && !shared)) continue;
     PairList::dummy_index(particles[p].size(), 0);  // refuses before anything is counted in 32 bits
     const bool first_on_ranks = ranks::available() && !grids_[p]->is_shared() && !particles[p].is_whole();
-    if (!first_on_ranks) grids_[p]->sort(particles[p]);
+    if (!first_on_ranks) grids_[p]->sort(particles[p], division_);
     else particles[p].is_part() ? grids_[p]->sort_pieces(particles[p]) : grids_[p]->sort_and_share(particles[p]);
   }
   if (ranks::available()) share(particles);

@@ -20,6 +20,8 @@ struct Direction {
   double radius = 0.0;       // m
 };
 
+class RankLoad;
+
 class Neighbours {
  public:
   /// So many cells and blocks a particle, and no fewer than so many in all: more than any domain has that is a
@@ -32,6 +34,16 @@ class Neighbours {
   /// domain has cells and blocks for so many and not for its size.
   Neighbours(const Bounds& bounds, std::vector<Direction> directions, double skin, const std::vector<double>& spacings,
              std::size_t padding = simd::width_in_use<double>(), std::size_t particles = CellGrid::most_cells);
+  ~Neighbours();
+  Neighbours(Neighbours&&) noexcept;
+  Neighbours& operator=(Neighbours&&) noexcept;
+
+  /// On several ranks: how cells are divided from the next sort on; at first by the number of particles.
+  void divide_by(Division division) { division_ = division; }
+  Division division() const { return division_; }
+  /// What the steps cost this rank; who makes them says when they begin and end.
+  RankLoad& load() { return *load_; }
+  const RankLoad& load() const { return *load_; }
 
   /// From now on the skin follows the motion: as wide as makes searching and the pairs in it cheapest together, at most
   /// as wide as given. It depends on positions alone, like everything here.
@@ -90,6 +102,9 @@ class Neighbours {
   template <std::size_t Dim>
   void measure(const PhaseParticles& particles, std::size_t phase);
   bool has_moved(std::size_t phase) const;
+  double work_of(std::size_t phase, std::size_t particles) const;
+  std::vector<std::int64_t> weights_of(std::size_t phase, std::size_t particles, double unit) const;
+  void divide_anew(std::vector<PhaseParticles>& particles);
   void share(std::vector<PhaseParticles>& particles);
   void find_owners();
   std::vector<const CellOwners*> cell_owners() const;
@@ -126,6 +141,8 @@ class Neighbours {
   std::size_t padding_;
   double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
   bool adapts_ = false;
+  Division division_ = Division::particles;
+  std::unique_ptr<RankLoad> load_;
   long rebuilds_ = 0, kept_ = 0;  // kept: steps that the lists have lived
 };
 

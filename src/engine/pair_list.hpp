@@ -65,6 +65,7 @@ class PairList {
   }
   std::size_t padding() const { return padding_; }
   std::uint64_t entries() const;  ///< listed neighbours (those in the skin too, padding not)
+  std::uint64_t padded_entries() const;
   std::size_t bytes() const;
 
  private:

@@ -33,6 +33,12 @@ std::uint64_t PairList::entries() const {
   return total;
 }
 
+std::uint64_t PairList::padded_entries() const {
+  std::uint64_t total = 0;
+  for (const auto& c : chunks_) total += c.begin.empty() ? 0 : c.begin.back();
+  return total;
+}
+
 std::size_t PairList::bytes() const {
   std::size_t total = 0;
   for (const auto& c : chunks_) total += c.index.capacity() * 4 + c.begin.capacity() * 4;

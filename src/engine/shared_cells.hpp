@@ -29,7 +29,7 @@ struct ImageUse {
 
 /// Which rank owns which cells of a grid.
 struct CellOwners {
-  /// A rank that has so many times the mean number of particles gives some away at the next sort.
+  /// Divided by particles, a rank that has so many times the mean gives some away at the next sort.
   static constexpr double imbalance = 1.1;
   static bool must_rebalance(std::size_t most, std::size_t total, std::size_t ranks) {
     return static_cast<double>(most) * static_cast<double>(ranks) > imbalance * static_cast<double>(total);

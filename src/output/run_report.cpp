@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string_view>
 
 #include "output/whole_file.hpp"
@@ -12,6 +13,13 @@
 namespace barchan {
 
 namespace {
+
+/// The largest over the mean; 1 where nothing was measured.
+double imbalance(const std::vector<double>& seconds) {
+  const double sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  return sum > 0.0 ? *std::max_element(seconds.begin(), seconds.end()) * static_cast<double>(seconds.size()) / sum
+                   : 1.0;
+}
 
 nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
   auto seats = nlohmann::ordered_json::array();
@@ -25,7 +33,13 @@ nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
           {"ghosts", ranks.ghosts},
           {"most_particles", ranks.most_particles},
           {"memory_of_first", ranks.memory_of_first},
-          {"most_memory_of_others", ranks.most_memory_of_others}};
+          {"most_memory_of_others", ranks.most_memory_of_others},
+          {"busy_seconds", ranks.busy_seconds},
+          {"waiting_seconds", ranks.waiting_seconds},
+          {"imbalance", imbalance(ranks.busy_seconds)},
+          {"division", ranks.division},
+          {"divisions", ranks.divisions},
+          {"dividing_seconds", ranks.dividing_seconds}};
 }
 
 }  // namespace

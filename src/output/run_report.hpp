@@ -36,6 +36,11 @@ struct RunReport {
     // Bytes that a rank has held at the most, shared libraries included: of the first one, which has frames and
     // checkpoints, and the most of the others.
     double memory_of_first = 0, most_memory_of_others = 0;
+    // Of each rank in all steps, s: processor time without that of waiting, and wall time of waiting.
+    std::vector<double> busy_seconds, waiting_seconds;
+    std::string division;  // of cells: "time" or "particles"
+    long divisions = 0;    // anew, by time
+    double dividing_seconds = 0;
   } ranks;
 
   // the scene and the plan

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
+#include "base/clock.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
 #include "scene/shared_start.hpp"
@@ -94,24 +94,19 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   constexpr long most_steps = 300;
   constexpr long settling = 10;  // steps: of ranks, what goes between them is counted after them
   const double most_seconds = on_ranks ? 10.0 : 2.0;
-  const auto processor = [] {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  };
   const auto goes_on = [&] { return simulation.time() < scene.time.end * (1 - 1e-12); };
   std::vector<double> seconds, lengths;  // of each batch: of processor time a step, and of simulated time a step
-  const double start = processor();
-  while (simulation.steps() < most_steps && processor() - start < most_seconds && goes_on()) {
-    const double begin = processor(), time = simulation.time();
+  const double start = thread_seconds();
+  while (simulation.steps() < most_steps && thread_seconds() - start < most_seconds && goes_on()) {
+    const double begin = thread_seconds(), time = simulation.time();
     int steps = 0;
     try {
-      for (; steps < batch && processor() - start < most_seconds && goes_on(); ++steps)
+      for (; steps < batch && thread_seconds() - start < most_seconds && goes_on(); ++steps)
         simulation.step(scene.time.end - simulation.time());
     } catch (const BreakdownError& error) { e.failure = error.what(); }
     if (!e.failure.empty() && steps == 0) break;
     if (on_ranks && simulation.steps() == settling && goes_on()) on_ranks->begin();
-    seconds.push_back((processor() - begin) / steps);
+    seconds.push_back((thread_seconds() - begin) / steps);
     lengths.push_back((simulation.time() - time) / steps);
     if (!e.failure.empty()) break;
   }

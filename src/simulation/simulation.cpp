@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "base/ranks.hpp"
+#include "engine/rank_load.hpp"
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
@@ -96,6 +97,8 @@ void Simulation::shuffle() {
 }
 
 void Simulation::step(double largest) {
+  RankLoad& load = work_->neighbours.load();
+  load.begin_step();
   choose_step(largest);
   schedule_.run(stage::kick_and_drift, stage::grain_contacts);
   state_.time += state_.dt;
@@ -107,6 +110,7 @@ void Simulation::step(double largest) {
     if (const auto trouble = model->trouble()) watch_->tell(*trouble, moment());
   if (watch_->due(state_.steps) || state_.largest_acceleration * state_.dt > watch_->signal_speed())
     schedule_.run(stage::watch, stage::watch);
+  load.end_step();
 }
 
 void Simulation::rule(const std::string& name, double value, double& dt) {

@@ -35,6 +35,9 @@ class Simulation {
   /// message names particle, phase, time, likely cause and remedy.
   void step(double largest);
 
+  /// On several ranks: how cells are divided among them from now on. The bits do not depend on it.
+  void divide_by(Division division) { work_->neighbours.divide_by(division); }
+
   double time() const { return state_.time; }
   long steps() const { return state_.steps; }
   double last_step() const { return state_.dt; }
