@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/speed.json"
 PAGE = ROOT / "docs/ranks.md"
@@ -83,7 +83,7 @@ def measured(program, name, rounds):
                 ended = on_ranks(ranks, threads, program, text, sets, pathlib.Path(folder) / "out")
                 rates[kind].append(rate(ended))
                 if number == 0 and kind != "half":
-                    kept[kind] = next(ended.out.glob("*.checkpoint")).read_bytes()
+                    kept[kind] = checkpoints.whole(next(ended.out.glob("*.checkpoint")))
                 if kind == "ranks":
                     result.update(steps=ended.report["steps"], particles=sum(ended.report["particles"].values()), of_ranks=ended.report["ranks"])
         print(name, number, {kind: f"{values[-1] / 1e6:.3f}" for kind, values in rates.items()}, flush=True)

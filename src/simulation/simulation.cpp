@@ -6,7 +6,6 @@
 #include <random>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
@@ -185,8 +184,6 @@ void Simulation::check_columns() const {
 }
 
 void Simulation::archive(Archive& a) {
-  char once_more = 1;
-  if (saves_whole_) ranks::available()->broadcast(&once_more, 1, 0);
   for (const auto& p : plan_.phases) {
     double speed = p.sound_speed;
     a.number("sound speed of " + p.name, speed);
