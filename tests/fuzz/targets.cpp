@@ -1,7 +1,5 @@
 #include "fuzz/targets.hpp"
 
-#include <zlib.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <cstring>

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <numeric>
 
 #include "base/errors.hpp"
 #include "output/checked_bytes.hpp"
+#include "output/checkpoint.hpp"
+#include "unit/forked_ranks.hpp"
 
 namespace barchan {
 namespace {
@@ -159,6 +163,90 @@ TEST_F(PiecesOfACheckpoint, ThatNoIndexNamesAreRemoved) {
   fs::remove(in / "000013_01");
   remove_unnamed_pieces(index, {index});
   EXPECT_FALSE(fs::exists(in));
+}
+
+/// Ten numbers, of which each rank has a part, and one that all have.
+void name_state(Archive& a, bool fails = false) {
+  const ranks::Share share = ranks::own_share();
+  const std::size_t first = share.begin(10), count = share.end(10) - first;
+  std::vector<std::int64_t> own(count);
+  std::iota(own.begin(), own.end(), static_cast<std::int64_t>(first));
+  std::int64_t of_all = 5;
+  a.rows("rows", own.data(), {first, count, 10});
+  if (fails && share.number == 1) throw OutputError("the disk of rank 1 is full");
+  a.number("of all", of_all);
+  a.rows("rows again", own.data(), {first, count, 10});
+}
+
+class CheckpointOfRanks : public PiecesOfACheckpoint {
+ protected:
+  void write(const fs::path& file, bool fails = false) const {
+    write_checkpoint(file, {"1.0", "AVX2", "a = 1", 0.25, 17, {}}, [&](Archive& a) { name_state(a, fails); });
+  }
+  static std::string state_of(const Checkpoint& c) {
+    std::string bytes(c.state.size, '?');
+    c.state.read(0, bytes.data(), bytes.size());
+    return bytes;
+  }
+  std::vector<std::string> pieces() const {
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(folder_ / "ranks_checkpoint"))
+      all.push_back(entry.path().filename());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+};
+
+TEST_F(CheckpointOfRanks, IsThatOfOneProcess) {
+  const fs::path one = folder_ / "one.checkpoint", file = folder_ / "ranks.checkpoint";
+  write(one);
+  EXPECT_FALSE(fs::exists(folder_ / "one_checkpoint"));
+  for (int times = 1; times <= 3; ++times)
+    forked::on_ranks(3, [&] {
+      ranks::share();
+      write(file);
+      return std::string();
+    });
+  EXPECT_EQ(pieces().size(), 6u) << "of the last one and the one before";
+  for (const fs::path& each : {file, older_checkpoint(file)}) {
+    const Checkpoint c = read_checkpoint(each);
+    EXPECT_EQ(state_of(c), state_of(read_checkpoint(one)));
+    EXPECT_EQ(c.scene, "a = 1");
+    EXPECT_EQ(c.step, 17);
+  }
+  for (const std::string& bytes : forked::on_ranks(2, [&] { return state_of(read_checkpoint(file)); }))
+    EXPECT_EQ(bytes, state_of(read_checkpoint(one)));
+  // A piece that is lost is told by all, though one rank looks for it.
+  fs::remove(folder_ / "ranks_checkpoint/000003_0001");
+  for (const std::string& error : forked::on_ranks(2, [&] {
+         try {
+           read_checkpoint(file);
+         } catch (const SceneError& e) { return std::string(e.what()); }
+         return std::string();
+       }))
+    EXPECT_NE(error.find("000003_0001' is not there"), std::string::npos) << error;
+  EXPECT_EQ(read_newest_checkpoint(file).first.step, 17);
+  write(file);  // of one process: the lost one becomes the older one
+  write(file);
+  EXPECT_FALSE(fs::exists(folder_ / "ranks_checkpoint"));
+}
+
+TEST_F(CheckpointOfRanks, StaysWhatItWasWhenARankCannotWrite) {
+  const fs::path file = folder_ / "ranks.checkpoint";
+  const auto written = [&](bool fails) {
+    return forked::on_ranks(3, [&] {
+      ranks::share();
+      try {
+        write(file, fails);
+      } catch (const OutputError& e) { return std::string(e.what()); }
+      return std::string();
+    });
+  };
+  EXPECT_EQ(written(false), (std::vector<std::string>(3, "")));
+  EXPECT_EQ(written(true), (std::vector<std::string>(3, "the disk of rank 1 is full")));
+  EXPECT_EQ(pieces(), (std::vector<std::string>{"000001_0000", "000001_0001", "000001_0002"}));
+  EXPECT_FALSE(fs::exists(older_checkpoint(file)));
+  EXPECT_EQ(read_checkpoint(file).step, 17);
 }
 
 }  // namespace
