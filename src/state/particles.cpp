@@ -199,15 +199,19 @@ void PhaseParticles::archive(Archive& a) {
   if (a.loads()) find_places();
 }
 
-/// Ids, fields and own columns that are kept; `rows`: those that are here.
+/// Ids, fields and own columns that are kept; `rows`: those that are here. What every rank has whole is no rows.
 void PhaseParticles::archive_columns(Archive& a, const Rows& rows) {
-  a.rows("id of " + name_, id_.data(), rows);
+  const bool shared = archives_all_ && !is_whole_;
+  const auto item = [&](const std::string& name, auto* own, std::size_t width) {
+    if (shared) a.rows(name, own, {rows.first * width, rows.count * width, rows.all * width});
+    else a.values(name, own, rows.all * width);
+  };
+  item("id of " + name_, id_.data(), 1);
   for (std::size_t f = 0; f < field_count; ++f)
     for (auto& column : columns_[f])
-      a.rows(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), rows);
+      item(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), 1);
   for (OwnValues& v : own_)
-    if (v.kept == Kept::state)
-      a.rows(name_ + "." + v.name, v.values.data(), {rows.first * v.width, rows.count * v.width, rows.all * v.width});
+    if (v.kept == Kept::state) item(name_ + "." + v.name, v.values.data(), v.width);
 }
 
 std::size_t PhaseParticles::bytes() const {
