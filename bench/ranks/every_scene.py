@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/every_scene.json"
 PAGE = ROOT / "docs/ranks.md"
@@ -34,7 +34,7 @@ def fewer_particles():
 
 def files(folder):
     """All that has the bits of the run; the checkpoint before the last one is another in a run that was continued."""
-    return {f.name: f.read_bytes() for f in folder.iterdir()
+    return {f.name: checkpoints.whole(f) if f.suffix == ".checkpoint" else f.read_bytes() for f in folder.iterdir()
             if f.is_file() and f.name not in ("run.json", "barchan.lock") and not f.name.endswith(".older")}
 
 

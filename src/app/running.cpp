@@ -86,6 +86,7 @@ void Run::open() {
   }
   beginning_ = report("running");
   if (series_) write_run_report(directory_ / "run.json", beginning_);
+  refuse_other_folders();
 }
 
 int Run::go(Past* past) {
@@ -233,9 +234,7 @@ void Run::files_of_retreat() {
   const fs::path file = checkpoint_file(directory_, scene_);
   if (!ranks::any(ranks::is_first() && fs::exists(file))) return;
   write_checkpoint();
-  if (!ranks::is_first()) return;
-  std::error_code ignored;
-  fs::remove(older_checkpoint(file), ignored);
+  if (ranks::is_first()) remove_older_checkpoint(file);
 }
 
 std::string Run::break_down(const std::string& what) {
@@ -288,8 +287,6 @@ void Run::hand_over(Frame&& frame) {
     if (series_) series_->write(std::move(frame));
     return;
   }
-  if (!wrote_pieces_) refuse_other_folders();
-  wrote_pieces_ = true;
   unlisted_.emplace(frame.without_particles());
   pieces_.write(frame_stem(scene_.name, frame.index), std::move(frame));
 }
@@ -314,9 +311,8 @@ void Run::refuse_other_folders() const {
   for (int k = 0; k < 300 && !(there = run_of_report(file) == first); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   if (ranks::any(!there))
-    throw SceneError("output.pieces-from: frames in pieces need a folder that all ranks write into; \"" +
-                     directory_.string() + "\" is not the same for all of them; expected an --out that all machines " +
-                     "see, or a larger output.pieces-from");
+    throw SceneError("ranks write their checkpoints in pieces, into one folder; \"" + directory_.string() +
+                     "\" is not the same for all of them; expected an --out that all machines see");
 }
 
 void Run::finish_series() {

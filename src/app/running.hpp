@@ -84,7 +84,7 @@ class Run {
   void list_pieces();
   /// Throws on every rank what went wrong on one or several of them ("" where nothing did). All ranks call it.
   [[noreturn]] static void throw_of_one(const std::string& error);
-  /// Pieces make a frame only where all ranks write into one folder. Throws SceneError, on every rank.
+  /// Pieces make a checkpoint or a frame only where all ranks write into one folder. Throws SceneError, on every rank.
   void refuse_other_folders() const;
   /// Waits until all frames are on the disk and listed.
   void finish_series();
@@ -97,7 +97,6 @@ class Run {
   const std::filesystem::path& directory_;
   bool continued_;
   PieceWriter pieces_;
-  bool wrote_pieces_ = false;
   std::optional<Frame> unlisted_;       // without particles: what pieces_ writes, on all ranks
   std::optional<SeriesWriter> series_;  // these two: of the first rank; empty on the others
   std::optional<History> history_;

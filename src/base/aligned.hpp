@@ -24,4 +24,10 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
+/// Empties a vector and gives its memory back, which `values = {}` does not.
+template <class Vector>
+void give_back(Vector& values) {
+  Vector().swap(values);
+}
+
 }  // namespace barchan

@@ -187,6 +187,22 @@ inline std::string told_by(int rank, std::string text) {
 /// The text of one rank; of one process its own.
 inline std::string text_of(int rank, std::string text) { return active() ? told_by(rank, std::move(text)) : text; }
 
+/// The first text of all processes that is not empty, on every one of them, shared out or not; "" where all are empty.
+inline std::string first_text(std::string text) {
+  Communicator* const all = available();
+  if (!all) return text;
+  const char mine = text.empty() ? 0 : 1;
+  std::vector<char> has(static_cast<std::size_t>(all->size()), 0);
+  all->all_gather(&mine, 1, has.data());
+  const auto who = std::find(has.begin(), has.end(), 1) - has.begin();
+  if (who == all->size()) return "";
+  std::uint64_t size = text.size();
+  all->broadcast(&size, sizeof size, static_cast<int>(who));
+  text.resize(size);
+  all->broadcast(text.data(), size, static_cast<int>(who));
+  return text;
+}
+
 /// Items for each rank, one rank after another; `counts`: for how many each. Returns those that all ranks have for this
 /// one, one rank after another.
 template <class T>

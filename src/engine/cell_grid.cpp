@@ -290,32 +290,6 @@ void CellGrid::make_images(const PhaseParticles& particles) {
   }
 }
 
-void CellGrid::archive(Archive& a) {
-  if (whole_) {
-    a.array("cell begins", whole_->begin);
-    a.array("cell ends", whole_->end);
-    a.array("images", whole_->images);
-    for (std::size_t d = 0; d < dimensions_; ++d) a.array("search positions", whole_->search[d]);
-    return;
-  }
-  a.array("cell begins", begin_);
-  a.array("cell ends", end_);
-  a.array("images", images_);
-  for (std::size_t d = 0; d < dimensions_; ++d) a.array("search positions", search_[d]);
-  if (shared_) {
-    SharedCells& s = *shared_;
-    a.array("ranks", s.first);
-    a.array("sent", s.sends);
-    a.array("sent by rank", s.send_counts);
-    a.array("received by rank", s.receive_counts);
-    a.array("received", s.slots);
-    a.array("own images", s.image_begin);
-    for (auto& positions : s.image_search) a.array("search positions of own images", positions);
-    if (a.loads()) own_by_first(s);
-  }
-  if (a.loads()) make_runs();
-}
-
 std::size_t CellGrid::bytes_of_cells() const {
   return (begin_.size() + end_.size() + walk_.size() + walk_block_.size()) * sizeof(std::uint32_t) +
          halo_cells_.size() * sizeof(HaloCell);

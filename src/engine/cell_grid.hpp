@@ -144,13 +144,9 @@ class CellGrid {
   /// The first sort, of particles of which each rank has made some: brings them to the ranks in whose cells they are.
   /// Ghosts are missing.
   void sort_pieces(PhaseParticles& particles);
-  /// The same of a phase as one process sorted it.
-  void share(PhaseParticles& particles);
   /// Before a sort of a shared grid: cuts the walk so that each rank has about the same sum of weights, and brings the
   /// particles to their new ranks. `weights`: of the particles of this rank, by their places.
   void divide(PhaseParticles& particles, const std::vector<std::int64_t>& weights);
-  /// All cells are this process' own again: for who loads what one process had, and shares it then.
-  void unshare() { shared_.reset(); }
   /// Null: not shared.
   const CellOwners* owners() const { return shared_.get(); }
   /// Makes ghosts in the marked cells, those beyond periodic sides among them.
@@ -164,7 +160,8 @@ class CellGrid {
   /// The way back: pack(number of the image, item) of this rank's ghosts, place(source, item) where they come from.
   template <class Pack, class Place>
   void return_ghosts(std::size_t width, Pack&& pack, Place&& place) const;
-  /// On the first rank: makes what a checkpoint of one process holds; archive() then saves that, once.
+  /// From now on archive() saves what a checkpoint of one process holds: each rank its own particles as rows, and the
+  /// first rank all else (engine/cell_checkpoint.cpp).
   void gather();
   void forget_gathered() { whole_.reset(); }
 
@@ -225,6 +222,9 @@ class CellGrid {
 
   /// Where the particles stood when they were sorted last, so that lists can be made anew as they were.
   void archive(Archive& a);
+  /// Loads of what one process had, or all ranks together, the cells, and of the phase the particles in the cells of
+  /// this rank, whatever ranks there were. PhaseParticles::archive() has found them. Ghosts are missing.
+  void load_share(Archive& a, PhaseParticles& particles);
 
  private:
   /// A cell beyond a periodic side.
@@ -280,6 +280,8 @@ class CellGrid {
   void bring_search_positions(const SharedCells::Question& question, std::size_t n);
   void answer(const std::vector<std::uint32_t>& asked, const std::vector<std::size_t>& asked_counts);
   std::array<std::size_t, 2> own_walk() const;
+  void save_whole(Archive& a);
+  void place_whole(const std::vector<std::uint32_t>& by_cell, SharedCells::Whole& whole) const;
 
   std::size_t dimensions_;
   Bounds bounds_;

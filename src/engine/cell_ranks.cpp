@@ -45,10 +45,10 @@ std::array<std::size_t, 2> CellGrid::take_own_cells() {
 void CellGrid::sort_and_share(PhaseParticles& particles) {
   count_cells(particles);
   find_order(particles);
-  cell_of_ = {};
+  give_back(cell_of_);
   const auto [first, last] = take_own_cells();
   particles.keep(order_.data() + first, last - first);
-  order_ = {};  // as long as the particles of all ranks
+  give_back(order_);  // as long as the particles of all ranks
   make_runs();
   make_own_images(particles);
 }
@@ -87,28 +87,6 @@ void CellGrid::divide(PhaseParticles& particles, const std::vector<std::int64_t>
   for (std::size_t k = 0; k < weights.size(); ++k) of_cell[cell_of_[k]] += weights[k];
   static_cast<CellOwners&>(*shared_) = divided(by_row([&](std::uint32_t c) { return of_cell[c]; }), shared_->ranks());
   move_to_owners(particles);
-}
-
-void CellGrid::share(PhaseParticles& particles) {
-  const auto [first, last] = take_own_cells();
-  const auto rank = ranks::available()->rank();
-  SharedCells& s = *shared_;
-  s.image_begin.assign(1, 0);
-  for (const HaloCell& halo : halo_cells_) {
-    if (s.owner[halo.source] == rank)
-      for (std::size_t d = 0; d < dimensions_; ++d)
-        s.image_search[d].insert(s.image_search[d].end(), search_[d].begin() + begin_[halo.cell],
-                                 search_[d].begin() + end_[halo.cell]);
-    s.image_begin.push_back(static_cast<std::uint32_t>(s.image_search[0].size()));
-  }
-  for (std::size_t d = 0; d < dimensions_; ++d)  // the memory of the others' goes back
-    search_[d] = AlignedVector<float>(search_[d].begin() + static_cast<std::ptrdiff_t>(first),
-                                      search_[d].begin() + static_cast<std::ptrdiff_t>(last));
-  images_ = {};
-  cell_of_ = {};
-  order_ = {};
-  particles.keep_range(first, last);
-  make_runs();
 }
 
 /// Gives rows away where a rank has too many particles. find_cells() has counted those of each cell.
@@ -326,63 +304,6 @@ void CellGrid::answer(const std::vector<std::uint32_t>& asked, const std::vector
       for (image.source = begin_[source]; image.source < end_[source]; ++image.source) s.sends.push_back(image);
       s.send_counts[r] += end_[source] - begin_[source];
     }
-}
-
-namespace {
-
-/// Items of all ranks on the first one.
-template <class T>
-std::vector<T> gathered(const T* mine, std::size_t count) {
-  Communicator& all = *ranks::active();
-  const std::vector<std::size_t> counts = ranks::each(count);
-  std::vector<T> together(all.rank() == 0 ? sum(counts) : 0);
-  all.gather(mine, count, together.data(), counts, sizeof(T));
-  return together;
-}
-
-}  // namespace
-
-void CellGrid::gather() {
-  if (!shared_) return;
-  SharedCells& s = *shared_;
-  const auto [from, to] = own_walk();
-  std::vector<std::uint32_t> own;
-  for (std::size_t w = from; w < to; ++w) own.push_back(end_[walk_[w]] - begin_[walk_[w]]);
-  const std::size_t n = from < to ? end_[walk_[to - 1]] : 0;
-  const std::vector<std::uint32_t> by_cell = gathered(own.data(), own.size());
-  std::array<std::vector<float>, 3> search, beyond;
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    search[d] = gathered(search_[d].data(), n);
-    beyond[d] = gathered(s.image_search[d].data(), s.image_search[d].size());
-  }
-  // How many images of each rank's are before those of a halo cell.
-  std::vector<std::size_t> next{0};
-  for (const std::size_t count : ranks::each(s.image_search[0].size())) next.push_back(next.back() + count);
-  if (ranks::active()->rank() != 0) return;
-  SharedCells::Whole whole;
-  whole.begin.assign(begin_.size(), 0);
-  whole.end.assign(begin_.size(), 0);
-  std::uint32_t total = 0;
-  for (std::size_t w = 0; w < walk_.size(); ++w) {
-    whole.begin[walk_[w]] = total;
-    whole.end[walk_[w]] = total += by_cell[w];
-  }
-  const std::size_t particles = total;
-  for (const HaloCell& h : halo_cells_) {
-    whole.begin[h.cell] = total;
-    for (std::uint32_t k = whole.begin[h.source]; k < whole.end[h.source]; ++k) whole.images.push_back({k, h.shift});
-    whole.end[h.cell] = total += whole.end[h.source] - whole.begin[h.source];
-  }
-  const std::size_t images = whole.images.size(), room = std::max(images, particles <= 4096 ? particles : 0);
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    whole.search[d].assign(particles + room + 16, 0.0f);
-    std::copy(search[d].begin(), search[d].end(), whole.search[d].begin());
-    std::vector<std::size_t> at = next;
-    for (const HaloCell& h : halo_cells_)
-      for (std::uint32_t q = whole.begin[h.cell]; q < whole.end[h.cell]; ++q)
-        whole.search[d][q] = beyond[d][at[static_cast<std::size_t>(s.owner[h.source])]++];
-  }
-  whole_ = std::move(whole);
 }
 
 }  // namespace barchan

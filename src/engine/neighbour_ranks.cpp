@@ -19,8 +19,8 @@ constexpr double entries_a_particle = 4.0;
 void Neighbours::share(std::vector<PhaseParticles>& particles) {
   for (std::size_t p = 0; p < grids_.size(); ++p) {
     if (particles[p].is_whole()) continue;
-    if (!grids_[p]) throw std::logic_error("a phase without cells cannot be shared out among ranks");
-    if (!grids_[p]->is_shared()) grids_[p]->share(particles[p]);
+    if (!grids_[p] || !grids_[p]->is_shared())
+      throw std::logic_error("a phase without cells cannot be shared out among ranks");
   }
   ranks::share();
   find_owners();

@@ -294,13 +294,13 @@ void Neighbours::archive(Archive& a, std::vector<PhaseParticles>& particles, boo
   a.number("skin", skin_);
   a.number("rebuilds", rebuilds_);
   a.number("steps of the lists", kept_);
-  whole = whole && ranks::active();
-  for (auto& grid : grids_) {
-    if (!grid) continue;
-    if (whole && a.loads()) grid->unshare();
-    grid->archive(a);
+  const bool shares = whole && a.loads() && ranks::active();
+  for (std::size_t p = 0; p < grids_.size(); ++p) {
+    if (!grids_[p]) continue;
+    if (shares && !particles[p].is_whole()) grids_[p]->load_share(a, particles[p]);
+    else grids_[p]->archive(a);
   }
-  if (whole && a.loads()) share(particles);
+  if (shares) share(particles);
   else if (a.loads() && ranks::active()) find_owners();
   if (a.loads()) search(particles, {});
 }

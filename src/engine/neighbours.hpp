@@ -62,8 +62,8 @@ class Neighbours {
   std::size_t bytes() const;
 
   /// The epoch of the lists. Loading searches again among the places of the last sort: the same lists.
-  /// On several ranks `whole` says that it is that of one process: to load it, the particles are those of all ranks
-  /// and are shared out; to save it, gather() has been called.
+  /// On several ranks `whole` says that it is that of all ranks together, as one process has it: to load it, each rank
+  /// takes the cells and particles of its share; to save it, gather() has been called.
   void archive(Archive& a, std::vector<PhaseParticles>& particles, bool whole = false);
   void gather();
   void forget_gathered();

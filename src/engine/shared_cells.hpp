@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/aligned.hpp"
+#include "state/archive.hpp"
 
 namespace barchan {
 
@@ -67,11 +68,13 @@ struct SharedCells : CellOwners {
     std::vector<std::uint32_t> numbers;                 // of particles in the cells of `ask`
   };
 
-  /// What a checkpoint holds of the grid of one process; on the first rank.
+  /// What a checkpoint holds of the grid of one process.
   struct Whole {
+    Rows rows;  // particles
+    // On the first rank:
     std::vector<std::uint32_t> begin, end;
     std::vector<Image> images;
-    std::array<AlignedVector<float>, 3> search;
+    std::array<std::vector<float>, 3> beyond;  // search positions (m) behind those of the particles
   };
 };
 

@@ -73,6 +73,18 @@ std::string WholeFile::why_it_failed(const std::string& otherwise) {
   return otherwise;
 }
 
+void SmallWrites::write(const void* data, std::size_t size) {
+  const std::string_view bytes(static_cast<const char*>(data), size);
+  if (waiting_.size() + size > room) flush();
+  if (size > room) out_.write(bytes);
+  else waiting_ += bytes;
+}
+
+void SmallWrites::flush() {
+  out_.write(waiting_);
+  waiting_.clear();
+}
+
 void write_whole_file(const std::filesystem::path& file, std::string_view text) {
   WholeFile whole(file);
   whole.write(text);

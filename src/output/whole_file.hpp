@@ -33,6 +33,19 @@ class WholeFile {
   int descriptor_ = -1;
 };
 
+/// Lets small writes wait for each other.
+class SmallWrites {
+ public:
+  explicit SmallWrites(WholeFile& out) : out_(out) {}
+  void write(const void* data, std::size_t size);  ///< Throws OutputError.
+  void flush();                                    ///< Before publish(). Throws OutputError.
+
+ private:
+  static constexpr std::size_t room = 1 << 16;
+  WholeFile& out_;
+  std::string waiting_;
+};
+
 /// The whole of a small file at once. Throws OutputError.
 void write_whole_file(const std::filesystem::path& file, std::string_view text);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/aligned.hpp"
 #include "base/errors.hpp"
 #include "scene/couplings.hpp"
 
@@ -151,11 +152,11 @@ void ParticleNumbers::deal(ParticleBlock& block) const {
     }
     counts.push_back(items.size() - before);
   }
-  block.position = {};
-  block.velocity = {};
-  block.pressure = {};
+  give_back(block.position);
+  give_back(block.velocity);
+  give_back(block.pressure);
   const std::vector<Item> come = ranks::exchanged(items, counts);
-  items = {};
+  give_back(items);
   const std::size_t first = share.begin(total_);
   block.position.resize(come.size());
   block.velocity.resize(come.size());

@@ -240,17 +240,15 @@ void RankMeasure::add_memory(RankPlan& plan, const std::vector<Part>& parts, con
   const double dimensions = simulation_.plan().dimensions;
   double cells = 0.0, owners = 0.0, images = 0.0, gathered = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) {
-    const PhaseParticles& particles = simulation_.phases()[p];
-    const double n = of(particles.size());
     if (!neighbours.has_grid(p)) continue;
     const CellGrid& grid = neighbours.grid(p);
     cells += of(grid.bytes_of_cells());
     if (!owners_[p]) continue;
     owners += of(grid.cells()) * sizeof(std::int32_t);
     images += of(grid.images()) * bytes_of_a_ghost(p);
-    // Of a checkpoint: a column, cells, and search positions as they came and as they are.
-    gathered +=
-        n * sizeof(double) + 2.0 * of(grid.cells()) * sizeof(std::uint32_t) + 2.0 * n * dimensions * sizeof(float);
+    // Of a checkpoint: cells and images of all ranks, search positions of images as they came and as they are.
+    gathered += 3.0 * of(grid.cells()) * sizeof(std::uint32_t) +
+                of(grid.images()) * (sizeof(Image) + 2.0 * dimensions * sizeof(float));
   }
   const double rest = std::max(memory.arrays - cells - images, 0.0);
   plan.start_memory = memory_at_start(memory, cells);

@@ -189,8 +189,6 @@ void Simulation::check_columns() const {
 }
 
 void Simulation::archive(Archive& a) {
-  char once_more = 1;
-  if (saves_whole_) ranks::available()->broadcast(&once_more, 1, 0);
   for (const auto& p : plan_.phases) {
     double speed = p.sound_speed;
     a.number("sound speed of " + p.name, speed);

@@ -103,8 +103,8 @@ class Simulation {
   /// Saves everything that the next step starts from, or loads it into a simulation of the same scene: the run then
   /// goes on with the same bits. Throws SceneError when what is loaded does not fit.
   void archive(Archive& a);
-  /// The same of all particles, as one process has it. On several ranks all call it, and `all` is called on the first
-  /// alone to save, on every one to load: it may name more items, and calls `archive(a)`.
+  /// The same of all particles, as one process has it: on several ranks each saves its own as rows (Archive), and loads
+  /// those of its cells. All ranks call it. `save` and `load` may name more items, and call `archive(a)`.
   void save_whole(const std::function<void()>& save);
   void load_whole(const std::function<void()>& load);
 
@@ -132,7 +132,7 @@ class Simulation {
   Models models_;
   Schedule schedule_;
   std::unique_ptr<Workspace> work_;
-  bool loads_whole_ = false, saves_whole_ = false;
+  bool loads_whole_ = false;
   std::unique_ptr<Watch> watch_;
   std::optional<Budget> budget_;
 };

@@ -50,27 +50,22 @@ void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written)
   for (FrameField& field : f.fields) gather(field.values, counts, static_cast<std::size_t>(field.components));
 }
 
-/// A rank that is not the first sends its particles as often as the first one calls archive().
 void Simulation::save_whole(const std::function<void()>& save) {
-  Communicator* const all = ranks::active();
-  if (!all) return save();
+  if (!ranks::active()) return save();
   work_->neighbours.gather();
-  char once_more = 0;
-  if (ranks::is_first()) {
-    for (PhaseParticles& p : state_.phases) p.archive_all(true);
-    saves_whole_ = true;
-    save();
-    saves_whole_ = false;
-    for (PhaseParticles& p : state_.phases) p.archive_all(false);
-    work_->neighbours.forget_gathered();
-  }
-  for (all->broadcast(&once_more, 1, 0); once_more != 0; all->broadcast(&once_more, 1, 0))
-    for (const PhaseParticles& p : state_.phases) p.send_to_archive();
+  for (PhaseParticles& p : state_.phases) p.archive_all(true);
+  save();
+  for (PhaseParticles& p : state_.phases) p.archive_all(false);
+  work_->neighbours.forget_gathered();
 }
 
 void Simulation::load_whole(const std::function<void()>& load) {
-  loads_whole_ = true;
+  loads_whole_ = ranks::active() != nullptr;
+  if (loads_whole_)
+    for (PhaseParticles& p : state_.phases) p.archive_all(true);
   load();
+  if (loads_whole_)
+    for (PhaseParticles& p : state_.phases) p.archive_all(false);
   loads_whole_ = false;
 }
 

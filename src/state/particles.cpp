@@ -179,23 +179,39 @@ void PhaseParticles::resize(std::size_t size) {
 }
 
 void PhaseParticles::archive(Archive& a) {
-  if (archives_all_ && !is_whole_) return save_all(&a);
-  std::uint64_t count = size_;
+  const bool all = archives_all_ && !is_whole_;
+  const std::uint64_t expected = all ? all_ : size_;
+  std::uint64_t count = expected;
   a.number("particles of " + name_, count);
-  if (count != size_ && !may_change_ && !is_part_)
+  if (count != expected && !may_change_ && (all || !is_part_))
     throw SceneError("the checkpoint does not fit this scene: it has " + std::to_string(count) + " particles of \"" +
-                     name_ + "\", the scene has " + std::to_string(size_));
-  if (count != size_) {
+                     name_ + "\", the scene has " + std::to_string(expected));
+  if (all && a.loads()) {
+    all_ = count;
+    rows_at_ = a.place();
+    return archive_columns(a, {0, 0, count});
+  }
+  if (!all && count != size_) {
     resize(static_cast<std::size_t>(count));
     ++changes_;
   }
-  a.values("id of " + name_, id_.data(), id_.size());
+  archive_columns(a, {0, size_, count});
+  if (a.loads()) find_places();
+}
+
+/// Ids, fields and own columns that are kept; `rows`: those that are here. What every rank has whole is no rows.
+void PhaseParticles::archive_columns(Archive& a, const Rows& rows) {
+  const bool shared = archives_all_ && !is_whole_;
+  const auto item = [&](const std::string& name, auto* own, std::size_t width) {
+    if (shared) a.rows(name, own, {rows.first * width, rows.count * width, rows.all * width});
+    else a.values(name, own, rows.all * width);
+  };
+  item("id of " + name_, id_.data(), 1);
   for (std::size_t f = 0; f < field_count; ++f)
     for (auto& column : columns_[f])
-      a.values(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), column.size());
+      item(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), 1);
   for (OwnValues& v : own_)
-    if (v.kept == Kept::state) a.values(name_ + "." + v.name, v.values.data(), v.values.size());
-  if (a.loads()) find_places();
+    if (v.kept == Kept::state) item(name_ + "." + v.name, v.values.data(), v.width);
 }
 
 std::size_t PhaseParticles::bytes() const {

@@ -116,8 +116,6 @@ class PhaseParticles {
   /// From now on it holds those at the places order[0] .. order[count - 1] alone, in this order. Takes the memory of
   /// one column more.
   void keep(const std::uint32_t* order, std::size_t count);
-  /// The same of those at the places first .. last - 1 alone, and checkpoints may hold other numbers.
-  void keep_range(std::size_t first, std::size_t last);
   /// Bytes of a particle on its way: id, fields, own columns.
   std::size_t packed_width() const;
   void pack(std::size_t k, std::byte* to) const;
@@ -125,11 +123,11 @@ class PhaseParticles {
   /// The particles of all ranks at the places for which `wanted` is true, with these fields, no own columns, one rank
   /// after another, on the first rank; none on the others. Of a phase that is whole: its particles.
   PhaseParticles gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const;
-  /// On the first rank: from now on archive() saves the particles of all ranks, one rank after another, or those of
-  /// this rank again. A column at a time is gathered, so that no rank holds all; for each archive() the others call
-  /// send_to_archive().
-  void archive_all(bool all) { archives_all_ = all; }
-  void send_to_archive() const;
+  /// From now on archive() is of the particles of all ranks, one rank after another, or of those of this rank again.
+  /// Each rank saves its own as rows. Loading leaves the particles as they are, until load_rows(). All ranks call it.
+  void archive_all(bool all);
+  /// Loads the rows first .. last - 1 of what archive() has found: from now on these are the particles of this rank.
+  void load_rows(Archive& a, std::size_t first, std::size_t last);
 
   std::size_t bytes() const;  ///< memory of all columns
 
@@ -146,7 +144,7 @@ class PhaseParticles {
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }
   std::size_t add_own_bytes(const std::string& name, Kept kept, std::size_t width, const void* of_new);
   void find_places();
-  void save_all(Archive* a) const;
+  void archive_columns(Archive& a, const Rows& rows);
 
   std::string name_;
   int dimensions_;
@@ -155,6 +153,7 @@ class PhaseParticles {
        in_order_ = false;
   std::uint32_t arrangements_ = 0;
   long changes_ = 0;
+  std::uint64_t all_ = 0, rows_at_ = 0;  // of archive_all(): particles of all ranks; place of their columns
   std::int64_t first_id_;
   double mass_, mean_radius_ = 1.0;
   std::vector<std::int64_t> id_, id_scratch_;

@@ -27,10 +27,10 @@ void PhaseParticles::keep(const std::uint32_t* order, std::size_t count) {
       std::copy_n(from + std::size_t{order[k]} * width, width, to + static_cast<std::size_t>(k) * width);
     values.swap(kept);
   };
-  id_scratch_ = {};
-  scratch_ = {};
-  own_scratch_ = {};
-  order_ = {};
+  give_back(id_scratch_);
+  give_back(scratch_);
+  give_back(own_scratch_);
+  give_back(order_);
   pick(id_, 1);
   for (auto& columns : columns_)
     for (auto& column : columns) pick(column, 1);
@@ -45,10 +45,37 @@ void PhaseParticles::keep(const std::uint32_t* order, std::size_t count) {
   find_places();
 }
 
-void PhaseParticles::keep_range(std::size_t first, std::size_t last) {
-  std::vector<std::uint32_t> order(last - first);
-  std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(first));
-  keep(order.data(), order.size());
+void PhaseParticles::archive_all(bool all) {
+  archives_all_ = all;
+  if (all && !is_whole_) all_ = ranks::total(size_);
+}
+
+void PhaseParticles::load_rows(Archive& a, std::size_t first, std::size_t last) {
+  const std::size_t count = last - first;
+  const auto make_room = [count](auto& values, std::size_t width) {
+    if (values.capacity() >= count * width) return;
+    give_back(values);  // nothing of what is there is needed: never both at a time
+    values.reserve((count + count / 8) * width);
+  };
+  make_room(id_, 1);
+  make_room(id_scratch_, 1);
+  make_room(scratch_, 1);
+  for (auto& columns : columns_)
+    for (auto& column : columns) make_room(column, 1);
+  std::size_t widest = 0;
+  for (OwnValues& v : own_) {
+    make_room(v.values, v.width);
+    widest = std::max(widest, v.width);
+  }
+  make_room(own_scratch_, widest);
+  is_part_ = true;
+  resize(count);
+  ++changes_;
+  const std::uint64_t here = a.place();
+  a.go_to(rows_at_);
+  archive_columns(a, {first, count, all_});
+  a.go_to(here);
+  find_places();
 }
 
 std::size_t PhaseParticles::packed_width() const {
@@ -100,26 +127,6 @@ Values on_first(const Values& mine, const std::vector<std::size_t>& counts, std:
 }
 
 }  // namespace
-
-void PhaseParticles::send_to_archive() const {
-  if (!is_whole_) save_all(nullptr);
-}
-
-/// What archive() saves, of all ranks. `a` of the first rank; null on the others.
-void PhaseParticles::save_all(Archive* a) const {
-  const std::vector<std::size_t> counts = ranks::each(size_);
-  std::uint64_t count = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-  if (a) a->number("particles of " + name_, count);
-  const auto save = [&](const std::string& name, const auto& values, std::size_t width) {
-    auto all = on_first(values, counts, width);
-    if (a) a->values(name, all.data(), all.size());
-  };
-  save("id of " + name_, id_, 1);
-  for (std::size_t f = 0; f < field_count; ++f)
-    for (const auto& column : columns_[f]) save(name_ + "." + std::string(info(static_cast<Field>(f)).name), column, 1);
-  for (const OwnValues& v : own_)
-    if (v.kept == Kept::state) save(name_ + "." + v.name, v.values, v.width);
-}
 
 PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::function<bool(std::size_t)>& wanted) const {
   std::vector<std::size_t> from;

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from test_ranks import PERIODIC, PROGRAM, SOURCE, Folder, channel, has_mpi
+from test_ranks import PERIODIC, PROGRAM, SOURCE, Folder, channel, content, has_mpi
 
 sys.path.insert(0, str(SOURCE / "python"))
 import barchan  # noqa: E402
@@ -36,7 +36,7 @@ class Pieces(Folder):
                 self.assertEqual(sorted(f.name for f in (self.at / out / stem).iterdir()), [f"{stem}_{k:04d}.vtp" for k in range(ranks)])
             self.compare_frames("whole", out)
         for name in ("history.csv", "scene.checkpoint"):
-            self.assertEqual((self.at / "in-one" / name).read_bytes(), (self.at / "in-three" / name).read_bytes())
+            self.assertEqual(content(self.at / "in-one" / name), content(self.at / "in-three" / name))
         self.assertEqual((self.at / "in-one" / "scene.pvd").read_bytes(), (self.at / "in-three" / "scene.pvd").read_bytes())
 
         one, three = (barchan.Frame(self.at / out / f"{stems[-1]}.pvtp") for out in ("in-one", "in-three"))
@@ -66,7 +66,7 @@ class Pieces(Folder):
         self.run_on(3, text.replace("end = 0.06", "end = 0.03"), "part")
         self.run_on(2, text, "part", "--restart", "latest")
         self.compare_frames("whole", "part")
-        counts = [len(list(folder.iterdir())) for folder in sorted((self.at / "part").glob("scene_*")) if folder.is_dir()]
+        counts = [len(list(folder.iterdir())) for folder in sorted((self.at / "part").glob("scene_0*")) if folder.is_dir()]
         self.assertEqual((counts[0], counts[-1]), (3, 2))
         self.run_on(0, text.replace("pieces-from = 0\n", ""), "part")  # a new run removes the lists and the pieces of the old one
         self.run_on(0, text.replace("pieces-from = 0\n", ""), "plain")

@@ -1,14 +1,14 @@
 #include "fuzz/targets.hpp"
 
-#include <zlib.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 
 #include "base/errors.hpp"
+#include "output/checked_bytes.hpp"
 #include "output/checkpoint.hpp"
+#include "output/checkpoint_pieces.hpp"
 #include "output/frame_read.hpp"
 #include "output/pieces.hpp"
 #include "output/pvd.hpp"
@@ -39,24 +39,33 @@ void formula(std::string_view text) {
   static_cast<void>(f({0.1, -0.2, 0.3}, 0.5));
 }
 
+namespace {
+
+/// Behind the magic words stand the size (8 bytes), the checksum (4) and a zero (4): makes all of them fit.
+bool make_fit(std::vector<char>& bytes, std::string_view magic) {
+  const std::size_t head = magic.size() + sizeof(CheckedHead);
+  if (bytes.size() < head) return false;
+  const CheckedHead fits{bytes.size() - head, checksum(bytes.data() + head, bytes.size() - head), 0};
+  std::memcpy(bytes.data(), magic.data(), magic.size());
+  std::memcpy(bytes.data() + magic.size(), &fits, sizeof fits);
+  return true;
+}
+
+}  // namespace
+
 void checkpoint(std::string_view text) {
   std::vector<char> bytes(text.begin(), text.end());
-  try {
-    parse_checkpoint(bytes);
-  } catch (const SceneError&) {}
-  // Behind the magic words stand the size (8 bytes), the checksum (4) and a zero (4): make them fit.
-  constexpr std::size_t magic = 21, head = magic + 16;
-  if (bytes.size() < head) return;
-  const std::uint64_t size = bytes.size() - head;
-  const auto sum = static_cast<std::uint32_t>(
-      crc32_z(crc32_z(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data() + head), size));
-  std::memcpy(bytes.data(), "barchan checkpoint 2\n", magic);
-  std::memcpy(bytes.data() + magic, &size, sizeof size);
-  std::memcpy(bytes.data() + magic + 8, &sum, sizeof sum);
-  std::memset(bytes.data() + magic + 12, 0, 4);
-  try {
-    parse_checkpoint(bytes);
-  } catch (const SceneError&) {}
+  const auto try_it = [](auto&& parse) {
+    try {
+      parse();
+    } catch (const SceneError&) {}
+  };
+  try_it([&] { parse_checkpoint(bytes); });
+  try_it([&] { parse_index(source_of(bytes)); });
+  try_it([&] { parse_index(source_of(bytes), false); });
+  if (make_fit(bytes, "barchan checkpoint 2\n")) try_it([&] { parse_checkpoint(bytes); });
+  bytes.assign(text.begin(), text.end());
+  if (make_fit(bytes, CheckpointIndex::magic)) try_it([&] { parse_index(source_of(bytes)); });
 }
 
 void frame(std::string_view text) {
