@@ -45,6 +45,39 @@ largest-speed = 1
 every = 1
 """
 
+GRAINS = """dimensions = 3
+spacing = 1e-3
+[domain]
+size = [0.08, {high!r}, 0.08]
+periodic = ["x", "z"]
+gravity = [0, -9.81, 0]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = 1e-3
+restitution = 0.7
+friction = 0.5
+rolling-friction = 0.1
+stiffness = 300
+[phases.floor]
+kind = "wall"
+[interactions]
+sand-sand = {{ law = "linear" }}
+sand-floor = {{ law = "linear" }}
+[[fill]]
+phase = "floor"
+shape = {{ sides = ["bottom"] }}
+[[fill]]
+phase = "sand"
+shape = {{ box = {{ min = [0, 0, 0], max = [0.08, {high!r}, 0.08] }} }}
+velocity = ["0.1*sin(3e3*y + 700*z)", "0.1*sin(2e3*x + 900*z)", "0.1*sin(4e3*x + 800*y)"]
+[time]
+end = {end!r}
+largest-speed = 1
+[output]
+every = 1
+"""
+
 
 def air(dimensions, across, end, wide=1):
     """Periodic air; `wide`: how many times as long as it is high, of `across` particles."""
@@ -57,6 +90,7 @@ CASES = {
     "air 2D, 1e6": (air(2, 1000, .003), [], air(2, 1000, .003, .5)),
     "air 3D, 1e6": (air(3, 100, .012), [], air(3, 100, .012, .5)),
     "dam break 2D, 9.4e4": ("dam_break", ["spacing=5e-4", "time.end=0.01", "output.every=1"], None),
+    "grains 3D, 5e5": (GRAINS.format(high=.08, end=.002), [], GRAINS.format(high=.04, end=.002)),
     "grains 3D": ("splash_3d", ["time.end=0.002", "output.every=1"], None),
     "dune": ("dune", ["time.end=0.01", "output.every=1"], None),
 }

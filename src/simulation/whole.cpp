@@ -55,6 +55,7 @@ void Simulation::save_whole(const std::function<void()>& save) {
   Communicator* const all = ranks::active();
   if (!all) return save();
   work_->neighbours.gather();
+  for (const auto& model : models_) model->gather();
   char once_more = 0;
   if (ranks::is_first()) {
     for (PhaseParticles& p : state_.phases) p.archive_all(true);
@@ -63,9 +64,16 @@ void Simulation::save_whole(const std::function<void()>& save) {
     saves_whole_ = false;
     for (PhaseParticles& p : state_.phases) p.archive_all(false);
     work_->neighbours.forget_gathered();
+    for (const auto& model : models_) model->forget_gathered();
   }
   for (all->broadcast(&once_more, 1, 0); once_more != 0; all->broadcast(&once_more, 1, 0))
     for (const PhaseParticles& p : state_.phases) p.send_to_archive();
+}
+
+bool Simulation::count_traffic(std::vector<RankTraffic>& of) const {
+  bool shares = false;
+  for (const auto& model : models_) shares = model->count_traffic(of) || shares;
+  return shares;
 }
 
 void Simulation::load_whole(const std::function<void()>& load) {
