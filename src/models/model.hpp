@@ -105,7 +105,7 @@ class Model {
   /// Its numbers that a step starts from.
   virtual void archive(Archive&) {}
   /// Before the first rank saves what one process has: brings there what other ranks hold of it. All ranks call it.
-  virtual void gather() {}
+  virtual void gather_to_save() {}
   /// After it, on the first rank.
   virtual void forget_gathered() {}
   /// Adds what each of so many ranks (as many as `of`) would have sent to others since the start of this run of one

@@ -55,7 +55,7 @@ void Simulation::save_whole(const std::function<void()>& save) {
   Communicator* const all = ranks::active();
   if (!all) return save();
   work_->neighbours.gather();
-  for (const auto& model : models_) model->gather();
+  for (const auto& model : models_) model->gather_to_save();
   char once_more = 0;
   if (ranks::is_first()) {
     for (PhaseParticles& p : state_.phases) p.archive_all(true);

@@ -117,8 +117,9 @@ class Spheres(Folder):
             self.same("of-0-1", f"of-{ranks}-{threads}")
 
     def test_some_sleep_and_some_wake(self):
-        self.scene("splash.toml", ((2, 1), (3, 2)), ("time.end=0.012", "output.every=0.006", "output.history-every=0.0005", "phases.sand.sleep=true",
-                                                     "fill.2.velocity=[0.32, -0.3]"))
+        sets = ("time.end=0.008", "output.every=0.004", "output.history-every=0.0005", "phases.sand.sleep=true", "fill.2.velocity=[0.32, -0.3]",
+                "phases.sand.stiffness=100", "phases.striker.stiffness=100", "time.largest-speed=0.5")
+        self.scene("splash.toml", ((2, 1), (3, 2)), sets)
         asleep = self.column("of-0-1", "asleep")
         self.assertGreater(max(asleep), 0)
         self.assertTrue(any(later < earlier for earlier, later in zip(asleep, asleep[1:])), asleep)

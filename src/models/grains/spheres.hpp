@@ -85,7 +85,7 @@ class Spheres : public Model {
   long searches() const override { return searches_; }
   std::vector<RestingContact> resting_contacts(std::size_t phase) const override;
   void archive(Archive& a) override;
-  void gather() override;
+  void gather_to_save() override;
   void forget_gathered() override { drop_other_chunks(); }
   bool count_traffic(std::vector<RankTraffic>& of) const override;
 

@@ -192,7 +192,7 @@ void Spheres::add_kept_sums(bool last) {
              });
 }
 
-void Spheres::gather() {
+void Spheres::gather_to_save() {
   if (!shares_.on()) return;
   Communicator& all = *ranks::active();
   sleep_.share(shares_, listed_numbers_.data());
