@@ -16,8 +16,7 @@ import statistics
 import sys
 import tempfile
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parents[1] / "grains")]
-import lammps as beds  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/speed.json"
@@ -48,6 +47,39 @@ largest-speed = 1
 every = 1
 """
 
+GRAINS = """dimensions = 3
+spacing = 1e-3
+[domain]
+size = [0.08, {high!r}, 0.08]
+periodic = ["x", "z"]
+gravity = [0, -9.81, 0]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = 1e-3
+restitution = 0.7
+friction = 0.5
+rolling-friction = 0.1
+stiffness = 300
+[phases.floor]
+kind = "wall"
+[interactions]
+sand-sand = {{ law = "linear" }}
+sand-floor = {{ law = "linear" }}
+[[fill]]
+phase = "floor"
+shape = {{ sides = ["bottom"] }}
+[[fill]]
+phase = "sand"
+shape = {{ box = {{ min = [0, 0, 0], max = [0.08, {high!r}, 0.08] }} }}
+velocity = ["0.1*sin(3e3*y + 700*z)", "0.1*sin(2e3*x + 900*z)", "0.1*sin(4e3*x + 800*y)"]
+[time]
+end = {end!r}
+largest-speed = 1
+[output]
+every = 1
+"""
+
 
 def air(dimensions, across, end, wide=1):
     """Periodic air; `wide`: how many times as long as it is high, of `across` particles. Waves of half of a square are half as long."""
@@ -57,18 +89,12 @@ def air(dimensions, across, end, wide=1):
                       wave=2 / along, along=along, end=end)
 
 
-def grains(program, folder):
-    """A dense bed of 5e5 spheres."""
-    _, _, size, fill = beds.dense_bed(program, 3, 5e5, folder)
-    return beds.scene(3, size, fill, 4e-4, 1)
-
-
-# name: scene or what makes it, overrides; the same with half of the particles, or none
+# name: scene, overrides; the same with half of the particles, or none
 CASES = {
     "air 2D, 1e6": (air(2, 1000, .004), [], air(2, 1000, .004, .5)),
     "air 3D, 1e6": (air(3, 100, .04), [], air(3, 100, .04, .5)),
     "dam break 2D, 9.4e4": ("dam_break", ["spacing=5e-4", "time.end=0.01", "output.every=1"], None),
-    "grains 3D, 5e5": (grains, [], None),
+    "grains 3D, 5e5": (GRAINS.format(high=.08, end=.002), [], GRAINS.format(high=.04, end=.002)),
     "dune": ("dune", ["time.end=0.01", "output.every=1"], None),
 }
 
@@ -94,10 +120,9 @@ def measured(program, name, rounds):
     rates, kept, result = {kind: [] for kind in [*kinds, *(["half", "two halves"] if half else [])]}, {}, {}
     with tempfile.TemporaryDirectory() as folder:
         scratch = pathlib.Path(folder)
-        text = scene(program, scratch) if callable(scene) else scene
         for number in range(rounds):
             for kind, (ranks, threads) in kinds.items():
-                ended = on_ranks(ranks, threads, program, text, sets, scratch / f"{kind}{number}")
+                ended = on_ranks(ranks, threads, program, scene, sets, scratch / f"{kind}{number}")
                 rates[kind].append(rate(ended))
                 if number == 0:
                     kept[kind] = checkpoints.whole(next(ended.out.glob("*.checkpoint")))

@@ -98,6 +98,19 @@ class Mpi final : public Communicator {
     ++traffic_.collectives;
     MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
   }
+  void gather_in_place(void* all, const std::vector<std::size_t>& counts, std::size_t width) override {
+    const Item item(width);
+    std::vector<int> number, first;
+    std::size_t before = 0;
+    for (const std::size_t n : counts) {
+      number.push_back(count_of(n));
+      first.push_back(count_of(before));
+      before += n;
+    }
+    const std::size_t own = counts[static_cast<std::size_t>(rank_)];
+    for (int r = 1; r < size_ && own > 0; ++r) note(own * width);
+    MPI_Allgatherv(MPI_IN_PLACE, 0, item.type(), all, number.data(), first.data(), item.type(), MPI_COMM_WORLD);
+  }
   void broadcast(void* data, std::size_t bytes, int from) override {
     const Waiting waiting(waits_);
     ++traffic_.collectives;

@@ -363,8 +363,7 @@ void Run::finish(const std::string& reason) {
   const RunReport r = report(reason);
   if (!series_) return;
   const std::size_t told = simulation_.plan().warnings.size() + warnings_of(course_.seats).size();  // at the start
-  for (std::size_t k = told; k < r.warnings.size(); ++k)
-    std::cerr << "barchan: warning: " << r.warnings[k] << '\n';
+  for (std::size_t k = told; k < r.warnings.size(); ++k) std::cerr << "barchan: warning: " << r.warnings[k] << '\n';
   write_run_report(directory_ / "run.json", r);
   course_.progress.end(reason);
 }

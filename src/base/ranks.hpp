@@ -52,7 +52,8 @@ class Communicator {
   /// From one rank to the next.
   virtual void send(const void* data, std::size_t bytes, int to) = 0;
   virtual void receive(void* data, std::size_t bytes, int from) = 0;
-  /// What this rank has sent to others so far; reductions, broadcasts and the like count once.
+  /// What this rank has sent to others so far. gather_in_place() counts as a message to each other rank, where this one
+  /// has items; reductions, broadcasts and the like count once, as collectives.
   struct Traffic {
     std::int64_t messages = 0, bytes = 0, collectives = 0;
   };
@@ -65,6 +66,9 @@ class Communicator {
   virtual Waits waits() const { return {}; }
   /// How many of the ranks are processes of this machine.
   virtual int on_this_machine() const { return size(); }
+  /// Items of `width` bytes of all ranks, one rank after another, on every one of them: each rank has put its own where
+  /// they stand in `all`. `counts`: of each rank.
+  virtual void gather_in_place(void* all, const std::vector<std::size_t>& counts, std::size_t width) = 0;
 };
 
 namespace ranks {

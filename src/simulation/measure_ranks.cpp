@@ -55,11 +55,12 @@ double RankMeasure::work_of(std::size_t phase) const {
   return work;
 }
 
-/// The part of the time of the steps that went into phases that every rank holds whole. A stage counts by whose work
-/// its tasks are: of an entry between a whole phase and one that is shared out each rank does its rows.
-double RankMeasure::whole_share_of_time() const {
+/// The parts of the time of the steps that went into phases that every rank holds whole, and into contacts of spheres,
+/// which ranks share out. A stage counts by whose work its tasks are: of an entry between a whole phase and one that is
+/// shared out each rank does its rows.
+RankMeasure::TimeShares RankMeasure::shares_of_time(bool contacts_are_shared) const {
   const Plan& plan = simulation_.plan();
-  double all = 0.0, whole = 0.0, whole_work = 0.0, work = 0.0;
+  double all = 0.0, whole = 0.0, contacts = 0.0, whole_work = 0.0, work = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) {
     work += work_of(p);
     if (whole_[p]) whole_work += work_of(p);
@@ -73,13 +74,17 @@ double RankMeasure::whole_share_of_time() const {
   };
   for (std::size_t s = 0; s < seconds_.size(); ++s) {
     const double seconds = simulation_.processor_seconds()[s] - seconds_[s];
+    all += seconds;
+    if (s == stage::grain_contacts && contacts_are_shared) {
+      contacts += seconds;
+      continue;
+    }
     const auto& tasks = simulation_.schedule().tasks(s);
     double share = 0.0;
     for (const Task& task : tasks) share += share_of(task.owner) / of(tasks.size());
-    all += seconds;
     whole += share * seconds;
   }
-  return all > 0.0 ? whole / all : whole_work / work;
+  return all > 0.0 ? TimeShares{whole / all, contacts / all} : TimeShares{whole_work / work, 0.0};
 }
 
 RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
@@ -120,8 +125,14 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
     plan.ranks[r].bytes += bytes;
   }
   add_displacements(plan, owners);
+  std::vector<RankTraffic> models(ranks_);
+  const bool contacts_are_shared = simulation_.count_traffic(models);
+  for (std::size_t r = 0; r < ranks_; ++r) {
+    plan.ranks[r].messages += models[r].messages / steps;
+    plan.ranks[r].bytes += models[r].bytes / steps;
+  }
   for (RankPlan::Rank& rank : plan.ranks) rank.halo_share = rank.particles > 0.0 ? rank.ghosts / rank.particles : 0.0;
-  add_seconds(plan, parts);
+  add_seconds(plan, parts, shares_of_time(contacts_are_shared));
   add_memory(plan, parts, memory);
   return plan;
 }
@@ -185,20 +196,20 @@ void RankMeasure::add_moves(RankPlan& plan, std::size_t phase, double steps) con
   }
 }
 
-void RankMeasure::add_seconds(RankPlan& plan, const std::vector<Part>& parts) const {
+void RankMeasure::add_seconds(RankPlan& plan, const std::vector<Part>& parts, const TimeShares& time) const {
   using C = RankConstants;
   const double seconds = plan.seconds_alone;
   double all = 0.0;
   for (const Part& part : parts) all += part.work;
   if (seconds <= 0.0) return;
-  const double rounds = std::ceil(std::log2(of(ranks_))), whole = all > 0.0 ? whole_share_of_time() : 1.0;
+  const double rounds = std::ceil(std::log2(of(ranks_))), whole = all > 0.0 ? time.whole : 1.0 - time.contacts;
   const double reducing = rounds * C::reductions * C::latency;
   double slowest = 0.0;
   for (std::size_t r = 0; r < ranks_; ++r) {
     RankPlan::Rank& rank = plan.ranks[r];
     const double own = all > 0.0 ? parts[r].work / all : 0.0;
-    rank.seconds =
-        seconds * (whole + (1.0 - whole) * own) + rank.messages * C::latency + rank.bytes / C::bandwidth + reducing;
+    rank.seconds = seconds * (whole + time.contacts / of(ranks_) + (1.0 - whole - time.contacts) * own) +
+                   rank.messages * C::latency + rank.bytes / C::bandwidth + reducing;
     slowest = std::max(slowest, rank.seconds);
   }
   plan.whole_share = whole;

@@ -37,14 +37,17 @@ class RankMeasure {
   struct Part {
     double work = 0, arrays = 0, ghosts = 0;
   };
+  struct TimeShares {
+    double whole = 0, contacts = 0;
+  };
   void add_halo(RankPlan& plan, std::size_t phase, const std::vector<RankHalo>& halo, double steps) const;
   void add_displacements(RankPlan& plan, const std::vector<std::optional<CellOwners>>& owners) const;
   void add_moves(RankPlan& plan, std::size_t phase, double steps) const;
-  void add_seconds(RankPlan& plan, const std::vector<Part>& parts) const;
+  void add_seconds(RankPlan& plan, const std::vector<Part>& parts, const TimeShares& time) const;
   void add_memory(RankPlan& plan, const std::vector<Part>& parts, const MemoryOfOne& memory) const;
   double memory_at_start(const MemoryOfOne& memory, double cells) const;
   double bytes_of_a_ghost(std::size_t phase) const;
-  double whole_share_of_time() const;
+  TimeShares shares_of_time(bool contacts_are_shared) const;
   double work_of(std::size_t phase) const;
   std::size_t number_of(std::size_t phase, std::size_t place) const;
 

@@ -65,6 +65,8 @@ class Simulation {
   void measure_processor_time() { schedule_.measure_processor_time(); }
   const std::vector<double>& processor_seconds() const { return schedule_.processor_seconds(); }
   std::size_t bytes() const;
+  /// Model::count_traffic of all models.
+  bool count_traffic(std::vector<RankTraffic>& of) const;
   /// Of the records of a phase.
   std::size_t bytes_of_an_image(std::size_t phase) const { return work_->bytes_of_an_image(phase); }
 

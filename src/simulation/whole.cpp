@@ -53,10 +53,18 @@ void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written)
 void Simulation::save_whole(const std::function<void()>& save) {
   if (!ranks::active()) return save();
   work_->neighbours.gather();
+  for (const auto& model : models_) model->gather_to_save();
   for (PhaseParticles& p : state_.phases) p.archive_all(true);
   save();
   for (PhaseParticles& p : state_.phases) p.archive_all(false);
+  for (const auto& model : models_) model->forget_gathered();
   work_->neighbours.forget_gathered();
+}
+
+bool Simulation::count_traffic(std::vector<RankTraffic>& of) const {
+  bool shares = false;
+  for (const auto& model : models_) shares = model->count_traffic(of) || shares;
+  return shares;
 }
 
 void Simulation::load_whole(const std::function<void()>& load) {

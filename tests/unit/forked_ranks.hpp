@@ -50,6 +50,17 @@ class Ranks final : public Communicator {
         hear(r, 0, static_cast<std::byte*>(all) + static_cast<std::size_t>(r) * bytes, bytes);
     });
   }
+  void gather_in_place(void* all, const std::vector<std::size_t>& counts, std::size_t width) override {
+    auto* const to = static_cast<std::byte*>(all);
+    std::vector<std::size_t> first(counts.size(), 0);
+    for (std::size_t r = 1; r < counts.size(); ++r) first[r] = first[r - 1] + counts[r - 1] * width;
+    const auto own = static_cast<std::size_t>(rank_);
+    say(0, to + first[own], counts[own] * width);
+    together([&] {
+      for (int r = 0; r < size_; ++r)
+        hear(r, 0, to + first[static_cast<std::size_t>(r)], counts[static_cast<std::size_t>(r)] * width);
+    });
+  }
   void broadcast(void* data, std::size_t bytes, int from) override {
     if (rank_ == from) say(0, data, bytes);
     together([&] { hear(from, 0, data, bytes); });

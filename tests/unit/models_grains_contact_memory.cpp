@@ -78,7 +78,7 @@ TEST(ContactMemories, GoWithTheirPairs) {
   side.memory[1] = 8.0;
   side.touches = 1;
   chunks[1].sides.push_back(side);
-  memory.keep(moving, all, chunks, before);
+  memory.keep(0, moving, all, chunks, before);
   EXPECT_EQ(memory.kept().size(), 4u) << "the pair of two chunks once";
   const auto first_of = [&](std::uint32_t number, std::uint32_t with) {
     const double* values = memory.find(number, with);
@@ -115,7 +115,7 @@ TEST(ContactMemories, FollowTheirPairsToOtherNumbers) {
   side.memory[0] = 7.0;
   side.touches = 1;
   chunks[0].sides.push_back(side);
-  memory.keep(moving, all, chunks, before);
+  memory.keep(0, moving, all, chunks, before);
   // 1 goes, three come behind 4; the fixed one is the last as before.
   constexpr std::uint32_t gone = ContactMemory::gone;
   std::vector<std::uint32_t> left_alone;

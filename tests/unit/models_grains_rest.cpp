@@ -32,7 +32,7 @@ struct Bed {
     SphereSearch search;
     constexpr std::uint16_t up = Dim - 1;
     search.prepare(bounds, cast.reach, 1, cast.laws, {{up, 1, bounds.low[up], 0}}, numbers);
-    search.keep(cast.set(), cast.chunks, cast.numbers.data());
+    search.keep(0, cast.set().moving, cast.set().all, cast.chunks, cast.numbers.data());
     search.find(cast.set(), 0.05 * radius, cast.chunks);
     step.dimensions = Dim;
     step.records = cast.records.data();

@@ -21,7 +21,7 @@ template <int Dim>
 void search(SphereCast<Dim>& cast, const std::vector<SphereSearch::Side>& sides = {}) {
   SphereSearch of;
   of.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
-  of.keep(cast.set(), cast.chunks, cast.numbers.data());
+  of.keep(0, cast.set().moving, cast.set().all, cast.chunks, cast.numbers.data());
   of.find(cast.set(), slack, cast.chunks);
 }
 
@@ -91,7 +91,7 @@ TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
   SphereCast<3> cast(bounds, sets::lattice(bounds, 1.0, 0.2, random), 10, 0.45, 0.55, 1, 32, random);
   SphereSearch of;
   of.prepare(bounds, cast.reach, 1, cast.laws, {}, 3);
-  of.keep(cast.set(), cast.chunks, cast.numbers.data());
+  of.keep(0, cast.set().moving, cast.set().all, cast.chunks, cast.numbers.data());
   of.find(cast.set(), slack, cast.chunks);
   constexpr std::size_t batch = SphereChunk::batch;
   // Numbers of a pair that say who the two are; pairs with an odd sum of numbers touch.
@@ -117,7 +117,7 @@ TEST(SphereSearch, KeepsTheMemoryOfThoseThatTouch) {
     std::swap_ranges(&cast.records[(k - 1) * 12], &cast.records[k * 12], &cast.records[other * 12]);
   }
   cast.take_places();
-  of.keep(cast.set(), cast.chunks, before.data());
+  of.keep(0, cast.set().moving, cast.set().all, cast.chunks, before.data());
   of.find(cast.set(), slack, cast.chunks);
   std::size_t touching = 0, parted = 0;
   each_pair([&](SphereChunk& chunk, std::size_t at, std::uint32_t a, std::uint32_t b, double tag) {

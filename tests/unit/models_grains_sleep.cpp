@@ -164,7 +164,7 @@ TEST(SphereSleep, WakesWhomTheContactsDisturbed) {
   chunks[0].border = {1, 2};
   chunks[1].border = {4};
   chunks[0].wakes = true;
-  const auto woken = grains.sleep.wake(chunks, grains.numbers.data());
+  const auto woken = grains.sleep.wake(chunks, grains.numbers.data(), false);
   EXPECT_EQ(std::vector<std::uint32_t>(woken.begin(), woken.end()), (std::vector<std::uint32_t>{1}));
   EXPECT_EQ(grains.asleep(), (Who{true, false, true, true, true, true}));
   EXPECT_EQ(grains.sleep.sleeping(), 5u);
@@ -192,7 +192,7 @@ TEST(SphereSleep, MarksThoseWhoWokeAsALookAtAllDoes) {
   };
   for (const std::uint32_t k : {3u, 5u}) {
     step->wakes[grains.numbers[k]] = 1;
-    grains.sleep.wake(chunks, grains.numbers.data());
+    grains.sleep.wake(chunks, grains.numbers.data(), false);
     grains.sleep.mark_woken();
     const auto alone = flags();
     EXPECT_EQ(alone[k], 2) << "awake, and changed";
@@ -212,7 +212,7 @@ struct SixInARow : SixGrains {
     cast.numbers.assign(numbers.begin(), numbers.end());
     SphereSearch search;
     search.prepare(cast.bounds, cast.reach, 1, cast.laws, {}, 1);
-    search.keep(cast.set(), cast.chunks, cast.numbers.data());
+    search.keep(0, cast.set().moving, cast.set().all, cast.chunks, cast.numbers.data());
     search.find(cast.set(), 1.1e-3, cast.chunks);
   }
   static std::vector<Vec3> row() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/ranks.hpp"
 #include "models/grains/sphere_work.hpp"
 
 namespace barchan {
@@ -23,7 +24,7 @@ void ContactBatches::grow(std::size_t batches, std::size_t numbers) {
   memory.resize(touches.size() * batch * numbers, 0.0);
 }
 
-void ContactMemory::keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks,
+void ContactMemory::keep(std::size_t begin, std::size_t end, std::size_t all, std::span<const SphereChunk> chunks,
                          const std::uint32_t* before) {
   constexpr std::size_t batch = ContactBatches::batch;
   const std::size_t numbers = column_.numbers;
@@ -35,7 +36,7 @@ void ContactMemory::keep(std::size_t moving, std::size_t all, std::span<const Sp
       for (unsigned bits = chunk.touches[q]; bits != 0; bits &= bits - 1) {
         const std::size_t at = q * batch + static_cast<std::size_t>(__builtin_ctz(bits));
         const std::uint32_t a = chunk.a[at];
-        if (a < moving && (a < chunk.begin || a >= chunk.end)) continue;
+        if (a >= begin && a < end && (a < chunk.begin || a >= chunk.end)) continue;
         call(before[a], before[chunk.b[at]], chunk.of_pair(at, numbers), batch);
       }
   };
@@ -72,10 +73,43 @@ void ContactMemory::renumber(const std::vector<std::uint32_t>& to, std::size_t a
     kept_[stay++].with = with;
   }
   kept_.resize(stay);
+  count(all);
+}
+
+/// Where those of each number begin.
+void ContactMemory::count(std::size_t all) {
   fit(begin_, all + 1);
   std::fill(begin_.begin(), begin_.end(), 0u);
   for (const Kept& k : kept_) ++begin_[k.number + 1];
   for (std::size_t k = 0; k < all; ++k) begin_[k + 1] += begin_[k];
+}
+
+void ContactMemory::share(const std::vector<std::uint32_t>& ranks) {
+  std::vector<std::size_t> counts(static_cast<std::size_t>(ranks::active()->size()), 0);
+  const auto each = [&](auto&& call) {
+    for (const Kept& k : kept_) {
+      const std::uint32_t first = ranks[k.number];
+      call(first, k);
+      if (k.with < ranks.size() && ranks[k.with] != first) call(ranks[k.with], k);
+    }
+  };
+  each([&](std::uint32_t rank, const Kept&) { ++counts[rank]; });
+  std::vector<std::size_t> next(counts.size(), 0);
+  for (std::size_t r = 1; r < counts.size(); ++r) next[r] = next[r - 1] + counts[r - 1];
+  std::vector<Kept> go(next.back() + counts.back());
+  each([&](std::uint32_t rank, const Kept& k) { go[next[rank]++] = k; });
+  kept_ = ranks::exchanged(go, counts);
+  order();
+}
+
+void ContactMemory::join() {
+  ranks::join(kept_);
+  order();
+}
+
+void ContactMemory::order() {
+  std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  count(begin_.size() - 1);
 }
 
 const double* ContactMemory::find(std::uint32_t number, std::uint32_t with) const {

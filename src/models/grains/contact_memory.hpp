@@ -81,9 +81,16 @@ class ContactMemory {
   const PairColumn& column() const { return column_; }
   std::size_t numbers() const { return column_.numbers; }
 
-  /// Takes the values of all pairs that touch out of the lists. `before`: lasting numbers of the `all` spheres, the
-  /// `moving` ones first, by their places when the lists were made.
-  void keep(std::size_t moving, std::size_t all, std::span<const SphereChunk> chunks, const std::uint32_t* before);
+  /// Takes the values of all pairs that touch out of the lists. `before`: lasting numbers of the `all` spheres by their
+  /// places when the lists were made. A pair whose first sphere has a place from `begin` to `end` is taken from the
+  /// chunk of that sphere alone.
+  void keep(std::size_t begin, std::size_t end, std::size_t all, std::span<const SphereChunk> chunks,
+            const std::uint32_t* before);
+  /// On several ranks, which together have kept each pair once: what is kept goes to the ranks of its spheres.
+  /// `ranks`: of those that move, by number.
+  void share(const std::vector<std::uint32_t>& ranks);
+  /// The same, where every rank has all spheres now.
+  void join();
   /// Gives the spheres of what is kept other numbers: `to` by the number before, `gone` of those that are no longer
   /// there; of two that stay the order is the same. `all`: how many there are now. Adds those whose partner has gone to
   /// `left_alone`, by their new numbers.
@@ -102,6 +109,9 @@ class ContactMemory {
   }
 
  private:
+  void count(std::size_t all);
+  void order();
+
   PairColumn column_{"contact_memory"};
   std::vector<std::uint32_t> begin_;  // by number: its first place in kept_; one more
   std::vector<Kept> kept_;

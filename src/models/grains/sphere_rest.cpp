@@ -115,7 +115,7 @@ void SphereRest::renumber(const std::vector<std::uint32_t>& to) {
   std::erase_if(contacts_, [](const RestingContact& c) { return c.sphere == ContactMemory::gone; });
 }
 
-void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::vector<SphereChunk>& chunks) {
+void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::span<SphereChunk> chunks) {
   if (contacts_.empty()) return;
   std::stable_sort(contacts_.begin(), contacts_.end(),
                    [](const auto& a, const auto& b) { return a.sphere < b.sphere; });

@@ -5,6 +5,7 @@
 // The forces are kept, not the slips, so that a bed rests as well under a law of another stiffness.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "models/grains/sphere_pairs.hpp"
@@ -19,7 +20,7 @@ class SphereRest {
   void add(std::size_t first, const std::vector<RestingContact>& contacts);
   /// Gives the pairs that were listed for the first time their slips, and forgets the contacts. A contact whose other
   /// sphere or side is no longer there is left out.
-  void recall(const SphereStep& step, const SphereSet& spheres, std::vector<SphereChunk>& chunks);
+  void recall(const SphereStep& step, const SphereSet& spheres, std::span<SphereChunk> chunks);
   /// As ContactMemory::renumber().
   void renumber(const std::vector<std::uint32_t>& to);
   void archive(Archive& a) { a.array("contacts at the begin", contacts_); }

@@ -40,7 +40,7 @@ void SphereSearch::make_room_for_threads() {
   while (found_.size() < threads) found_.emplace_back().reserve(pairs * SphereChunk::most + 64);
 }
 
-void SphereSearch::reserve(std::size_t all, std::vector<SphereChunk>& chunks, bool sleep) {
+void SphereSearch::reserve(std::size_t all, std::span<SphereChunk> chunks, bool sleep) {
   constexpr std::size_t batch = SphereChunk::batch;
   const std::size_t pairs = bounds_.dimensions == 2 ? 6 : 11;  // of a sphere, of two in different chunks both
   for (SphereChunk& chunk : chunks) {
@@ -163,7 +163,7 @@ void SphereSearch::place_sides(const SphereSet& s, double slack, SphereChunk& ch
     }
 }
 
-void SphereSearch::find(const SphereSet& s, double slack, std::vector<SphereChunk>& chunks) {
+void SphereSearch::find(const SphereSet& s, double slack, std::span<SphereChunk> chunks) {
   sort(s, slack);
   make_room_for_threads();
   const auto n = static_cast<std::int64_t>(chunks.size());

@@ -25,20 +25,24 @@ class SphereSearch {
   void prepare(const Bounds& bounds, double reach, std::size_t kinds, std::vector<std::uint32_t> laws,
                std::vector<Side> sides, std::size_t numbers_of_a_pair);
   /// Room for what packings of `all` spheres need, so that later searches seldom allocate. `sleep`: some may.
-  void reserve(std::size_t all, std::vector<SphereChunk>& chunks, bool sleep);
+  void reserve(std::size_t all, std::span<SphereChunk> chunks, bool sleep);
 
-  /// Before find(): takes the memory out of the pairs. `before`: numbers of the spheres when the chunks were filled
-  /// last.
-  void keep(const SphereSet& spheres, const std::vector<SphereChunk>& chunks, const std::uint32_t* before) {
-    memory_.keep(spheres.moving, spheres.all, chunks, before);
+  /// Before find(): takes the memory out of the pairs (ContactMemory::keep). `before`: numbers of the spheres when the
+  /// chunks were filled last.
+  void keep(std::size_t begin, std::size_t end, std::size_t all, std::span<const SphereChunk> chunks,
+            const std::uint32_t* before) {
+    memory_.keep(begin, end, all, chunks, before);
   }
+  /// Between the two, on several ranks (ContactMemory::share).
+  void share(const std::vector<std::uint32_t>& ranks) { memory_.share(ranks); }
+  void join() { memory_.join(); }
   /// Between the two: spheres have other numbers, or are gone (ContactMemory::renumber).
   void renumber(const std::vector<std::uint32_t>& to, std::size_t all, std::vector<std::uint32_t>& left_alone) {
     memory_.renumber(to, all, left_alone);
   }
   /// Fills the chunks with the pairs nearer than `slack` (m), of those that sleep too, with the memory that was kept.
   /// Allocates only to grow.
-  void find(const SphereSet& spheres, double slack, std::vector<SphereChunk>& chunks);
+  void find(const SphereSet& spheres, double slack, std::span<SphereChunk> chunks);
 
   /// Sorts all spheres by their places into cells as wide as a search with `slack` (m): find() does, and loading must.
   void sort(const SphereSet& spheres, double slack);

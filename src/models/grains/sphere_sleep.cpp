@@ -138,18 +138,41 @@ bool SphereSleep::look(Workspace& w, const std::uint32_t* numbers, double& lost)
   return changed;
 }
 
-std::span<const std::uint32_t> SphereSleep::wake(std::span<const SphereChunk> chunks, const std::uint32_t* numbers) {
+std::span<const std::uint32_t> SphereSleep::wake(std::span<const SphereChunk> chunks, const std::uint32_t* numbers,
+                                                 bool shared) {
   woken_.clear();
   for (const SphereChunk& chunk : chunks) {
     if (!chunk.wakes) continue;
     for (const std::uint32_t k : chunk.border) {
       if (!wakes_[numbers[k]]) continue;
       wakes_[numbers[k]] = 0;
-      rouse(numbers[k]);
       woken_.push_back(k);
     }
   }
+  if (shared) ranks::join(woken_);
+  for (const std::uint32_t k : woken_) rouse(numbers[k]);
   return woken_;
+}
+
+void SphereSleep::share(const SphereShares& shares, const std::uint32_t* numbers) {
+  if (!on() || !shares.on()) return;
+  const std::vector<std::size_t> counts = shares.spheres_of_ranks(0, moving_);
+  std::vector<double> forces(moving_ * 2 * numbers_);
+  std::vector<std::uint8_t> fresh(moving_);
+  for (std::size_t k = shares.begin(); k < shares.end(); ++k) {
+    double* const to = forces.data() + k * 2 * numbers_;
+    std::copy_n(offset_.data() + numbers[k] * numbers_, numbers_, to);
+    std::copy_n(unrest_.data() + numbers[k] * numbers_, numbers_, to + numbers_);
+    fresh[k] = fresh_[numbers[k]];
+  }
+  ranks::active()->gather_in_place(forces.data(), counts, 2 * numbers_ * sizeof(double));
+  ranks::active()->gather_in_place(fresh.data(), counts, 1);
+  for (std::size_t k = 0; k < moving_; ++k) {
+    const double* const from = forces.data() + k * 2 * numbers_;
+    std::copy_n(from, numbers_, offset_.data() + numbers[k] * numbers_);
+    std::copy_n(from + numbers_, numbers_, unrest_.data() + numbers[k] * numbers_);
+    fresh_[numbers[k]] = fresh[k];
+  }
 }
 
 void SphereSleep::mark_woken() {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "models/grains/sphere_pairs.hpp"
+#include "models/grains/sphere_shares.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -46,8 +47,11 @@ class SphereSleep {
   /// motion that went (J). Whether any did either.
   bool look(Workspace& w, const std::uint32_t* numbers, double& lost);
   /// Wakes those whom the last step of contacts disturbed, all of them at the border of chunks. Returns who woke, by
-  /// sphere, until the next call.
-  std::span<const std::uint32_t> wake(std::span<const SphereChunk> chunks, const std::uint32_t* numbers);
+  /// sphere, until the next call. `shared`: other ranks have other chunks; who woke is told to all.
+  std::span<const std::uint32_t> wake(std::span<const SphereChunk> chunks, const std::uint32_t* numbers, bool shared);
+  /// Every rank gets what steps of contacts have found of those that sleep: a rank knows it of its own spheres.
+  /// `numbers`: by sphere.
+  void share(const SphereShares& shares, const std::uint32_t* numbers);
   /// Whether the last look let somebody fall asleep.
   bool some_fell_asleep() const { return fell_; }
   /// Takes over who sleeps, by sphere: flags(). Since the last settled() those whose neighbours changed count as fresh.

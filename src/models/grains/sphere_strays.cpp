@@ -148,7 +148,8 @@ void SphereStrays::look(const SphereSet& s, std::uint32_t stray) {
 }
 
 void SphereStrays::renew(const SphereSet& s, std::uint32_t stray, double step,
-                         std::span<const SphereSearch::Side> sides, std::vector<SphereChunk>& chunks) {
+                         std::span<const SphereSearch::Side> sides, std::span<SphereChunk> chunks,
+                         SphereShares& shares) {
   const double* r = s.records + stray * stride_;
   sleep_ = s.asleep != nullptr;
   if (is_stray_[stray]) leave(stray);
@@ -165,38 +166,57 @@ void SphereStrays::renew(const SphereSet& s, std::uint32_t stray, double step,
   if (allowance == least_) ++slow_;
   enter(stray);
   look(s, stray);
-  drop_others(s, stray, chunks);
-  SphereChunk& own = chunks[chunk_[stray]];
+  drop_others(stray, chunks, shares);
+  add_new(s, stray, chunks, shares);
+  if (shares.has(stray)) add_sides(s, stray, sides, chunks[chunk_[stray]]);
+}
+
+/// Adds the pairs that the lists do not have.
+void SphereStrays::add_new(const SphereSet& s, std::uint32_t stray, std::span<SphereChunk> chunks,
+                           SphereShares& shares) const {
+  const bool own = shares.has(stray);
   for (std::size_t n = 0; n < near_.size(); ++n) {
     const std::uint32_t j = near_[n];
     if (listed_[n]) continue;
     const bool first = s.numbers[stray] < s.numbers[j], alone = j >= moving_ || chunk_[j] == chunk_[stray];
     const std::uint32_t a = first ? stray : j, b = first ? j : stray,
                         law = cells_.laws[s.kinds[stray] * cells_.kinds + s.kinds[j]];
-    add(own, a, b, law, alone ? 1.0 : 0.5);
+    if (own) add(chunks[chunk_[stray]], a, b, law, alone ? 1.0 : 0.5);
     if (j >= moving_) continue;
+    if (!shares.has(j)) {
+      if (own) shares.meet(stray, j, chunk_[stray]);
+      continue;
+    }
     SphereChunk& other = chunks[chunk_[j]];
     if (!alone) add(other, a, b, law, 0.5);
+    if (!own) shares.meet(j, stray, chunk_[j]);
     if (!s.asleep || !s.asleep[j]) continue;
     const auto at = std::lower_bound(other.border.begin(), other.border.end(), j);
     if (at == other.border.end() || *at != j) other.border.insert(at, j);
   }
-  add_sides(s, stray, sides, own);
 }
 
 /// Marks the pairs that the lists have, and takes those away that are out of reach.
-void SphereStrays::drop_others(const SphereSet&, std::uint32_t stray, std::vector<SphereChunk>& chunks) {
-  SphereChunk& own = chunks[chunk_[stray]];
-  each_pair_of(own, stray, [&](std::size_t pair) {
-    const std::uint32_t j = own.a[pair] == stray ? own.b[pair] : own.a[pair];
-    const auto at = std::lower_bound(near_.begin(), near_.end(), j);
-    if (at != near_.end() && *at == j) {
-      listed_[static_cast<std::size_t>(at - near_.begin())] = 1;
-      return;
-    }
-    if (own.touching(pair)) return;
-    drop(own, pair);
-    if (j >= moving_ || chunk_[j] == chunk_[stray]) return;
+void SphereStrays::drop_others(std::uint32_t stray, std::span<SphereChunk> chunks, const SphereShares& shares) {
+  const auto look_at = [&](SphereChunk& chunk, auto&& out_of_reach) {
+    each_pair_of(chunk, stray, [&](std::size_t pair) {
+      const std::uint32_t j = chunk.a[pair] == stray ? chunk.b[pair] : chunk.a[pair];
+      const auto at = std::lower_bound(near_.begin(), near_.end(), j);
+      if (at != near_.end() && *at == j) {
+        listed_[static_cast<std::size_t>(at - near_.begin())] = 1;
+        return;
+      }
+      if (chunk.touching(pair)) return;
+      drop(chunk, pair);
+      out_of_reach(j);
+    });
+  };
+  if (!shares.has(stray)) {
+    shares.each_chunk_with(stray, [&](std::size_t c) { look_at(chunks[c], [](std::uint32_t) {}); });
+    return;
+  }
+  look_at(chunks[chunk_[stray]], [&](std::uint32_t j) {
+    if (j >= moving_ || chunk_[j] == chunk_[stray] || !shares.has(j)) return;
     SphereChunk& other = chunks[chunk_[j]];
     each_pair_of(other, stray, [&](std::size_t same) {
       if (other.a[same] == j || other.b[same] == j) drop(other, same);

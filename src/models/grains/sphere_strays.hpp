@@ -9,6 +9,7 @@
 #include <span>
 
 #include "models/grains/sphere_search.hpp"
+#include "models/grains/sphere_shares.hpp"
 #include "state/archive.hpp"
 
 namespace barchan {
@@ -25,9 +26,10 @@ class SphereStrays {
 
   /// Whether `strays` more are searched faster alone than with all others.
   bool few(std::size_t strays) const { return strays + slow_ < least_strays + moving_ / 64; }
-  /// Gives one a new place and its pairs. `step` (s): of the contacts.
+  /// Gives one a new place and its pairs. `step` (s): of the contacts. On several ranks each of them does so for all
+  /// strays, and puts pairs into its own chunks.
   void renew(const SphereSet& spheres, std::uint32_t stray, double step, std::span<const SphereSearch::Side> sides,
-             std::vector<SphereChunk>& chunks);
+             std::span<SphereChunk> chunks, SphereShares& shares);
 
   /// The chunk of a sphere that moves.
   std::uint32_t chunk_of(std::uint32_t sphere) const { return chunk_[sphere]; }
@@ -47,7 +49,8 @@ class SphereStrays {
   std::size_t cell_of(const double* x) const;
   void enter(std::uint32_t stray);
   void leave(std::uint32_t stray);
-  void drop_others(const SphereSet& s, std::uint32_t stray, std::vector<SphereChunk>& chunks);
+  void drop_others(std::uint32_t stray, std::span<SphereChunk> chunks, const SphereShares& shares);
+  void add_new(const SphereSet& s, std::uint32_t stray, std::span<SphereChunk> chunks, SphereShares& shares) const;
   void drop(SphereChunk& chunk, std::size_t pair) const;
   void evaluate(SphereChunk& chunk, std::size_t pair) const;
   void add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std::uint32_t law, double weight) const;

@@ -13,6 +13,7 @@
 #include "models/grains/sphere_bodies.hpp"
 #include "models/grains/sphere_rest.hpp"
 #include "models/grains/sphere_search.hpp"
+#include "models/grains/sphere_shares.hpp"
 #include "models/grains/sphere_sleep.hpp"
 #include "models/grains/sphere_strays.hpp"
 #include "models/workspace.hpp"
@@ -84,6 +85,9 @@ class Spheres : public Model {
   long searches() const override { return searches_; }
   std::vector<RestingContact> resting_contacts(std::size_t phase) const override;
   void archive(Archive& a) override;
+  void gather_to_save() override;
+  void forget_gathered() override { drop_other_chunks(); }
+  bool count_traffic(std::vector<RankTraffic>& of) const override;
 
  private:
   /// Spheres of one phase, side by side.
@@ -97,6 +101,20 @@ class Spheres : public Model {
   struct SphereWall {
     std::size_t phase = 0, first = 0, count = 0;
     const WallMotion* motion = nullptr;
+  };
+
+  /// Of a step of contacts: m/s; square of a way over that of its allowance; 1 where somebody wakes.
+  struct Extremes {
+    double fastest = 0.0, farthest = 0.0, wakes = 0.0;
+  };
+  /// What a step of contacts sums up of a chunk.
+  struct ChunkSums {
+    double lost, stored, deepest, contacts;
+    const std::array<double, 6>* pushed;  // by watched law
+  };
+  /// What ranks would tell each other, counted by one process too.
+  struct Told {
+    long records = 0, columns = 0, sums = 0, steps = 0, places = 0, memories = 0;  // how often
   };
 
   std::size_t all() const { return moving_ + fixed_kind_.size(); }
@@ -118,9 +136,34 @@ class Spheres : public Model {
   void sort_out_sleepers(bool all);
   void sort_out_woken(std::span<const std::uint32_t> woken);
   void sort_out_chunks();
-  void search_strays(double dt, bool stepped);
+  /// Whether all were searched.
+  bool search_strays(double dt, bool stepped);
   template <int Dim>
   void list_strays(double dt, bool stepped);
+  template <class Of>
+  void add_sums(double lost, double deepest, double time, Of&& of);
+  void sum_up(bool last);
+  void add_kept_sums(bool last);
+
+  // Of a run on several ranks (spheres_ranks.cpp); of one process they do nothing.
+  std::span<SphereChunk> own_chunks() { return shares_.own(std::span<SphereChunk>(chunks_)); }
+  std::span<const SphereChunk> own_chunks() const { return shares_.own(std::span<const SphereChunk>(chunks_)); }
+  bool packs_all() const { return !shares_.on() || must_search_ || bodies_.any(); }
+  std::vector<std::uint32_t> others_to_pack(const Part& part) const;
+  void divide();
+  void drop_other_chunks();
+  Extremes of_all_ranks(Extremes own) const;
+  void keep_memory(bool moved);
+  void share_memory();
+  void share_flags(bool& more);
+  void share_columns();
+  void copy_radii();
+  void tell_places();
+  void tell_records();
+  void tell_all_records();
+  void tell_strays();
+  void archive_chunk(Archive& a, SphereChunk& chunk);
+  double energy_of_sleepers() const;
   void go();
   void point_at_columns();
   template <int Dim>
@@ -137,6 +180,7 @@ class Spheres : public Model {
   double slack() const { return slack_ * laws_.reach(); }
 
   static constexpr long searches_a_sort = 32;
+  static constexpr std::size_t steps_told_together = 64;  // sums of so many steps of contacts
 
   const Scene& scene_;
   const Layout& layout_;
@@ -161,6 +205,14 @@ class Spheres : public Model {
   std::vector<std::uint8_t> kinds_;
   SphereSearch search_;
   SphereStrays strays_;
+  SphereShares shares_;
+  bool divided_ = false;                               // the chunks, among the ranks
+  bool memory_was_shared_ = false;                     // when the lists were left last
+  double fastest_ = 0.0;                               // m/s, of the spheres before the next step of contacts
+  std::vector<double> kept_sums_;                      // of the own chunks, by step and chunk; then of all ranks
+  std::vector<std::array<double, 2>> kept_of_bodies_;  // lost and deepest, by step
+  std::vector<std::int64_t> shared_flags_;             // sorted_out_ of all ranks
+  Told told_;
   std::vector<std::uint32_t> gone_;  // strays of a step
   SphereStep step_;
   SphereRest rest_;

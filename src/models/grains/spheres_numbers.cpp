@@ -52,7 +52,7 @@ void Spheres::number() {
 
 /// Takes over the particles that are there now.
 void Spheres::renumber() {
-  search_.keep(set(), chunks_, listed_numbers_.data());
+  keep_memory(true);
   const std::vector<Part> before = parts_;
   const std::size_t moved = moving_, fixed = fixed_kind_.size();
   const std::vector<std::int64_t> old = std::move(ids_);
@@ -69,6 +69,7 @@ void Spheres::renumber() {
   for (std::size_t k = 0; k < fixed; ++k) to[moved + k] = static_cast<std::uint32_t>(moving_ + k);
   std::vector<std::uint32_t> left_alone;
   search_.renumber(to, all(), left_alone);
+  if (shares_.on()) ranks::join(left_alone);
   rest_.renumber(to);
   const std::size_t slept = sleep_.sleeping();
   sleep_.renumber(to, moving_);
@@ -99,12 +100,12 @@ void Spheres::sort_out_woken(std::span<const std::uint32_t> woken) {
 /// The chunks that ask, and those that hold partners of their spheres that changed. Each writes what is its own.
 void Spheres::sort_out_chunks() {
   const SphereSet s = set();
-  const auto n = static_cast<std::int64_t>(chunks_.size());
+  const auto n = static_cast<std::int64_t>(own_chunks().size());
   for (bool more = true; more;) {
     more = false;
 #pragma omp parallel for schedule(static) reduction(|| : more)
     for (std::int64_t i = 0; i < n; ++i) {
-      const auto c = static_cast<std::size_t>(i);
+      const std::size_t c = shares_.first_chunk() + static_cast<std::size_t>(i);
       const auto flag = [this](std::size_t chunk) { return std::atomic_ref(sorted_out_[chunk]); };
       if (flag(c).load(std::memory_order_relaxed) != asks) continue;
       flag(c).store(done, std::memory_order_relaxed);
@@ -113,6 +114,7 @@ void Spheres::sort_out_chunks() {
         if (flag(strays_.chunk_of(k)).compare_exchange_strong(untouched, asks, std::memory_order_relaxed)) more = true;
       });
     }
+    share_flags(more);
   }
   sleep_.settled();
   others_sleep_ = false;
@@ -147,6 +149,7 @@ void Spheres::make_room() {
     }
   }
   chunks_.resize(chunk);
+  divide();
   for (std::size_t k = moving_; k < all(); ++k) {
     kinds_[k] = fixed_kind_[k - moving_];
     numbers_[k] = static_cast<std::uint32_t>(k);
@@ -154,7 +157,7 @@ void Spheres::make_room() {
   layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
   sleep_.make_room(parts_that_may_sleep(), moving_, all());
   for (const SphereWall& wall : walls_) sleep_.keep_awake(moving_ + wall.first, wall.count);
-  search_.reserve(all(), chunks_, sleep_.on());
+  search_.reserve(all(), own_chunks(), sleep_.on());
   SphereSet sizes;
   sizes.dimensions = layout_.dimensions;
   sizes.moving = moving_;
@@ -168,10 +171,11 @@ void Spheres::make_room() {
 /// stay in its core's cache, and about as much work as the others.
 void Spheres::share_out() {
   constexpr double touching = 36.0, near = 10.0;  // a batch, against a sphere that moves
-  middles_.resize(chunks_.size());
+  const std::span<const SphereChunk> chunks = own_chunks();
+  middles_.resize(chunks.size());
   double all = 0.0;
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    const SphereChunk& chunk = chunks_[c];
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    const SphereChunk& chunk = chunks[c];
     std::size_t touch = 0, live = 0;
     for (std::size_t q = 0; q < chunk.touches.size(); ++q) {
       touch += (chunk.live_of(q) & chunk.touches[q]) != 0;

@@ -28,18 +28,25 @@ void Spheres::history(HistoryRow& row) const {
   const double depth = layout_.slab;  // energies are by metre of depth in 2D
   row.add("contacts", contacts_);
   row.add("contacts_deepest", deepest_);
-  double stored = stored_;
-  if (sleep_.on()) {
-    SphereStep now = step_;
-    now.records = records_[now_].data();
-    now.dt = each_;
-    for (const SphereChunk& chunk : chunks_) stored += energy_at_rest(now, chunk);
-  }
-  row.add("contacts_stored_energy [J]", stored / depth);
+  row.add("contacts_stored_energy [J]", (sleep_.on() ? energy_of_sleepers() : stored_) / depth);
   row.add("contacts_lost_energy [J]", lost_ / depth);
   row.add("rotation_energy [J]", turning);
   if (sleep_.on()) row.add("asleep", static_cast<double>(sleep_.sleeping()));
   bodies_.history(row);
+}
+
+/// J, with what contacts store that are evaluated.
+double Spheres::energy_of_sleepers() const {
+  SphereStep now = step_;
+  now.records = records_[now_].data();
+  now.dt = each_;
+  std::vector<double> of(chunks_.size(), 0.0);
+  std::size_t c = shares_.first_chunk();
+  for (const SphereChunk& chunk : own_chunks()) of[c++] = energy_at_rest(now, chunk);
+  if (shares_.on()) ranks::active()->gather_in_place(of.data(), shares_.chunks_of_ranks(), sizeof(double));
+  double stored = stored_;
+  for (const double energy : of) stored += energy;
+  return stored;
 }
 
 std::optional<std::string> Spheres::trouble() const {
@@ -55,7 +62,7 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
   if (!entry.own_steps || law == SphereSearch::none) return 0;
   const auto far = static_cast<std::uint32_t>(all());
   std::uint64_t n = 0;
-  for (const SphereChunk& chunk : chunks_) {
+  for (const SphereChunk& chunk : own_chunks()) {
     for (const auto& group : chunk.groups)
       for (std::size_t k = group.first * SphereChunk::batch; group.law == law && k < group.end * SphereChunk::batch;
            ++k)
@@ -65,7 +72,9 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
     n += static_cast<std::uint64_t>(
         std::count_if(chunk.sides.begin(), chunk.sides.end(), [&](const auto& at) { return at.law == law; }));
   }
-  return n;
+  // Who asks adds up the ranks where one of the phases is no whole one.
+  if (!layout_.is_whole(entry.a) || !layout_.is_whole(entry.b)) return shares_.on() || ranks::is_first() ? n : 0;
+  return shares_.on() ? ranks::total(n) : n;
 }
 
 std::vector<RestingContact> Spheres::resting_contacts(std::size_t phase) const {
@@ -137,24 +146,27 @@ void Spheres::archive(Archive& a) {
     loaded_ = sleep_.on();
     if (loaded_) sleep_.mark(numbers_.data());
   }
-  const auto pairs = [&a](SphereChunk& chunk) {
-    a.array("groups", chunk.groups);
-    a.array("first of pairs", chunk.a);
-    a.array("second of pairs", chunk.b);
-    chunk.ContactBatches::archive(a);
-  };
-  for (SphereChunk& chunk : chunks_) {
-    pairs(chunk);
-    a.array("at sides", chunk.sides);
-    if (!sleep_.on()) continue;
-    a.number("all awake", chunk.all_awake);
-    a.array("evaluated pairs", chunk.live);
-    a.number("any evaluated", chunk.any_live);
-    a.number("contacts at rest", chunk.resting);
-    a.array("awake", chunk.awake);
-    a.array("border", chunk.border);
-  }
+  for (SphereChunk& chunk : chunks_) archive_chunk(a, chunk);
   if (sleep_.on()) a.number("length of a step", each_);
+  if (!a.loads()) return;
+  drop_other_chunks();
+  shares_.find(chunks_);
+  copy_radii();
+}
+
+void Spheres::archive_chunk(Archive& a, SphereChunk& chunk) {
+  a.array("groups", chunk.groups);
+  a.array("first of pairs", chunk.a);
+  a.array("second of pairs", chunk.b);
+  chunk.ContactBatches::archive(a);
+  a.array("at sides", chunk.sides);
+  if (!sleep_.on()) return;
+  a.number("all awake", chunk.all_awake);
+  a.array("evaluated pairs", chunk.live);
+  a.number("any evaluated", chunk.any_live);
+  a.number("contacts at rest", chunk.resting);
+  a.array("awake", chunk.awake);
+  a.array("border", chunk.border);
 }
 
 }  // namespace barchan
