@@ -35,7 +35,7 @@ class PlanOfRanks(test_ranks.Folder):
 
     def report(self, scene, ranks, out, sets):
         start = self.start if isinstance(scene, str) else self.start_file
-        ended = start(ranks, scene, out, *sets)
+        ended = start(ranks, scene, out, *sets, "--division", "particles")  # that of a plan: it knows no time of ranks
         self.assertEqual(ended.returncode, 0, ended.stderr)
         return json.loads((self.at / out / "run.json").read_text())
 

@@ -23,6 +23,7 @@ struct Strayed {
   std::vector<SphereSearch::Side> sides;
   SphereSearch search;
   SphereStrays strays;
+  SphereShares shares;            // of one process
   std::vector<double> allowance;  // m, by sphere, as it must be
   std::vector<bool> renewed;
 
@@ -31,7 +32,8 @@ struct Strayed {
     search.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
     strays.prepare(cast.set(), cast.reach, cast.chunks, cast.numbers_of_a_pair);
     strays.begin(cast.set(), stray_slack);
-    search.keep(set(), cast.chunks, cast.numbers.data());
+    shares.divide(cast.chunks, {});
+    search.keep(0, cast.moving, cast.all, cast.chunks, cast.numbers.data());
     search.find(set(), stray_slack, cast.chunks);
     strays.take_cells(search.cells());
     allowance.assign(cast.all, 0.5 * stray_slack);
@@ -46,7 +48,7 @@ struct Strayed {
   void go(std::size_t k, const Vec3& x, double speed) {
     for (std::size_t d = 0; d < Dim; ++d) cast.records[k * stride + d] = x[d];
     cast.records[k * stride + SphereRecord<Dim>::velocity] = speed;
-    strays.renew(set(), static_cast<std::uint32_t>(k), step, sides, cast.chunks);
+    strays.renew(set(), static_cast<std::uint32_t>(k), step, sides, cast.chunks, shares);
     renewed[k] = true;
     // Forty steps at its speed, half of the slack at least, the reach at most.
     allowance[k] = std::clamp(40.0 * step * std::abs(speed), 0.5 * stray_slack, cast.reach);

@@ -132,6 +132,7 @@ class Spheres : public Model {
   void number();
   template <int Dim>
   void pack(double dt);
+  void renew_lists(const Extremes& found, double dt);
   void search();
   void sort_out_sleepers(bool all);
   void sort_out_woken(std::span<const std::uint32_t> woken);

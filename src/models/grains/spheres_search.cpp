@@ -86,8 +86,12 @@ void Spheres::pack(double dt) {
       fastest2 = std::max(fastest2, v2);
     }
   }
+  renew_lists(of_all_ranks({std::sqrt(fastest2), static_cast<double>(farthest), 0.0}), dt);
+}
+
+/// After records are packed: the lists that the next step of contacts needs.
+void Spheres::renew_lists(const Extremes& found, double dt) {
   loaded_ = false;
-  const Extremes found = of_all_ranks({std::sqrt(fastest2), static_cast<double>(farthest), 0.0});
   fastest_ = found.fastest;
   for (SphereChunk& chunk : own_chunks()) chunk.fastest = fastest_;
   if (must_search_ || walls_left_) return search();
