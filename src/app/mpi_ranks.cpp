@@ -9,8 +9,10 @@
 #include <omp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <thread>
 #include <vector>
@@ -34,36 +36,52 @@ MPI_Op operation(Communicator::Take how) {
   return MPI_BOR;
 }
 
-/// Items of so many bytes, so that a count of items may be large.
-class Item {
- public:
-  explicit Item(std::size_t width) {
-    MPI_Type_contiguous(static_cast<int>(width), MPI_BYTE, &type_);
-    MPI_Type_commit(&type_);
-  }
-  ~Item() { MPI_Type_free(&type_); }
-  Item(const Item&) = delete;
-  Item& operator=(const Item&) = delete;
-  MPI_Datatype type() const { return type_; }
-
- private:
-  MPI_Datatype type_ = MPI_DATATYPE_NULL;
-};
+constexpr std::size_t most_of_mpi = std::numeric_limits<int>::max();
 
 int count_of(std::size_t count) {
-  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+  if (count > most_of_mpi)
     throw OutputError("a message between ranks has " + std::to_string(count) +
                       " items; expected at most 2147483647: more ranks, so that each has fewer particles");
   return static_cast<int>(count);
 }
 
-/// Adds the time of a block to what a rank has waited.
+/// How MPI counts items of `width` bytes, `all` of them in a call: by bytes, or, where these are more than MPI counts,
+/// by a type of that many bytes, which costs a call of MPI to make and one to free.
+class Items {
+ public:
+  Items(std::size_t width, std::size_t all) : each_(width * all <= most_of_mpi ? width : 1) {
+    if (each_ == width) return;
+    MPI_Type_contiguous(count_of(width), MPI_BYTE, &made_);
+    MPI_Type_commit(&made_);
+  }
+  ~Items() {
+    if (made_ != MPI_DATATYPE_NULL) MPI_Type_free(&made_);
+  }
+  Items(const Items&) = delete;
+  Items& operator=(const Items&) = delete;
+  MPI_Datatype type() const { return made_ == MPI_DATATYPE_NULL ? MPI_BYTE : made_; }
+  int count(std::size_t items) const { return count_of(items * each_); }
+
+ private:
+  std::size_t each_;  // of what MPI counts, in an item
+  MPI_Datatype made_ = MPI_DATATYPE_NULL;
+};
+
+std::size_t sum(const std::vector<std::size_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+/// Adds the time of a block to what a rank has waited. To ask for processor time is a call of the kernel (0.6e-6 s, as
+/// much as a small reduction). A rank that has its cores alone does not ask: it waits in a loop, so that its processor
+/// time is the wall time.
 class Waiting {
  public:
-  explicit Waiting(Communicator::Waits& waits) : waits_(waits), processor_(thread_seconds()), begin_(Clock::now()) {}
+  Waiting(Communicator::Waits& waits, bool shares_cores)
+      : waits_(waits), asks_(shares_cores), processor_(asks_ ? thread_seconds() : 0.0), begin_(Clock::now()) {}
   ~Waiting() {
-    waits_.seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
-    waits_.processor_seconds += thread_seconds() - processor_;
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    waits_.seconds += seconds;
+    waits_.processor_seconds += asks_ ? thread_seconds() - processor_ : seconds;
   }
   Waiting(const Waiting&) = delete;
   Waiting& operator=(const Waiting&) = delete;
@@ -71,6 +89,7 @@ class Waiting {
  private:
   using Clock = std::chrono::steady_clock;
   Communicator::Waits& waits_;
+  bool asks_;
   double processor_;
   Clock::time_point begin_;
 };
@@ -94,31 +113,32 @@ class Mpi final : public Communicator {
   Traffic traffic() const override { return traffic_; }
   Waits waits() const override { return waits_; }
   void all_gather(const void* mine, std::size_t bytes, void* all) override {
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     ++traffic_.collectives;
     MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
   }
   void gather_in_place(void* all, const std::vector<std::size_t>& counts, std::size_t width) override {
-    const Item item(width);
+    const Waiting waiting = begin_waiting();
+    const Items items(width, sum(counts));
     std::vector<int> number, first;
     std::size_t before = 0;
     for (const std::size_t n : counts) {
-      number.push_back(count_of(n));
-      first.push_back(count_of(before));
+      number.push_back(items.count(n));
+      first.push_back(items.count(before));
       before += n;
     }
     const std::size_t own = counts[static_cast<std::size_t>(rank_)];
     for (int r = 1; r < size_ && own > 0; ++r) note(own * width);
-    MPI_Allgatherv(MPI_IN_PLACE, 0, item.type(), all, number.data(), first.data(), item.type(), MPI_COMM_WORLD);
+    MPI_Allgatherv(MPI_IN_PLACE, 0, items.type(), all, number.data(), first.data(), items.type(), MPI_COMM_WORLD);
   }
   void broadcast(void* data, std::size_t bytes, int from) override {
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     ++traffic_.collectives;
     MPI_Bcast(data, count_of(bytes), MPI_BYTE, from, MPI_COMM_WORLD);
   }
   void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                 const std::vector<std::size_t>& receive_counts, std::size_t width) override {
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     start(send, send_counts, receive, receive_counts, width);
     wait();
   }
@@ -126,11 +146,11 @@ class Mpi final : public Communicator {
                        const std::vector<std::size_t>& receive_counts, std::size_t width,
                        const std::function<void()>& beside) override {
     {
-      const Waiting waiting(waits_);
+      const Waiting waiting = begin_waiting();
       start(send, send_counts, receive, receive_counts, width);
     }
     beside();
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     wait();
   }
   void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
@@ -141,25 +161,26 @@ class Mpi final : public Communicator {
     exchange(mine, to, all, from, width);
   }
   void send(const void* data, std::size_t bytes, int to) override {
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     note(bytes);
     MPI_Send(data, count_of(bytes), MPI_BYTE, to, tag, MPI_COMM_WORLD);
   }
   void receive(void* data, std::size_t bytes, int from) override {
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     MPI_Recv(data, count_of(bytes), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   }
 
  private:
+  Waiting begin_waiting() { return {waits_, on_this_machine_ * omp_get_max_threads() > cores_}; }
   template <class T>
   void all(T* values, std::size_t count, Take how, MPI_Datatype type) {
-    const Waiting waiting(waits_);
+    const Waiting waiting = begin_waiting();
     ++traffic_.collectives;
     MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
   }
   void start(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
              const std::vector<std::size_t>& receive_counts, std::size_t width) {
-    const Item item(width);
+    const Items items(width, std::max(sum(send_counts), sum(receive_counts)));
     requests_.clear();
     const char* from = static_cast<const char*>(send);
     char* to = static_cast<char*>(receive);
@@ -167,7 +188,7 @@ class Mpi final : public Communicator {
     for (int r = 0; r < size_; ++r) {
       const std::size_t count = receive_counts[static_cast<std::size_t>(r)];
       if (count > 0 && r != rank_)
-        MPI_Irecv(to, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
+        MPI_Irecv(to, items.count(count), items.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
       if (r == rank_) own_to_ = to;
       to += count * width;
     }
@@ -175,7 +196,7 @@ class Mpi final : public Communicator {
       const std::size_t count = send_counts[static_cast<std::size_t>(r)];
       if (count > 0 && r != rank_) note(count * width);
       if (count > 0 && r != rank_)
-        MPI_Isend(from, count_of(count), item.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
+        MPI_Isend(from, items.count(count), items.type(), r, tag, MPI_COMM_WORLD, &requests_.emplace_back());
       if (r == rank_) own = from;
       from += count * width;
     }
@@ -190,6 +211,7 @@ class Mpi final : public Communicator {
   Traffic traffic_;
   Waits waits_;
   int rank_ = 0, size_ = 1, on_this_machine_ = 1;
+  int cores_ = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   char* own_to_ = nullptr;
   std::vector<MPI_Request> requests_;
 };

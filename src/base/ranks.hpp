@@ -59,7 +59,7 @@ class Communicator {
   };
   virtual Traffic traffic() const { return {}; }
   /// What this rank has spent in calls of its communicator so far: wall time, and processor time of the thread that
-  /// makes them (s).
+  /// makes them (s). Where each thread of all ranks has a core, the second is taken to be the first.
   struct Waits {
     double seconds = 0, processor_seconds = 0;
   };

@@ -155,8 +155,8 @@ class CellGrid {
   /// makes it, place(number of the image, item) takes what has come.
   template <class Pack, class Place>
   void fill_ghosts(std::size_t width, Pack&& pack, Place&& place) const;
-  /// The values that the sources of the ghosts have in a column.
-  void take_values(const double* column, std::vector<double>& ghosts) const;
+  /// On several ranks: the places of the sources of the ghosts (m), by axis. `particles`: of the grid.
+  void take_places(const PhaseParticles& particles, std::array<std::vector<double>, 3>& ghosts) const;
   /// The way back: pack(number of the image, item) of this rank's ghosts, place(source, item) where they come from.
   template <class Pack, class Place>
   void return_ghosts(std::size_t width, Pack&& pack, Place&& place) const;

@@ -278,12 +278,24 @@ void CellGrid::bring_search_positions(const SharedCells::Question& question, std
       });
 }
 
-void CellGrid::take_values(const double* column, std::vector<double>& ghosts) const {
-  ghosts.resize(images_.size());
+void CellGrid::take_places(const PhaseParticles& particles, std::array<std::vector<double>, 3>& ghosts) const {
+  const auto axes = static_cast<std::size_t>(particles.dimensions());
+  note_images(axes * sizeof(double));
+  if (!is_shared()) return;
+  std::array<const double*, 3> x{};
+  for (std::size_t d = 0; d < axes; ++d) {
+    x[d] = particles.column(Field::position, static_cast<int>(d));
+    ghosts[d].resize(images_.size());
+  }
   fill_ghosts(
-      sizeof(double),
-      [&](const Image& image, std::byte* to) { std::memcpy(to, column + image.source, sizeof(double)); },
-      [&](std::size_t slot, const std::byte* come) { std::memcpy(&ghosts[slot], come, sizeof(double)); });
+      axes * sizeof(double),
+      [&](const Image& image, std::byte* to) {
+        for (std::size_t d = 0; d < axes; ++d)
+          std::memcpy(to + d * sizeof(double), x[d] + image.source, sizeof(double));
+      },
+      [&](std::size_t slot, const std::byte* come) {
+        for (std::size_t d = 0; d < axes; ++d) std::memcpy(&ghosts[d][slot], come + d * sizeof(double), sizeof(double));
+      });
 }
 
 /// What other ranks have asked for is what they get from now on when images are filled.

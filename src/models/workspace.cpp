@@ -257,7 +257,14 @@ void CommonWork::kick() {
     if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
   if (ranks::active() && (!std::isfinite(largest) || formula_fault()))
     largest = std::numeric_limits<double>::infinity();  // NaN has no order, and all ranks must know
-  w_->state.largest_acceleration = ranks::largest(largest);
+  if (Communicator* const all = ranks::active()) {
+    found_.assign(1, largest);
+    for (const double* value : w_->largest_of_ranks) found_.push_back(*value);
+    all->reduce(found_.data(), found_.size(), Communicator::Take::largest);
+    largest = found_.front();
+    for (std::size_t k = 0; k < w_->largest_of_ranks.size(); ++k) *w_->largest_of_ranks[k] = found_[k + 1];
+  }
+  w_->state.largest_acceleration = largest;
 }
 
 }  // namespace barchan

@@ -37,6 +37,9 @@ class Workspace : public Halo {
   };
   std::vector<SpherePush> sphere_pushes;
 
+  /// Numbers of models that limit the next step: the kick replaces each by the largest of all ranks, with its own.
+  std::vector<double*> largest_of_ranks;
+
   std::vector<const WallMotion*> wall_motions;  // by phase, of walls that travel; else null
 
   std::vector<MotionPacking> packing;  // by phase
@@ -99,6 +102,7 @@ class CommonWork : public Model {
 
   const Layout& layout_;
   Workspace* w_ = nullptr;
+  std::vector<double> found_;  // by kick(), for all ranks
 };
 
 }  // namespace barchan

@@ -387,13 +387,7 @@ Watch::Part Watch::of_all_ranks(Part part) {
 }
 
 void Watch::take_places_of_ghosts(std::size_t phase) const {
-  const CellGrid& grid = see_.neighbours.grid(phase);
-  for (int d = 0; d < see_.plan.dimensions; ++d) grid.note_images(sizeof(double));
-  if (!grid.is_shared()) return;
-  for (int d = 0; d < see_.plan.dimensions; ++d) {
-    std::vector<double>& places = ghosts_[static_cast<std::size_t>(d)];
-    grid.take_values(see_.particles[phase].column(Field::position, d), places);
-  }
+  see_.neighbours.grid(phase).take_places(see_.particles[phase], ghosts_);
 }
 
 }  // namespace barchan

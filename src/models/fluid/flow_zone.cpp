@@ -117,7 +117,7 @@ void FlowZone::sort_out() {
   const double* v = p.column(Field::velocity, static_cast<int>(end_.axis()));
   std::uint8_t* where = p.own(where_);
   std::int64_t in = 0, out = 0;
-  double fastest = 0.0;
+  double fastest = 0.0;  // m/s
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static) reduction(+ : in, out) reduction(max : fastest)
   for (std::int64_t k = 0; k < n; ++k) {
@@ -130,9 +130,8 @@ void FlowZone::sort_out() {
     }
     if (now == beyond) fastest = std::max(fastest, std::abs(v[k]));
   }
-  entered_ += p.mass() * static_cast<double>(ranks::total(in));
-  left_ += p.mass() * static_cast<double>(ranks::total(out));
-  gone_ += ranks::largest(fastest) * w_->state.dt / dx_;
+  passed_ = {in, out};
+  fastest_ = fastest;
   members_.clear();
   for (std::int64_t k = 0; k < n; ++k)
     if (where[k] != away) members_.push_back(static_cast<std::uint32_t>(k));
@@ -170,6 +169,9 @@ void FlowZone::gather() {
     sum.sloped.add(depth * level);
   }
   if (ranks::active()) gather_ranks();
+  entered_ += p.mass() * static_cast<double>(passed_[0]);
+  left_ += p.mass() * static_cast<double>(passed_[1]);
+  gone_ += fastest_ * w_->state.dt / dx_;
 }
 
 /// The pressure where the velocity of the scene begins, and its slope, by lane.

@@ -119,6 +119,11 @@ class FlowZone : public Model {
   std::vector<Gathered> sums_;
   std::vector<std::array<LaneSum, 2>> layer_sums_;  // pressure in rho c^2, velocity along the axis in c
   std::vector<std::int32_t> layer_counts_;
+  // Of a step, until all ranks have added theirs.
+  std::array<std::int64_t, 2> passed_{};  // particles that came in past the side, and went out
+  double fastest_ = 0.0;                  // m/s, of those beyond the side
+  std::vector<std::int64_t> told_counts_, told_;
+  std::vector<double> told_largest_;
 };
 
 }  // namespace barchan

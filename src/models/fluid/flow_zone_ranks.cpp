@@ -9,29 +9,45 @@ namespace barchan {
 
 namespace {
 
-/// Adds what all ranks have; T: whole numbers of 64 bits alone.
-template <class T>
-void add_ranks(std::vector<T>& sums) {
+/// Calls f(address, number of 64-bit whole numbers) with what the ranks add.
+template <class T, class F>
+void as_numbers(std::vector<T>& sums, F&& f) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::int64_t) == 0);
-  if (sums.empty()) return;  // on all ranks
-  std::vector<std::int64_t> numbers(sums.size() * sizeof(T) / sizeof(std::int64_t));
-  std::memcpy(numbers.data(), sums.data(), sums.size() * sizeof(T));
-  ranks::active()->reduce(numbers.data(), numbers.size(), Communicator::Take::sum);
-  std::memcpy(static_cast<void*>(sums.data()), numbers.data(), sums.size() * sizeof(T));
+  f(static_cast<void*>(sums.data()), sums.size() * sizeof(T) / sizeof(std::int64_t));
 }
 
 }  // namespace
 
+/// Two calls for all that the zone learns in a step: one for sums, which are whole numbers, one for the largest.
 void FlowZone::gather_ranks() {
-  std::vector<double> outermost;
-  for (const Lane& lane : lane_) outermost.push_back(lane.outermost);
-  ranks::active()->reduce(outermost.data(), outermost.size(), Communicator::Take::largest);
-  for (std::size_t k = 0; k < lane_.size(); ++k) lane_[k].outermost = outermost[k];
-  add_ranks(sums_);
-  add_ranks(layer_sums_);
-  std::vector<std::int64_t> counts(layer_counts_.begin(), layer_counts_.end());
-  add_ranks(counts);
-  for (std::size_t c = 0; c < counts.size(); ++c) layer_counts_[c] = static_cast<std::int32_t>(counts[c]);
+  told_counts_.assign(layer_counts_.begin(), layer_counts_.end());
+  told_counts_.insert(told_counts_.end(), passed_.begin(), passed_.end());
+  const auto each = [this](auto&& f) {
+    as_numbers(sums_, f);
+    as_numbers(layer_sums_, f);
+    as_numbers(told_counts_, f);
+  };
+  told_.clear();
+  each([this](const void* from, std::size_t n) {
+    const std::size_t before = told_.size();
+    told_.resize(before + n);
+    std::memcpy(told_.data() + before, from, n * sizeof(std::int64_t));
+  });
+  ranks::active()->reduce(told_.data(), told_.size(), Communicator::Take::sum);
+  std::size_t at = 0;
+  each([&](void* to, std::size_t n) {
+    std::memcpy(to, told_.data() + at, n * sizeof(std::int64_t));
+    at += n;
+  });
+  const std::size_t cells = layer_counts_.size();
+  for (std::size_t c = 0; c < cells; ++c) layer_counts_[c] = static_cast<std::int32_t>(told_counts_[c]);
+  passed_ = {told_counts_[cells], told_counts_[cells + 1]};
+
+  told_largest_.assign(1, fastest_);
+  for (const Lane& lane : lane_) told_largest_.push_back(lane.outermost);
+  ranks::active()->reduce(told_largest_.data(), told_largest_.size(), Communicator::Take::largest);
+  fastest_ = told_largest_.front();
+  for (std::size_t k = 0; k < lane_.size(); ++k) lane_[k].outermost = told_largest_[k + 1];
 }
 
 /// A new particle of the zone, on one of the ranks.

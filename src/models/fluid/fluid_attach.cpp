@@ -284,7 +284,10 @@ void FluidPhase::attach(Workspace& w) {
   if (plan_.free_surface || plan_.eddies) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
   if (plan_.free_surface) moving_boxes_ = moving_boxes(w, number_, *particles_);
   if (corrected) relief_ = relief();
-  if (plan_.eddies) bind_eddies();
+  if (plan_.eddies) {
+    bind_eddies();
+    w.largest_of_ranks.push_back(&largest_viscosity_);
+  }
   if (keys_.energy_budget) open_books();
   if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
 }
@@ -368,8 +371,8 @@ void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides
     if (o.eddies) e.eddies = &w_->eddies(other);
     e.root = std::sqrt(e.pair.viscosity);
   }
-  if (!o.moves) {  // its surface may slide
-    e.wall = &w_->particles(other);
+  if (!o.moves) {
+    if (o.surface_speed > 0.0 || o.travels) e.wall = &w_->particles(other);
     e.stress = o.stress;
     e.roughness = o.roughness;
     if (e.friction == Friction::rough && drags_by_law(scene_, phase_)) e.given = &w_->ground_stress[number_];

@@ -132,7 +132,6 @@ void FluidPhase::find_eddies() {
     if (w_->state.steps == 0) largest_viscosity_ = pack_eddies(*particles_, records, *ground_, eddies_);
     largest_viscosity_ = std::max(largest_viscosity_, diffusivity);
   }
-  largest_viscosity_ = ranks::largest(largest_viscosity_);
   if (layout_.dimensions == 2) {
     if (CompactRecords* compact = w_->compact_to_write(number_)) records.give_roots(*compact, particles_->size());
     else records.give_roots(w_->to_write(number_, Record::motion), particles_->size());

@@ -18,7 +18,7 @@ struct EddyNeighbour {
   const EddyRecords* eddies = nullptr;           // friction fluid: the neighbour's, null: `root` is all of them's
   double root = 0.0;                             // sqrt(Pa s), of a fluid without eddies
   double roughness = 0.0;                        // m
-  const PhaseParticles* wall = nullptr;          // moves with the velocity
+  const PhaseParticles* wall = nullptr;          // slides with the velocity; null: stands
   Vec3 wall_velocity{};                          // m/s
   Vec3 stress{};                                 // Pa, on the fluid
   const AlignedVector<double>* given = nullptr;  // Pa, by particle, against its motion along the wall

@@ -121,10 +121,10 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
     });
   }
   return_marks(*seen.front().grid, left);
-  broken = ranks::total(broken);
-  any = ranks::any(any != 0) ? 1 : 0;
-  const bool many =
-      broken > 0 && static_cast<double>(broken) >= unresolved_share * static_cast<double>(ranks::total(n));
+  std::array<std::int64_t, 3> found{broken, any, n};  // of all ranks together
+  if (Communicator* const all = ranks::active()) all->reduce(found.data(), found.size(), Communicator::Take::sum);
+  any = found[1] > 0 ? 1 : 0;
+  const bool many = found[0] > 0 && static_cast<double>(found[0]) >= unresolved_share * static_cast<double>(found[2]);
   unresolved_ = std::max<std::int64_t>(unresolved_ + (many ? 1 : -1), 0);
   if (unresolved_ >= unresolved_steps) {
     unresolved_ = unresolved_steps;
@@ -137,13 +137,8 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
 /// On several ranks: the places of the ghosts of each phase that is seen, none of which is marked yet.
 void VoidFinder::take_ghosts(std::span<const Seen> seen) {
   if (ghosts_.size() < seen.size()) ghosts_.resize(seen.size());
-  for (const Seen& one : seen)
-    for (int d = 0; d < one.particles->dimensions(); ++d) one.grid->note_images(sizeof(double));
-  if (!seen.front().grid->is_shared()) return;
-  for (std::size_t s = 0; s < seen.size(); ++s)
-    for (int d = 0; seen[s].grid->is_shared() && d < seen[s].particles->dimensions(); ++d)
-      seen[s].grid->take_values(seen[s].particles->column(Field::position, d), ghosts_[s][static_cast<std::size_t>(d)]);
-  marked_.assign(seen.front().grid->images(), 0);
+  for (std::size_t s = 0; s < seen.size(); ++s) seen[s].grid->take_places(*seen[s].particles, ghosts_[s]);
+  if (seen.front().grid->is_shared()) marked_.assign(seen.front().grid->images(), 0);
 }
 
 /// Marked ghosts mark their sources.

@@ -149,4 +149,24 @@ void SphereShares::tell_all(int dimensions, bool turn, bool places_alone, double
   }
 }
 
+void SphereShares::gather_together(std::span<double* const> columns, const std::vector<std::size_t>& counts) {
+  std::size_t all = 0;
+  for (const std::size_t n : counts) all += n;
+  fit(come_, all * columns.size());
+  // The columns of a rank, one after another, then those of the next.
+  const auto each_piece = [&](auto&& copy) {
+    std::size_t first = 0;
+    for (std::size_t r = 0; r < counts.size(); first += counts[r++])
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        copy(r, columns[c] + first, come_.data() + first * columns.size() + c * counts[r], counts[r]);
+  };
+  each_piece([this](std::size_t rank, const double* column, double* piece, std::size_t n) {
+    if (rank == own_) std::copy_n(column, n, piece);
+  });
+  ranks::active()->gather_in_place(come_.data(), counts, columns.size() * sizeof(double));
+  each_piece([this](std::size_t rank, double* column, const double* piece, std::size_t n) {
+    if (rank != own_) std::copy_n(piece, n, column);
+  });
+}
+
 }  // namespace barchan

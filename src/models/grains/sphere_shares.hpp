@@ -65,6 +65,8 @@ class SphereShares {
   void tell(int dimensions, bool turn, double* records);
   /// Every rank gets the same of all spheres that move; `places_alone`: places only.
   void tell_all(int dimensions, bool turn, bool places_alone, double* records);
+  /// Columns of spheres side by side become those of all ranks, in one message; `counts`: spheres of each rank.
+  void gather_together(std::span<double* const> columns, const std::vector<std::size_t>& counts);
   /// Numbers that tell() sends of a sphere.
   static std::size_t width(int dimensions, bool turn) {
     return static_cast<std::size_t>(2 * dimensions + (!turn ? 0 : dimensions == 2 ? 1 : 3));

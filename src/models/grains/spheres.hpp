@@ -158,6 +158,8 @@ class Spheres : public Model {
   void share_memory();
   void share_flags(bool& more);
   void share_columns();
+  std::vector<double*> shared_columns(const Part& part) const;
+  static bool go_together(const Part& part);
   void copy_radii();
   void tell_places();
   void tell_records();

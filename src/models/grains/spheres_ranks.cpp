@@ -67,12 +67,25 @@ void Spheres::share_columns() {
   if (!shares_.on()) return;
   for (const Part& part : parts_) {
     const std::vector<std::size_t> counts = shares_.spheres_of_ranks(part.first, part.first + part.count);
-    const SphereColumns& c = columns_[part.phase];
-    for (const auto* columns : {&c.position, &c.velocity, &c.acceleration, &c.spin, &c.spin_rate})
-      for (double* const column : *columns)
-        if (column && part.count > 0) ranks::active()->gather_in_place(column, counts, sizeof(double));
+    const std::vector<double*> columns = shared_columns(part);
+    if (go_together(part)) shares_.gather_together(columns, counts);
+    else
+      for (double* const column : columns) ranks::active()->gather_in_place(column, counts, sizeof(double));
   }
 }
+
+/// The columns of a part that all ranks get after a bundle.
+std::vector<double*> Spheres::shared_columns(const Part& part) const {
+  std::vector<double*> all;
+  const SphereColumns& c = columns_[part.phase];
+  for (const auto* columns : {&c.position, &c.velocity, &c.acceleration, &c.spin, &c.spin_rate})
+    for (double* const column : *columns)
+      if (column && part.count > 0) all.push_back(column);
+  return all;
+}
+
+/// Whether they are one message: of few spheres a message costs more than to copy the columns side by side.
+bool Spheres::go_together(const Part& part) { return part.count * sizeof(double) < (std::size_t{1} << 18); }
 
 /// A search reads the radii of all spheres in the present set of records.
 void Spheres::copy_radii() {
@@ -242,10 +255,8 @@ bool Spheres::count_traffic(std::vector<RankTraffic>& of) const {
     else send(told_.records, meeting, met * width * number);
     for (const Part& part : parts_) {
       const auto own = static_cast<double>(shares.spheres_of_ranks(part.first, part.first + part.count)[r]);
-      const SphereColumns& c = columns_[part.phase];
-      for (const auto* columns : {&c.position, &c.velocity, &c.acceleration, &c.spin, &c.spin_rate})
-        for (const double* column : *columns)
-          if (column && own > 0.0) send(told_.columns, others, others * own * number);
+      const auto columns = static_cast<double>(shared_columns(part).size());
+      if (own > 0.0) send(told_.columns, others * (go_together(part) ? 1.0 : columns), others * own * columns * number);
     }
     const auto chunks = static_cast<double>(shares.chunks_of_ranks()[r]);
     send(told_.sums, others, 0.0);
