@@ -92,7 +92,8 @@ struct Reader {
 TEST(ArchiveRows, ARankLoadsItsRange) {
   Reader reader;
   for (const bool from_memory : {true, false})
-    for (const auto& [first, last] : {std::pair{0, 7}, std::pair{2, 5}, std::pair{4, 4}}) {
+    for (const auto& range : {std::pair{0, 7}, std::pair{2, 5}, std::pair{4, 4}}) {
+      const int first = range.first, last = range.second;
       Archive a = from_memory ? Archive(reader.bytes) : Archive(reader.source());
       Numbers one(static_cast<std::size_t>(last - first)), other = one;
       long before = 0, between = 0, behind = 0;
