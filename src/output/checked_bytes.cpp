@@ -63,7 +63,7 @@ Archive::Source behind_head(const Archive::Source& file, std::size_t magic,
   const std::uint64_t begin = magic + sizeof head;
   if (file.size < begin) throw SceneError("is damaged: it is cut off in its head");
   file.read(magic, &head, sizeof head);
-  const Archive::Source bytes = part_of(file, begin, file.size - begin);
+  Archive::Source bytes = part_of(file, begin, file.size - begin);
   if (head.size != bytes.size)
     throw SceneError("is damaged: it holds " + std::to_string(bytes.size) + " bytes; expected " +
                      std::to_string(head.size));

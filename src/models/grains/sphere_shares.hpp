@@ -7,7 +7,6 @@
 #pragma once
 
 #include <algorithm>
-#include <compare>
 #include <span>
 #include <utility>
 #include <vector>
@@ -69,13 +68,15 @@ class SphereShares {
   void gather_together(std::span<double* const> columns, const std::vector<std::size_t>& counts);
   /// Numbers that tell() sends of a sphere.
   static std::size_t width(int dimensions, bool turn) {
-    return static_cast<std::size_t>(2 * dimensions + (!turn ? 0 : dimensions == 2 ? 1 : 3));
+    const auto axes = static_cast<std::size_t>(dimensions);
+    return 2 * axes + (!turn ? 0u : axes == 2 ? 1u : 3u);
   }
 
  private:
   struct Meeting {
     std::uint32_t other, chunk;
-    auto operator<=>(const Meeting&) const = default;
+    bool operator==(const Meeting&) const = default;
+    bool operator<(const Meeting& m) const { return std::pair(other, chunk) < std::pair(m.other, m.chunk); }
   };
   void count();
 
