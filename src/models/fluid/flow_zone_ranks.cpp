@@ -13,7 +13,7 @@ namespace {
 template <class T, class F>
 void as_numbers(std::vector<T>& sums, F&& f) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::int64_t) == 0);
-  f(static_cast<void*>(sums.data()), sums.size() * sizeof(T) / sizeof(std::int64_t));
+  if (!sums.empty()) f(static_cast<void*>(sums.data()), sums.size() * sizeof(T) / sizeof(std::int64_t));
 }
 
 }  // namespace
