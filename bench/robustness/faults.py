@@ -19,7 +19,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import frame, run as runs  # noqa: E402
+from barchan_bench import checkpoints, frame, run as runs  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENE = SOURCE / "scenes/verification/poiseuille.toml"
@@ -106,7 +106,8 @@ class Faults:
 
     def bytes_of(self, folder):
         """All that has the bits of a run; the checkpoint before the last one is another in a run that was continued."""
-        return {f.name: f.read_bytes() for f in folder.iterdir() if f.name not in ("run.json", "barchan.lock") and not f.name.endswith(".older")}
+        return {f.name: checkpoints.whole(f) if f.suffix == ".checkpoint" else f.read_bytes() for f in folder.iterdir()
+                if f.is_file() and f.name not in ("run.json", "barchan.lock") and not f.name.endswith(".older")}
 
     def full_disks_of_ranks(self):
         """The first rank finds its disk full, the others wait for it in a reduction or a gathering."""
