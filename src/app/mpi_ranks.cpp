@@ -7,7 +7,7 @@
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 #include <omp.h>
-#include <unistd.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,6 +19,7 @@
 
 #include "base/clock.hpp"
 #include "base/errors.hpp"
+#include "output/seats.hpp"
 
 namespace barchan {
 
@@ -102,6 +103,10 @@ class Mpi final : public Communicator {
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
     MPI_Comm_size(here, &on_this_machine_);
+    std::vector<char> any(CPU_SETSIZE, 0);  // which cores the ranks of this machine may use
+    for (const int core : cores_of_process()) any[static_cast<std::size_t>(core)] = 1;
+    MPI_Allreduce(MPI_IN_PLACE, any.data(), CPU_SETSIZE, MPI_BYTE, MPI_BOR, here);
+    if (const auto cores = std::count(any.begin(), any.end(), 1); cores > 0) cores_ = static_cast<int>(cores);
     MPI_Comm_free(&here);
   }
   int rank() const override { return rank_; }
@@ -211,7 +216,7 @@ class Mpi final : public Communicator {
   Traffic traffic_;
   Waits waits_;
   int rank_ = 0, size_ = 1, on_this_machine_ = 1;
-  int cores_ = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+  int cores_ = 1;  // of this machine, that its ranks may use
   char* own_to_ = nullptr;
   std::vector<MPI_Request> requests_;
 };
@@ -256,10 +261,7 @@ void join_ranks(const Launch& launch, const std::string& command, const std::str
 
 int threads_of_a_rank() {
   if (!ranks::available()) return 0;
-  const int neighbours = ranks::available()->on_this_machine();
-  // A launcher that binds each rank to cores has shared them out already.
-  const bool bound = omp_get_num_procs() < ::sysconf(_SC_NPROCESSORS_ONLN);
-  return std::max(1, bound ? omp_get_max_threads() : omp_get_max_threads() / neighbours);
+  return threads_on_seat(seats_of_ranks(0), ranks::available()->rank(), omp_get_max_threads());
 }
 
 int leave_ranks(int status) {

@@ -36,12 +36,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether there is a checkpoint, or the one before it. Throws SceneError where only some of the ranks see one.
+bool all_see(const fs::path& checkpoint) {
+  const char mine = fs::exists(checkpoint) || fs::exists(older_checkpoint(checkpoint)) ? 1 : 0;
+  Communicator* const all = ranks::available();
+  if (!all) return mine == 1;
+  std::vector<char> see(static_cast<std::size_t>(all->size()));
+  all->all_gather(&mine, 1, see.data());
+  const auto with = std::find(see.begin(), see.end(), 1), without = std::find(see.begin(), see.end(), 0);
+  if (with != see.end() && without != see.end())
+    throw SceneError("--restart latest: rank " + std::to_string(with - see.begin()) + " sees the checkpoint " +
+                     checkpoint.string() + ", rank " + std::to_string(without - see.begin()) +
+                     " does not; expected an --out that all machines share");
+  return mine == 1;
+}
+
 /// The state that --restart asks for; nothing: a start at the beginning. "latest" is the checkpoint of this folder, or
 /// the beginning where no run was; frames without a checkpoint are refused, because a new run would remove them.
 std::optional<Archive> find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
   if (restart.empty()) return std::nullopt;
   const fs::path latest = checkpoint_file(directory, scene), series = directory / (scene.name + ".pvd");
-  if (restart == "latest" && !fs::exists(latest) && !fs::exists(older_checkpoint(latest))) {
+  if (restart == "latest" && !all_see(latest)) {
     if (fs::exists(series))
       throw SceneError("--restart latest: " + series.string() +
                        " is the series of an earlier run and there is no checkpoint to go on from; "
@@ -87,7 +102,7 @@ void hold(std::optional<FolderLock>& lock, const fs::path& directory, const Laun
   try {
     lock.emplace(directory);
   } catch (const SceneError& e) {
-    if (!launch.together()) throw;
+    if (!launch.together() || ranks::available()) throw;
     throw SceneError(e.what() + std::string("; ") + launch.told() +
                      ": each is a run and needs an --out of its own, or start one process only");
   }
@@ -202,9 +217,21 @@ std::string command_of(const RunOptions& options) {
   return text;
 }
 
+/// Ranks compute what they all hold by themselves: with other instructions it would have other bits.
+void refuse_other_instructions() {
+  if (!ranks::available()) return;
+  const std::string own = name_of(instructions()), of_first = ranks::told_by(0, own),
+                    other = ranks::first_text(own == of_first ? "" : own);
+  if (!other.empty())
+    throw SceneError("the ranks have different instruction sets, " + of_first + " and " + other +
+                     ": their results would have different bits; expected one for all: --instructions avx2, or "
+                     "machines that are alike");
+}
+
 int run_scene(const RunOptions& options, const Launch& launch) {
   const bool first = ranks::is_first(), quiet = options.quiet || !first;
   if (!options.instructions.empty()) choose_instructions(options.instructions);
+  refuse_other_instructions();
   const Scene scene = read_scene(options.scene, options.overrides);
   if (options.threads > 0) use_threads(options.threads, 0);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
@@ -218,7 +245,8 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   auto blocks = make_particles(scene, quiet ? nullptr : &std::cout, &beds);
   const Plan plan = make_plan(scene, blocks);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
-  use_threads(options.threads > 0 ? options.threads : threads_of_a_rank(), plan.particles());
+  const int share = threads_of_a_rank();
+  use_threads(options.threads > 0 ? options.threads : share, plan.particles());
   std::vector<RunReport::Seat> seats = seats_of_ranks(omp_get_max_threads());
   for (const std::string& warning : warnings_of(seats)) std::cerr << "barchan: warning: " << warning << "\n";
   if (!quiet) std::cout << to_text(plan, scene) << to_text(seats) << std::flush;
@@ -257,10 +285,8 @@ int run(const RunOptions& options) {
     const Silence silence;
     return leave_ranks(run_scene(options, launch));
   } catch (...) {
-    if (!ranks::available()) {
-      leave_ranks(0);
-      throw;
-    }
+    // Of independent runs each tells its own error at once: to leave takes as long as the others run.
+    if (!ranks::available()) return leave_ranks(guarded(std::cerr, []() -> int { throw; }));
     status = guarded(words, []() -> int { throw; });
   }
   if (all_failed()) {

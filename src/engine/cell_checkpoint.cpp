@@ -37,7 +37,10 @@ void CellGrid::archive(Archive& a) {
     a.array("received", s.slots);
     a.array("own images", s.image_begin);
     for (auto& positions : s.image_search) a.array("search positions of own images", positions);
-    if (a.loads()) own_by_first(s);
+    if (a.loads()) {
+      own_by_first(s);
+      s.sort_out_own_images(static_cast<std::size_t>(ranks::active()->rank()));
+    }
   }
   if (a.loads()) make_runs();
 }

@@ -27,6 +27,13 @@ std::size_t sum_before(const std::vector<std::size_t>& counts, std::size_t numbe
 
 }  // namespace
 
+void SharedCells::sort_out_own_images(std::size_t rank) {
+  own_images = {sum_before(send_counts, rank), sum_before(receive_counts, rank), receive_counts[rank]};
+  away_counts = send_counts;
+  come_counts = receive_counts;
+  away_counts[rank] = come_counts[rank] = 0;
+}
+
 /// Divides the cells of one process. From now on begin_ and end_ of this rank's count its own particles; those stood
 /// at first .. second - 1.
 std::array<std::size_t, 2> CellGrid::take_own_cells() {
@@ -241,13 +248,7 @@ std::size_t CellGrid::place_ghosts(const SharedCells::Question& question) {
         ++s.receive_counts[r];
       }
     }
-  const auto own = static_cast<std::size_t>(rank);
-  s.own_images.count = s.receive_counts[own];
-  s.own_images.slots = sum_before(s.receive_counts, own);
-  s.own_images.sends = sum_before(s.send_counts, own);
-  s.away_counts = s.send_counts;
-  s.come_counts = s.receive_counts;
-  s.away_counts[own] = s.come_counts[own] = 0;
+  s.sort_out_own_images(static_cast<std::size_t>(rank));
   fit_search(n, total - n, total);
   return n;
 }

@@ -301,7 +301,10 @@ void Neighbours::archive(Archive& a, std::vector<PhaseParticles>& particles, boo
     else grids_[p]->archive(a);
   }
   if (shares) share(particles);
-  else if (a.loads() && ranks::active()) find_owners();
+  else if (a.loads() && ranks::active()) {
+    find_owners();
+    find_watched();
+  }
   if (a.loads()) search(particles, {});
 }
 

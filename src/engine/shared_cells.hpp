@@ -56,6 +56,8 @@ struct SharedCells : CellOwners {
     std::size_t sends = 0, slots = 0, count = 0;
   } own_images;
   std::vector<std::size_t> away_counts, come_counts;
+  /// Finds them from what is sent and received; `rank`: this one.
+  void sort_out_own_images(std::size_t rank);
   /// Own cells with cells of others, or beyond periodic sides, no more than `border_width` cells away along each axis,
   /// in the order of the walk; found again when the division has changed.
   std::vector<std::uint32_t> border, border_of;  // border_of: `first` as it was then

@@ -220,7 +220,10 @@ void OpenSides::history(HistoryRow& row) const {
         add_passed(row, plan_.name + "_" + side_names[d][end] + "_out", dimensions, passed_[d][end]);
 }
 
-void OpenSides::archive(Archive& a) { a.number(plan_.name + " passed sides", passed_); }
+void OpenSides::archive(Archive& a) {
+  a.number(plan_.name + " passed sides", passed_);
+  if (a.loads()) trouble_.reset();  // it is that of steps which are given up
+}
 
 void OpenSides::report(Warnings& warnings) const {
   const Departed& departed = w_->state.departed[place_];

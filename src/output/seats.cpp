@@ -3,6 +3,7 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <sstream>
@@ -14,8 +15,13 @@ namespace barchan {
 
 namespace {
 
-/// Cores that this process may use; none where the system does not say.
-std::set<int> own_cores() {
+std::string number_of(std::size_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::set<int> cores_of_process() {
   std::set<int> cores;
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
@@ -24,12 +30,6 @@ std::set<int> own_cores() {
     if (CPU_ISSET(k, &allowed)) cores.insert(k);
   return cores;
 }
-
-std::string number_of(std::size_t count, const std::string& thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 std::string list_of_cores(const std::set<int>& cores) {
   std::string text;
@@ -61,7 +61,7 @@ std::vector<RunReport::Seat> seats_of_ranks(int threads) {
   std::vector<RunReport::Seat> seats;
   Communicator* const all = ranks::available();
   if (!all) return seats;
-  const std::string host = host_name(), cores = list_of_cores(own_cores());
+  const std::string host = host_name(), cores = list_of_cores(cores_of_process());
   for (int r = 0; r < all->size(); ++r) {
     RunReport::Seat seat{1, ranks::told_by(r, host), ranks::told_by(r, cores), threads};
     all->broadcast(&seat.threads, sizeof seat.threads, r);
@@ -69,6 +69,20 @@ std::vector<RunReport::Seat> seats_of_ranks(int threads) {
     else seats.push_back(seat);
   }
   return seats;
+}
+
+int threads_on_seat(const std::vector<RunReport::Seat>& seats, int rank, int most) {
+  auto own = seats.begin();
+  for (int first = own->ranks; first <= rank; first += own->ranks) ++own;
+  const std::set<int> cores = cores_of_list(own->cores);
+  int sharing = 0;
+  for (const RunReport::Seat& seat : seats) {
+    const std::set<int> theirs = cores_of_list(seat.cores);
+    const bool shares = std::any_of(cores.begin(), cores.end(), [&](int core) { return theirs.count(core) > 0; });
+    if (seat.host == own->host && (shares || cores.empty())) sharing += seat.ranks;
+  }
+  const int all = cores.empty() ? most : static_cast<int>(cores.size());
+  return std::max(1, std::min(most, all / sharing));
 }
 
 std::string to_text(const std::vector<RunReport::Seat>& seats) {

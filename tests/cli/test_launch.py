@@ -79,6 +79,21 @@ class Launch(unittest.TestCase):
         frames = [(self.at / f"of-{rank}/couette_000001.vtp").read_bytes() for rank in (0, 1)]
         self.assertEqual(*frames)
 
+    @unittest.skipUnless(shutil.which("mpirun"), "no mpirun here")
+    def test_an_independent_run_tells_its_error_before_the_others_end(self):
+        script = (f'if [ $OMPI_COMM_WORLD_RANK = 0 ]; then end=1000; else end=-1; fi\n'
+                  f'exec "{PROGRAM}" run "{SCENE}" --quiet --threads 1 --set time.end=$end --out "of-$OMPI_COMM_WORLD_RANK"')
+        environment = {k: v for k, v in os.environ.items() if not k.startswith(LAUNCHERS)}
+        with subprocess.Popen([*MPIRUN, "sh", "-c", script], cwd=self.at, env=environment, stderr=subprocess.PIPE, text=True) as both:
+            try:
+                for line in both.stderr:
+                    if "time.end" in line:
+                        break
+                self.assertIn("time.end", line)
+                self.assertIsNone(both.poll())
+            finally:
+                both.terminate()
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=2)

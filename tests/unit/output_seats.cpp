@@ -29,5 +29,21 @@ TEST(Seats, WarnsOfMoreThreadsThanCores) {
   EXPECT_NE(warnings[0].find("the ranks on dune1 have 3 threads on 2 cores"), std::string::npos) << warnings[0];
 }
 
+TEST(Seats, ARankTakesItsPartOfTheCoresThatItMayUse) {
+  using Seats = std::vector<RunReport::Seat>;
+  EXPECT_EQ(threads_on_seat(Seats{{2, "dune1", "0-7", 0}}, 1, 8), 4);
+  EXPECT_EQ(threads_on_seat(Seats{{3, "dune1", "0-1", 0}}, 2, 2), 1);
+  // Bound to sockets, four ranks to each.
+  EXPECT_EQ(threads_on_seat(Seats{{4, "dune1", "0-31", 0}, {4, "dune1", "32-63", 0}}, 5, 32), 8);
+  // Each has cores of its own.
+  EXPECT_EQ(threads_on_seat(Seats{{1, "dune1", "0-3", 0}, {1, "dune1", "4-7", 0}}, 1, 4), 4);
+  // A job has a part of the machine; the same numbers on another machine are other cores.
+  EXPECT_EQ(threads_on_seat(Seats{{4, "dune1", "8-15", 0}, {4, "dune2", "8-15", 0}}, 6, 8), 2);
+  // OMP_NUM_THREADS is the most.
+  EXPECT_EQ(threads_on_seat(Seats{{2, "dune1", "0-7", 0}}, 0, 3), 3);
+  // A system that does not say which cores.
+  EXPECT_EQ(threads_on_seat(Seats{{2, "dune1", "", 0}}, 1, 8), 4);
+}
+
 }  // namespace
 }  // namespace barchan
