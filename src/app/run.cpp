@@ -175,7 +175,14 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
       } catch (const LastingBreakdown& e) {
         throw BreakdownError(run->break_down(e.what()));
       } catch (const BreakdownError& e) { why = e.what(); }
-      if (!retreater.go_back(*run, why)) throw BreakdownError(run->break_down(why));
+      bool goes_on = false;
+      try {
+        goes_on = retreater.go_back(*run, why);
+      } catch (const BreakdownError& e) {  // the state that it went back to is wrong too
+        why = e.what();
+        begin_again(run, course);
+      }
+      if (!goes_on) throw BreakdownError(run->break_down(why));
       begin_again(run, course);
     }
   } catch (const BreakdownError&) { throw; } catch (const OutputError& e) {

@@ -14,6 +14,8 @@ class KeptState {
 
   /// Copies the state of this time. Allocates nothing.
   void keep(const std::vector<PhaseParticles>& particles, double time, long step);
+  /// Nothing is kept any more.
+  void forget() { step_ = -1; }
   /// Swaps what is kept with the state of the particles. A second call restores both.
   void exchange(std::vector<PhaseParticles>& particles);
 

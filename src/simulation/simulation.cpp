@@ -201,6 +201,7 @@ void Simulation::archive(Archive& a) {
   for (const auto& model : models_) model->archive(a);
   watch_->archive(a);
   budget_->archive(a);
+  if (a.loads()) schedule_.run(stage::pack, stage::pack);  // the watch looks at records before the next step makes them
 }
 
 }  // namespace barchan

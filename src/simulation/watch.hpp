@@ -77,7 +77,7 @@ class Watch {
   void report(Warnings& warnings) const;
   std::size_t bytes() const;
 
-  /// What it has seen so far; the good state is not among it, so a look_closely() has to follow a load.
+  /// What it has seen so far; the good state is not among it: after a load none is kept until it has looked.
   void archive(Archive& a);
 
  private:
@@ -120,6 +120,12 @@ class Watch {
     long step = 0;
   };
 
+  /// What it knows of steps that the run has gone back from.
+  void forget() {
+    good_.forget();
+    given_ = 0.0;
+    for (Apart& pair : pairs_) pair.left = -1.0;
+  }
   void make_guards();
   void make_pairs();
   double speed_bound(const Guard& g, double dt) const;

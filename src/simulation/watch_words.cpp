@@ -392,6 +392,7 @@ void Watch::archive(Archive& a) {
   a.number("watch: largest density error", extreme_);
   a.number("watch: fastest of a fluid", fastest_);
   a.number("watch: fastest at the start", start_fastest_);
+  if (a.loads()) forget();
 }
 
 std::size_t Watch::bytes() const { return good_.bytes() + parts_.size() * sizeof(Part); }
