@@ -82,6 +82,17 @@ class Retreat(Folder):
             self.assertEqual(many.returncode, 3, many.stderr)
             self.assertIn(told, many.stderr)
 
+    def test_contacts_are_looked_at_in_the_state_gone_back_to(self):
+        """With a checkpoint on the disk the run looks before it writes the next one: not at the places of the failed step."""
+        text = PRESSED.replace("step = 5e-6", "safety = 0.02").replace("every = 0.001", "every = 0.001\ncheckpoint-every = 0.01")
+        for ranks in (0, 3):
+            ended = self.start(ranks, text, f"of-{ranks}")
+            self.assertEqual(ended.returncode, 3, ended.stderr)
+            self.assertEqual(self.retreats(f"of-{ranks}"), self.retreats("of-0"))
+            self.assertGreater(self.retreats(f"of-{ranks}")["count"], 1)
+            self.assertTrue((self.at / f"of-{ranks}/scene_bad.vtp").exists())
+        self.assertEqual((self.at / "of-0/scene_bad.vtp").read_bytes(), (self.at / "of-3/scene_bad.vtp").read_bytes())
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
