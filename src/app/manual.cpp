@@ -72,8 +72,8 @@ std::string manual_page(const CLI::App& app) {
   text +=
       ".SH EXIT STATUS\n" + roff(app.get_footer()) + "\n.SH ENVIRONMENT\n" +
       data("NO_COLOR", "When it is set, nothing is coloured. Colours stand on a terminal only.") +
-      data("OMP_NUM_THREADS", "The largest number of threads of a run, or of a rank, without \\-\\-threads.") + ".SH FILES\n" +
-      data("PREFIX/share/barchan/scenes", "Scenes, and their schema for editors, scene.schema.json.") +
+      data("OMP_NUM_THREADS", "The largest number of threads of a run, or of a rank, without \\-\\-threads.") +
+      ".SH FILES\n" + data("PREFIX/share/barchan/scenes", "Scenes, and their schema for editors, scene.schema.json.") +
       data("PREFIX/share/barchan/pvstate", "States of ParaView, and render, which makes pictures and films.") +
       ".SH EXAMPLES\n.nf\nbarchan new mine \\-\\-from dune\nbarchan plan mine.toml\nbarchan run mine.toml \\-\\-set "
       "time.end=0.01\n.fi\n";

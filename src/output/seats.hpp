@@ -21,8 +21,8 @@ std::set<int> cores_of_list(const std::string& list);
 /// calls it. Without ranks none.
 std::vector<RunReport::Seat> seats_of_ranks(int threads);
 
-/// How many threads a rank takes by itself: an equal part of its cores, which ranks of the same machine may use too, and
-/// no more than `most`, but one. `seats`: of all ranks.
+/// How many threads a rank takes by itself: an equal part of its cores, which ranks of the same machine may use too,
+/// and no more than `most`, but one. `seats`: of all ranks.
 int threads_on_seat(const std::vector<RunReport::Seat>& seats, int rank, int most);
 
 /// A line for each entry.
