@@ -5,7 +5,7 @@
     /usr/bin/python3 bench/ranks/every_scene.py none --only none --write     # the page from the results, runs nothing
 
 Each scene runs for 30 steps as long as the first one: one process of 1 and of 2 threads, 1, 2, 3, 4 and 7 ranks, 2 ranks of 2 threads, and 3 ranks to
-the middle whose checkpoint 2 ranks go on from. All files but run.json must have the bytes of the first. Scenes that take long to fill have the overrides
+the middle whose checkpoint 2 ranks go on from. Instruments measure from the start, every third step. All files but run.json must have the bytes of the first. Scenes that take long to fill have the overrides
 of tests/physics/every_scene.hpp. A scene whose result is kept is not run again unless it is named. Exit status 1 when bytes differ or a run ends badly.
 """
 
@@ -15,6 +15,7 @@ import pathlib
 import re
 import sys
 import tempfile
+import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
@@ -38,11 +39,19 @@ def files(folder):
             if f.is_file() and f.name not in ("run.json", "barchan.lock") and not f.name.endswith(".older")}
 
 
+def measured_at_once(name, every):
+    """Overrides that let the instruments of a scene measure from its start, every so many seconds."""
+    scene = tomllib.loads((ROOT / "scenes" / f"{name}.toml").read_text())
+    return [f"{kind}.{k}.{key}={value!r}" for kind in ("probe", "profile", "grid", "wall-shear", "saltation") for k, one in enumerate(scene.get(kind, []))
+            for key, value in (("start", 0.), ("every", every)) if key in one]
+
+
 class Scene:
     def __init__(self, program, name, sets, steps, top):
         self.program, self.name, self.sets, self.top = program, name, sets, top
         planned = run.command([program, "plan", run.scene_file(name), "--json", *run.settings(sets)], timeout=600, check=True)
         self.step = json.loads(planned.stdout)["step"]
+        self.sets = [*sets, *measured_at_once(name, 3 * self.step)]
         self.steps = steps
 
     def run(self, ranks, threads, out, part=1., options=()):

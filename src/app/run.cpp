@@ -51,10 +51,17 @@ bool all_see(const fs::path& checkpoint) {
   return mine == 1;
 }
 
-/// The state that --restart asks for; nothing: a start at the beginning. "latest" is the checkpoint of this folder, or
-/// the beginning where no run was; frames without a checkpoint are refused, because a new run would remove them.
-std::optional<Archive> find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
-  if (restart.empty()) return std::nullopt;
+/// What a run goes on from.
+struct From {
+  std::optional<Archive> state;    // nothing: a start at the beginning
+  bool newest_is_damaged = false;  // then it is the state of the one before
+  bool newest_is_another = false;  // than that of the folder
+};
+
+/// The state that --restart asks for. "latest" is the checkpoint of this folder, or the beginning where no run was;
+/// frames without a checkpoint are refused, because a new run would remove them.
+From find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
+  if (restart.empty()) return {};
   const fs::path latest = checkpoint_file(directory, scene), series = directory / (scene.name + ".pvd");
   if (restart == "latest" && !all_see(latest)) {
     if (fs::exists(series))
@@ -62,7 +69,7 @@ std::optional<Archive> find_checkpoint(const std::string& restart, const fs::pat
                        " is the series of an earlier run and there is no checkpoint to go on from; "
                        "a new run would remove its frames; expected another --out, or no --restart to start anew");
     std::cerr << "barchan: no checkpoint in the output folder; starting at the beginning\n";
-    return std::nullopt;
+    return {};
   }
   std::string damage;
   Checkpoint c;
@@ -79,16 +86,21 @@ std::optional<Archive> find_checkpoint(const std::string& restart, const fs::pat
   if (const std::string now = name_of(instructions()); c.instructions != now)
     std::cerr << "barchan: the checkpoint was made with " << c.instructions << "; with " << now
               << " the run goes on with other bits (see --instructions)\n";
-  return Archive(std::move(c.state));
+  std::error_code unseen;
+  const bool another = restart != "latest" && fs::exists(latest, unseen) && !fs::equivalent(restart, latest, unseen);
+  return {Archive(std::move(c.state)), !damage.empty(), another};
 }
 
 /// Removes what an earlier run left and this one will not replace.
-void clear(const fs::path& directory, const Scene& scene, const Plan& plan, bool continued) {
+void clear(const fs::path& directory, const Scene& scene, const Plan& plan, const From& from) {
   std::error_code ignored;
   fs::remove(directory / "TERMINATE", ignored);
   remove_frame(directory, bad_stem(scene));
-  if (continued) return;
-  remove_checkpoints(checkpoint_file(directory, scene));
+  const fs::path newest = checkpoint_file(directory, scene);
+  // In the place of the damaged one: the next checkpoint would take the name of the one before from the whole one.
+  if (from.newest_is_damaged) fs::rename(older_checkpoint(newest), newest);
+  if (from.state) return;
+  remove_checkpoints(newest);
   std::vector<std::string> ours;
   for (const auto& i : plan.instruments)
     for (const auto& file : i.files()) ours.push_back(file);
@@ -151,22 +163,23 @@ void begin_again(std::optional<Run>& run, Course& course) {
   run->open();
 }
 
-int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
+int run_to_the_end(Course& course, From from, int retreats) {
   Simulation& simulation = course.simulation;
   Retreater retreater(course, retreats);
-  std::optional<Run> run(std::in_place, course, from.has_value());
-  if (from) {
-    from->load_again();
-    course.beds.archive(*from, course.scene);
-    simulation.load_whole([&] { simulation.archive(*from); });
-    if (run->measurements()) run->measurements()->archive(*from);
-    from->finish();
+  std::optional<Run> run(std::in_place, course, from.state.has_value());
+  if (std::optional<Archive>& state = from.state) {
+    state->load_again();
+    course.beds.archive(*state, course.scene);
+    simulation.load_whole([&] { simulation.archive(*state); });
+    if (run->measurements()) run->measurements()->archive(*state);
+    state->finish();
     simulation.check_aside();
-    from.reset();  // its memory is needed from now on
+    state.reset();  // its memory is needed from now on
     std::cerr << "barchan: going on at t = " << brief(simulation.time()) << " s after " << simulation.steps()
               << " steps\n";
   }
   try {
+    if (ranks::any(ranks::is_first() && from.newest_is_another)) run->give_up_later_checkpoints();
     run->open();
     while (true) {
       std::string why;
@@ -178,10 +191,7 @@ int run_to_the_end(Course& course, std::optional<Archive> from, int retreats) {
       bool goes_on = false;
       try {
         goes_on = retreater.go_back(*run, why);
-      } catch (const BreakdownError& e) {  // the state that it went back to is wrong too
-        why = e.what();
-        begin_again(run, course);
-      }
+      } catch (const BreakdownError& e) { why = e.what(); }  // the state that it went back to is wrong too
       if (!goes_on) throw BreakdownError(run->break_down(why));
       begin_again(run, course);
     }
@@ -245,10 +255,9 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   std::optional<FolderLock> lock;
   std::error_code unseen;
   if (first && fs::is_directory(directory, unseen)) hold(lock, directory, launch);
-  std::optional<Archive> from = find_checkpoint(options.restart, directory, scene);
-  const bool continued = from.has_value();
+  From from = find_checkpoint(options.restart, directory, scene);
   SettledBeds beds;
-  if (from) beds.archive(*from, scene);
+  if (from.state) beds.archive(*from.state, scene);
   auto blocks = make_particles(scene, quiet ? nullptr : &std::cout, &beds);
   const Plan plan = make_plan(scene, blocks);
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
@@ -269,7 +278,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   }
   if (first && !lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
-  if (first) clear(directory, scene, plan, continued);
+  if (first) clear(directory, scene, plan, from);
   Course course{scene,
                 simulation,
                 directory,
@@ -284,6 +293,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
 
 int run(const RunOptions& options) {
   outlive_readers();
+  hear_questions();
   const Launch launch = how_launched();
   std::ostringstream words;
   int status = 0;

@@ -206,6 +206,8 @@ bool Run::checkpoint_is_late() const {
 void Run::write_checkpoint() {
   simulation_.check_aside();
   finish_series();
+  if (history_) history_->sync();
+  if (measurements_) measurements_->sync();
   simulation_.save_whole([&] {
     barchan::write_checkpoint(checkpoint_file(directory_, scene_),
                               {version() + " (" + commit() + ")",
@@ -227,6 +229,11 @@ void Run::write_checkpoint() {
 
 void Run::bring_checkpoint_up_to_date() {
   if (course_.checkpoint_step != simulation_.steps() || course_.checkpoint_frames != clock().frames) write_checkpoint();
+}
+
+void Run::give_up_later_checkpoints() {
+  if (ranks::is_first()) kept_frames(directory_, scene_, clock());  // refuses before anything is replaced
+  files_of_retreat();
 }
 
 void Run::files_of_retreat() {
@@ -321,7 +328,10 @@ void Run::finish_series() {
     pieces_.finish();
   } catch (const OutputError& e) { error = e.what(); }
   if (unlisted_) {  // no rank lists a frame before all have written their pieces
-    if (ranks::any(!error.empty())) throw_of_one(error);
+    if (ranks::any(!error.empty())) {
+      unlisted_.reset();
+      throw_of_one(error);
+    }
     list_pieces();
   }
   if (series_) series_->finish();
@@ -377,6 +387,7 @@ void Run::fail(const std::string& reason) {
     return;
   }
   try {
+    if (pieces_.failed()) unlisted_.reset();
     finish_series();                  // a frame that is whole is listed
   } catch (const std::exception&) {}  // NOLINT(bugprone-empty-catch): the reason of the end is another one
   if (series_) try_to_write(directory_ / "run.json", report(reason));

@@ -58,6 +58,9 @@ class Run {
   /// After going back: frames that were handed over are listed, and the checkpoint is written anew where there is one,
   /// because those on the disk may be of steps that are given up.
   void files_of_retreat();
+  /// Before open() of a run that goes on from an earlier state than that of its folder's newest checkpoint: this state
+  /// is the newest from now on, because open() removes the frames that later ones count. Throws as open().
+  void give_up_later_checkpoints();
   /// For a run that ends with a failed step: the last good state joins the series, the first bad one stands beside it.
   /// Returns what to tell.
   std::string break_down(const std::string& what);

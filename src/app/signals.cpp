@@ -26,6 +26,8 @@ void handle(int number, void (*handler)(int)) {
 
 void outlive_readers() { handle(SIGPIPE, SIG_IGN); }
 
+void hear_questions() { handle(SIGUSR1, on_question); }
+
 void listen_to_signals() {
   for (const auto& [number, name] : stops) {
     struct sigaction inherited {};
@@ -33,7 +35,6 @@ void listen_to_signals() {
     const bool off = inherited.sa_handler == SIG_IGN && (number == SIGHUP || number == SIGQUIT);
     if (!off) handle(number, on_stop);
   }
-  handle(SIGUSR1, on_question);
 }
 
 int stop_signal() { return stop_number; }

@@ -12,6 +12,9 @@ namespace barchan {
 /// From now on a closed pipe is an error of writing and no longer the end of the program.
 void outlive_readers();
 
+/// From now on SIGUSR1 does not end the program: before the first step it asks for a checkpoint after that one.
+void hear_questions();
+
 /// SIGHUP and SIGQUIT that the program's parent has switched off (nohup) stay off.
 void listen_to_signals();
 

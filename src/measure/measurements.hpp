@@ -22,6 +22,11 @@ class Measurements {
   /// `until` (s) are dropped. Throws OutputError.
   void open(const std::filesystem::path& directory, bool append = false, double until = 0.0);
 
+  /// Brings the probes' rows to the disk. Throws OutputError.
+  void sync() const {
+    for (const History& probe : probes_) probe.sync();
+  }
+
   /// Takes the samples that are due at the state's time: the first step at or after start + k every. Never changes
   /// the length of a step. With open() the probes' rows are written. The same bits on any number of threads.
   void sample(const State& state);

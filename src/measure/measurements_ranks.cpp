@@ -43,7 +43,8 @@ struct Room {
 
 /// Takes the particles that the instruments at hand look at.
 void Measurements::gather(const State& state) {
-  const FieldSet fields{Field::position, Field::velocity, Field::density, Field::pressure, Field::ground_distance};
+  const FieldSet fields{Field::position, Field::velocity,        Field::density,
+                        Field::pressure, Field::ground_distance, Field::radius};
   gathered_.clear();
   for (std::size_t phase = 0; phase < state.phases.size(); ++phase) {
     const PhaseParticles& p = state.phases[phase];

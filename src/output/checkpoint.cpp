@@ -87,6 +87,7 @@ void write_one_file(const std::filesystem::path& file, const std::function<void(
   Archive bytes([&](const void* data, std::size_t size) { small.write(data, size); });
   all(bytes);
   small.flush();
+  out.sync();  // from here on the older one is gone
   keep_as_older(file);
   out.publish();
 }

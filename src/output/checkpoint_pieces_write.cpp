@@ -109,6 +109,7 @@ void write_index(const fs::path& file, CheckpointIndex index, const std::functio
   Archive bytes = without_rows([&](const void* data, std::size_t size) { small.write(data, size); });
   items(bytes);
   small.flush();
+  out.sync();
   before();
   out.publish();
 }

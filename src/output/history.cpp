@@ -7,7 +7,6 @@
 
 #include "base/errors.hpp"
 #include "output/numbers.hpp"
-#include "output/whole_file.hpp"
 
 namespace barchan {
 namespace {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "output/whole_file.hpp"
+
 namespace barchan {
 
 /// Columns are named once, "time [s]" and so on; rows are flushed as they are written, so that a killed run keeps them.
@@ -16,6 +18,8 @@ class History {
   History(const std::filesystem::path& file, const std::vector<std::string>& columns, bool append = false,
           double until = 0.0);
   void row(const std::vector<double>& values);  ///< as many as there are columns; 17 significant digits
+  /// Brings the rows to the disk: a checkpoint there must not be without them. Throws OutputError.
+  void sync() const { sync_file(file_); }
 
  private:
   std::ofstream stream_;

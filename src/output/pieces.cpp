@@ -215,7 +215,9 @@ void PieceWriter::finish() {
   const Instant begin = now();
   work_.wait();
   waiting_ += since(begin);
+  failed_ = true;  // unless get() says nothing else
   writing_ += work_.get();
+  failed_ = false;
 }
 
 }  // namespace barchan

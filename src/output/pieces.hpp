@@ -59,6 +59,9 @@ class PieceWriter {
   /// Waits until it is. Throws OutputError.
   void finish();
 
+  /// Whether the last piece could not be written.
+  bool failed() const { return failed_; }
+
   double seconds_writing() const { return writing_; }  ///< until the last finish()
   double seconds_waiting() const { return waiting_; }  ///< time that write() and finish() blocked the caller
 
@@ -67,6 +70,7 @@ class PieceWriter {
   FrameFormat format_;
   bool compress_;
   double writing_ = 0.0, waiting_ = 0.0;
+  bool failed_ = false;
   std::future<double> work_;  // its destructor waits
 };
 

@@ -50,8 +50,12 @@ void WholeFile::write(std::string_view bytes) {
   if (const int error = write_all(descriptor_, bytes.data(), bytes.size())) fail(file_, error);
 }
 
-void WholeFile::publish() {
+void WholeFile::sync() {
   if (::fsync(descriptor_) != 0) fail(file_, errno);
+}
+
+void WholeFile::publish() {
+  sync();
   if (std::rename(temporary_.c_str(), file_.c_str()) != 0) fail(file_, errno);
   ::close(descriptor_);
   descriptor_ = -1;
@@ -89,6 +93,16 @@ void write_whole_file(const std::filesystem::path& file, std::string_view text) 
   WholeFile whole(file);
   whole.write(text);
   whole.publish();
+}
+
+void sync_file(const std::filesystem::path& file) {
+  std::error_code unseen;
+  if (!std::filesystem::is_regular_file(file, unseen)) return;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(file, errno);
+  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (error != 0) fail(file, error);
 }
 
 std::string read_text(const std::filesystem::path& file) {

@@ -22,7 +22,9 @@ class WholeFile {
   /// Where another writer than write() puts its bytes.
   const std::filesystem::path& temporary() const { return temporary_; }
   void write(std::string_view bytes);  ///< Appends. Throws OutputError.
-  void publish();                      ///< fsync, rename, fsync of the directory. Throws OutputError.
+  /// Brings what is written to the disk, before something is done that cannot be undone. Throws OutputError.
+  void sync();
+  void publish();  ///< fsync, rename, fsync of the directory. Throws OutputError.
 
   /// Says why another writer could not write temporary(): tries to write there itself and returns the system's words
   /// ("No space left on device"), or `otherwise` if the trial succeeds.
@@ -48,6 +50,9 @@ class SmallWrites {
 
 /// The whole of a small file at once. Throws OutputError.
 void write_whole_file(const std::filesystem::path& file, std::string_view text);
+
+/// Brings what others have written into a file to the disk; nothing where it is no regular file. Throws OutputError.
+void sync_file(const std::filesystem::path& file);
 
 /// The text of a file. Throws OutputError.
 std::string read_text(const std::filesystem::path& file);

@@ -134,6 +134,7 @@ PhaseParticles PhaseParticles::gathered(const FieldSet& fields, const std::funct
     if (wanted(k)) from.push_back(k);
   PhaseParticles part(name_, dimensions_, from.size(), mass_, first_id_);
   part.is_whole_ = is_whole_;
+  part.mean_radius_ = mean_radius_;
   for (std::size_t k = 0; k < from.size(); ++k) part.id_[k] = id_[from[k]];
   for (std::size_t f = 0; f < field_count; ++f) {
     const auto field = static_cast<Field>(f);

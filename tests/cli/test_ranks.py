@@ -247,6 +247,8 @@ SCENES = {
     "grains by kernels in air": ("verification/pile", 0.001),
     "spheres that blow in and out": ("verification/sand_influx", 0.005),
     "spheres on a belt": ("hopper_belt", 0.0003),
+    "slices of spheres of many sizes": ("hopper_belt", 0.0003, "profile.0.start=0", "profile.0.every=0.0001", "profile.0.box.min=[0, 0]",
+                                        "profile.0.box.max=[0.2, 0.16]"),
     "spheres that sleep under water, and an influx": ("water_over_sand", 0.0003),
     "an elastic block on a wall": ("bouncing_block", 0.0003),
     "a fork whose prongs touch": ("verification/self_contact", 1e-4),
