@@ -82,7 +82,7 @@ int threads_on_seat(const std::vector<RunReport::Seat>& seats, int rank, int mos
     if (seat.host == own->host && (shares || cores.empty())) sharing += seat.ranks;
   }
   const int all = cores.empty() ? most : static_cast<int>(cores.size());
-  return std::max(1, std::min(most, all / sharing));
+  return std::max(1, std::min(most, all / std::max(1, sharing)));
 }
 
 std::string to_text(const std::vector<RunReport::Seat>& seats) {
