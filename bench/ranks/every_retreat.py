@@ -46,11 +46,11 @@ def measured(program, name, safety, steps):
 def text(results):
     back = {name: r for name, r in results.items() if r["count"]}
     good = [name for name, r in back.items() if all(o == "same" for o in r["ways"].values())]
-    lines = [f"{len(results)} scenes with steps 2.5 times as long as they may be: {len(back)} go back to an earlier state, {len(good)} of them with the same "
-             "bytes on 2 and 3 ranks as in one process.", "", table.head("scene", "went back", "2 and 3 ranks")]
+    lines = [f"{len(results)} scenes, `time.safety = 2.5`: {len(back)} go back to an earlier state, {len(good)} of them with the same bytes on 2 and 3 ranks.",
+             "", table.head("scene", "how often", "2 and 3 ranks")]
     for name, r in sorted(back.items()):
         differ = "; ".join(f"{way}: {outcome}" for way, outcome in r["ways"].items() if outcome != "same")
-        lines.append(table.row(f"`{name}`", f"{r['count']} times", differ or "the same bytes"))
+        lines.append(table.row(f"`{name}`", r["count"], differ or "the same bytes"))
     return "\n".join(lines)
 
 
