@@ -1,28 +1,13 @@
-"""One frame of a run as NumPy arrays (.vtp, .vtu; in pieces .pvtp, .pvtu), grids (.vti), and the frames that a scene takes for the shape of a fill.
-
-This is the one file of the package that knows VTK.
-"""
+"""One frame of a run as NumPy arrays (.vtp, .vtu; in pieces .pvtp, .pvtu), grids (.vti), and the frames that a scene takes for the shape of a fill."""
 
 import pathlib
-import xml.etree.ElementTree as ElementTree
 
 import numpy
 
-from .errors import PackageMissing, Unreadable, UnknownName, package
+from . import files, vtk_xml
+from .errors import Unreadable, UnknownName, package
 
-try:
-    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-    from vtkmodules.vtkCommonCore import vtkObject, vtkPoints, vtkStringArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridReader
-except ImportError as error:
-    raise PackageMissing(f"frames need VTK's Python modules, which are not installed ({error}): apt install python3-paraview "
-                         "(for /usr/bin/python3), or pip install vtk") from error
-
-
-def without_warnings():
-    """VTK no longer writes its own messages about malformed files to the terminal."""
-    vtkObject.GlobalWarningDisplayOff()
+PARTICLES = ("PolyData", "UnstructuredGrid")
 
 
 class Frame:
@@ -32,7 +17,7 @@ class Frame:
     `units`: of the fields by name; `domain`: (3, 2) bounds in m or None; `step`, `number`: of the run, or None.
 
     `frame["velocity"]` is a field of all particles, `frame["velocity", "sand"]` of one phase, `frame.of("sand")` the frame of one phase alone.
-    Throws Unreadable when VTK finds no particles, UnknownName for a phase or a field that is not there.
+    Throws Unreadable for a file that is damaged or holds no particles, UnknownName for a phase or a field that is not there.
     """
 
     path = None
@@ -44,22 +29,21 @@ class Frame:
         self.path = pathlib.Path(path)
         if not self.path.is_file():
             raise Unreadable(f"{path}: there is no such frame")
-        files = pieces(self.path)
-        parts = [_particles(file, self.path) for file in files or [self.path]]
-        about = parts[0].about
-        own = numbers(about.GetArray("TimeValue"))
+        listed = pieces(self.path)
+        parts = [_Particles(file, self.path) for file in listed or [self.path]]
+        about = parts[0]
+        own = about.numbers("TimeValue")
         self.time = float(own[0]) if time is None and len(own) else time
-        if files:
-            self.x, self.arrays = _together(parts, files, self.path)
+        if listed:
+            self.x, self.arrays = _together(parts, listed, self.path)
         else:
-            self.x, self.arrays = parts[0].x, parts[0].arrays
-        self.names = strings(about.GetAbstractArray("phase_names"))
-        self.kinds = strings(about.GetAbstractArray("phase_kinds"))
-        self.units = dict((line + " ").split(" ", 1) for line in strings(about.GetAbstractArray("units")) if line)
+            self.x, self.arrays = about.x, about.arrays
+        self.names, self.kinds = about.words("phase_names"), about.words("phase_kinds")
+        self.units = dict((line + " ").split(" ", 1) for line in about.words("units") if line)
         self.units = {name: unit.strip() for name, unit in self.units.items()}
-        domain, step, number = (numbers(about.GetArray(name)) for name in ("domain", "step", "frame"))
-        self.domain = domain.reshape(3, 2) if len(domain) == 6 else None
-        self.step, self.number = (int(value[0]) if len(value) else None for value in (step, number))
+        domain = about.numbers("domain")
+        self.domain = domain.reshape(3, 2) if domain.shape == (6,) else None
+        self.step, self.number = (int(value[0]) if len(value) and value.dtype.kind in "iu" else None for value in (about.numbers("step"), about.numbers("frame")))
         if phase is not None:
             self.keep(self.mask(phase))
 
@@ -132,30 +116,38 @@ class Frame:
         return frame.set_index("id") if "id" in frame else frame
 
 
-class _particles:
-    """What stands in one file: `x`, `arrays`, `about` (VTK's field data). `frame`: the file of the frame, for messages."""
+class _Particles:
+    """What stands in one file: `x`, `arrays`, and what it says about all of them. `frame`: the file of the frame, for messages."""
 
     def __init__(self, path, frame):
         if not path.is_file():
             raise Unreadable(f"{frame}: its piece {path} is not there" if path != frame else f"{path}: there is no such frame")
-        data = _read(vtkXMLUnstructuredGridReader() if path.suffix == ".vtu" else vtkXMLPolyDataReader(), path)
-        if data is None or data.GetPoints() is None:
+        self._document = vtk_xml.Document(path, PARTICLES)
+        count, points = self._document.count("NumberOfPoints"), self._document.sections.get("Points", [])
+        if len(points) != 1 or points[0].components != 3:
             raise Unreadable(f"{path}: no particles: the file is damaged or no frame (.vtp or .vtu, in pieces .pvtp or .pvtu)")
-        arrays, self.about = data.GetPointData(), data.GetFieldData()
-        self.x = vtk_to_numpy(data.GetPoints().GetData())
-        self.arrays = {arrays.GetArrayName(k): vtk_to_numpy(arrays.GetArray(k)) for k in range(arrays.GetNumberOfArrays()) if arrays.GetArray(k)}
-        if any(len(values) != len(self.x) for values in self.arrays.values()):
-            raise Unreadable(f"{path}: damaged: a field has another length than the positions")
+        self.x = self._document.numbers(points[0], count).reshape(count, 3)
+        self.arrays = {name: self._document.numbers(array, count) for name, array in self._document.named("PointData").items()}
+
+    def numbers(self, name):
+        """The values of an array of the frame as a whole in one row; an empty row where there is none."""
+        array = self._document.named("FieldData").get(name)
+        return numpy.empty(0) if array is None else self._document.numbers(array, 1 if array.tuples is None else array.tuples).ravel()
+
+    def words(self, name):
+        """Its texts: strings in a .vtp, the characters of the lines in a .vtu."""
+        array = self._document.named("FieldData").get(name)
+        return [] if array is None else self._document.words(array)
 
 
-def _together(parts, files, frame):
+def _together(parts, listed, frame):
     """Positions and arrays of the pieces of a frame, by phase, of a phase piece by piece: the order of a frame in one file."""
     def moment(part):
-        return [numbers(part.about.GetArray(name)).tolist() for name in ("TimeValue", "step", "frame")]
+        return [part.numbers(name).tolist() for name in ("TimeValue", "step", "frame")]
 
-    for part, file in zip(parts, files):
-        if moment(part) != moment(parts[0]) or list(part.arrays) != list(parts[0].arrays):
-            raise Unreadable(f"{frame}: its pieces {files[0].name} and {file.name} are of different frames")
+    for part, file in zip(parts, listed):
+        if moment(part) != moment(parts[0]) or [(name, values.shape[1:]) for name, values in part.arrays.items()] != [(name, values.shape[1:]) for name, values in parts[0].arrays.items()]:
+            raise Unreadable(f"{frame}: its pieces {listed[0].name} and {file.name} are of different frames")
     x = numpy.concatenate([part.x for part in parts])
     arrays = {name: numpy.concatenate([part.arrays[name] for part in parts]) for name in parts[0].arrays}
     order = numpy.argsort(arrays["phase"], kind="stable") if "phase" in arrays else slice(None)
@@ -166,53 +158,28 @@ def pieces(path):
     """The files that the list of a frame in pieces (.pvtp, .pvtu) names; of another file none. Throws Unreadable."""
     if path.suffix not in (".pvtp", ".pvtu"):
         return []
-    try:
-        return [path.parent / piece.get("Source") for piece in ElementTree.parse(path).getroot().iter("Piece")]
-    except (ElementTree.ParseError, TypeError, ValueError) as error:
-        raise Unreadable(f"{path}: {error}") from error
-
-
-def _read(reader, path):
-    """What a reader of VTK finds in a file. VTK's messages about it, which say less than ours, are not shown."""
-    shown = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.GlobalWarningDisplayOff()
-    try:
-        reader.SetFileName(str(path))
-        reader.Update()
-        return reader.GetOutput()
-    finally:
-        vtkObject.SetGlobalWarningDisplay(shown)
-
-
-def numbers(array):
-    """The values of an array of VTK in one row; of None an empty row."""
-    return numpy.empty(0) if array is None else vtk_to_numpy(array).ravel()
-
-
-def strings(array):
-    """Words of a field of a frame: VTK strings in a .vtp, the characters of the lines in a .vtu."""
-    if array is None:
-        return []
-    if array.IsA("vtkStringArray"):
-        return [array.GetValue(k) for k in range(array.GetNumberOfValues())]
-    return vtk_to_numpy(array).astype(numpy.uint8).tobytes().decode(errors="replace").split("\n")
+    found = [files.named(path, piece.get("Source")) for piece in files.xml(path).iter("Piece")]
+    if not found:
+        raise Unreadable(f"{path}: it lists no piece")
+    return [files.below(path.parent, file) for file in found]
 
 
 class Grid:
     """What a [[grid]] measured (.vti): `axes` x, y, z of the points in m, and arrays by name, (nz, ny, nx) or (nz, ny, nx, components)."""
 
     def __init__(self, path):
-        data = _read(vtkXMLImageDataReader(), path)
-        if data is None or data.GetNumberOfPoints() == 0:
-            raise Unreadable(f"{path}: no grid: the file is damaged or no .vti")
         self.path = pathlib.Path(path)
-        n, start, step = data.GetDimensions(), data.GetOrigin(), data.GetSpacing()
+        document = vtk_xml.Document(path, ("ImageData",))
+        extent, start, step = (_row(document, name, kind, size) for name, kind, size in (("WholeExtent", int, 6), ("Origin", float, 3), ("Spacing", float, 3)))
+        n = [extent[2 * k + 1] - extent[2 * k] + 1 for k in range(3)]
+        count = n[0] * n[1] * n[2]
+        if min(n) < 1 or document.piece.get("Extent") != document.about.get("WholeExtent"):
+            raise Unreadable(f"{path}: no grid: the file is damaged or no .vti")
+        self.arrays = {name: values.reshape(*n[::-1], *values.shape[1:])
+                       for name, values in ((name, document.numbers(array, count)) for name, array in document.named("PointData").items())}
+        if not self.arrays:
+            raise Unreadable(f"{path}: a grid without arrays")
         self.axes = [start[k] + step[k] * numpy.arange(n[k]) for k in range(3)]
-        arrays = data.GetPointData()
-        self.arrays = {}
-        for k in range(arrays.GetNumberOfArrays()):
-            values = vtk_to_numpy(arrays.GetArray(k))
-            self.arrays[arrays.GetArrayName(k)] = values.reshape(*n[::-1], *values.shape[1:])
 
     def __getitem__(self, name):
         if name not in self.arrays:
@@ -220,27 +187,17 @@ class Grid:
         return self.arrays[name]
 
 
+def _row(document, name, kind, size):
+    """A row of numbers that an attribute of a grid holds."""
+    try:
+        row = [kind(word) for word in document.about.get(name, "").split()]
+        if len(row) == size and numpy.isfinite(row).all():
+            return row
+    except (ValueError, OverflowError):
+        pass
+    raise Unreadable(f"{document.path}: {name}={document.about.get(name)!r:.60} is no row of {size} numbers")
+
+
 def write_particles(path, x, phase, **arrays):
     """Writes particles of one phase at x (n, 3) with these arrays as a .vtp frame, as a scene takes it for the shape of a fill."""
-    points, vertices = vtkPoints(), vtkCellArray()
-    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(x, float), deep=True))
-    for k in range(len(x)):
-        vertices.InsertNextCell(1, [k])
-    data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetVerts(vertices)
-    for name, values in {**arrays, "phase": numpy.zeros(len(x), numpy.uint8), "id": numpy.arange(len(x), dtype=numpy.int64)}.items():
-        array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    names = vtkStringArray()
-    names.SetName("phase_names")
-    names.InsertNextValue(phase)
-    data.GetFieldData().AddArray(names)
-    writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(str(path))
-    writer.SetInputData(data)
-    writer.EncodeAppendedDataOff()
-    writer.SetHeaderTypeToUInt64()
-    if not writer.Write():
-        raise OSError(f"cannot write {path}")
+    vtk_xml.write_particles(path, x, {**arrays, "phase": numpy.zeros(len(x), numpy.uint8), "id": numpy.arange(len(x), dtype=numpy.int64)}, {"phase_names": [phase]})

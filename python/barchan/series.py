@@ -1,26 +1,31 @@
 """A run in its folder: its frames, and all that it wrote beside them."""
 
 import functools
-import json
 import pathlib
-import xml.etree.ElementTree as ElementTree
 
 import numpy
 
-from .errors import NoSeries, Unreadable, UnknownName, nearest
+from . import files
+from .errors import NoSeries, UnknownName, Unreadable, nearest
 from .tables import table
 
 KINDS = ("profile_", "probe_", "wall_shear_", "saltation_")
 
 
 def entries(pvd):
-    """(time in s, file) of each frame that a .pvd lists, in order. Throws Unreadable."""
+    """(time in s, file) of each frame that a .pvd lists, in order. Throws Unreadable, also when it names a file that is not below its folder."""
     pvd = pathlib.Path(pvd)
+    return [(_time(pvd, each.get("timestep")), files.named(pvd, each.get("file"))) for each in files.xml(pvd).iter("DataSet")]
+
+
+def _time(pvd, said):
     try:
-        found = ElementTree.parse(pvd).getroot().iter("DataSet")
-        return [(float(e.get("timestep")), pvd.parent / e.get("file")) for e in found]
-    except (ElementTree.ParseError, TypeError, ValueError) as error:
-        raise Unreadable(f"{pvd}: {error}") from error
+        time = float(said)
+        if numpy.isfinite(time):
+            return time
+    except (TypeError, ValueError):
+        pass
+    raise Unreadable(f"{pvd}: timestep={said!r:.60} is no time")
 
 
 class Tables(dict):
@@ -62,7 +67,7 @@ class Series:
             raise IndexError(f"{self.pvd} has {len(self)} frames: there is no frame {k}")
         from .frame import Frame
         time, file = self._listed[k]
-        return Frame(file, time)
+        return Frame(files.below(self.folder, file), time)
 
     def __iter__(self):
         return (self[k] for k in range(len(self)))
@@ -111,42 +116,35 @@ class Series:
     @functools.cached_property
     def history(self):
         """history.csv: columns by name (barchan.Table). Read once: open the series again to see later rows of a run that goes on."""
-        return table(self.folder / "history.csv")
+        return table(files.below(self.folder, self.folder / "history.csv"))
 
     @functools.cached_property
     def profiles(self):
         """What profiles, probes, wall shear and saltation measured: tables by name (barchan.Table)."""
-        return Tables({file.stem: table(file) for kind in KINDS for file in sorted(self.folder.glob(f"{kind}*.csv"))})
+        return Tables({file.stem: table(files.below(self.folder, file)) for kind in KINDS for file in sorted(self.folder.glob(f"{kind}*.csv"))})
 
     @functools.cached_property
     def grids(self):
         """What [[grid]] measured, by name (barchan.frame.Grid)."""
         from .frame import Grid
-        return {file.stem.removeprefix("grid_"): Grid(file) for file in sorted(self.folder.glob("grid_*.vti"))}
+        return {file.stem.removeprefix("grid_"): Grid(files.below(self.folder, file)) for file in sorted(self.folder.glob("grid_*.vti"))}
 
     @functools.cached_property
     def saltation(self):
         """What saltation_NAME.json says, by name."""
-        return {file.stem.removeprefix("saltation_"): _json(file) for file in sorted(self.folder.glob("saltation_*.json"))}
+        return {file.stem.removeprefix("saltation_"): files.document(files.below(self.folder, file)) for file in sorted(self.folder.glob("saltation_*.json"))}
 
     @functools.cached_property
     def run(self):
         """run.json as a dictionary: what ran, how fast, why it ended, warnings."""
-        return _json(self.folder / "run.json")
+        return files.document(files.below(self.folder, self.folder / "run.json"))
 
     @property
     def bad(self):
         """The first bad state of a run that broke down (barchan.Frame), None if there is none."""
         from .frame import Frame
         found = [f for end in (".vtp", ".vtu", ".pvtp", ".pvtu") if (f := self.folder / f"{self.name}_bad{end}").exists()]
-        return Frame(found[0]) if found else None
-
-
-def _json(file):
-    try:
-        return json.loads(file.read_text())
-    except (OSError, ValueError) as error:
-        raise Unreadable(f"{file}: {error}") from error
+        return Frame(files.below(self.folder, found[0])) if found else None
 
 
 def open(where):

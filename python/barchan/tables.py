@@ -4,6 +4,7 @@ import pathlib
 
 import numpy
 
+from . import files
 from .errors import Unreadable, UnknownName, package
 
 
@@ -53,17 +54,14 @@ def table(path):
     """The columns of a table that a run wrote. Lines that begin with # are remarks; a last line without an end was cut off and is left out.
     Throws Unreadable."""
     path = pathlib.Path(path)
-    try:
-        text = path.read_text()
-    except (OSError, UnicodeDecodeError) as error:
-        raise Unreadable(f"{path}: {error}") from error
-    lines = [line for line in text[:text.rfind("\n") + 1].splitlines() if line and not line.startswith("#")]
+    text = files.text(path, files.MOST_OF_A_TABLE)
+    lines = [line for line in text[:text.rfind("\n") + 1].split("\n") if line and not line.startswith("#")]
     if not lines:
         raise Unreadable(f"{path}: the first line, with the names of the columns, is missing")
     names = lines[0].split(",")
     try:
-        values = numpy.loadtxt(lines[1:], delimiter=",", ndmin=2) if len(lines) > 1 else numpy.empty((0, len(names)))
-    except ValueError as error:
+        values = numpy.loadtxt(lines[1:], delimiter=",", ndmin=2, comments=None) if len(lines) > 1 else numpy.empty((0, len(names)))
+    except (ValueError, MemoryError) as error:
         raise Unreadable(f"{path}: {error}") from error
     if values.shape[1] != len(names):
         raise Unreadable(f"{path}: {len(names)} names of columns, but rows of {values.shape[1]} numbers")

@@ -6,6 +6,7 @@
 
 #include "app/habits.hpp"
 #include "app/shipped.hpp"
+#include "base/data_folder.hpp"
 #include "base/errors.hpp"
 #include "scene/reader.hpp"
 #include "scene/settable.hpp"

@@ -7,6 +7,7 @@
 
 #include "app/habits.hpp"
 #include "app/shipped.hpp"
+#include "base/data_folder.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
 #include "output/series.hpp"

@@ -20,11 +20,13 @@
 #include "base/errors.hpp"
 #include "base/instructions.hpp"
 #include "base/ranks.hpp"
+#include "base/sha256.hpp"
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
 #include "output/pieces.hpp"
 #include "output/seats.hpp"
+#include "output/whole_file.hpp"
 #include "plan/memory_need.hpp"
 #include "scene/identity.hpp"
 #include "scene/reader.hpp"
@@ -250,6 +252,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   if (!options.instructions.empty()) choose_instructions(options.instructions);
   refuse_other_instructions();
   const Scene scene = read_scene(options.scene, options.overrides);
+  std::string checksum = sha256(read_text(options.scene));
   if (options.threads > 0) use_threads(options.threads, 0);
   const fs::path directory = options.out.empty() ? fs::path("out") / scene.name : fs::path(options.out);
   std::optional<FolderLock> lock;
@@ -285,7 +288,8 @@ int run_scene(const RunOptions& options, const Launch& launch) {
                 Progress(scene.time.end, plan.particles(), quiet),
                 beds,
                 Team(omp_get_max_threads(), options.threads == 0),
-                std::move(seats)};
+                std::move(seats),
+                std::move(checksum)};
   return run_to_the_end(course, std::move(from), options.retreats);
 }
 

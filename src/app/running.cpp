@@ -351,6 +351,7 @@ RunReport Run::report(const std::string& reason) const {
     r.seconds.emplace_back("pieces of frames (behind)", seconds);
   }
   r.end_reason = reason;
+  r.scene_sha256 = course_.scene_sha256;
   r.threads = course_.team.most();
   r.thread_uses = course_.team.uses();
   r.thread_switches = course_.team.switches();

@@ -28,6 +28,7 @@ struct Course {
   SettledBeds& beds;
   Team team;
   std::vector<RunReport::Seat> seats;                 // of ranks
+  std::string scene_sha256;                           // of the text of the scene's file
   double last_checkpoint = 0.0;                       // s of the run's wall time
   long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
   std::vector<RunReport::Retreat> retreats{};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "base/data_folder.hpp"
 #include "base/errors.hpp"
 #include "scene/nearest.hpp"
 
@@ -60,17 +61,6 @@ std::string last_name(const std::string& word) { return fs::path(word).stem().st
 
 }  // namespace
 
-fs::path data_folder() {
-  std::error_code unknown;
-  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-  if (unknown) return {};
-  const fs::path bin = program.parent_path();
-  for (const fs::path& folder : {bin / BARCHAN_DATA_FROM_BIN, bin.parent_path()})
-    if (fs::is_directory(folder / "scenes", unknown) && fs::is_directory(folder / "pvstate", unknown))
-      return folder.lexically_normal();
-  return {};
-}
-
 std::vector<ShippedScene> shipped_scenes() {
   std::vector<ShippedScene> scenes;
   const fs::path folder = data_folder();
@@ -83,11 +73,8 @@ std::vector<ShippedScene> shipped_scenes() {
 
 std::vector<ShippedState> shipped_states() {
   std::vector<ShippedState> states;
-  const fs::path folder = data_folder();
-  if (folder.empty()) return states;
-  for (const fs::path& file : files_in(folder / "pvstate", ".py")) {
-    const std::string name = file.stem().string();
-    if (name.starts_with("barchan_") || name.starts_with("render_")) continue;  // parts of the states, and the renderer
+  for (const std::string& name : names_of_states()) {
+    const fs::path file = data_folder() / "pvstate" / (name + ".py");
     std::ifstream stream(file);
     std::string line;
     while (std::getline(stream, line) && !line.starts_with("\"\"\"")) {}

@@ -19,10 +19,6 @@ struct ShippedState {
   std::string shows;  // the words before the first colon of its head
 };
 
-/// The folder with scenes/ and pvstate/: PREFIX/share/barchan of an installed program, found from where the program
-/// itself lies; of a program in the build folder of a source tree, that tree. Empty: there is none.
-std::filesystem::path data_folder();
-
 /// In the order of their names; those of scenes/ come before those of its folders.
 std::vector<ShippedScene> shipped_scenes();
 std::vector<ShippedState> shipped_states();

@@ -96,6 +96,10 @@ std::string piece_name(const std::string& stem, int piece, FrameFormat format) {
   return stem + "/" + stem + number.data() + ending(format);
 }
 
+bool is_below_its_list(const fs::path& file) {
+  return !file.empty() && !file.is_absolute() && std::ranges::find(file, "..") == file.end();
+}
+
 bool is_list_of_pieces(const fs::path& file) { return file.extension() == ".pvtp" || file.extension() == ".pvtu"; }
 
 void write_piece(const fs::path& directory, const std::string& stem, const Frame& piece, FrameFormat format,
@@ -132,7 +136,7 @@ std::vector<std::string> parse_pieces(std::string_view text) {
     const auto source = tag.attributes.find("Source");
     if (source == tag.attributes.end()) tags.fail("a Piece needs 'Source'");
     const fs::path file(source->second);
-    if (file.empty() || file.is_absolute() || std::ranges::find(file, "..") != file.end())
+    if (!is_below_its_list(file))
       tags.fail("Source=\"" + source->second + "\" is not a file below the folder of the list");
     if (file.extension() != ".vtp" && file.extension() != ".vtu")
       tags.fail("Source=\"" + source->second + "\" does not end in .vtp or .vtu");

@@ -44,6 +44,9 @@ void remove_pieces(const std::filesystem::path& folder);
 /// Removes the frame STEM in every format.
 void remove_frame(const std::filesystem::path& directory, const std::string& stem);
 
+/// Whether the name of a file in a list (.pvd, .pvtp, .pvtu) is that of a file below the folder of the list.
+bool is_below_its_list(const std::filesystem::path& file);
+
 /// Whether the name ends in .pvtp or .pvtu.
 bool is_list_of_pieces(const std::filesystem::path& file);
 

@@ -5,6 +5,7 @@
 
 #include "base/errors.hpp"
 #include "output/numbers.hpp"
+#include "output/pieces.hpp"
 #include "output/whole_file.hpp"
 #include "output/xml_tags.hpp"
 
@@ -24,6 +25,8 @@ std::vector<SeriesWriter::Entry> parse_pvd(std::string_view text) {
       tags.fail("a DataSet needs 'timestep' and 'file'");
     const auto value = parse_number(time->second);
     if (!value) tags.fail("timestep=\"" + time->second + "\" is not a number");
+    if (!is_below_its_list(file->second))
+      tags.fail("file=\"" + file->second + "\" is not a file below the folder of the list");
     entries.push_back({*value, file->second});
   }
   if (!collection || !ended) throw OutputError("it is not a whole .pvd file (a VTKFile with a Collection)");

@@ -58,6 +58,7 @@ std::string to_json(const RunReport& r) {
       {"scene",
        {{"title", r.scene_title},
         {"file", r.scene_file},
+        {"sha256", r.scene_sha256},
         {"set", Json(r.overrides)},
         {"state", r.scene_state},
         {"spacing", r.scene_spacing}}},

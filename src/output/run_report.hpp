@@ -45,6 +45,7 @@ struct RunReport {
 
   // the scene and the plan
   std::string scene_title, scene_file, scene_state;
+  std::string scene_sha256;               // of the text of its file
   std::vector<std::string> overrides;     // of the command line
   double scene_spacing = 0;               // m
   std::map<std::string, long> particles;  // by phase

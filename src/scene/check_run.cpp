@@ -1,54 +1,41 @@
 // What concerns the run as a whole: the names of its files, the state that renders it, how often it writes, and how far
 // from zero its places lie.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <filesystem>
 
+#include "base/data_folder.hpp"
 #include "scene/checks.hpp"
 #include "scene/nearest.hpp"
 
 namespace barchan {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t most_letters = 180;  // of a name: file systems take 255, and frames add a number and two suffixes
 constexpr double most_frames = 1e6, most_rows = 1e8;
 
-/// The folder of states nearest above a scene: DIR/pvstate; empty where there is none.
-fs::path folder_of_states(const std::string& file) {
-  std::error_code ignored;
-  for (fs::path at = fs::absolute(file, ignored).parent_path();; at = at.parent_path()) {
-    if (fs::is_regular_file(at / "pvstate" / "render", ignored)) return at / "pvstate";
-    if (!at.has_relative_path()) return {};
-  }
+/// Letters, digits, '_' and '-': no file, no folder.
+bool is_plain(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-';
+  });
 }
 
-/// Names of the states in a folder: its programs in Python that draw.
-std::vector<std::string> states_of(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().stem().string();
-    if (entry.path().extension() == ".py" && !name.starts_with("barchan_") && !name.starts_with("render"))
-      names.push_back(name);
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-/// A run that ends and is not rendered tells too late. Where no folder of states lies above the scene, nobody knows.
+/// A state is a program in Python: a scene, which may be another person's, names one of those that come along with
+/// Barchan and no file. Where none came along, any name may be one.
 void check_state(const Scene& scene, const Report& report) {
   if (scene.state.empty() || report.touched("state")) return;
-  const fs::path folder = folder_of_states(scene.file);
-  if (folder.empty()) return;
-  const std::vector<std::string> known = states_of(folder);
+  const std::vector<std::string> known = names_of_states();
   for (std::size_t begin = 0; begin <= scene.state.size();) {
     const std::size_t end = std::min(scene.state.find(',', begin), scene.state.size());
     std::string name = scene.state.substr(begin, end - begin);
     std::erase(name, ' ');
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      return report("state", "there is no state \"" + name + "\" in pvstate; expected " + one_of(known) +
+    const std::string there = known.empty() ? "a name" : one_of(known);
+    if (!is_plain(name))
+      return report("state", "\"" + name + "\" is not the name of a state in pvstate; expected " + there +
+                                 "; a state of your own is a file for pvstate/render SERIES --state FILE");
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+      return report("state", "there is no state \"" + name + "\" in pvstate; expected " + there +
                                  did_you_mean(nearest(name, known)));
     begin = end + 1;
   }

@@ -16,7 +16,7 @@ constexpr NumberBounds not_negative{.at_least = 0.0};
 // clang-format off
 constexpr Key rows_of_keys[] = {
     {"", "title", at<&Scene::title>("the file's name").like("\"Wind over a small dune\""), "", "What the scene shows, in a few words."},
-    {"", "state", at<&Scene::state>("none").like("\"airflow,sand_takeoff\""), "", "Name of the ParaView state (in pvstate/) that renders this scene."},
+    {"", "state", at<&Scene::state>("none").like("\"airflow,sand_takeoff\""), "", "Names of the ParaView states in pvstate/, by comma, that render this scene; no file."},
     {"", "dimensions", at<&Scene::dimensions>(2).like("3"), "", "Dimensions of space, 2 or 3; vectors have as many components.", {.at_least = 2, .at_most = 3}},
     {"", "spacing", at<&Scene::spacing>(required).like("1e-3"), "m", "Distance between neighbouring particles, dx.", positive},
     {"", "precision", at<&Scene::precision>(Precision::mixed), "", "Arithmetic of the pair loops; the state is always kept in double precision."},

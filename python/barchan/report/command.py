@@ -1,10 +1,10 @@
 """barchan report DIR."""
 
 import argparse
-import os
 import pathlib
 import sys
 
+from .. import files
 from ..errors import OutputError
 
 
@@ -15,6 +15,7 @@ def parser():
     p.add_argument("-o", "--output", metavar="FILE", help="the page (default DIR/report.html)")
     p.add_argument("--render", action="store_true", help="render pictures of the scene's states first (ParaView)")
     p.add_argument("--film", action="store_true", help="put films into the page; with --render make them")
+    p.add_argument("--scene", metavar="FILE", help="the file of the scene (default: the one that run.json names, if it is the same as then or lies in DIR)")
     p.add_argument("--no-plan", action="store_true", help="do not ask barchan plan for the matrix")
     return p
 
@@ -22,15 +23,15 @@ def parser():
 def main(words):
     """Writes the page of a run; returns the exit status."""
     options = parser().parse_args(words)
-    file = make(options.folder, options.output, options.render, options.film, not options.no_plan)
+    file = make(options.folder, options.output, options.render, options.film, not options.no_plan, options.scene)
     print(f"report    {file}")
     return 0
 
 
-def make(folder, output=None, render=False, film=False, plan=True):
-    """Writes the page of the run in `folder` to `output` (default DIR/report.html) and returns its path. Throws NoSeries, OutputError, PackageMissing."""
+def make(folder, output=None, render=False, film=False, plan=True, scene=None):
+    """Writes the page of the run in `folder` to `output` (default DIR/report.html) and returns its path; `scene`: the file of its scene. Throws NoSeries, SceneError, OutputError, PackageMissing."""
     from . import gather, page, pictures
-    g = gather.gather(folder, plan)
+    g = gather.gather(folder, plan, scene)
     if render:
         try:
             pictures.render(g, film)
@@ -38,10 +39,9 @@ def make(folder, output=None, render=False, film=False, plan=True):
             g.remarks.append(error.message)
             print(f"barchan: warning: {error}", file=sys.stderr)
     file = pathlib.Path(output) if output else g.folder / "report.html"
-    part = file.with_name(file.name + ".part")
+    text = page.make(g, film)
     try:
-        part.write_text(page.make(g, film))
-        os.replace(part, file)
-    except OSError as error:
+        files.write_whole(file, text)
+    except (OSError, ValueError) as error:
         raise OutputError(f"cannot write {file}: {error}") from error
     return file

@@ -32,12 +32,12 @@ def frame(title, heading, sub, body):
 
 
 def attempt(g, heading, body):
-    """The HTML of a part; what a part cannot cope with, a damaged run.json for one, is said on top and leaves the others whole."""
+    """The HTML of a part; what a part cannot cope with, a damaged table for one, is said on top and leaves the others whole."""
     try:
         return body()
     except PackageMissing:
         raise
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+    except Exception as error:  # whatever the file of another person makes of it
         g.remarks.append(f'the part "{heading}" could not be made: {type(error).__name__}: {error}')
         return ""
 
@@ -51,7 +51,8 @@ def make(g, film=False):
     sections = [(heading, attempt(g, heading, body), anchor) for heading, body, anchor in sections]
     there = [(heading, body, anchor) for heading, body, anchor in sections if body]
     nav = "<nav>" + "".join(f'<a href="#{anchor}">{parts.esc(heading.split(":")[0])}</a>' for heading, _, anchor in there) + "</nav>"
-    body = parts.notices(g) + parts.tiles(g) + nav + "".join(parts.section(*each) for each in there)
-    dimensions = (g.plan or g.scene or {}).get("dimensions")
+    numbers = attempt(g, "The numbers that one wants first", lambda: parts.tiles(g))
+    body = attempt(g, "How it ended", lambda: parts.ending(g)) + attempt(g, "Warnings", lambda: parts.warnings(g)) + parts.remarks(g) + numbers + nav + "".join(parts.section(*each) for each in there)
+    dimensions = g.plan.get("dimensions") if g.plan else g.said("dimensions")
     sub = " · ".join(filter(None, (f"{dimensions}D" if dimensions else "", g.scene_file.rsplit("/", 1)[-1], " ".join(g.run.get("scene", {}).get("set", [])), g.written)))
     return frame(f"{g.title} - Barchan", parts.esc(g.title), sub, body)

@@ -56,8 +56,8 @@ def section(heading, body, anchor):
     return f'<section id="{anchor}"><h2>{esc(heading)}</h2>{body}</section>' if body else ""
 
 
-def notices(g):
-    """How the run ended, its warnings and what could not be read, on top."""
+def ending(g):
+    """How the run ended, on top."""
     reason = g.reason if g.reason not in ("", "running") else ""
     kind = {"ended": "good", "running": "note"}.get(g.state, "bad")
     end, now = g.end_time, g.run.get("simulated_time")
@@ -73,14 +73,22 @@ def notices(g):
     out = [f'<div class="notice {kind}"><b>{head}</b>{why}</div>']
     if early := (g.state == "ended" and end is not None and now is not None and now < end * (1 - 1e-9)):
         out.append(f'<div class="notice note">It ended before time.end{" (" + esc(reason) + ")" if early and reason else ""}.</div>')
-    warnings = g.run.get("warnings") or [] if g.run.get("warnings") is not None else (g.plan or {}).get("warnings", [])
-    if warnings:
-        out.append(f'<div class="notice warn"><b>{len(warnings)} warning{"s" * (len(warnings) > 1)} of the program</b><ul>' + "".join(f"<li>{esc(w)}</li>" for w in warnings) + "</ul></div>")
-    elif g.run and g.state != "running":
-        out.append('<div class="notice good">The program gave no warning.</div>')
-    if g.remarks:
-        out.append('<div class="notice note"><b>What this page could not read</b><ul>' + "".join(f"<li>{esc(r)}</li>" for r in dict.fromkeys(g.remarks)) + "</ul></div>")
     return "".join(out)
+
+
+def warnings(g):
+    """The warnings of the program."""
+    said = g.run.get("warnings") or [] if g.run.get("warnings") is not None else (g.plan or {}).get("warnings", [])
+    if said:
+        return f'<div class="notice warn"><b>{len(said)} warning{"s" * (len(said) > 1)} of the program</b><ul>' + "".join(f"<li>{esc(w)}</li>" for w in said) + "</ul></div>"
+    return '<div class="notice good">The program gave no warning.</div>' if g.run and g.state != "running" else ""
+
+
+def remarks(g):
+    """What could not be read."""
+    if not g.remarks:
+        return ""
+    return '<div class="notice note"><b>What this page could not read</b><ul>' + "".join(f"<li>{esc(r)}</li>" for r in dict.fromkeys(g.remarks)) + "</ul></div>"
 
 
 def tiles(g):
@@ -119,8 +127,9 @@ def wind(g):
 def asked_friction_velocity(g, phase):
     """u* (m/s) that the scene says for this fluid or column: of its forcing, else of its logarithmic wind."""
     scene = g.scene or {}
-    places = [f for f in scene.get("forcing", []) if f.get("phase") == phase]
-    places += [f["velocity"]["log-profile"] for f in scene.get("fill", []) + scene.get("inflow", []) if f.get("phase") == phase and isinstance(f.get("velocity"), dict) and "log-profile" in f["velocity"]]
+    of_phase = lambda section: [f for f in scene.get(section, []) if f.get("phase") == phase]
+    places = of_phase("forcing")
+    places += [f["velocity"]["log-profile"] for f in of_phase("fill") + of_phase("inflow") if isinstance(f.get("velocity"), dict) and "log-profile" in f["velocity"]]
     column = scene.get("phases", {}).get(phase, {})
     places += [column, column.get("log-profile", {}) if isinstance(column, dict) else {}]
     return next((float(p["friction-velocity"]) for p in places if isinstance(p.get("friction-velocity"), (int, float))), None)
@@ -201,7 +210,7 @@ def schedule(g):
     repeats = run.get("repeats") or plan.get("repeats") or []
     steps = run.get("steps") or 0
     out += rows_table(("what a step does not do once", "planned interval (s)", "calls", "calls a step", "time"),
-                      [[f"{esc(r['name'])} of {esc(r['of'])}", number(r.get("interval")), number(r.get("calls")), number(r["calls"] / steps) if steps and r.get("calls") else "",
+                      [[f"{esc(r.get('name', ''))} of {esc(r.get('of', ''))}", number(r.get("interval")), number(r.get("calls")), number(r["calls"] / steps) if steps and r.get("calls") else "",
                         duration(r.get("seconds"))] for r in repeats])
     limits, counts = plan.get("limits", {}), run.get("time_step_limits") or {}
     ruled = sum(counts.values()) or 1
@@ -210,12 +219,12 @@ def schedule(g):
                                    for n in names])
     used = run.get("threads_used") or []
     if len(used) > 1:
-        out += rows_table(("threads", "steps", "wall time"), [[number(u["threads"]), number(u["steps"]), duration(u["seconds"])] for u in used])
+        out += rows_table(("threads", "steps", "wall time"), [[number(u.get("threads")), number(u.get("steps")), duration(u.get("seconds"))] for u in used])
     retreats = run.get("retreats") or {}
     if retreats.get("count"):
-        out += f"<p><b>The run went back {retreats['count']} times</b> after a failed step.</p>" + rows_table(
+        out += f"<p><b>The run went back {number(retreats['count'])} times</b> after a failed step.</p>" + rows_table(
             ("step that failed", "time (s)", "back to step", "share of the step from there", "why"),
-            [[number(r["step"]), number(r["time"]), number(r["back_to"]), number(r["share_of_step"]), esc(r["reason"])] for r in retreats.get("list", [])])
+            [[*(number(r.get(key)) for key in ("step", "time", "back_to", "share_of_step")), esc(r.get("reason", ""))] for r in retreats.get("list", [])])
     return out
 
 
@@ -247,7 +256,7 @@ def history(g):
 def measured(g):
     """What the scene measures: plots of each instrument."""
     out = ""
-    samples = {(m["kind"], m["name"]): m.get("samples") for m in g.run.get("measured", [])}
+    samples = {(m.get("kind"), m.get("name")): m.get("samples") for m in g.run.get("measured", [])}
     for name, each in g.profiles.items():
         kind = next(k for k in ("profile", "probe", "wall_shear", "saltation") if name.startswith(k + "_"))
         label = f"{kind.replace('_', '-')} {name.removeprefix(kind + '_')}"

@@ -9,6 +9,7 @@ import subprocess
 import numpy
 
 from ..errors import BarchanError, OutputError, PackageMissing
+from .gather import pictures_of
 from .plots import pyplot
 
 HERE = pathlib.Path(__file__).resolve()
@@ -29,15 +30,13 @@ def render(g, film=False):
         raise OutputError(f"--render needs {tool}, which is not there")
     if g.series is None or not len(g.series):
         raise OutputError(f"--render: {g.folder} has no frame")
-    said = g.run.get("scene", {}).get("state") or "airflow"
-    states = ",".join(said) if isinstance(said, list) else said.replace(" ", "")
     last = len(g.series) - 1
     frames = [] if film else ["--frames", ",".join(str(k) for k in sorted({0, last // 2, last}))]
-    ended = subprocess.run([str(tool), str(g.series.pvd), "--state", states, "--out", str(g.folder / "pictures"), *frames, *(["--film"] if film else [])],
-                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    ended = subprocess.run([str(tool), str(g.series.pvd.absolute()), *frames, *(["--film"] if film else [])], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                           text=True, errors="replace")
     if ended.returncode:
         raise OutputError(f"--render: {ended.stderr.strip()[-600:]}")
-    g.pictures, g.films = sorted((g.folder / "pictures").glob("*.png")), sorted((g.folder / "pictures").glob("*.mp4"))
+    g.pictures, g.films = pictures_of(g)
 
 
 def rendered(g):
@@ -62,7 +61,7 @@ def smaller(file):
     if len(content) <= MOST_BYTES:
         return "image/png", content
     from PIL import Image  # comes with matplotlib
-    image = Image.open(io.BytesIO(content)).convert("RGB")
+    image = Image.open(io.BytesIO(content), formats=["PNG"]).convert("RGB")
     image.thumbnail((1400, 1400))
     out = io.BytesIO()
     image.save(out, "JPEG", quality=88)
@@ -103,7 +102,7 @@ def drawn(g):
     good = [frame for caption, frame in frames if "bad" not in caption] or [frame for _, frame in frames]
     if not good:
         return []
-    top, view = top_speed(good), view_of(good, (g.scene or {}).get("domain", {}).get("gravity"))
+    top, view = top_speed(good), view_of(good, g.said("domain", "gravity"))
     return [(caption, draw(frame, view, top, g)) for caption, frame in frames]
 
 

@@ -1,6 +1,7 @@
 """Plots of a report as SVG in the page. Colours of Okabe & Ito (2008), a line style besides, so that nobody depends on colours."""
 
 import io
+import os
 import re
 import warnings
 
@@ -18,9 +19,15 @@ MOST_POINTS = 600   # of one line; of more, the least and the largest of each pi
 
 def pyplot():
     """matplotlib's pyplot, which draws without a display. Throws PackageMissing."""
-    matplotlib = package("matplotlib", "python3-matplotlib", "a report")
+    here = os.open(".", os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.chdir(os.path.dirname(__file__))  # matplotlib reads a file "matplotlibrc" of the folder that it is loaded in, which may be another person's
+        matplotlib = package("matplotlib", "python3-matplotlib", "a report")
+    finally:
+        os.fchdir(here)
+        os.close(here)
     matplotlib.use("Agg")
-    matplotlib.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "svg.hashsalt": "barchan", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    matplotlib.rcParams.update({"svg.fonttype": "none", "text.parse_math": False, "text.usetex": False, "font.family": "sans-serif", "svg.hashsalt": "barchan", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
                                 "grid.color": "#e4e4e4", "grid.linewidth": .6, "lines.linewidth": 1.4, "path.simplify": True, "path.simplify_threshold": .3,
                                 "axes.formatter.limits": (-3, 4), "legend.frameon": False, "legend.fontsize": 8})
     import matplotlib.pyplot
