@@ -1,14 +1,13 @@
 // barchan new: a scene of one's own, from one that comes along.
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 #include <variant>
 
 #include "app/habits.hpp"
 #include "app/shipped.hpp"
 #include "base/data_folder.hpp"
 #include "base/errors.hpp"
+#include "base/input_file.hpp"
 #include "base/version.hpp"
 #include "output/series.hpp"
 #include "output/whole_file.hpp"
@@ -20,11 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw OutputError(file.string() + ": cannot be read");
-  return text.str();
+  try {
+    return read_input(file);
+  } catch (const InputError& e) { throw OutputError(file.string() + ": " + e.what()); }
 }
 
 /// The copied text under a head of its own: who made it, and the schema that editors complete keys from.

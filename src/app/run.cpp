@@ -290,6 +290,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
                 Team(omp_get_max_threads(), options.threads == 0),
                 std::move(seats),
                 std::move(checksum)};
+  course.lock = lock ? &*lock : nullptr;
   return run_to_the_end(course, std::move(from), options.retreats);
 }
 

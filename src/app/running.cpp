@@ -30,16 +30,27 @@ std::vector<double> densities(const Scene& scene) {
   return all;
 }
 
-/// The frames of an earlier run that a state counts.
+/// The frames of an earlier run that a state counts. Where neither a series nor a frame of it lies in the folder, none:
+/// the series begins there. Frames that were removed while the run went on are missing from the series.
 std::vector<SeriesWriter::Entry> kept_frames(const fs::path& directory, const Scene& scene, const OutputClock& clock) {
   if (clock.frames <= 0) return {};
   const fs::path series = directory / (scene.name + ".pvd");
+  std::error_code unseen;
+  if (!fs::exists(series, unseen) && !unseen && !has_frames(directory, scene.name)) {
+    std::cerr << "barchan: " << directory.string() << " has no frame of \"" << scene.name
+              << "\" yet; the series begins there with frame " << clock.frames << '\n';
+    return {};
+  }
   const auto refuse = [&](const std::string& what) { throw SceneError("--restart: " + series.string() + what); };
   auto frames = read_pvd(series);
-  if (frames.size() < static_cast<std::size_t>(clock.frames))
-    refuse(" lists " + std::to_string(frames.size()) + " frames; the checkpoint was written after " +
-           std::to_string(clock.frames));
-  frames.resize(static_cast<std::size_t>(clock.frames));
+  const std::size_t listed = frames.size();
+  const auto number = [&](const SeriesWriter::Entry& frame) {
+    return frame_number(scene.name, frame.file).value_or(-1);
+  };
+  std::erase_if(frames, [&](const auto& frame) { return number(frame) >= clock.frames; });
+  if (frames.empty() || number(frames.back()) != clock.frames - 1)
+    refuse(" lists " + std::to_string(listed) + " frames, without frame " + std::to_string(clock.frames - 1) +
+           "; the checkpoint was written after " + std::to_string(clock.frames));
   if (frames.back().time != clock.last_frame_time)
     refuse(" is the series of another run: frame " + std::to_string(clock.frames - 1) + " is at " +
            brief(frames.back().time) + " s; expected " + brief(clock.last_frame_time) + " s");
@@ -96,6 +107,7 @@ int Run::go(Past* past) {
     write_frame();
   }
   if (reason_ == "end") bring_checkpoint_up_to_date();
+  check_files();
   finish(reason_);
   return status;
 }
@@ -205,6 +217,7 @@ bool Run::checkpoint_is_late() const {
 
 void Run::write_checkpoint() {
   simulation_.check_aside();
+  check_folder();
   finish_series();
   if (history_) history_->sync();
   if (measurements_) measurements_->sync();
@@ -279,6 +292,7 @@ std::string Run::break_down(const std::string& what) {
 }
 
 void Run::write_frame() {
+  check_folder();
   finish_series();  // one frame at a time is in memory
   hand_over(simulation_.frame(static_cast<int>(clock().frames++)));
   if (series_) {
@@ -343,6 +357,34 @@ void Run::write_row() {
   simulation_.begin_row();
 }
 
+void Run::check_folder() const {
+  if (course_.lock && !course_.lock->is_there())
+    throw OutputError("the folder '" + directory_.string() +
+                      "' was removed or replaced while the run went on; nothing is written into another one");
+}
+
+void Run::check_files() {
+  check_folder();
+  finish_series();
+  std::vector<std::string> removed;
+  if (series_) removed = series_->removed();
+  const std::size_t frames = removed.size();
+  if (history_)
+    if (std::string file = history_->removed(); !file.empty()) removed.push_back(file);
+  if (measurements_ && series_)
+    for (std::string& file : measurements_->removed()) removed.push_back(std::move(file));
+  std::string error;
+  constexpr std::size_t most = 5;  // names
+  for (std::size_t k = 0; k < std::min(removed.size(), most); ++k) error += (k > 0 ? ", " : "") + removed[k];
+  if (removed.size() > most) error += " and " + std::to_string(removed.size() - most) + " more";
+  if (!error.empty())
+    error = "files in '" + directory_.string() + "' were removed while the run went on: " + error +
+            (frames > 0 ? "; " + scene_.name + ".pvd lists the frames that are there" : "");
+  if (!ranks::any(!error.empty())) return;
+  if (ranks::active()) throw_of_one(error);
+  throw OutputError(error);
+}
+
 RunReport Run::report(const std::string& reason) const {
   RunReport r = make_report(simulation_, series_ ? &*series_ : nullptr, measurements_ ? &*measurements_ : nullptr,
                             course_.progress);
@@ -364,7 +406,7 @@ RunReport Run::report(const std::string& reason) const {
     r.warnings.push_back("the run went back to an earlier step " + std::to_string(r.retreat_count) +
                          (r.retreat_count == 1 ? " time" : " times") + " and took smaller ones" +
                          (r.retreats.empty() ? "" : "; the first failure: " + r.retreats.front().reason) +
-                         "; lower time.safety, or see docs/output.md for what the message means");
+                         "; docs/output.md says what the message means");
   return r;
 }
 
@@ -380,6 +422,7 @@ void Run::finish(const std::string& reason) {
 }
 
 void Run::fail(const std::string& reason) {
+  if (course_.lock && !course_.lock->is_there()) return course_.progress.end(reason);  // run.json is another run's
   if (ranks::active()) {  // the others may not be there to count with
     beginning_.end_reason = reason;
     beginning_.steps = simulation_.steps();

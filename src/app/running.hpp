@@ -10,6 +10,7 @@
 #include "app/progress.hpp"
 #include "engine/team.hpp"
 #include "measure/measurements.hpp"
+#include "output/folder_lock.hpp"
 #include "output/history.hpp"
 #include "output/pieces.hpp"
 #include "output/run_report.hpp"
@@ -37,6 +38,7 @@ struct Course {
     int signal = 0;
     bool checkpoint = false, terminate = false;
   } agreed{};
+  const FolderLock* lock = nullptr;  // of the first rank
 };
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);
@@ -92,6 +94,10 @@ class Run {
   void refuse_other_folders() const;
   /// Waits until all frames are on the disk and listed.
   void finish_series();
+  /// The folder is still the one of the beginning. Throws OutputError: another one may belong to another run.
+  void check_folder() const;
+  /// No file of this run was removed. Throws OutputError, on every rank; the .pvd lists the frames that are there.
+  void check_files();
   RunReport report(const std::string& reason) const;
   void finish(const std::string& reason);
 

@@ -1,16 +1,25 @@
 #include "app/shipped.hpp"
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
 
 #include "base/data_folder.hpp"
 #include "base/errors.hpp"
+#include "base/input_file.hpp"
 #include "scene/nearest.hpp"
 
 namespace barchan {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The lines of a file of the program's own; none where it cannot be read.
+std::istringstream lines_of(const fs::path& file) {
+  constexpr std::uint64_t most = 16'000'000;  // bytes
+  try {
+    return std::istringstream(read_input(file, most));
+  } catch (const InputError&) { return {}; }
+}
 
 /// The string that a line of a scene gives to a key, as in title = "Wind"; empty: the line does not.
 std::string text_of(const std::string& line, const std::string& key) {
@@ -23,7 +32,7 @@ std::string text_of(const std::string& line, const std::string& key) {
 
 ShippedScene scene_of(const fs::path& file, const std::string& name) {
   ShippedScene scene{name, file, "", ""};
-  std::ifstream stream(file);
+  std::istringstream stream = lines_of(file);
   for (std::string line; std::getline(stream, line) && !line.starts_with('[');) {
     if (scene.title.empty()) scene.title = text_of(line, "title");
     if (scene.state.empty()) scene.state = text_of(line, "state");
@@ -75,7 +84,7 @@ std::vector<ShippedState> shipped_states() {
   std::vector<ShippedState> states;
   for (const std::string& name : names_of_states()) {
     const fs::path file = data_folder() / "pvstate" / (name + ".py");
-    std::ifstream stream(file);
+    std::istringstream stream = lines_of(file);
     std::string line;
     while (std::getline(stream, line) && !line.starts_with("\"\"\"")) {}
     const std::size_t begin = std::min<std::size_t>(line.size(), 3);

@@ -26,6 +26,13 @@ class Measurements {
   void sync() const {
     for (const History& probe : probes_) probe.sync();
   }
+  /// Files of probes that somebody removed while they were written.
+  std::vector<std::string> removed() const {
+    std::vector<std::string> files;
+    for (const History& probe : probes_)
+      if (std::string file = probe.removed(); !file.empty()) files.push_back(std::move(file));
+    return files;
+  }
 
   /// Takes the samples that are due at the state's time: the first step at or after start + k every. Never changes
   /// the length of a step. With open() the probes' rows are written. The same bits on any number of threads.

@@ -225,16 +225,24 @@ void OpenSides::archive(Archive& a) {
   if (a.loads()) trouble_.reset();  // it is that of steps which are given up
 }
 
+/// ", 12 % of its mass at the start,"; where particles entered too, of all the mass that was in the run.
+std::string OpenSides::share_of_mass(double left) const {
+  double entered = 0.0;
+  for (const Departed& row : w_->state.departed)
+    if (row.phase == static_cast<std::int64_t>(phase_) && row.mass < 0.0) entered -= row.mass;
+  const double all = start_mass_ + entered;
+  if (!(all > 0.0)) return "";
+  return ", " + brief(100.0 * left / all) + " % of its mass at the start" +
+         (entered > 0.0 ? " and of what entered since," : ",");
+}
+
 void OpenSides::report(Warnings& warnings) const {
   const Departed& departed = w_->state.departed[place_];
   if (departed.particles == 0) return;
-  warnings.add(
-      "left " + plan_.name,
-      brief(static_cast<double>(departed.particles)) + " particles of \"" + plan_.name + "\"" +
-          (start_mass_ > 0.0 ? ", " + brief(100.0 * departed.mass / start_mass_) + " % of its mass at the start,"
-                             : std::string()) +
-          " left through " + sides_text() + ", the first at t = " + brief(departed.first) +
-          " s; domain.open says which sides are open");
+  warnings.add("left " + plan_.name, brief(static_cast<double>(departed.particles)) + " particles of \"" + plan_.name +
+                                         "\"" + share_of_mass(departed.mass) + " left through " + sides_text() +
+                                         ", the first at t = " + brief(departed.first) +
+                                         " s; domain.open says which sides are open");
 }
 
 }  // namespace barchan

@@ -52,6 +52,7 @@ class OpenSides : public Model {
   PassedSide& side_of(const PhaseParticles& p, std::size_t k);
   void book(const PhaseParticles& p, std::size_t k, Departed& departed);
   std::string sides_text() const;
+  std::string share_of_mass(double left) const;
 
   const Scene& scene_;
   const PlanPhase& plan_;

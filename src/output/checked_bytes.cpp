@@ -1,12 +1,8 @@
 #include "output/checked_bytes.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 
 #include "base/errors.hpp"
@@ -18,33 +14,27 @@ std::uint32_t checksum(const void* data, std::size_t size, std::uint32_t before)
   return static_cast<std::uint32_t>(crc32_z(before, static_cast<const Bytef*>(data), size));
 }
 
-OpenFile::OpenFile(std::filesystem::path file, const std::string& expected) : file_(std::move(file)) {
+namespace {
+
+InputFile opened(const std::filesystem::path& file, const std::string& missing) {
   std::error_code unseen;
-  if (!std::filesystem::is_regular_file(file_, unseen)) throw SceneError(expected);
-  descriptor_ = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat about {};
-  if (descriptor_ < 0 || ::fstat(descriptor_, &about) != 0) {
-    const int error = errno;
-    if (descriptor_ >= 0) ::close(descriptor_);
-    throw SceneError(std::string("cannot be read: ") + std::strerror(error));
-  }
-  size_ = static_cast<std::uint64_t>(about.st_size);
+  if (!std::filesystem::exists(file, unseen) && !unseen) throw SceneError(missing);
+  try {
+    return InputFile(file);
+  } catch (const InputError& e) { throw SceneError(e.what()); }
 }
 
-OpenFile::~OpenFile() { ::close(descriptor_); }
+}  // namespace
+
+OpenFile::OpenFile(std::filesystem::path file, const std::string& missing)
+    : file_(std::move(file)), open_(opened(file_, missing)) {}
 
 void OpenFile::read(std::uint64_t at, void* to, std::size_t size) const {
-  char* bytes = static_cast<char*>(to);
-  while (size > 0) {
-    const ssize_t come = ::pread(descriptor_, bytes, size, static_cast<off_t>(at));
-    if (come < 0 && errno == EINTR) continue;
-    if (come <= 0)
-      throw SceneError("'" + file_.string() +
-                       "' cannot be read: " + (come < 0 ? std::strerror(errno) : "it is shorter"));
-    bytes += come;
-    at += static_cast<std::uint64_t>(come);
-    size -= static_cast<std::size_t>(come);
-  }
+  std::string why;
+  try {
+    if (open_.read(at, to, size) < size) why = "it is shorter";
+  } catch (const InputError& e) { why = e.reason(); }
+  if (!why.empty()) throw SceneError("'" + file_.string() + "' cannot be read: " + why);
 }
 
 Archive::Source source_of(const std::vector<char>& bytes) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/input_file.hpp"
 #include "state/archive.hpp"
 
 namespace barchan {
@@ -18,20 +19,16 @@ std::uint32_t checksum(const void* data, std::size_t size, std::uint32_t before 
 /// A file that stays open: what is read is of the file that had the name at the begin, also when another one gets it.
 class OpenFile {
  public:
-  /// Throws SceneError when it is not there or cannot be read; `expected`: what to say then.
-  OpenFile(std::filesystem::path file, const std::string& expected);
-  ~OpenFile();
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
+  /// Throws SceneError when it is no file that can be read; `missing`: what to say when there is none.
+  OpenFile(std::filesystem::path file, const std::string& missing);
 
-  std::uint64_t size() const { return size_; }
+  std::uint64_t size() const { return open_.size(); }
   /// Throws SceneError when the file cannot be read, or is shorter.
   void read(std::uint64_t at, void* to, std::size_t size) const;
 
  private:
   std::filesystem::path file_;
-  int descriptor_ = -1;
-  std::uint64_t size_ = 0;
+  InputFile open_;
 };
 
 /// Of bytes in memory, which must stay where they are.

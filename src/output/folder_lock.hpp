@@ -6,8 +6,9 @@
 
 namespace barchan {
 
-/// Holds DIR/barchan.lock while it lives and removes it then. The system gives the lock back when a process ends in
-/// whatever way, so that the file of a killed run holds nobody up.
+/// Holds the folder, and DIR/barchan.lock in it, while it lives. The system gives both locks back when a process ends
+/// in whatever way, so that the file of a killed run holds nobody up. The folder's own lock holds when the file is
+/// removed.
 class FolderLock {
  public:
   static constexpr const char* name = "barchan.lock";
@@ -21,10 +22,15 @@ class FolderLock {
 
   /// Who held the folder and ended without giving it back, as the file says; empty: nobody.
   const std::string& left_by() const { return left_by_; }
+  /// Whether the name still means the folder that is held: it was not removed, moved or replaced.
+  bool is_there() const;
 
  private:
-  std::filesystem::path file_;
-  int descriptor_ = -1;
+  /// Another run may hold the folder although its file is gone. Throws SceneError.
+  void hold_folder();
+
+  std::filesystem::path directory_, file_;
+  int descriptor_ = -1, folder_ = -1;
   std::string left_by_;
 };
 

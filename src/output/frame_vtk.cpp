@@ -33,13 +33,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <numeric>
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/input_file.hpp"
 #include "output/frame_read.hpp"
 #include "output/pieces.hpp"
 #include "output/series.hpp"
@@ -78,15 +76,17 @@ std::string last_line(std::string text) {
 }
 
 /// A whole file ends with its closing tag (and white space). This finds every truncation, which VTK's readers do not.
-bool has_its_end(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) return false;
-  const std::streamoff size = stream.tellg();
-  std::string tail(static_cast<std::size_t>(std::min<std::streamoff>(size, 64)), '\0');
-  stream.seekg(size - static_cast<std::streamoff>(tail.size()));
-  stream.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+bool has_its_end(const InputFile& file) {
+  std::string tail(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 64)), '\0');
+  tail.resize(file.read(file.size() - tail.size(), tail.data(), tail.size()));
   while (!tail.empty() && std::isspace(static_cast<unsigned char>(tail.back()))) tail.pop_back();
-  return stream && tail.ends_with("</VTKFile>");
+  return tail.ends_with("</VTKFile>");
+}
+
+bool has_its_end(const std::filesystem::path& file) {
+  try {
+    return has_its_end(InputFile(file));
+  } catch (const InputError&) { return false; }
 }
 
 // ---- writing --------------------------------------------------------------------------------------------------------
@@ -336,16 +336,17 @@ Frame read_frame(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& reason) {
     throw OutputError("cannot read '" + file.string() + "': " + reason);
   };
-  errno = 0;
-  if (!std::ifstream(file, std::ios::binary)) fail(std::strerror(errno != 0 ? errno : EIO));
-  if (is_list_of_pieces(file)) return read_pieces(file);
-  const auto suffix = file.extension();
-  if (suffix != ".vtp" && suffix != ".vtu") fail("a frame's name ends in .vtp or .vtu (in pieces: .pvtp, .pvtu)");
-  if (!has_its_end(file)) fail("the file is incomplete");
   try {
-    if (auto frame = read_appended(read_text(file), suffix)) return std::move(*frame);
-    return suffix == ".vtp" ? read_with<vtkXMLPolyDataReader>(file) : read_with<vtkXMLUnstructuredGridReader>(file);
-  } catch (const OutputError& e) { fail(e.what()); }
+    const InputFile open(file);
+    if (is_list_of_pieces(file)) return read_pieces(file);
+    const auto suffix = file.extension();
+    if (suffix != ".vtp" && suffix != ".vtu") fail("a frame's name ends in .vtp or .vtu (in pieces: .pvtp, .pvtu)");
+    if (!has_its_end(open)) fail("the file is incomplete");
+    try {
+      if (auto frame = read_appended(open.text(), suffix)) return std::move(*frame);
+      return suffix == ".vtp" ? read_with<vtkXMLPolyDataReader>(file) : read_with<vtkXMLUnstructuredGridReader>(file);
+    } catch (const OutputError& e) { fail(e.what()); }
+  } catch (const InputError& e) { fail(e.reason()); }
   return {};
 }
 

@@ -1,5 +1,7 @@
 #include "output/history.hpp"
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -36,6 +38,13 @@ std::string rows_until(std::string_view text, const std::string& expected_header
   return kept;
 }
 
+/// Device and number of a file; zeros where there is none.
+std::pair<std::uintmax_t, std::uintmax_t> identity_of_file(const std::filesystem::path& file) {
+  struct stat about {};
+  if (::stat(file.c_str(), &about) != 0) return {};
+  return {about.st_dev, about.st_ino};
+}
+
 }  // namespace
 
 History::History(const std::filesystem::path& file, const std::vector<std::string>& columns, bool append, double until)
@@ -53,7 +62,10 @@ History::History(const std::filesystem::path& file, const std::vector<std::strin
   errno = 0;
   stream_.open(file, std::ios::app | std::ios::binary);
   if (!stream_) throw OutputError("cannot write '" + file.string() + "': " + std::strerror(errno));
+  identity_ = identity_of_file(file);
 }
+
+std::string History::removed() const { return identity_of_file(file_) == identity_ ? "" : file_.filename().string(); }
 
 void History::row(const std::vector<double>& values) {
   if (values.size() != columns_) throw std::logic_error("a row of the history must have one value a column");

@@ -1,9 +1,11 @@
 // history.csv: one row a sampled step.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output/whole_file.hpp"
@@ -20,11 +22,14 @@ class History {
   void row(const std::vector<double>& values);  ///< as many as there are columns; 17 significant digits
   /// Brings the rows to the disk: a checkpoint there must not be without them. Throws OutputError.
   void sync() const { sync_file(file_); }
+  /// Its name; "" where the file that the rows go to still has it.
+  std::string removed() const;
 
  private:
   std::ofstream stream_;
   std::filesystem::path file_;
   std::size_t columns_;
+  std::pair<std::uintmax_t, std::uintmax_t> identity_;  // of the file: its device and its number there
 };
 
 }  // namespace barchan

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string_view>
 
+#include "base/input_file.hpp"
 #include "output/whole_file.hpp"
 
 namespace barchan {
@@ -141,10 +142,10 @@ bool is_measured(const std::string& file) {
 
 /// The document in a file; null where there is none or it is damaged.
 nlohmann::json read_json(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
-  std::ifstream stream(file, std::ios::binary);
-  return nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  constexpr std::uint64_t most = 64'000'000;  // bytes; a report has some thousand
+  try {
+    return nlohmann::json::parse(read_input(file, most), nullptr, /*allow_exceptions=*/false);
+  } catch (const InputError&) { return nullptr; }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cctype>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -60,6 +61,22 @@ bool is_of_series(const std::string& name, const std::filesystem::directory_entr
 
 }  // namespace
 
+std::optional<long> frame_number(const std::string& name, const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  long number = 0;
+  if (!is_stem_of(name, stem)) return std::nullopt;
+  const char* const end = stem.data() + stem.size();
+  const auto [rest, error] = std::from_chars(stem.data() + name.size() + 1, end, number);
+  return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
+}
+
+bool has_frames(const std::filesystem::path& directory, const std::string& name) {
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, failed))
+    if (is_of_series(name, entry)) return true;
+  return false;
+}
+
 std::string frame_stem(const std::string& name, int index) {
   std::array<char, 16> number{};
   std::snprintf(number.data(), number.size(), "_%06d", index);
@@ -95,6 +112,10 @@ struct SeriesWriter::Work {
   void prepare();
   void loop();
   void write_first(const Frame& frame);
+
+  std::vector<std::string> removed;  // frames that were whole and are gone
+  Clock::time_point next_look{};
+  void look_for_removed(bool at_once);
 };
 
 /// The directory exists and can be written, and holds no frame of an earlier run but those that are kept.
@@ -126,8 +147,26 @@ void SeriesWriter::Work::write_first(const Frame& frame) {
   if (frame.in_pieces) write_list_of_pieces(directory, stem, frame, format);
   else write_frame(directory / file, frame, format, compress);
   entries.push_back({frame.time, file});
+  look_for_removed(false);
   write_pvd(pvd(), entries);
   whole = static_cast<long>(entries.size());
+}
+
+/// The .pvd lists only what is there. Of a long series not every frame is a moment to look, so that it takes a
+/// hundredth of the time at most.
+void SeriesWriter::Work::look_for_removed(bool at_once) {
+  const Clock::time_point begin = Clock::now();
+  if (!at_once && begin < next_look) return;
+  std::erase_if(entries, [&](const Entry& entry) {
+    std::error_code unseen;
+    const std::filesystem::path file = directory / entry.file;
+    const bool there =
+        std::filesystem::exists(file, unseen) &&
+        (!is_list_of_pieces(file) || is_folder_of_pieces(directory / std::filesystem::path(entry.file).stem()));
+    if (!there && !unseen) removed.push_back(entry.file);
+    return !there && !unseen;
+  });
+  next_look = Clock::now() + 100 * (Clock::now() - begin);
 }
 
 void SeriesWriter::Work::loop() {
@@ -186,6 +225,17 @@ void SeriesWriter::finish() {
   Lock lock(work_->mutex);
   work_->changed.wait(lock, [&] { return work_->frames.empty(); });
   if (work_->error) std::rethrow_exception(work_->error);
+}
+
+std::vector<std::string> SeriesWriter::removed() {
+  const Lock lock(work_->mutex);
+  const std::size_t listed = work_->entries.size();
+  work_->look_for_removed(true);
+  std::error_code unseen;
+  if (work_->entries.size() < listed || !std::filesystem::exists(work_->pvd(), unseen))
+    write_pvd(work_->pvd(), work_->entries);
+  work_->whole = static_cast<long>(work_->entries.size());
+  return work_->removed;
 }
 
 double SeriesWriter::seconds_writing() const { return work_->writing; }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ class SeriesWriter {
   double seconds_waiting() const;  ///< time write() and finish() blocked the caller
   long frames() const;             ///< whole frames, kept ones included
   std::string last_file() const;   ///< of the last whole frame; "" if none. After finish()
+  /// Frames that somebody removed after they were written; the .pvd lists the others. After finish(). Throws
+  /// OutputError.
+  std::vector<std::string> removed();
 
  private:
   struct Work;
@@ -44,6 +48,10 @@ class SeriesWriter {
 
 /// NAME_000010: what the name of a frame's file begins with.
 std::string frame_stem(const std::string& name, int index);
+/// The number in such a name; nothing: it is none of this series.
+std::optional<long> frame_number(const std::string& name, const std::filesystem::path& file);
+/// Whether a frame of this series, a list of its pieces or their folder lies in the folder.
+bool has_frames(const std::filesystem::path& directory, const std::string& name);
 
 /// Makes the folder of a run where there is none. Throws OutputError.
 void make_directory(const std::filesystem::path& directory);

@@ -6,10 +6,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "base/errors.hpp"
+#include "base/input_file.hpp"
 
 namespace barchan {
 namespace {
@@ -106,17 +105,9 @@ void sync_file(const std::filesystem::path& file) {
 }
 
 std::string read_text(const std::filesystem::path& file) {
-  std::error_code unseen;
-  if (std::filesystem::is_fifo(file, unseen) || std::filesystem::is_socket(file, unseen))
-    throw OutputError("cannot read '" + file.string() + "': is not a file");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  if (stream) text.assign(std::istreambuf_iterator<char>(stream), {});
-  // Opening a directory succeeds and reading it fails, hence the second look at errno.
-  if (!stream || stream.bad() || (text.empty() && std::filesystem::is_directory(file)))
-    throw OutputError("cannot read '" + file.string() + "': " + std::strerror(errno != 0 ? errno : EIO));
-  return text;
+  try {
+    return read_input(file);
+  } catch (const InputError& e) { throw OutputError("cannot read '" + file.string() + "': " + e.reason()); }
 }
 
 }  // namespace barchan

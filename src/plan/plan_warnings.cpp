@@ -1,6 +1,7 @@
 // What a scene may mean otherwise, or what will go badly: told by the plan, before and after a run. Nothing here is
 // wrong for certain, else it would be refused.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "output/numbers.hpp"
@@ -206,6 +207,53 @@ void warn_of_weight(const Scene& scene, Plan& plan) {
     plan.warnings.emplace_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
 }
 
+/// What "up" means is not asked of gravity: beds, the sides by name, and grains that enter have their heights along y.
+void warn_of_another_up(const Scene& scene, Plan& plan) {
+  const Vec3& g = scene.domain.gravity;
+  if (scene.dimensions == 2 || g[1] != 0.0 || std::abs(g[2]) <= std::abs(g[0]) || scene.domain.periodic[2]) return;
+  std::string uses;
+  const auto add = [&](const std::string& use) { uses += (uses.empty() ? "" : ", ") + use; };
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const Fill& fill = scene.fills[k];
+    const std::string dotted = "fill." + std::to_string(k);
+    if (std::holds_alternative<BedShape>(fill.shape)) add(dotted + ".shape.bed");
+    if (fill.packing == Packing::settled) add(dotted + ".packing");
+    if (const auto* sides = std::get_if<SidesShape>(&fill.shape))
+      for (const std::string& side : sides->sides)
+        if (side == "bottom" || side == "top") add(dotted + ".shape.sides = \"" + side + "\"");
+  }
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k) add("influx." + std::to_string(k));
+  if (!uses.empty())
+    plan.warnings.push_back("domain.gravity: it points along z, and the heights of " + uses +
+                            " are along y: \"bottom\" and \"top\" are the sides across y, a bed lies on the first; "
+                            "turn the scene so that gravity is along y, as in [0, -9.81, 0]");
+}
+
+/// Grains that enter faster or more densely than in any wind: a flux in g, or a speed in mm/s.
+void warn_of_influxes(const Scene& scene, Plan& plan) {
+  constexpr double dense = 0.05;     // of the volume at the lowest place; saltation has some 1e-3 there
+  constexpr double fastest = 100.0;  // m/s
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k) {
+    const Influx& influx = scene.influxes[k];
+    const std::string key = "influx." + std::to_string(k);
+    if (!influx.speed || !influx.decay_height) continue;
+    const double bottom = scene.domain.origin[1], h = *influx.decay_height;
+    const double room = bottom + scene.domain.size[1] - influx.above.value_or(bottom);
+    // Of a flux that falls as exp(-y/h): its density over that of the grains, at y = 0.
+    const double share =
+        influx.flux / (*influx.speed * h * -std::expm1(-room / h)) / find_phase(scene, influx.phase)->density;
+    if (share > dense)
+      plan.warnings.push_back(key + ".flux: " + brief(influx.flux) + " kg/m/s at " + brief(*influx.speed) +
+                              " m/s fills " + brief(100.0 * share) +
+                              " % of the space at the height where most grains enter: they collide there, and those "
+                              "without room enter later or never; sand in a wind has a flux of 0.01 to 0.1 kg/m/s");
+    if (*influx.speed > fastest)
+      plan.warnings.push_back(
+          key + ".speed: at " + brief(*influx.speed) +
+          " m/s a contact lasts as short as the steps must be then; grains in a wind have some m/s");
+  }
+}
+
 /// A radius below one spacing meets no neighbour: it may have been meant in the other unit.
 void warn_of_small_radius(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries) {
@@ -232,6 +280,8 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_output(scene, plan);
   warn_of_late_instruments(scene, plan);
   warn_of_weight(scene, plan);
+  warn_of_another_up(scene, plan);
+  warn_of_influxes(scene, plan);
   warn_of_small_radius(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }

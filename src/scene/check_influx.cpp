@@ -32,6 +32,24 @@ void check_side(const Scene& scene, const Influx& influx, const std::string& at,
   }
 }
 
+/// No more than grains that are packed as loosely as a stream can still flow, at the speed with which they enter, over
+/// the whole height.
+void check_flux(const Scene& scene, const Influx& influx, const std::string& dotted, const Report& report) {
+  const Phase* grains = find_phase(scene, influx.phase);
+  for (const char* key : {"", ".flux", ".speed", ".above"})
+    if (report.touched(dotted + key)) return;
+  if (!grains || !influx.speed || report.touched("domain") || report.touched("phases." + grains->name + ".density"))
+    return;
+  constexpr double packing = 0.6;  // of the volume; spheres at random, poured
+  const double bottom = scene.domain.origin[1], top = bottom + scene.domain.size[1];
+  const double most = packing * grains->density * *influx.speed * (top - influx.above.value_or(bottom));
+  if (influx.flux > most)
+    report(dotted + ".flux", number_text(influx.flux) + " kg/m/s is more than grains of \"" + grains->name +
+                                 "\" can be that enter at " + number_text(*influx.speed) +
+                                 " m/s, packed over the whole height of the side; expected at most " +
+                                 number_text(most) + " kg/m/s");
+}
+
 }  // namespace
 
 void check_influxes(const Scene& scene, const Report& report) {
@@ -52,6 +70,7 @@ void check_influxes(const Scene& scene, const Report& report) {
     if (influx.above && !report.touched(dotted + ".above") && !report.touched("domain") &&
         !(*influx.above >= scene.domain.origin[1] && *influx.above < top))
       report(dotted + ".above", "no grain could enter from there on; expected a height in the domain");
+    if (!file) check_flux(scene, influx, dotted, report);
   }
 }
 

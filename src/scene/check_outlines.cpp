@@ -112,6 +112,10 @@ void read_surfaces(Scene& scene, const Report& report) {
       report(dotted, "\"" + shortened(path) + "\": " + file.problem +
                          "; expected .stl, .obj, .ply, .vtp, .vtu, .vtk or .csv, relative to the scene's file (meshio "
                          "converts others)");
+    if (!file.unit.empty() && surface->placement.scale != 1.0)
+      report("fill." + std::to_string(k) + ".shape.scale",
+             "the heading of \"" + shortened(surface->file) + "\" says that its lengths are in " + file.unit +
+                 ", and they are converted by that; expected no scale, or a heading without units");
     surface->facets = std::move(file.facets);
     surface->triangles = file.triangles;
   }

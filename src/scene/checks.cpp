@@ -267,34 +267,7 @@ void check_held_force(const Scene& scene, const Report& report, std::size_t numb
   }
 }
 
-/// A formula where a number would have to be 0 or more: looked at in the middle of the domain and at its corners, at
-/// the start, the end and between. What it is elsewhere and at other times nobody knows beforehand.
-void not_negative_formula(const Scene& scene, const Expression& e, const std::string& dotted, const Report& report) {
-  if (!e.is_formula() || report.touched(dotted) || report.touched("domain") || report.touched("time.end")) return;
-  const Formula formula(e);
-  constexpr int times = 20;
-  for (int step = 0; step <= times; ++step)
-    for (unsigned corner = 0; corner < 9; ++corner) {
-      const double t = scene.time.end * step / times;
-      Vec3 x = scene.domain.origin;
-      for (unsigned d = 0; d < 3; ++d)
-        x[d] += (corner == 8 ? 0.5 : static_cast<double>(corner >> d & 1u)) * scene.domain.size[d];
-      const double value = formula(x, t);
-      if (value >= 0.0) continue;
-      return report(dotted, "the formula is " + number_text(value) + " at t = " + number_text(t) + " s, (" +
-                                number_text(x[0]) + ", " + number_text(x[1]) + ", " + number_text(x[2]) +
-                                ") m; expected 0 or more at all times and places");
-    }
-}
-
 /// A hold needs a fluid and a periodic axis; a forcing says one thing.
-/// A column's friction velocity by formula has the bound of the number.
-void check_winds(const Scene& scene, const Report& report) {
-  for (const Phase& phase : scene.phases)
-    if (const std::string dotted = "phases." + phase.name; !report.touched(dotted + ".kind") && phase.if_column())
-      not_negative_formula(scene, phase.column().friction_velocity, dotted + ".friction-velocity", report);
-}
-
 void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   const std::string dotted = "forcing." + std::to_string(number);
   const Forcing& forcing = scene.forcings[number];
@@ -318,7 +291,6 @@ void check_hold(const Scene& scene, const Report& report, std::size_t number) {
       report(dotted + ".box", "the box lies outside the domain, which along " + std::string(1, "xyz"[d]) +
                                   " goes from " + number_text(low) + " to " + number_text(high) + " m");
   }
-  not_negative_formula(scene, forcing.rate, dotted + ".rate", report);
   if (report.has(dotted + ".friction-velocity") && !forcing.holds_force() && !report.touched(dotted + ".hold"))
     report(dotted + ".friction-velocity",
            "only a force that is held has one; expected hold = \"stress\" or \"pressure-gradient\"");
@@ -359,6 +331,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
     if (report.has(dotted) && !report.touched(dotted) && !find_phase(scene, scene.fills[k].phase))
       report(dotted, unknown_phase(scene.fills[k].phase, scene));
   }
+  check_formulas(document, scene, report);
   check_fills(scene, report);
   check_phases(scene, report);
   check_interactions(scene, report);
@@ -367,7 +340,6 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_forcings(scene, report);
   check_flow_ends(scene, report);
   check_influxes(scene, report);
-  check_winds(scene, report);
   check_physics(scene, report);
   check_bodies(scene, report);
   check_rigid(scene, report);

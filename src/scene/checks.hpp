@@ -64,6 +64,9 @@ void check_run(const Scene& scene, const Report& report);
 void check_flow_ends(const Scene& scene, const Report& report);
 void check_influxes(const Scene& scene, const Report& report);
 
+/// Of every formula: its values, by the bounds of its key.
+void check_formulas(const toml::table& document, const Scene& scene, const Report& report);
+
 /// Of fills alone: shapes, packings, velocities and pressures that their phase or the domain cannot have.
 void check_fills(const Scene& scene, const Report& report);
 

@@ -68,13 +68,28 @@ class Constants {
  public:
   explicit Constants(Problems& problems) : problems_(problems) {}
 
+  /// Each constant is evaluated once, after those that it needs: a walk through what needs what, depth first.
   void read(const toml::table& table) {
-    std::map<std::string, const toml::node*> open;
+    std::map<std::string, Definition> definitions;
     for (const auto& [name, node] : table)
-      if (is_name(std::string(name.str()), name.source())) open[std::string(name.str())] = &node;
-    for (const auto& [name, node] : open) all_ += (all_.empty() ? "" : ", ") + name;
-    for (std::size_t round = open.size() + 1; round > 0 && !open.empty(); --round)
-      std::erase_if(open, [&](const auto& entry) { return define(entry.first, *entry.second, open, round == 1); });
+      if (is_name(std::string(name.str()), name.source())) definitions[std::string(name.str())].node = &node;
+    tell_names(definitions);
+    for (auto& [first, definition] : definitions) {
+      if (definition.state != Definition::untouched) continue;
+      std::vector<std::pair<const std::string, Definition>*> path{&*definitions.find(first)};
+      while (!path.empty()) {
+        auto& [name, top] = *path.back();
+        if (top.state == Definition::untouched) begin(top, definitions);
+        if (top.next < top.needs.size()) {
+          auto& needed = *definitions.find(top.needs[top.next++]);
+          if (needed.second.state == Definition::untouched) path.push_back(&needed);
+          else if (needed.second.state == Definition::open && top.circle.empty()) top.circle = needed.first;
+          continue;
+        }
+        define(name, top);
+        path.pop_back();
+      }
+    }
   }
 
   void section(toml::table& table, const std::string& section, const std::string& dotted) {
@@ -95,12 +110,15 @@ class Constants {
 
   /// Every constant was used; a misspelt one of --set would change nothing in silence.
   void look_for_unused(const toml::table& table) const {
+    constexpr int most = 50;  // that get the name of the nearest other one, which takes as long as there are names
+    int told = 0;
     for (const auto& [name, node] : table) {
       const std::string word(name.str());
       if (!values_.contains(word) || used_.contains(word)) continue;
       std::vector<std::string> others;
-      for (const auto& [other, _] : values_)
-        if (other != word) others.push_back(other);
+      if (told++ < most)
+        for (const auto& [other, _] : values_)
+          if (other != word) others.push_back(other);
       problems_.add(
           name.source(), "constants." + word,
           "nothing uses it; expected a constant that a value of the scene names" + did_you_mean(nearest(word, others)));
@@ -108,7 +126,32 @@ class Constants {
   }
 
  private:
-  using Open = std::map<std::string, const toml::node*>;
+  struct Definition {
+    enum State { untouched, open, done };
+    const toml::node* node = nullptr;
+    State state = untouched;
+    std::vector<std::string> needs;  // other constants
+    std::size_t next = 0;            // of these, not looked at yet
+    std::string circle;              // one that needs this one again
+  };
+
+  /// For messages: not more names than a person reads.
+  void tell_names(const std::map<std::string, Definition>& definitions) {
+    constexpr std::size_t most = 20;
+    std::size_t count = 0;
+    for (const auto& [name, _] : definitions)
+      if (count++ < most) all_ += (all_.empty() ? "" : ", ") + name;
+    if (count > most) all_ += " and " + std::to_string(count - most) + " more";
+  }
+
+  static void begin(Definition& definition, const std::map<std::string, Definition>& all) {
+    definition.state = Definition::open;
+    if (const auto* text = definition.node->as_string())
+      replaced(text->get(), [&](const std::string& word) {
+        if (all.contains(word)) definition.needs.push_back(word);
+        return std::string();
+      });
+  }
 
   bool is_name(const std::string& name, const toml::source_region& place) {
     static const std::set<std::string> taken{"x", "y", "z", "t", "pi", "e"};
@@ -124,29 +167,18 @@ class Constants {
     return good;
   }
 
-  /// False as long as others that it needs have no value.
-  bool define(const std::string& name, const toml::node& node, const Open& open, bool last) {
+  /// Those that it needs have their values, but where a circle is.
+  void define(const std::string& name, Definition& definition) {
+    definition.state = Definition::done;
     const std::string here = "constants." + name;
-    if (node.is_number()) {
-      values_[name] = node.value_or(0.0);
-      return true;
-    }
+    const toml::node& node = *definition.node;
     const auto* text = node.as_string();
-    if (!text) {
-      problems_.add(node.source(), here, "expected a number or a formula of other constants");
-      return true;
-    }
-    std::string missing;
-    replaced(text->get(), [&](const std::string& word) {
-      if (open.contains(word)) missing = word;
-      return std::string();
-    });
-    if (!missing.empty() && !last) return false;
-    if (!missing.empty())
+    if (node.is_number()) values_[name] = node.value_or(0.0);
+    else if (!text) problems_.add(node.source(), here, "expected a number or a formula of other constants");
+    else if (!definition.circle.empty())
       problems_.add(node.source(), here,
-                    "needs \"" + missing + "\", which needs it; expected a formula without a circle");
+                    "needs \"" + definition.circle + "\", which needs it; expected a formula without a circle");
     else if (const auto number = evaluate(*text, here)) values_[name] = *number;
-    return true;
   }
 
   std::string value_of(const std::string& name) {

@@ -3,12 +3,12 @@
 #include <zlib.h>
 
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include <vector>
 
+#include "base/input_file.hpp"
 #include "scene/reader.hpp"
 
 namespace barchan {
@@ -17,18 +17,20 @@ namespace {
 
 using Values = std::map<std::string, std::string>;
 
+/// Of a file that cannot be read, "": who reads it for the scene says why.
 std::string checksum_of(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::vector<char> bytes(65536);
   unsigned long sum = crc32_z(0, nullptr, 0);
-  std::size_t size = 0;
-  while (stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), stream.gcount() > 0) {
-    const auto count = static_cast<std::size_t>(stream.gcount());
-    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(bytes.data()), count);
-    size += count;
-  }
+  std::uint64_t size = 0;
+  try {
+    const InputFile file(path);
+    std::vector<char> bytes(65536);
+    while (const std::size_t come = file.read(size, bytes.data(), bytes.size())) {
+      sum = crc32_z(sum, reinterpret_cast<const Bytef*>(bytes.data()), come);
+      size += come;
+    }
+  } catch (const InputError&) { return ""; }
   char text[48];
-  std::snprintf(text, sizeof text, "%08lx-%zu", sum, size);
+  std::snprintf(text, sizeof text, "%08lx-%zu", sum, static_cast<std::size_t>(size));
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include "scene/mesh_texts.hpp"
 #include "scene/mesh_words.hpp"
+#include "scene/text_table.hpp"
 
 namespace barchan {
 
@@ -262,7 +263,7 @@ void ply(std::string_view bytes, Mesh& mesh) {
 }  // namespace
 
 Mesh parse_ply(std::string_view bytes) {
-  return whole([&](Mesh& mesh) { ply(bytes, mesh); });
+  return whole([&](Mesh& mesh) { ply(without_mark(bytes), mesh); });
 }
 
 }  // namespace barchan

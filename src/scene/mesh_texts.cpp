@@ -1,6 +1,7 @@
 #include "scene/mesh_texts.hpp"
 
 #include "scene/mesh_words.hpp"
+#include "scene/text_table.hpp"
 
 namespace barchan {
 
@@ -151,29 +152,24 @@ void obj(std::string_view text, Mesh& mesh) {
 
 // --- .csv ------------------------------------------------------------------------------------------------------------
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
-}
-
-/// The fields of a line: between commas or semicolons, where nothing is a field too; else between blanks.
-std::vector<std::string_view> fields_of(std::string_view line) {
-  if (line.find_first_of(",;") == std::string_view::npos) return split_words(line);
-  std::vector<std::string_view> fields;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find_first_of(",;", begin), line.size());
-    fields.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
+/// The units of a heading of two names, x and y; nothing: the line is none. Throws Refused for a unit that is no
+/// length.
+std::optional<std::array<UnitSize, 2>> units_of_heading(const std::vector<std::string>& fields, std::size_t line,
+                                                        std::string& unit) {
+  if (fields.size() != 2) return std::nullopt;
+  std::array<UnitSize, 2> units;
+  for (std::size_t d = 0; d < 2; ++d) {
+    const ColumnHead head = head_of(fields[d], Quantity::length);
+    if (!is_name(head.name)) return std::nullopt;
+    if (!head.unit) continue;
+    const auto found = unit_of(*head.unit, Quantity::length);
+    if (!found)
+      refuse_line(line, "has the column " + head.name + " in " + in_quotes(*head.unit) + "; expected a unit of " +
+                            units_text(Quantity::length));
+    units[d] = *found;
+    if (found->times != found->over) unit = *head.unit;
   }
-  return fields;
-}
-
-/// A name of a column in the first line, in quotes or not: it begins with a letter and is no word for a number.
-bool is_name(std::string_view word) {
-  if (word.size() >= 2 && word.front() == '"' && word.back() == '"') word = trimmed(word.substr(1, word.size() - 2));
-  return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) && !same(word, "nan") &&
-         !same(word, "inf") && !same(word, "infinity");
+  return units;
 }
 
 void corners_of_polygons(std::string_view text, Mesh& mesh) {
@@ -186,23 +182,50 @@ void corners_of_polygons(std::string_view text, Mesh& mesh) {
     for (std::size_t i = 0; i < corners.size(); ++i) add_segment(mesh, corners[i], corners[(i + 1) % corners.size()]);
     corners.clear();
   };
+  std::array<UnitSize, 2> units;
   Lines lines(text);
   bool first = true;
   while (lines.next()) {
-    const std::string_view line = trimmed(lines.line());
-    if (line.empty()) close();
-    if (line.empty() || line.starts_with('#')) continue;
-    const auto fields = fields_of(line);
-    const bool names = first && fields.size() == 2 && is_name(fields[0]) && is_name(fields[1]);
+    const std::string_view line = lines.line();
+    const std::size_t begin = line.find_first_not_of(blanks);
+    if (begin == std::string_view::npos) {
+      close();
+      continue;
+    }
+    const bool comment = line[begin] == '#';
+    const auto fields = fields_of(comment ? line.substr(begin + 1) : line, true);
+    if (comment) {  // a heading of names with units may stand in one, as numpy.savetxt writes it
+      const bool units_there = first && fields && line.find_first_of("[(") != std::string_view::npos;
+      if (const auto heading = units_there ? units_of_heading(*fields, lines.number(), mesh.unit) : std::nullopt)
+        units = *heading;
+      continue;
+    }
+    if (!fields) refuse_line(lines.number(), "has a field whose quote is not closed");
+    const auto heading = first ? units_of_heading(*fields, lines.number(), mesh.unit) : std::nullopt;
     first = false;
-    if (names) continue;
-    const auto x = fields.size() == 2 ? coordinate_of(fields[0]) : std::nullopt,
-               y = fields.size() == 2 ? coordinate_of(fields[1]) : std::nullopt;
-    if (!x || !y) refuse_line(lines.number(), "is not a corner x, y");
-    corners.push_back({*x, *y, 0.0});
+    if (heading) {
+      units = *heading;
+      continue;
+    }
+    Vec3 corner{};
+    if (fields->size() != 2) refuse_line(lines.number(), "is not a corner x, y");
+    for (std::size_t d = 0; d < 2; ++d) {
+      const std::string& field = (*fields)[d];
+      const auto value = coordinate_of(field);
+      if (!value && field.find(',') != std::string::npos) refuse_line(lines.number(), "has " + no_number(field));
+      if (!value) refuse_line(lines.number(), "is not a corner x, y");
+      corner[d] = units[d].of(*value);
+    }
+    corners.push_back(corner);
     last = lines.number();
   }
   close();
+}
+
+/// The text behind a byte-order mark. Throws Refused for what is no text that we read.
+std::string_view plain_text(std::string_view bytes) {
+  if (const std::string why = why_no_text(bytes); !why.empty()) refuse(why);
+  return without_mark(bytes);
 }
 
 }  // namespace
@@ -212,19 +235,20 @@ Mesh parse_stl(std::string_view bytes) {
     // Programs begin the head of the binary form with "solid" too: its size tells the two apart.
     const bool fits =
         bytes.size() >= 84 && bytes.size() == 84 + 50 * std::size_t{bytes_as<std::uint32_t>(bytes.data() + 80, false)};
-    const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
-    const bool text = !fits && same(bytes.substr(begin, 5), "solid") && bytes.find('\0') == std::string_view::npos;
-    if (text) stl_text(bytes, mesh);
+    if (fits) return stl_binary(bytes, mesh);
+    const std::string_view text = plain_text(bytes);
+    const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+    if (same(text.substr(begin, 5), "solid") && text.find('\0') == std::string_view::npos) stl_text(text, mesh);
     else stl_binary(bytes, mesh);
   });
 }
 
 Mesh parse_obj(std::string_view text) {
-  return whole([&](Mesh& mesh) { obj(text, mesh); });
+  return whole([&](Mesh& mesh) { obj(plain_text(text), mesh); });
 }
 
 Mesh parse_corners(std::string_view text) {
-  return whole([&](Mesh& mesh) { corners_of_polygons(text, mesh); });
+  return whole([&](Mesh& mesh) { corners_of_polygons(plain_text(text), mesh); });
 }
 
 }  // namespace barchan

@@ -1,14 +1,11 @@
 #include "scene/reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <variant>
 
 #include "base/errors.hpp"
+#include "base/input_file.hpp"
 #include "scene/checks.hpp"
 #include "scene/constants.hpp"
 #include "scene/identity.hpp"
@@ -20,7 +17,7 @@ namespace barchan {
 
 namespace {
 
-constexpr std::size_t most_of_a_scene = std::size_t{16} << 20;  // bytes; a person writes some thousand
+constexpr std::uint64_t most_of_a_scene = 16'000'000;  // bytes; a person writes some thousand
 
 }  // namespace
 
@@ -60,21 +57,10 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
 }
 
 Scene read_scene(const std::string& file, const std::vector<std::string>& overrides) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored))
-    throw SceneError(file + ": is a directory; expected a scene file (.toml)");
-  std::ifstream stream(file, std::ios::binary);
   std::string text;
-  for (std::array<char, 16384> part; stream && text.size() <= most_of_a_scene;) {
-    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
-    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (text.size() > most_of_a_scene)
-    throw SceneError(file + ": is larger than " + std::to_string(most_of_a_scene >> 20) +
-                     " MB; expected a scene file (.toml)");
-  if (!stream && !stream.eof())
-    throw SceneError(file + ": cannot be read: " + std::strerror(errno ? errno : EIO) +
-                     "; expected a scene file (.toml)");
+  try {
+    text = read_input(file, most_of_a_scene);
+  } catch (const InputError& e) { throw SceneError(file + ": " + e.what() + "; expected a scene file (.toml)"); }
   return parse_scene(text, file, overrides);
 }
 

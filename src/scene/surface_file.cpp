@@ -3,26 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <optional>
 
+#include "base/input_file.hpp"
 #include "scene/mesh_texts.hpp"
 #include "scene/mesh_vtk.hpp"
 
 namespace barchan {
 namespace {
 
-constexpr std::uintmax_t most_of_a_surface = std::uintmax_t{1} << 30;  // bytes
-
-/// The bytes of a file; nothing when it cannot be read.
-std::optional<std::string> bytes_of(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.is_open() || stream.bad()) return {};
-  return bytes;
-}
+constexpr std::uint64_t most_of_a_surface = 1'000'000'000;  // bytes
 
 Mesh mesh_of(const std::string& path, int part) {
   std::string suffix = std::filesystem::path(path).extension().string();
@@ -35,13 +25,15 @@ Mesh mesh_of(const std::string& path, int part) {
                 ? "is Gmsh's own; in Python meshio.write(\"a.vtu\", meshio.read(\"a.msh\")) makes one of VTK"
                 : "a file of an unknown kind"};
   if (part != 0 && !vtk) return {{}, {}, "has no parts; only .vtu, .vtp and .vtk have"};
-  const auto bytes = bytes_of(path);
-  if (!bytes) return {{}, {}, "cannot be read"};
-  if (suffix == ".stl") return parse_stl(*bytes);
-  if (suffix == ".obj") return parse_obj(*bytes);
-  if (suffix == ".ply") return parse_ply(*bytes);
-  if (suffix == ".csv") return parse_corners(*bytes);
-  if (std::string problem = wrong_number_of_vtk(*bytes, suffix); !problem.empty()) return {{}, {}, problem};
+  std::string bytes;
+  try {
+    bytes = read_input(path, most_of_a_surface);
+  } catch (const InputError& e) { return {{}, {}, e.what()}; }
+  if (suffix == ".stl") return parse_stl(bytes);
+  if (suffix == ".obj") return parse_obj(bytes);
+  if (suffix == ".ply") return parse_ply(bytes);
+  if (suffix == ".csv") return parse_corners(bytes);
+  if (std::string problem = wrong_number_of_vtk(bytes, suffix); !problem.empty()) return {{}, {}, problem};
   return read_vtk_mesh(path, suffix, part);
 }
 
@@ -101,14 +93,13 @@ std::vector<Facet> border_of(const std::vector<Facet>& triangles) {
 
 SurfaceFile read_surface(const std::string& path, int part) {
   SurfaceFile file;
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) file.problem = "there is no such file";
-  else if (!std::filesystem::is_regular_file(status)) file.problem = "is not a file";
-  else if (std::filesystem::file_size(path, error) > most_of_a_surface || error) file.problem = "is larger than 1 GB";
+  std::error_code unseen;
+  if (!std::filesystem::exists(path, unseen) && !unseen) file.problem = "there is no such file";
+  else file.problem = why_no_input(path, most_of_a_surface);
   if (!file.problem.empty()) return file;
   Mesh mesh = mesh_of(path, part);
   file.problem = mesh.problem;
+  file.unit = mesh.unit;
   if (!file.problem.empty()) return file;
   file.facets = std::move(mesh.triangles);
   file.triangles = !file.facets.empty();

@@ -9,9 +9,10 @@
 namespace barchan {
 
 struct SurfaceFile {
-  std::vector<Facet> facets;  // in the file's unit
+  std::vector<Facet> facets;  // in the file's unit of length
   bool triangles = false;     // else segments
   std::string problem;        // why nothing was read; empty when it was
+  std::string unit;           // that the file names, if not m; facets are in m then
 };
 
 /// Reads the border of cells of three dimensions (.vtu, .vtk), or triangles and other flat cells (.stl, .obj, .ply,

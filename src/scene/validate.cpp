@@ -10,6 +10,7 @@
 #include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
+#include "scene/units.hpp"
 
 namespace barchan {
 namespace {
@@ -27,11 +28,6 @@ std::string shown(const toml::node& node) {
 
 /// For a text in the place of a number: "0.1" in quotes, a decimal comma, a unit of SI. Empty: it is none of these.
 std::string meant_number(const std::string& text) {
-  static const std::pair<std::string_view, double> units[] = {
-      {"", 1.0},    {"m", 1.0},          {"mm", 1e-3},   {"cm", 1e-2},   {"km", 1e3},   {"um", 1e-6},
-      {"nm", 1e-9}, {"s", 1.0},          {"ms", 1e-3},   {"us", 1e-6},   {"min", 60.0}, {"h", 3600.0},
-      {"m/s", 1.0}, {"km/h", 1.0 / 3.6}, {"kg/m3", 1.0}, {"g/cm3", 1e3}, {"Pa", 1.0},   {"kPa", 1e3},
-      {"MPa", 1e6}, {"GPa", 1e9},        {"m2/s", 1.0},  {"mm2/s", 1e-6}};
   std::string plain = text;
   if (const std::size_t comma = plain.find(','); comma != std::string::npos) plain[comma] = '.';
   double number = 0.0;
@@ -39,9 +35,9 @@ std::string meant_number(const std::string& text) {
   if (error != std::errc()) return "";
   std::string_view unit(rest, static_cast<std::size_t>(plain.data() + plain.size() - rest));
   unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
-  for (const auto& [name, factor] : units)
-    if (name == unit) return number_text(number * factor);
-  return "";
+  if (unit.empty()) return number_text(number);
+  const auto size = unit_of(unit);
+  return size ? number_text(size->of(number)) : "";
 }
 
 class Validator {

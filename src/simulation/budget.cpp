@@ -131,17 +131,32 @@ void Budget::report(const State& state, Warnings& warnings, double held) const {
                      " % of what their motion can have, although nothing in the scene turns them; expected at most " +
                      brief(100.0 * turning_bound) +
                      " %: updated Lagrangian bodies cannot turn; formulation = \"total-lagrangian\" can");
-  if (const auto growth = energy_growth(state, held); growth && *growth > energy_bound)
-    warnings.add("energy", "the energy of the motion, of the weight and of the " +
-                               std::string(noiseless_ ? "strain" : "compression") + " together grew by " +
-                               brief(100.0 * *growth) + " % of the " +
-                               (noiseless_ ? "larger of the energies of motion and strain" : "kinetic energy") +
-                               ", although nothing in the scene gives it; expected at most " +
-                               brief(100.0 * energy_bound) + " %: " +
-                               (noiseless_ || start_.kinetic > energy_at(slow * sound_speed_, start_.mass)
-                                    ? "a smaller time.safety may help"
-                                    : "the fluid spread a little and its centre of mass rose; of so slow a motion the "
-                                      "weight then gains as much as the motion has; a smaller spacing makes it less"));
+  const auto growth = energy_growth(state, held);
+  if (!growth || *growth <= energy_bound) return;
+  const bool fluids = std::any_of(moving_.begin(), moving_.end(), [](const Moving& m) { return m.density > 0.0; });
+  const bool is_slow = start_.kinetic <= energy_at(slow * sound_speed_, start_.mass);
+  if (!noiseless_ && fluids && is_slow) {
+    // In per cent of so slow a motion it would be a large number, and say nothing of the motion.
+    const double gained = *growth * start_.kinetic, weight = start_.mass * norm(gravity_);
+    return warnings.add(
+        "energy",
+        "the weight and the compression gained " + brief(gained) + " J" +
+            (weight > 0.0 ? ", as if the centre of mass rose by " + brief(gained / weight) + " m" : std::string()) +
+            ", although nothing in the scene gives it; the motion of the start has " + brief(start_.kinetic) +
+            " J: the particles of the fluid spread a little, and the budget of energy does "
+            "not tell how well so slow a motion is kept; a smaller spacing makes it less");
+  }
+  std::string remedy = "a smaller time.safety may help";
+  if (!noiseless_ && !fluids)
+    remedy = "grains that overlap at the start push each other away: move the fills apart; else " + remedy;
+  warnings.add("energy", "the energy of the motion, of the weight and of the " +
+                             std::string(noiseless_ ? "strain"
+                                         : fluids   ? "compression"
+                                                    : "contacts") +
+                             " together grew by " + brief(100.0 * *growth) + " % of the " +
+                             (noiseless_ ? "larger of the energies of motion and strain" : "kinetic energy") +
+                             ", although nothing in the scene gives it; expected at most " +
+                             brief(100.0 * energy_bound) + " %: " + remedy);
 }
 
 void Budget::archive(Archive& a) { a.number("budget at the start", start_); }

@@ -5,6 +5,7 @@
 #include "base/errors.hpp"
 #include "base/ranks.hpp"
 #include "output/numbers.hpp"
+#include "scene/formula_keys.hpp"
 #include "simulation/watch.hpp"
 
 namespace barchan {
@@ -118,8 +119,12 @@ std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) con
     if (given_ > 0.0 && speed > WatchBounds::remarkable_speed * given_)
       return " escaped through the " + side + " at " + brief(speed) + " m/s, " + brief(speed / given_) +
              " times what gravity, forcings, walls and the start can give: the computation gained that energy, no wall "
-             "would help: lower " +
-             step_key() + " or the spacing";
+             "would help: " +
+             (see_.plan.phases[g.phase].sphere_records
+                  ? "grains that overlap others or a wall at the start are pushed away: move the fills apart, or lower "
+                    "the diameter of the wall; else lower " +
+                        step_key()
+                  : "lower " + step_key() + " or the spacing");
     return " escaped through the " + side +
            "; no wall with which it interacts holds it there: add a wall on that side and an entry of \"" + p.name() +
            "\" with it in [interactions], or enlarge domain.size";
@@ -143,10 +148,12 @@ std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
       }
     }
   }
-  if (const auto fault = formula_fault())
-    return "the formula \"" + shortened(fault->formula) + "\" gives " + brief(fault->value) + " at (" +
-           brief(fault->x[0]) + ", " + brief(fault->x[1]) + ", " + brief(fault->x[2]) + ") m, t = " + brief(fault->t) +
-           " s; expected " + fault->expected + " at every place and time";
+  if (const auto fault = formula_fault()) {
+    const std::string keys = keys_of_formula(see_.scene, fault->formula);
+    return (keys.empty() ? "" : keys + ": ") + "the formula \"" + shortened(fault->formula) + "\" gives " +
+           brief(fault->value) + " at (" + brief(fault->x[0]) + ", " + brief(fault->x[1]) + ", " + brief(fault->x[2]) +
+           ") m, t = " + brief(fault->t) + " s; expected " + fault->expected + " at every place and time";
+  }
   return std::nullopt;
 }
 

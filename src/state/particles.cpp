@@ -199,6 +199,29 @@ void PhaseParticles::archive(Archive& a) {
   if (a.loads()) find_places();
 }
 
+namespace {
+
+/// Fields of bodies that output.fields adds for frames alone. No step starts from them, so a checkpoint may have others
+/// than the scene that goes on: what it lacks is made before the next frame. Updated Lagrangian bodies always have
+/// their stress.
+constexpr bool may_be_for_frames_alone(Field f) {
+  return f == Field::stress || f == Field::von_mises_stress || f == Field::principal_stress || f == Field::strain ||
+         f == Field::contact_force;
+}
+
+/// Of an archive that loads: whether its next item has this name and holds numbers.
+bool comes_next(Archive& a, const std::string& name) {
+  const std::uint64_t here = a.place();
+  bool comes = true;
+  try {
+    a.parts<double>(name, [](std::uint64_t, auto&&) {});
+  } catch (const SceneError&) { comes = false; }
+  a.go_to(here);
+  return comes;
+}
+
+}  // namespace
+
 /// Ids, fields and own columns that are kept; `rows`: those that are here. What every rank has whole is no rows.
 void PhaseParticles::archive_columns(Archive& a, const Rows& rows) {
   const bool shared = archives_all_ && !is_whole_;
@@ -207,9 +230,15 @@ void PhaseParticles::archive_columns(Archive& a, const Rows& rows) {
     else a.values(name, own, rows.all * width);
   };
   item("id of " + name_, id_.data(), 1);
-  for (std::size_t f = 0; f < field_count; ++f)
-    for (auto& column : columns_[f])
-      item(name_ + "." + std::string(info(static_cast<Field>(f)).name), column.data(), 1);
+  for (std::size_t f = 0; f < field_count; ++f) {
+    const std::string name = name_ + "." + std::string(info(static_cast<Field>(f)).name);
+    if (a.loads() && may_be_for_frames_alone(static_cast<Field>(f))) {
+      const bool comes = comes_next(a, name);
+      while (columns_[f].empty() && comes_next(a, name)) a.parts<double>(name, [](std::uint64_t, auto&&) {});
+      if (!comes) continue;
+    }
+    for (auto& column : columns_[f]) item(name, column.data(), 1);
+  }
   for (OwnValues& v : own_)
     if (v.kept == Kept::state) item(name_ + "." + v.name, v.values.data(), v.width);
 }
