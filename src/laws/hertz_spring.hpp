@@ -6,7 +6,8 @@
 // A step takes the mean of delta^(3/2) while the contact sets in, as laws/contact_onset.hpp does of delta, and far from
 // the onset what the same weights make of it, delta^(3/2) + a^2/(16 sqrt(delta)); spring and dashpot are those for
 // which the discrete oscillator has the decay and the frequency of the continuous one (laws/linear_spring.hpp), with
-// the tangent stiffness 3/2 F/delta. Without a dashpot the force is the plain one at x_n.
+// the tangent stiffness 3/2 F/delta and a force of others as there. Without a dashpot the force is the plain one at
+// x_n.
 #pragma once
 
 #include <cmath>
@@ -91,7 +92,8 @@ struct HertzSpring {
     const V least(1e-30), overlap = simd::max(x, least), near(4.0);
     NormalForce<V> n;
     const V here = c.modulus * simd::sqrt(radius * overlap), inverse = V(1.0) / overlap;
-    const V turn2 = V(1.5) * here * (dt.whole * dt.whole) * inverse_mass, slower = fnma(turn2, V(1.0 / 12.0), V(1.0));
+    const V turn2 = V(1.5) * here * (dt.whole * dt.whole) * inverse_mass, mean = turn2 * V(1.0 / 12.0),
+            slower = fnma(turn2, V(1.0 / 12.0), V(1.0));
     const V before = way(approach, dt.whole);
     const auto begins = x < near * before;
     n.depth = overlap;
@@ -104,7 +106,7 @@ struct HertzSpring {
     const V small = V(1.0 / 16.0) * (inverse * inverse);
     const auto far_of = [&](V a) { return here * overlap * fma(a * a, small, slower); };
     const auto near_of = [&](V a, V onset) { return c.modulus * (a * simd::sqrt(radius * a)) * slower * onset; };
-    V first = far_of(before);
+    V first = far_of(before), more = mean * simd::max(m.others, V(0.0));
     if (to_bits(begins) != 0) {
       const V ratio = x / before;
       const HertzOnset<V> early(simd::min(ratio, near));
@@ -112,20 +114,23 @@ struct HertzSpring {
       n.dashpot =
           select(begins, d.coefficient(m.mass * c.modulus * simd::sqrt(radius * before)) * early.root, n.dashpot);
       n.share = begin(x, before);
+      more = more * n.share;
       n.depth = simd::max(overlap, V(0.25) * before);
       n.inverse_depth = V(1.0) / n.depth;
       n.stiffness = c.modulus * simd::sqrt(radius * n.depth);
     }
-    const V a = way(fnma(first * inverse_mass, dt.half, approach), dt.whole);
+    const V a = way(fnma((first + more) * inverse_mass, dt.half, approach), dt.whole);
     const auto begins_still = x < near * a;
     V elastic = far_of(a);
     if (to_bits(begins_still) != 0)
       elastic = select(begins_still, near_of(a, HertzOnset<V>(simd::min(x / a, near)).force), elastic);
+    elastic = elastic + more;
     const V drag = n.dashpot * inverse_mass;
     n.dashpot = n.dashpot * fnma(drag * drag, dt.whole * dt.whole * V(1.0 / 12.0), V(1.0));
     const V push = d.beside(elastic, n.dashpot, approach, fma(n.dashpot * inverse_mass, dt.half, V(1.0)));
     const V ending = select(x > V(0.0), ramp(push, V(1.5) * here * before), V(0.0));
     n.force = select(d.loses(), select(approach > V(0.0), push, ending), n.elastic);
+    n.elastic = select(d.loses(), n.elastic + more, n.elastic);
     n.load = n.force;
     n.stored = V(stored_share) * n.elastic * simd::max(x, V(0.0));
     return n;

@@ -8,7 +8,8 @@
 // The same zeta serves both springs: with u = delta^(5/4), v dv/du of Hertz is that of the linear oscillator (Antypov
 // and Elliott 2011), the place of the clip included.
 //
-// Velocities are half a step behind the places. The dashpot takes the one at t_n, with what the force itself adds:
+// Velocities are half a step behind the places. The dashpot takes the one at t_n, with what others add
+// (laws/other_forces.hpp) and with what the force itself adds:
 //   v + F dt/(2 m*), so that F = (F_spring + c u)/(1 + c dt/(2 m*)).
 #pragma once
 
@@ -22,6 +23,7 @@
 namespace barchan {
 
 struct NormalDashpot {
+  static constexpr bool damps = true;
   double ratio = 0.0;  // D, c over sqrt(m* k)
 
   /// The share of its speed that a head-on impact keeps; zeta > 0.
@@ -62,6 +64,20 @@ struct NormalDashpot {
     static BARCHAN_SIMD_INLINE V beside(V spring, V dashpot, V approach, V slow) {
       return simd::fma(dashpot, approach, spring) / slow;
     }
+    BARCHAN_SIMD_INLINE auto loses() const { return ratio > V(0.0); }
+  };
+};
+
+/// Spheres that lose nothing along the normal.
+struct NoDashpot {
+  static constexpr bool damps = false;
+  template <class V>
+  struct Constants {
+    V ratio{0.0};
+    explicit Constants(const NoDashpot&) {}
+
+    BARCHAN_SIMD_INLINE V coefficient(V) const { return V(0.0); }
+    static BARCHAN_SIMD_INLINE V beside(V spring, V, V, V slow) { return spring / slow; }
     BARCHAN_SIMD_INLINE auto loses() const { return ratio > V(0.0); }
   };
 };

@@ -13,13 +13,14 @@
 
 namespace barchan {
 
-/// `slip` (m) is that before the step and becomes that after it; `old`: as it was remembered; `in_touch`: the share of
-/// the step that counts for the slip; `inverse_mass` (1/kg): of the motion that resists. Returns the force (N); adds
-/// what is lost and what is stored (J).
+/// `slip` (m) is that before the step and becomes that after it; `old`: as it was remembered; `way` (m/s): half a step
+/// ago; `in_touch`: the share of the step that counts for the slip; `velocity` (m/s): with half of what others add;
+/// `inverse_mass` (1/kg): of the motion that resists. Returns the force (N); adds what is lost and what is stored (J).
 template <class V, std::size_t N>
 BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::array<V, N>& old,
-                                           const std::array<V, N>& velocity, V stiffness, V old_stiffness, V dashpot,
-                                           V limit, V inverse_mass, V dt, V in_touch, V& lost, V& stored) {
+                                           const std::array<V, N>& way, const std::array<V, N>& velocity, V stiffness,
+                                           V old_stiffness, V dashpot, V limit, V inverse_mass, V dt, V in_touch,
+                                           V& lost, V& stored) {
   using simd::fma;
   using simd::fnma;
   std::array<V, N> force;
@@ -27,7 +28,7 @@ BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::ar
   const V centred = inverse * stiffness, back = inverse * slower;
   V f2(1e-200), was(0.0), now(0.0), work(0.0);
   for (std::size_t k = 0; k < N; ++k) {
-    slip[k] = fma(velocity[k], dt * in_touch, slip[k]);
+    slip[k] = fma(way[k], dt * in_touch, slip[k]);
     force[k] = -fma(stiffness, slip[k], dashpot * velocity[k]) * centred;
     f2 = fma(force[k], force[k], f2);
   }

@@ -64,14 +64,20 @@ inline constexpr std::size_t most_remembered = detail::most_numbers_of(static_ca
 /// A law of the catalogue with its constants.
 using AnySphereContact = decltype(detail::any_of_rows(static_cast<const SphereCatalogue*>(nullptr)));
 
-/// Calls f with the law, without the parts that no law of a scene has: rolling resistance, and friction too.
+/// Which parts some law of a scene has.
+struct ContactParts {
+  bool damps = false, rubs = false, rolls = false;
+};
+
+/// Calls f with the law, without the parts that no law of a scene has: rolling resistance, friction too, and loss.
 template <class F>
-void with_parts(const AnySphereContact& law, bool rubs, bool rolls, F&& f) {
+void with_parts(const AnySphereContact& law, ContactParts has, F&& f) {
   std::visit(
       [&](const auto& whole) {
-        if (rolls) f(whole);
-        else if (rubs) f(whole.without_rolling());
-        else f(whole.smooth());
+        if (has.rolls) f(whole);
+        else if (has.rubs) f(whole.without_rolling());
+        else if (has.damps) f(whole.smooth());
+        else f(whole.lossless());
       },
       law);
 }

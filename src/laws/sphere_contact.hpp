@@ -6,12 +6,13 @@
 // its `Constants<V>` (the same in all lanes) and one pure function of the pair:
 //
 //   normal     laws/linear_spring.hpp, laws/hertz_spring.hpp
-//   damping    laws/normal_dashpot.hpp
+//   damping    laws/normal_dashpot.hpp, or NoDashpot
 //   friction   laws/coulomb_friction.hpp with laws/slip_stiffness.hpp, or NoFriction
 //   rolling    laws/rolling_resistance.hpp, or NoRolling
 //
 // A part that remembers something of a contact says how many numbers (`remembers<Dim>`) and gets them, zero where a
-// touch begins, to read and to write. A normal spring gets them behind its other arguments.
+// touch begins, to read and to write. A normal spring gets them behind its other arguments. Besides, each direction in
+// which a velocity counts remembers what other forces do there (laws/other_forces.hpp).
 //
 // The laws that a scene can choose are the rows of laws/sphere_catalogue.hpp.
 //
@@ -21,6 +22,7 @@
 
 #include "laws/coulomb_friction.hpp"
 #include "laws/normal_dashpot.hpp"
+#include "laws/other_forces.hpp"
 #include "laws/rolling_resistance.hpp"
 #include "laws/touching_spheres.hpp"
 
@@ -39,18 +41,23 @@ struct SphereContact {
   using Damping = DampingPart;
   using Friction = FrictionPart;
   using Rolling = RollingPart;
-  /// The same without rolling resistance, and without friction too.
+  /// The same without rolling resistance, without friction too, and without loss.
   using WithoutRolling = SphereContact<Normal, Damping, Friction>;
   using Smooth = SphereContact<Normal, Damping>;
-  static constexpr bool rubs = Friction::rubs, rolls = Rolling::rolls;
+  using Lossless = SphereContact<Normal, NoDashpot>;
+  static constexpr bool damps = Damping::damps, rubs = Friction::rubs, rolls = Rolling::rolls;
   static_assert(rubs || !rolls, "the springs of the rolling resistance are as stiff as those of the friction");
   static_assert(remembered_by<Damping, 2>() == 0, "nobody asks a damping part what it remembers");
   /// Of the numbers that a contact remembers the first are lengths of springs across the normal (m), which hold
   /// left_behind() when it ends.
   template <std::size_t Dim>
   static constexpr std::size_t springs = remembered_by<Friction, Dim>() + remembered_by<Rolling, Dim>();
+  /// Behind them are those of the normal spring, and then what other forces do along the normal, across it, and to the
+  /// rolling (m/s2).
   template <std::size_t Dim>
-  static constexpr std::size_t numbers = springs<Dim> + remembered_by<Normal, Dim>();
+  static constexpr std::size_t observed = springs<Dim> + remembered_by<Normal, Dim>();
+  template <std::size_t Dim>
+  static constexpr std::size_t numbers = observed<Dim> + (damps ? 1 : 0) + springs<Dim>;
 
   Normal normal;
   Damping damping;
@@ -64,6 +71,7 @@ struct SphereContact {
   }
   WithoutRolling without_rolling() const { return {normal, damping, friction, {}}; }
   Smooth smooth() const { return {normal, damping, {}, {}}; }
+  Lossless lossless() const { return {normal, {}, {}, {}}; }
 
   /// k_t (N/m) at an overlap (m) of spheres of a reduced radius (m).
   double slip_stiffness(double radius, double overlap) const {
@@ -80,8 +88,9 @@ struct SphereContact {
     [[no_unique_address]] typename Friction::template Constants<V> friction;
     [[no_unique_address]] typename Rolling::template Constants<V> rolling;
     ContactStep<V> dt;
-    Constants(const SphereContact& c, double step)
+    Constants(const SphereContact& c, const StepOfContacts& step)
         : normal(c.normal), damping(c.damping), friction(c.friction), rolling(c.rolling), dt(step) {}
+    Constants(const SphereContact& c, double step) : Constants(c, StepOfContacts{step}) {}
   };
 
   /// The forces of a contact in a step. `memory`: what the contact remembers, which is advanced.
@@ -92,20 +101,29 @@ struct SphereContact {
     ContactForces<V, Dim> out;
     V v_n(0.0);
     for (std::size_t d = 0; d < Dim; ++d) v_n = simd::fma(s.velocity[d], s.normal[d], v_n);
-    const NormalMotion<V> motion{s.overlap, -v_n, s.reduced_mass, s.inverse_mass, s.reduced_radius};
+    V added(0.0);
+    if constexpr (damps) added = other_forces::in_step(memory[observed<Dim>], -v_n, c.dt);
+    const V approach = simd::fma(V(0.5), added, -v_n);
+    const NormalMotion<V> motion{s.overlap,      approach,         s.reduced_mass,
+                                 s.inverse_mass, s.reduced_radius, s.reduced_mass * added * c.dt.rate};
     NormalForce<V> normal;
     if constexpr (remembered_by<Normal, Dim>() > 0)
       normal = Normal::force(c.normal, c.damping, motion, c.dt, memory.data() + springs<Dim>);
     else normal = Normal::force(c.normal, c.damping, motion, c.dt);
-    out.lost = (normal.elastic - normal.force) * simd::fma(normal.force * s.inverse_mass, c.dt.half, v_n) * c.dt.whole;
+    if constexpr (damps)
+      memory[observed<Dim>] = other_forces::remember(added, -v_n, -normal.force * s.inverse_mass, c.dt);
+    out.lost =
+        (normal.elastic - normal.force) * simd::fma(normal.force * s.inverse_mass, c.dt.half, -approach) * c.dt.whole;
     out.stored = normal.stored;
     for (std::size_t d = 0; d < Dim; ++d) out.force[d] = normal.force * s.normal[d];
     for (std::size_t d = 0; d < spin; ++d) out.torque_a[d] = out.torque_b[d] = V(0.0);
     if constexpr (rubs) {
+      V* const others = memory.data() + observed<Dim> + (damps ? 1 : 0);
       const SlipStiffness<V> k = Friction::stiffness_of(c.friction, normal, v_n, c.dt);
-      Friction::add(c.friction, s, normal, k, v_n, c.dt, memory.data(), out);
+      Friction::add(c.friction, s, normal, k, v_n, c.dt, memory.data(), others, out);
       if constexpr (rolls)
-        Rolling::add(c.rolling, s, normal, k, c.dt, memory.data() + remembered_by<Friction, Dim>(), out);
+        Rolling::add(c.rolling, s, normal, k, c.dt, memory.data() + remembered_by<Friction, Dim>(),
+                     others + remembered_by<Friction, Dim>(), out);
     }
     return out;
   }

@@ -39,21 +39,43 @@ struct ContactForces {
   V lost, stored;
 };
 
-/// A step of the contacts in all lanes (s).
+/// A step of the contacts, and how it observes what else acts on them (laws/other_forces.hpp).
+struct StepOfContacts {
+  static constexpr double observing = 0.2;  // the gain of a step among others of its length
+
+  double dt = 0.0;                            // s
+  double gain = observing, next = observing;  // of this step, and of the next one
+  double span = dt;                           // s, for which a contact's own force counts in what it remembers
+  double rate = dt > 0.0 ? 1.0 / dt : 0.0;    // 1/s
+
+  /// After one of another length (s), whose end is not the start of the run.
+  static StepOfContacts after(double before, double dt) {
+    return {dt, observing * dt / before, observing, dt, 1.0 / dt};
+  }
+  /// The forces at the start of the run, before a first step (s); in that step velocities are those of the start and
+  /// half a kick.
+  static StepOfContacts start(double first) { return {0.0, 0.0, 2.0, 0.5 * first, 1.0 / first}; }
+  static StepOfContacts first(double dt) { return {dt, 2.0, observing, dt, 1.0 / dt}; }
+};
+
+/// The same in all lanes.
 template <class V>
 struct ContactStep {
-  V whole, half;
-  explicit ContactStep(double dt) : whole(dt), half(0.5 * dt) {}
+  V whole, half, rate, gain, next_gain, span;
+  explicit ContactStep(const StepOfContacts& s)
+      : whole(s.dt), half(0.5 * s.dt), rate(s.rate), gain(s.gain), next_gain(s.next), span(s.span) {}
+  explicit ContactStep(double dt) : ContactStep(StepOfContacts{dt}) {}
 };
 
 /// What a normal force is evaluated from.
 template <class V>
 struct NormalMotion {
-  V overlap;       // m; below 0 a gap
-  V approach;      // m/s, -v_n
-  V mass;          // kg, reduced
-  V inverse_mass;  // 1/kg, of the reduced mass
-  V radius;        // m, reduced
+  V overlap;          // m; below 0 a gap
+  V approach;         // m/s, -v_n, with half of what others add in the step
+  V mass;             // kg, reduced
+  V inverse_mass;     // 1/kg, of the reduced mass
+  V radius;           // m, reduced
+  V others = V(0.0);  // N, by which all but the contact press the two together (laws/other_forces.hpp)
 };
 
 /// The normal force of a step and what it consists of.

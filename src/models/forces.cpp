@@ -1,6 +1,7 @@
 #include "models/forces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/ranks.hpp"
@@ -66,6 +67,37 @@ Vec3 Forces::at(const Vec3& x, double time, int dimensions) const {
     for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d)
       if (holds(force.box, x, dimensions)) sum[d] += force.acceleration[d](x, time);
   return sum;
+}
+
+Vec3 Forces::varying(const Vec3& x, double time, int dimensions) const {
+  Vec3 sum{};
+  for (const Force& force : forces_) {
+    if (!holds(force.box, x, dimensions)) continue;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d)
+      if (force.box || !force.acceleration[d].is_constant()) sum[d] += force.acceleration[d](x, time);
+  }
+  return sum;
+}
+
+double Forces::stiffness(const Vec3& x, double time, int dimensions, double apart) const {
+  const auto n = static_cast<std::size_t>(dimensions);
+  std::array<Vec3, 3> slope{};  // by axis
+  for (const Force& force : forces_) {
+    if (!holds(force.box, x, dimensions)) continue;
+    for (std::size_t d = 0; d < n; ++d) {
+      const Formula& formula = force.acceleration[d];
+      if (formula.is_constant()) continue;
+      const double here = formula(x, time);
+      for (std::size_t axis = 0; axis < n; ++axis) {
+        Vec3 there = x;
+        there[axis] += apart;
+        slope[axis][d] += (formula(there, time) - here) / apart;
+      }
+    }
+  }
+  double sum = 0.0;
+  for (const Vec3& s : slope) sum += dot(s, s);
+  return std::sqrt(sum);
 }
 
 namespace {

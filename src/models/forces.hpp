@@ -23,6 +23,10 @@ class Forces {
   void add(PhaseParticles& p, double time, bool numbers) const;
   /// The acceleration at a place (m/s2), numbers too.
   Vec3 at(const Vec3& x, double time, int dimensions) const;
+  /// The components that are formulas, or hold in a box only, at a place (m/s2).
+  Vec3 varying(const Vec3& x, double time, int dimensions) const;
+  /// The norm of the derivatives of the formulas by place (1/s2), over differences of `apart` (m).
+  double stiffness(const Vec3& x, double time, int dimensions, double apart) const;
   /// Adds what brings the phase to the velocities of its zones. dt (s): a step takes half of the difference at most.
   void relax(PhaseParticles& p, double time, double dt) const;
   /// Sum over the particles of all that the [[forcing]] entries give them now, numbers too (m/s2).

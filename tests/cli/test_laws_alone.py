@@ -134,6 +134,7 @@ template <class Law> void parts() {
   touching<Law, 2>(); touching<Law, 3>();
   touching<typename Law::WithoutRolling, 2>(); touching<typename Law::WithoutRolling, 3>();
   touching<typename Law::Smooth, 2>(); touching<typename Law::Smooth, 3>();
+  touching<typename Law::Lossless, 2>(); touching<typename Law::Lossless, 3>();
 }
 void all() { barchan::each_sphere_law([](auto row) { parts<typename decltype(row)::Law>(); }); }""",
     "stray_length": "template struct barchan::StrayLength<2, double>; template struct barchan::StrayLength<3, double>;",

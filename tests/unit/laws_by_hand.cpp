@@ -91,8 +91,10 @@ TEST(LawsByHand, TangentialDashpotIsHalfOfTheNormalOne) {
   const double overlap = 1e-5, speed = 0.1, dt = 1e-9;
   auto s = spheres<2>(overlap);
   s.velocity[1] = V(speed);
-  std::array<V, 1> memory{V(0.0)};
-  const auto f = law.touch(decltype(linear(0.5).without_rolling())::Constants<V>(law, dt), s, memory);
+  using Law = Linear::WithoutRolling;
+  std::array<V, Law::numbers<2>> memory;
+  memory.fill(V(0.0));
+  const auto f = Law::touch(Law::Constants<V>(law, dt), s, memory);
   const double expected = -NormalDashpot::damping_ratio(0.5) * std::sqrt(0.5 * mass * 500.0) * speed;
   EXPECT_NEAR(f.force[1][0], expected, 1e-3 * std::abs(expected));
 }
@@ -113,7 +115,8 @@ void expect_force_knows_its_own_work() {
     s.velocity[1] = V(0.1);
   }
   const double speed = Rolls ? 0.5 * radius * 200.0 : 0.1;
-  std::array<V, 2> memory{V(0.0), V(0.0)};
+  std::array<V, Linear::numbers<2>> memory;
+  memory.fill(V(0.0));
   const auto f = Linear::touch(Linear::Constants<V>(law, dt), s, memory);
   const double force = Rolls ? f.torque_a[0][0] / (0.5 * radius) : f.force[1][0];
   const double gain = Rolls ? 0.25 * radius * radius * 2.0 / inertia : 2.0 / mass + radius * radius * 2.0 / inertia;

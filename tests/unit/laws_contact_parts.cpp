@@ -175,7 +175,9 @@ ContactForces<One, Dim> rub(const Coulomb& friction, const TouchingSpheres<One, 
   const Coulomb::Constants<One> c(friction);
   const ContactStep<One> step(dt);
   auto out = none<Dim>();
-  Coulomb::add(c, s, n, Coulomb::stiffness_of(c, n, One(0.0), step), One(0.0), step, memory.data(), out);
+  std::array<One, N> others;  // nothing else acts
+  others.fill(One(0.0));
+  Coulomb::add(c, s, n, Coulomb::stiffness_of(c, n, One(0.0), step), One(0.0), step, memory.data(), others.data(), out);
   return out;
 }
 
@@ -298,8 +300,9 @@ TEST(MindlinSlipStiffnesses, GainNothingInACycleOfLoads) {
             HertzSpring::force(HertzSpring::Constants<One>(spring), NormalDashpot::Constants<One>(NormalDashpot{}),
                                motion(overlap, 0.0), ContactStep<One>(dt));
         auto f = none<2>();
+        One others(0.0);
         const ContactStep<One> step(dt);
-        Friction::add(c, s, n, Friction::stiffness_of(c, n, One(v_n), step), One(v_n), step, slip.data(), f);
+        Friction::add(c, s, n, Friction::stiffness_of(c, n, One(v_n), step), One(v_n), step, slip.data(), &others, f);
         lost += f.lost.v;
         most = std::max(most, f.stored.v);
       }
@@ -323,7 +326,9 @@ void expect_rolling() {
   slip.fill(One(0.0));
   const auto roll = [&] {
     auto f = none<Dim>();
-    RollingResistance::add(c, s, held(load, k), k_t, step, slip.data(), f);
+    std::array<One, spins> others;
+    others.fill(One(0.0));
+    RollingResistance::add(c, s, held(load, k), k_t, step, slip.data(), others.data(), f);
     EXPECT_EQ(size_of(f.force), 0.0) << "no force";
     for (std::size_t d = 0; d < spins; ++d) EXPECT_DOUBLE_EQ(f.torque_a[d].v, -f.torque_b[d].v) << "opposite torques";
     return f;
@@ -436,7 +441,7 @@ void expect_worn() {
   using Known = SphereContact<LinearSpring, NormalDashpot, CoulombFriction<ConstantSlipStiffness>, RollingResistance>;
   constexpr std::size_t last = Law::template springs<Dim>;
   static_assert(Law::template numbers<Dim> == Known::template numbers<Dim> + 1);
-  static_assert(last == Known::template numbers<Dim>, "the springs are the first numbers");
+  static_assert(last == Known::template observed<Dim>, "the springs are the first numbers");
   Known known;
   known.normal.stiffness = 500.0;
   known.friction.friction = 0.5;

@@ -60,7 +60,7 @@ After meet(const L& law, double mass_a, double mass_b, double speed, double slip
     s.reduced_radius = V(0.5 * radius);
     const auto near = s.overlap > V(-dt) * simd::max(u, -u);
     auto f = L::touch(constants, s, memory);
-    memory[0] = mask_zero(near, memory[0]);
+    for (V& m : memory) m = mask_zero(near, m);
     u += V(dt / reduced) * mask_zero(near, f.force[0]);
     v += V(dt / reduced) * mask_zero(near, f.force[1]);
     spin_a += V(2.5 * dt / (mass_a * radius * radius)) * mask_zero(near, f.torque_a[0]);
@@ -282,7 +282,7 @@ void expect_rolling_torque() {
   s.reduced_mass = V(5e-6);
   s.inverse_mass = V(2e5);
   s.reduced_radius = V(5e-4);
-  std::array<V, 2 * Pair<Dim>::spins> memory;
+  std::array<V, Linear::numbers<Dim>> memory;
   memory.fill(V(0.0));
   ContactForces<V, Dim> f;
   for (int k = 0; k < 50; ++k) f = Linear::touch(constants, s, memory);

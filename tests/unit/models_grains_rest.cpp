@@ -37,7 +37,7 @@ struct Bed {
     step.dimensions = Dim;
     step.records = cast.records.data();
     step.laws = laws.data();
-    step.rubs = step.rolls = true;
+    step.has = {true, true, true};
     step.numbers = numbers;
     for (std::size_t d = 0; d < Dim; ++d) step.period[d] = bounds.periodic[d] ? bounds.high[d] - bounds.low[d] : 0.0;
   }

@@ -126,17 +126,23 @@ void SphereBodies::kick(Body& body, double time) {
 void SphereBodies::begin_steps(double step, double each) {
   step_ = step;
   for (Body& body : bodies_) {
-    RigidBody& now = state_of(body);
+    if (!at_begin_) go_back(body, step);
     body.impulse = body.turn = Vec3{};
-    body.end = now.now;
-    const Vec3 rate = OwnAxes(now).to_space(own_angular_velocity(now));
-    now.now.place = now.now.place - step * (now.hold == RigidBody::Hold::pinned ? Vec3{} : now.now.velocity);
-    if (now.hold == RigidBody::Hold::driven) turn_by(now, rate, -step);
-    else turn_freely(now, -step);
     kick(body, 0.5 * each);
   }
+  at_begin_ = !(each > 0.0);
   std::fill(far_.begin(), far_.end(), 0.0);
   go_on(each);
+}
+
+/// What RigidPhase did in the step of the scene is taken back.
+void SphereBodies::go_back(Body& body, double step) {
+  RigidBody& now = state_of(body);
+  body.end = now.now;
+  const Vec3 rate = OwnAxes(now).to_space(own_angular_velocity(now));
+  now.now.place = now.now.place - step * (now.hold == RigidBody::Hold::pinned ? Vec3{} : now.now.velocity);
+  if (now.hold == RigidBody::Hold::driven) turn_by(now, rate, -step);
+  else turn_freely(now, -step);
 }
 
 void SphereBodies::go_on(double each) {
@@ -253,8 +259,8 @@ void SphereBodies::touch_one(const Present& s, const SphereStep& step, const Par
       m.carried = body.velocity + cross(body.rate, m.arm - gap->distance * gap->normal);
     }
     const bool touches = near && radius - gap->distance > -s.dt * std::abs(dot(v - m.carried, gap->normal));
-    with_parts(step.laws[law], step.rubs, step.rolls, [&](const auto& parts) {
-      if (touches) meet<Dim>(parts, s, m, memory, tally, loads[b]);
+    with_parts(step.laws[law], step.has, [&](const auto& parts) {
+      if (touches) meet<Dim>(parts, step.contacts, s, m, memory, tally, loads[b]);
       else part_from<Dim>(parts, b, memory, tally);
     });
   }
@@ -273,8 +279,8 @@ void SphereBodies::part_from(const Law& law, std::size_t body, Memory& memory, T
 
 /// The forces of a contact; the body gets what the sphere loses, with the moment about its place.
 template <int Dim, class Law>
-void SphereBodies::meet(const Law& law, const Present& s, const Meeting& m, Memory& memory, Tally& tally,
-                        std::array<double, 6>& load) {
+void SphereBodies::meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, Memory& memory,
+                        Tally& tally, std::array<double, 6>& load) {
   using R = SphereRecord<Dim>;
   constexpr std::size_t dim = Dim, first_spin = Dim == 2 ? 2 : 0, numbers = Law::template numbers<dim>;
   const Body& body = bodies_[m.body];
@@ -304,7 +310,7 @@ void SphereBodies::meet(const Law& law, const Present& s, const Meeting& m, Memo
   pair.reduced_mass = One(1.0) / pair.inverse_mass;
   std::array<One, numbers> slip;
   for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(touch ? touch->memory[k] : 0.0);
-  const auto f = Law::touch(typename Law::template Constants<One>(law, s.dt), pair, slip);
+  const auto f = Law::touch(typename Law::template Constants<One>(law, dt), pair, slip);
   if (touch) {
     touch->body = name;
     for (std::size_t k = 0; k < numbers; ++k) touch->memory[k] = slip[k].v;

@@ -45,7 +45,8 @@ class SphereBodies {
   void attach(const Scene& scene, const Layout& layout, const SphereLaws& laws, State& state);
   bool any() const { return !bodies_.empty(); }
 
-  /// A bundle of steps over `step` (s) begins, each of `each` (s): the bodies are where the first of them ends.
+  /// A bundle of steps over `step` (s) begins, each of `each` (s): the bodies are where the first of them ends. With
+  /// `each` 0 they are where the step began, and stay there until the bundle begins.
   void begin_steps(double step, double each);
   /// Forces of all contacts; kicks the bodies. Forces and torques on the spheres are then in forces().
   void touch(const Present& s, const SphereStep& step);
@@ -105,10 +106,11 @@ class SphereBodies {
   void touch_one(const Present& s, const SphereStep& step, const Part& part, std::size_t sphere, Tally& tally,
                  std::array<double, 6>* loads);
   template <int Dim, class Law>
-  void meet(const Law& law, const Present& s, const Meeting& m, Memory& memory, Tally& tally,
+  void meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, Memory& memory, Tally& tally,
             std::array<double, 6>& load);
   template <int Dim, class Law>
   void part_from(const Law& law, std::size_t body, Memory& memory, Tally& tally);
+  void go_back(Body& body, double step);
   void kick(Body& body, double time);
   void see(Body& body);
   RigidBody& state_of(const Body& body) const { return state_->bodies[body.number]; }
@@ -125,7 +127,8 @@ class SphereBodies {
   std::vector<std::array<double, 6>> loads_;  // by block and body
   std::vector<Tally> tallies_;                // by block
   Vec3 period_{};
-  double step_ = 0.0;  // s, of the scene
+  double step_ = 0.0;      // s, of the scene
+  bool at_begin_ = false;  // the bodies are where the step of the scene began
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0, contacts_ = 0.0;
 };
 

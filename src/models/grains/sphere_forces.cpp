@@ -85,7 +85,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
   using R = SphereRecord<Dim>;
   constexpr bool Rubs = Law::rubs;
   constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>, springs = Law::template springs<Dim>;
-  const typename Law::template Constants<V> constants(law, step.dt);
+  const typename Law::template Constants<V> constants(law, step.contacts);
   const V of_a(step.inverse_densities[2 * group.law]), of_b(step.inverse_densities[2 * group.law + 1]);
   const V drop(law.left_behind());
   std::array<V, Dim> period, turns;
@@ -236,7 +236,7 @@ void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereC
   s.reduced_mass = One(1.0) / s.inverse_mass;
   std::array<One, numbers> slip;
   for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(at.memory[k]);
-  const auto f = Law::touch(typename Law::template Constants<One>(law, step.dt), s, slip);
+  const auto f = Law::touch(typename Law::template Constants<One>(law, step.contacts), s, slip);
   for (std::size_t k = 0; k < numbers; ++k) at.memory[k] = slip[k].v;
   // Who sleeps feels no force of a side: it is as constant as those of others that sleep.
   const bool sleeps = step.sleep && step.sleep->asleep[at.sphere];
@@ -257,7 +257,7 @@ void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereC
 
 template <class F>
 void with_law(const SphereStep& step, std::size_t number, F&& f) {
-  with_parts(step.laws[number], step.rubs, step.rolls, f);
+  with_parts(step.laws[number], step.has, f);
 }
 
 /// What a contact of two that rest stores, a pair of the list.
@@ -292,7 +292,7 @@ double stored_at_rest(const Law& law, const SphereStep& step, const SphereChunk&
   std::array<One, numbers> slip;
   const double* memory = chunk.of_pair(pair, step.numbers);
   for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(memory[k * batch]);
-  return Law::touch(typename Law::template Constants<One>(law, step.dt), s, slip).stored.v;
+  return Law::touch(typename Law::template Constants<One>(law, step.contacts), s, slip).stored.v;
 }
 
 template <int Dim>

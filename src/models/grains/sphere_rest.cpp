@@ -75,12 +75,12 @@ void set_slips(const SphereStep& step, const Meeting& m, Vec3 force, Vec3 torque
   const double inverse = -1.0 / m.tangential, rolling = inverse / m.lever;
   if (step.dimensions == 2) {
     memory[0] = inverse * (force[1] * n[0] - force[0] * n[1]);
-    if (step.rolls) memory[apart] = rolling * torque[2];
+    if (step.has.rolls) memory[apart] = rolling * torque[2];
     return;
   }
   for (std::size_t d = 0; d < 3; ++d) {
     memory[d * apart] = inverse * force[d];
-    if (step.rolls) memory[(3 + d) * apart] = rolling * torque[d];
+    if (step.has.rolls) memory[(3 + d) * apart] = rolling * torque[d];
   }
 }
 
@@ -91,12 +91,12 @@ RestingContact contact_of(const SphereStep& step, const Meeting& m, std::uint64_
   const double k = -m.tangential, rolling = k * m.lever;
   if (step.dimensions == 2) {
     c.force = {-k * memory[0] * n[1], k * memory[0] * n[0], 0.0};
-    if (step.rolls) c.torque[2] = rolling * memory[apart];
+    if (step.has.rolls) c.torque[2] = rolling * memory[apart];
     return c;
   }
   for (std::size_t d = 0; d < 3; ++d) {
     c.force[d] = k * memory[d * apart];
-    if (step.rolls) c.torque[d] = rolling * memory[(3 + d) * apart];
+    if (step.has.rolls) c.torque[d] = rolling * memory[(3 + d) * apart];
   }
   return c;
 }
@@ -129,7 +129,7 @@ void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::span<Sp
   };
   for (SphereChunk& chunk : chunks) {
     each_meeting(step, s, chunk, [&](const Meeting& m, double* memory, std::size_t apart, std::size_t at) {
-      if (!step.rubs) return;
+      if (!step.has.rubs) return;
       const RestingContact* own = find(m.a, m.branch, m.reach);
       if (own) set_slips(step, m, own->force, own->torque, memory, apart);
       else if (m.b != Meeting::side && (own = find(m.b, -1.0 * m.branch, m.reach)))
@@ -152,7 +152,7 @@ std::vector<RestingContact> contacts_at_rest(const SphereStep& step, const Spher
       const bool touches = side ? chunk.sides[at].touches != 0 : chunk.touching(at);
       // Both chunks of a pair have it: that of the first tells.
       const bool own = side || (chunk.a[at] >= chunk.begin && chunk.a[at] < chunk.end);
-      if (!touches || !own || !step.rubs || m.a < first || m.a >= first + count) return;
+      if (!touches || !own || !step.has.rubs || m.a < first || m.a >= first + count) return;
       contacts.push_back(contact_of(step, m, m.a - first, memory, apart));
     });
   return contacts;

@@ -154,11 +154,12 @@ struct SphereStep {
   const float* tightness = nullptr;        // 1/m2, by sphere that moves (models/grains/sphere_strays.hpp)
   std::array<double, 3> period{};          // m, 0: not periodic
   double dt = 0.0;                         // s
+  StepOfContacts contacts;                 // the same step, as contacts take it
   double fastest = 0.0;                    // m/s, of all chunks
   double fastest_wall = 0.0;               // m/s, of the spheres of walls that travel
   std::uint32_t far = 0;                   // the first of the two spheres far away
   bool last = false;                       // of its bundle: half a kick, and into the columns
-  bool rubs = false, rolls = false;        // some law does
+  ContactParts has;                        // of the laws
   std::size_t numbers = 0;                 // of the memory of a pair
   const SleepStep* sleep = nullptr;        // null: nobody sleeps
   std::span<const WatchedLaw> watched;

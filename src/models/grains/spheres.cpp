@@ -22,6 +22,7 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       PhaseParticles& p = state.phases[k];
       p.set_mean_radius(0.5 * plan.diameter);
       rest_.add(parts_.back().first, blocks[k].contacts);
+      forcing_.add(scene_, k);
       if (p.has(Field::radius)) std::copy(blocks[k].radius.begin(), blocks[k].radius.end(), p.column(Field::radius));
     }
   }
@@ -45,8 +46,7 @@ void Spheres::attach(Workspace& w) {
   });
   columns_.resize(n);
   step_.dimensions = layout_.dimensions;
-  step_.rubs = laws_.rubs();
-  step_.rolls = laws_.rolls();
+  step_.has = laws_.parts();
   step_.numbers = laws_.numbers(layout_.dimensions);
   step_.laws = laws_.laws().data();
   step_.inverse_densities = laws_.inverse_densities().data();
@@ -133,21 +133,61 @@ double Spheres::longest_step() const {
 
 /// A step of the scene begins: as many steps of the contacts as it needs.
 void Spheres::begin_steps() {
-  const double dt = w_->state.dt, longest = scene_.time.fixed_step ? 1e300 : longest_step();
-  left_ = bundle_ = static_cast<long>(std::max(1.0, std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9))));
   if (others_are_there()) renumber();
   if (ranks::active() && !divided_) divide();
   if (must_search_ || since_sort_ >= searches_a_sort) sort();
   point_at_columns();
   if (sleep_.on() && sleep_.look(*w_, numbers_.data(), lost_)) others_sleep_ = true;
   rest_anew_ = sleep_.on() && (sleep_.some_fell_asleep() || loaded_ || must_search_);
-  each_ = dt / static_cast<double>(left_);
+  const double dt = w_->state.dt, longest = std::min(longest_step(), longest_forced_step()),
+               steps = scene_.time.fixed_step ? 1.0 : std::ceil(dt / std::min(longest, dt) * (1.0 - 1e-9));
+  left_ = bundle_ = static_cast<long>(std::max(1.0, steps));
+  const double each = dt / static_cast<double>(left_), before = each_;
+  if (before > 0.0) {
+    step_.contacts = StepOfContacts::after(before, each);
+  } else {
+    start();
+    step_.contacts = StepOfContacts::first(each);
+  }
   for (auto& push : w_->sphere_pushes) push.impulse = push.turn = {};
-  sum_pushes(0.5 * each_);
-  carry_walls(each_);
-  if (bodies_.any()) bodies_.begin_steps(dt, each_);
-  layout_.dimensions == 2 ? pack<2>(each_) : pack<3>(each_);
+  sum_pushes(0.5 * each);
+  begin_bundle(dt, each);
+}
+
+/// The forces of contacts at the start of the run, which the first half kick needs: a step without length.
+void Spheres::start() {
+  const long steps = left_;
+  const double dt = w_->state.dt;
+  step_.contacts = StepOfContacts::start(dt / static_cast<double>(steps));
+  left_ = bundle_ = 1;
+  begin_bundle(dt, 0.0);
+  go();
+  left_ = bundle_ = steps;
+  kept_ = 0;
+}
+
+/// Spheres, walls and bodies go to where the first step of a bundle ends. `step` (s): of the scene; `each` (s): of
+/// contacts.
+void Spheres::begin_bundle(double step, double each) {
+  each_ = each;
+  carry_walls(each);
+  if (bodies_.any()) bodies_.begin_steps(step, each);
+  layout_.dimensions == 2 ? pack<2>(each) : pack<3>(each);
+  if (forcing_.any()) {
+    forcing_.make_room(moving_);
+    forcing_.begin(own_chunks(), columns_.data(), passive_.data(), w_->state.time);
+  }
   share_out();
+}
+
+/// s, that the formulas of a [[forcing]] allow where the spheres are.
+double Spheres::longest_forced_step() {
+  if (!forcing_.any() || scene_.time.fixed_step) return 1e300;
+  forcing_.make_room(moving_);
+  constexpr double apart = 1e-2;  // of the reach
+  double stiffest = forcing_.stiffest(own_chunks(), columns_.data(), w_->state.time, apart * laws_.reach());
+  if (shares_.on()) ranks::active()->reduce(&stiffest, 1, Communicator::Take::largest);
+  return scene_.time.safety * SphereForcing::step / std::sqrt(std::max(stiffest, 1e-300));
 }
 
 /// Puts neighbours near in memory, and particles into the periodic domain, where nobody else does.
@@ -181,6 +221,7 @@ void Spheres::go() {
   step_.passive = passive_.data();
   step_.dt = dt;
   step_.last = last;
+  const double time = w_->state.time + (last && dt > 0.0 ? w_->state.dt : dt * static_cast<double>(bundle_ - left_));
   step_.fastest = fastest_;
   step_.far = static_cast<std::uint32_t>(all());
   step_.sleep = sleep_.step(numbers_.data());
@@ -190,6 +231,7 @@ void Spheres::go() {
     const double threads = omp_get_num_threads(), own = omp_get_thread_num();
     for (std::size_t c = 0; c < chunks.size(); ++c) {
       if (std::floor(middles_[c] * threads) != own) continue;
+      if (forcing_.any()) forcing_.push(chunks[c], step_.records, passive_.data(), time);
       step_spheres(step_, chunks[c]);
       if (last && sleep_.on()) order_pairs(chunks[c], step_.numbers, step_.far);
     }
@@ -208,6 +250,7 @@ void Spheres::go() {
   std::span<const std::uint32_t> woken;
   if (wakes) woken = sleep_.wake(chunks, numbers_.data(), shares_.on());
   others_sleep_ = wakes;
+  step_.contacts = StepOfContacts{dt};
   if (last) return share_columns();
   if (bodies_.any()) bodies_.go_on(dt);
   now_ = 1 - now_;
@@ -225,7 +268,7 @@ void Spheres::touch_bodies(bool last) {
   for (const Part& part : parts_) body_parts_.push_back({part.phase, part.first, part.count});
   bodies_.touch({body_parts_, step_.records, step_.passive, moving_, each_, last ? 0.5 : 1.0}, step_);
   step_.by_bodies = bodies_.forces();
-  if (last) bodies_.end_steps();
+  if (last && each_ > 0.0) bodies_.end_steps();
 }
 
 }  // namespace barchan

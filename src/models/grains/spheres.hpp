@@ -1,9 +1,9 @@
 // All grains of a scene that are spheres: their contacts and their motion, in steps of their own.
 //
 // A step of the scene holds a bundle of steps of the contacts (velocity Verlet; the acceleration by all but contacts
-// stays what it was at the beginning). Between two searches no two spheres can touch that the lists do not hold: they
-// have all pairs nearer than a slack. A sphere that has gone half of it is searched anew alone (sphere_strays.hpp); all
-// are when that is less work.
+// and forcings stays what it was at the beginning). Between two searches no two spheres can touch that the lists do not
+// hold: they have all pairs nearer than a slack. A sphere that has gone half of it is searched anew alone
+// (sphere_strays.hpp); all are when that is less work.
 #pragma once
 
 #include <optional>
@@ -11,6 +11,7 @@
 
 #include "base/errors.hpp"
 #include "models/grains/sphere_bodies.hpp"
+#include "models/grains/sphere_forcing.hpp"
 #include "models/grains/sphere_rest.hpp"
 #include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_shares.hpp"
@@ -30,12 +31,12 @@ class SphereLaws {
   const std::vector<double>& inverse_densities() const { return inverse_densities_; }
   /// By phase and phase; SphereSearch::none where two do not touch.
   const std::vector<std::uint32_t>& table() const { return table_; }
-  bool rubs() const { return rubs_; }    ///< some law has friction or rolling resistance
-  bool rolls() const { return rolls_; }  ///< some law has rolling resistance
+  /// Those of some law; what rolls rubs.
+  ContactParts parts() const { return has_; }
   /// The most that a contact remembers under one of the laws, without the parts that none of them has.
   std::size_t numbers(int dimensions) const;
-  /// A twelfth (without loss a 24th or 48th) of the shortest contact at the largest speed of the scene (s); infinite
-  /// without contacts.
+  /// A twelfth (without loss a 24th or 48th, less under strong dashpots) of the shortest contact at the largest speed
+  /// of the scene (s); infinite without contacts.
   double step() const { return step_; }
   double reach() const { return reach_; }  ///< m, the largest sum of two radii
 
@@ -46,7 +47,7 @@ class SphereLaws {
   std::vector<double> inverse_densities_;
   std::vector<std::uint32_t> table_;
   double step_ = 1e300, reach_ = 0.0;
-  bool rubs_ = false, rolls_ = false;
+  ContactParts has_;
 };
 
 /// An entry of spheres with spheres or with a wall.
@@ -127,7 +128,10 @@ class Spheres : public Model {
   std::vector<SphereSearch::Side> sides_with_spheres() const;
   void add_wall(std::size_t phase, const ParticleBlock& block);
   void begin_steps();
+  void start();
+  void begin_bundle(double step, double each);
   double longest_step() const;
+  double longest_forced_step();
   void sort();
   void number();
   template <int Dim>
@@ -193,6 +197,7 @@ class Spheres : public Model {
   std::vector<double> fixed_;  // x y z r of the walls' spheres
   std::vector<std::uint8_t> fixed_kind_;
   std::vector<SphereWall> walls_;  // that travel
+  SphereForcing forcing_;
   SphereBodies bodies_;
   std::vector<SphereBodies::Part> body_parts_;  // as parts_
   bool walls_left_ = false;                     // one of their spheres went farther than the lists allow
@@ -230,7 +235,7 @@ class Spheres : public Model {
   double slack_ = 0.1;         // of the reach
   long left_ = 0;              // steps of the contacts in the present step of the scene
   long bundle_ = 0;            // all of them
-  double each_ = 0.0;          // s, of one of them
+  double each_ = 0.0;          // s, of one of them; 0 before the first one
   long kept_ = 0, searches_ = 0, since_sort_ = searches_a_sort;
   double lost_ = 0.0, stored_ = 0.0, deepest_ = 0.0;
   double contacts_ = 0.0;

@@ -98,15 +98,17 @@ void Spheres::copy_radii() {
 
 void Spheres::tell_places() {
   ++told_.places;
-  shares_.tell_all(layout_.dimensions, laws_.rubs(), true, records_[now_].data());
+  shares_.tell_all(layout_.dimensions, laws_.parts().rubs, true, records_[now_].data());
 }
 
 void Spheres::tell_records() {
   ++told_.records;
-  if (!bodies_.any()) shares_.tell(layout_.dimensions, laws_.rubs(), records_[now_].data());
+  if (!bodies_.any()) shares_.tell(layout_.dimensions, laws_.parts().rubs, records_[now_].data());
 }
 
-void Spheres::tell_all_records() { shares_.tell_all(layout_.dimensions, laws_.rubs(), false, records_[now_].data()); }
+void Spheres::tell_all_records() {
+  shares_.tell_all(layout_.dimensions, laws_.parts().rubs, false, records_[now_].data());
+}
 
 /// Strays of all ranks, in the order of one process, with their records.
 void Spheres::tell_strays() {
@@ -235,7 +237,7 @@ void Spheres::gather_to_save() {
 bool Spheres::count_traffic(std::vector<RankTraffic>& of) const {
   if (chunks_.size() < of.size()) return false;
   const double others = static_cast<double>(of.size()) - 1.0, number = sizeof(double),
-               width = static_cast<double>(SphereShares::width(layout_.dimensions, laws_.rubs()));
+               width = static_cast<double>(SphereShares::width(layout_.dimensions, laws_.parts().rubs));
   for (std::size_t r = 0; r < of.size(); ++r) {
     RankTraffic& rank = of[r];
     const auto send = [&](long times, double to, double bytes) {

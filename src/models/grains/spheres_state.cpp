@@ -40,6 +40,7 @@ double Spheres::energy_of_sleepers() const {
   SphereStep now = step_;
   now.records = records_[now_].data();
   now.dt = each_;
+  now.contacts = StepOfContacts{each_};
   std::vector<double> of(chunks_.size(), 0.0);
   std::size_t c = shares_.first_chunk();
   for (const SphereChunk& chunk : own_chunks()) of[c++] = energy_at_rest(now, chunk);
@@ -147,7 +148,7 @@ void Spheres::archive(Archive& a) {
     if (loaded_) sleep_.mark(numbers_.data());
   }
   for (SphereChunk& chunk : chunks_) archive_chunk(a, chunk);
-  if (sleep_.on()) a.number("length of a step", each_);
+  a.number("length of a step of contacts", each_);
   if (!a.loads()) return;
   drop_other_chunks();
   shares_.find(chunks_);
