@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "scene/ball_surfaces.hpp"
 #include "scene/checks.hpp"
 #include "scene/couplings.hpp"
 
@@ -110,6 +111,40 @@ void check_sizes(const Scene& scene, const Phase& wall, const Report& report) {
   }
 }
 
+/// m, how wide a ball passes between spheres of a wall on the lattice of a fill; below zero: none does.
+double opening_of(const Fill& fill, int dimensions, double spacing, double diameter) {
+  if (dimensions == 2) return spacing - diameter;
+  const bool square = fill.packing == Packing::square || fill.packing == Packing::fitted;
+  return (square ? std::sqrt(2.0) : 2.0 / std::sqrt(3.0)) * spacing - diameter;
+}
+
+/// A wall that grains touch by its particles, as spheres, must not let them through.
+void check_openings(const Scene& scene, const Phase& wall, const Report& report) {
+  const double diameter = wall.diameter() ? wall.diameter()->mean * (1.0 - wall.diameter()->spread) : wall.spacing;
+  const std::string dotted = "phases." + wall.name + (wall.diameter() ? ".diameter" : ".spacing");
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const Fill& fill = scene.fills[k];
+    if (fill.phase != wall.name || touched_by_surface(scene, wall, fill.shape) || fill.packing == Packing::random ||
+        std::holds_alternative<SidesShape>(fill.shape) || std::holds_alternative<PointsShape>(fill.shape))
+      continue;
+    const double opening = opening_of(fill, scene.dimensions, wall.spacing, diameter);
+    for (const Phase& grains : scene.phases) {
+      const Interaction* pair = entry_between(scene, wall, grains);
+      if (!grains.if_grains() || !grains.diameter() || !pair || !of_spheres(*pair) || report.touched(dotted)) continue;
+      const double smallest = grains.diameter()->mean * (1.0 - grains.diameter()->spread);
+      if (!(opening > 0.0) || !(opening >= smallest * (1.0 - 1e-6))) continue;
+      report(
+          dotted,
+          "grains of \"" + grains.name + "\", " + number_text(smallest) +
+              " m across, pass between the spheres of the wall in fill." + std::to_string(k) + ", " +
+              number_text(diameter) + " m across and " + number_text(wall.spacing) +
+              " m apart; expected a smaller spacing of \"" + wall.name +
+              "\", or a larger diameter of it: openings below " + number_text(smallest) + " m" +
+              (wall.diameter() ? ", or no diameter: grains touch a box, disc, polygon or surface by its shape" : ""));
+    }
+  }
+}
+
 void check_velocity(const Scene& scene, const Phase& wall, const Report& report) {
   const std::string dotted = "phases." + wall.name + ".velocity";
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
@@ -137,7 +172,10 @@ void check_walls(const Scene& scene, const Report& report) {
   for (const Phase& wall : scene.phases) {
     if (wall.kind() != PhaseKind::wall || report.touched("phases." + wall.name + ".kind")) continue;
     check_keys(scene, wall, report);
-    if (!report.touched("fill") && !report.touched("interactions")) check_sizes(scene, wall, report);
+    if (!report.touched("fill") && !report.touched("interactions")) {
+      check_sizes(scene, wall, report);
+      check_openings(scene, wall, report);
+    }
     if (report.has("phases." + wall.name + ".velocity") && !report.touched("fill") && !report.touched("domain"))
       check_velocity(scene, wall, report);
   }

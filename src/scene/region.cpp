@@ -76,8 +76,17 @@ class SolidOf {
   bool solid_;
 };
 
-/// The deepest of the solid's images in the periodic domain that come near it.
-std::function<double(const Vec3&)> with_images(const Scene& scene, const Solid& solid, double reach) {
+bool leaves_out(const Fill& fill) {
+  return std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills;
+}
+
+}  // namespace
+
+std::optional<Solid> solid_of(const Scene& scene, const Shape& shape, double reach) {
+  return std::visit(SolidOf(scene, reach), shape);
+}
+
+std::function<double(const Vec3&)> depth_with_images(const Scene& scene, const Solid& solid, double reach) {
   std::vector<Vec3> shifts{{0, 0, 0}};
   for (std::size_t d = 0; d < 3; ++d) {
     if (!scene.domain.periodic[d] || solid.upper[d] >= far) continue;
@@ -98,23 +107,13 @@ std::function<double(const Vec3&)> with_images(const Scene& scene, const Solid& 
   };
 }
 
-bool leaves_out(const Fill& fill) {
-  return std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills;
-}
-
-}  // namespace
-
-std::optional<Solid> solid_of(const Scene& scene, const Shape& shape, double reach) {
-  return std::visit(SolidOf(scene, reach), shape);
-}
-
 Solid region_of_fill(const Scene& scene, std::size_t k, double reach) {
   const Fill& fill = scene.fills[k];
   const Vec3 low = scene.domain.origin, high = low + scene.domain.size;
   const bool rest = std::holds_alternative<TheRestShape>(fill.shape);
   Solid own = rest ? Solid{[](const Vec3&) { return far; }, {-far, -far, -far}, {far, far, far}}
                    : *solid_of(scene, fill.shape, reach);
-  own.depth = with_images(scene, own, reach);
+  own.depth = depth_with_images(scene, own, reach);
   std::array<bool, 3> ends{};  // the domain's sides are borders of the region
   for (std::size_t d = 0; d < 3; ++d) {
     const bool axis = d < static_cast<std::size_t>(scene.dimensions);
@@ -130,7 +129,7 @@ Solid region_of_fill(const Scene& scene, std::size_t k, double reach) {
   if (leaves_out(fill))
     for (std::size_t j = 0; j < k; ++j)
       if (const auto solid = solid_of(scene, scene.fills[j].shape, reach))
-        holes.push_back(with_images(scene, *solid, reach));
+        holes.push_back(depth_with_images(scene, *solid, reach));
   own.depth = [depth = own.depth, holes, ends, low, high](const Vec3& x) {
     double least = std::min(depth(x), depth_in_box(x, low, high, ends));
     for (const auto& hole : holes) least = std::min(least, -hole(x));

@@ -19,6 +19,9 @@ struct Solid {
 /// must be exact.
 std::optional<Solid> solid_of(const Scene& scene, const Shape& shape, double reach);
 
+/// The depth in the deepest of the solid's images in the periodic domain that come near it.
+std::function<double(const Vec3&)> depth_with_images(const Scene& scene, const Solid& solid, double reach);
+
 /// The k-th fill's shape, inside the domain along axes through which it goes, less earlier fills if it leaves them out.
 /// All of its fills must have a border (misfit_of_region is empty).
 Solid region_of_fill(const Scene& scene, std::size_t k, double reach);

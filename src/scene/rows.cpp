@@ -97,8 +97,8 @@ constexpr Key rows_of_keys[] = {
     {"phases", "contact-speed", of<&GrainsKeys::contact_speed>("chosen by the plan").like("10"), "m/s",
      "Square root of a contact's stiffness over density.", positive},
     {"phases", "diameter", sizes("none: particles of one spacing").like("{ mean = 2.5e-4, spread = 0.15 }"), "m",
-     "Grains as spheres, in 2D in a slab as thick as the mean diameter; needs contacts with law = \"linear\" or \"hertz\". Of a wall: what "
-     "such grains feel of its particles.", positive},
+     "Grains as spheres, in 2D in a slab as thick as the mean diameter; needs contacts with law = \"linear\" or \"hertz\". Of a wall: its "
+     "particles are spheres of this size to such grains, a rough wall; without it they touch a box, cube, disc, sphere, ring, polygon or surface by its shape, smoothly.", positive},
     {"phases", "friction", of<&GrainsKeys::friction>(0.0).like("0.5"), "", "Coulomb's coefficient of friction of spheres.", {.at_least = 0.0, .at_most = 10.0}},
     {"phases", "rolling-friction", of<&GrainsKeys::rolling_friction>(0.0).like("0.05"), "",
      "Rolling resistance of spheres: the largest torque over normal force and reduced radius.", {.at_least = 0.0, .at_most = 10.0}},

@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
+#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
 #include "scene/fitted.hpp"
 #include "scene/formula.hpp"
@@ -181,9 +182,9 @@ double cells_between(const Scene& scene, const Vec3& lower, const Vec3& upper, d
   return cells;
 }
 
-/// Random sequential addition.
+/// Random sequential addition. `none`: where spheres have no room, or null.
 std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, double dx,
-                                const Occupied& occupied) {
+                                const Occupied& occupied, const NoRoom* none) {
   const PeriodicSpace space(scene.domain);
   Random random(seed);
   Places taken(space, dx);
@@ -195,6 +196,7 @@ std::vector<Vec3> random_places(const Scene& scene, const Region& region, double
       x[axis] = random.uniform(region.lower[axis], region.upper[axis]);
     if (!region.inside(x)) continue;
     x = space.wrapped(x);
+    if (none && none->at(x)) continue;
     if (taken.owner_near(x, dx, 1.0) >= 0 || occupied.inside.owner_near(x, dx, 1.0) >= 0) continue;
     taken.add(x, dx, 0);
     places.push_back(x);
@@ -276,7 +278,11 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupie
     const double cells = cells_between(scene, region.lower, region.upper, dx);
     check_room(scene, k, cells);
     if (fill.packing == Packing::random) {
-      places = random_places(scene, region, cells, fill.seed, dx, occupied);
+      const Phase* const phase = find_phase(scene, fill.phase);
+      std::optional<NoRoom> none;
+      if (phase && phase->if_grains() && phase->diameter())
+        none.emplace(scene, *phase, 0.5 * phase->diameter()->largest());
+      places = random_places(scene, region, cells, fill.seed, dx, occupied, none ? &*none : nullptr);
     } else {
       places = stretched_lattice(scene, fill, region, dx, share.value_or(ranks::Share{}));
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });

@@ -11,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/ranks.hpp"
 #include "engine/team.hpp"
+#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
 #include "scene/ground.hpp"
 #include "scene/places.hpp"
@@ -81,6 +82,9 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
     if (const auto* bed = std::get_if<BedShape>(&f.shape)) floors.emplace_back(*bed, scene.domain);
   std::optional<Ground> top;
   if (const auto* bed = std::get_if<BedShape>(&fill.shape)) top.emplace(*bed, scene.domain);
+  Scene in_walls = s;  // the lattice fits the box
+  std::erase_if(in_walls.fills, [](const Fill& f) { return f.phase == settling_box; });
+  const NoRoom none(in_walls, s.phases[0], 0.5 * size.largest());
   ParticleBlock& kept = blocks[0];
   const ParticleBlock& all = grains[0];
   for (std::size_t i = 0; i < all.position.size(); ++i) {
@@ -89,7 +93,7 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
     for (const Ground& g : floors) floor = std::max(floor, bottom + g.height(x[0], x[2]));
     const double high = top ? bottom + top->height(x[0], x[2]) : c.high[1];
     if (!floors.empty() && x[1] < floor) continue;
-    if (fixed.owner_near(x, size.largest(), 1.0) >= 0) continue;
+    if (fixed.owner_near(x, size.largest(), 1.0) >= 0 || none.at(x)) continue;
     if (x[1] > floor + (high - floor) * stretch + 2.0 * size.largest()) continue;
     thickness = std::max(thickness, high - floor);
     kept.position.push_back(x);

@@ -14,6 +14,7 @@
 
 #include "base/aligned.hpp"
 #include "laws/sphere_catalogue.hpp"
+#include "models/bodies/solid_surfaces.hpp"
 #include "state/archive.hpp"
 
 namespace barchan {
@@ -62,6 +63,33 @@ struct ContactBatches {
   void archive(Archive& a) {
     a.array("memory of pairs", memory);
     a.array("pairs that touch", touches);
+  }
+};
+
+/// What a sphere and a solid remember of their contact. The next step finds it by its normal: so it goes on over the
+/// seam of two solids.
+struct SolidTouch {
+  std::int64_t with = 0;                  // number of the rigid body, or of the law of the wall, and 1; 0: none
+  double normal[3] = {}, distance = 0.0;  // m
+  double memory[most_remembered] = {};
+};
+/// Of all solids that a sphere touches, without gaps.
+struct SolidTouches {
+  static constexpr std::size_t most = SolidSurfaces::most;
+  SolidTouch of[most];
+
+  /// Where the contact with this normal stands; `most`: it is new. `taken`: those that have gone on already.
+  std::size_t find(const Vec3& normal, const std::array<bool, most>& taken) const {
+    constexpr double turned = 0.9;  // cosine of the angle by which it may turn in a step
+    double best = turned;
+    std::size_t found = most;
+    for (std::size_t k = 0; k < most && of[k].with != 0; ++k) {
+      const double same = dot({of[k].normal[0], of[k].normal[1], of[k].normal[2]}, normal);
+      if (taken[k] || !(same > best)) continue;
+      best = same;
+      found = k;
+    }
+    return found;
   }
 };
 

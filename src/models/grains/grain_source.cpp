@@ -9,6 +9,7 @@
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "output/series.hpp"
+#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
 #include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
@@ -150,7 +151,16 @@ GrainSource::GrainSource(const Scene& scene, const Layout& layout, std::size_t i
       side_(is_upper(side_of(influx_.side)) ? layout.domain.high[axis_] : layout.domain.low[axis_]),
       inwards_(is_upper(side_of(influx_.side)) ? -1.0 : 1.0),
       arrivals_(scene, influx, layout.dimensions == 2 ? layout.slab : 1.0),
-      name_(influx_.phase + "_" + word_of(side_of(influx_.side))) {}
+      name_(influx_.phase + "_" + word_of(side_of(influx_.side))),
+      by_particles_(scene.phases.size(), 0) {
+  for (const Fill& fill : scene.fills) {
+    const Phase& wall = scene.phases[number_of(scene, fill.phase)];
+    const Interaction* pair = entry_between(scene, scene.phases[phase_], wall);
+    if (wall.if_wall() && pair && of_spheres(*pair) && !std::holds_alternative<SidesShape>(fill.shape) &&
+        !touched_by_surface(scene, wall, fill.shape))
+      by_particles_[number_of(scene, fill.phase)] = 1;
+  }
+}
 
 void GrainSource::begin(State& state, const std::vector<ParticleBlock>&) {
   place_ = state.departed.size();
@@ -160,25 +170,50 @@ void GrainSource::begin(State& state, const std::vector<ParticleBlock>&) {
   next_ = arrivals_(0).wait;
 }
 
+void GrainSource::attach(Workspace& w) {
+  w_ = &w;
+  room_.emplace(scene_, layout_, phase_, 0.5 * layout_.phases[phase_].largest_size);
+}
+
 void GrainSource::schedule(Schedule& s) {
   Touches touches;
   for (std::size_t k = 0; k < layout_.phases.size(); ++k) {
     const PlanPhase& p = layout_.phases[k];
     if (k == phase_) touches.push_back(p.all_fields());
-    else if (p.sphere_records) touches.push_back({p.name, FieldSet(p.fields), {}});
+    else if (p.sphere_records || by_particles_[k] != 0) touches.push_back({p.name, FieldSet(p.fields), {}});
   }
   s.add({stage::walls, influx_.phase + ", influx through " + word_of(side_of(influx_.side)), touches,
          [this] { enter(); }});
 }
 
-/// Whether no sphere overlaps one at a place, those of walls on other ranks too.
-bool GrainSource::has_room(const Vec3& x, double radius) const { return !ranks::any(is_taken(x, radius)); }
+/// Whether a sphere at a place would overlap no other one, those of walls on other ranks too, no wall and no body.
+bool GrainSource::has_room(const Vec3& x, double radius) const {
+  constexpr double rounding = 1e-9;
+  const bool outside = room_->nearest(x).gap < radius * (1.0 - rounding);
+  return !ranks::any(is_taken(x, radius)) && !outside;
+}
+
+/// m, a place along the side where a sphere has room between the sides of the domain.
+double GrainSource::across(double share, double radius) const {
+  const std::size_t axis = axis_ == 0 ? 2 : 0;
+  const double low = layout_.domain.low[axis] + (room_->has_side(axis, false) ? radius : 0.0),
+               high = layout_.domain.high[axis] - (room_->has_side(axis, true) ? radius : 0.0);
+  return low + share * std::max(high - low, 0.0);
+}
+
+/// Whether a particle of a wall is no sphere, but stands for a side of the domain.
+bool GrainSource::is_behind_side(const std::array<const double*, 3>& at, std::size_t k) const {
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
+    if (!layout_.domain.periodic[d] && !(at[d][k] >= layout_.domain.low[d] && at[d][k] <= layout_.domain.high[d]))
+      return true;
+  return false;
+}
 
 /// Whether some sphere of this rank overlaps one at a place.
 bool GrainSource::is_taken(const Vec3& x, double radius) const {
   for (std::size_t q = 0; q < layout_.phases.size(); ++q) {
     const PlanPhase& other = layout_.phases[q];
-    if (!other.sphere_records) continue;
+    if (!other.sphere_records && by_particles_[q] == 0) continue;
     const PhaseParticles& p = w_->particles(q);
     std::array<const double*, 3> at{};
     for (int d = 0; d < layout_.dimensions; ++d) at[static_cast<std::size_t>(d)] = p.column(Field::position, d);
@@ -191,6 +226,7 @@ bool GrainSource::is_taken(const Vec3& x, double radius) const {
         if (layout_.domain.periodic[d]) apart -= period * std::round(apart / period);
         squared += apart * apart;
       }
+      if (!other.moves && is_behind_side(at, k)) continue;
       const double touching = radius + (radii ? radii[k] : 0.5 * other.largest_size);
       if (squared < touching * touching) return true;
     }
@@ -203,10 +239,8 @@ bool GrainSource::place(const Arrivals::Grain& grain, double age) {
   Vec3 x{};
   x[axis_] = side_ + age * grain.velocity[axis_];
   x[1] = grain.height + age * grain.velocity[1];
-  const std::size_t across = axis_ == 0 ? 2 : 0;
-  if (layout_.dimensions == 3)
-    x[across] = layout_.domain.low[across] + grain.across * (layout_.domain.high[across] - layout_.domain.low[across]) +
-                age * grain.velocity[across];
+  const std::size_t axis = axis_ == 0 ? 2 : 0;
+  if (layout_.dimensions == 3) x[axis] = across(grain.across, grain.radius) + age * grain.velocity[axis];
   if (!has_room(x, grain.radius)) return false;
   PhaseParticles& p = w_->particles(phase_);
   const std::size_t k = p.create(1, w_->state.ids);
@@ -234,6 +268,7 @@ bool GrainSource::place(const Arrivals::Grain& grain, double age) {
 
 void GrainSource::enter() {
   const double now = w_->state.time;
+  room_->move(w_->state, w_->wall_motions);
   while (next_ <= now) {
     waiting_.push_back({drawn_, next_, next_});
     next_ += arrivals_(++drawn_).wait;

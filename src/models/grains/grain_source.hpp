@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "models/grains/sphere_room.hpp"
 #include "models/model.hpp"
 #include "models/open_sides.hpp"
 
@@ -58,7 +59,7 @@ class GrainSource : public Model {
 
   GrainSource(const Scene& scene, const Layout& layout, std::size_t influx);
   void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
-  void attach(Workspace& w) override { w_ = &w; }
+  void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
   /// NAME_SIDE_in: what entered (add_passed).
   void history(HistoryRow& row) const override;
@@ -73,7 +74,9 @@ class GrainSource : public Model {
   void enter();
   bool place(const Arrivals::Grain& grain, double age);
   bool has_room(const Vec3& x, double radius) const;
+  double across(double share, double radius) const;
   bool is_taken(const Vec3& x, double radius) const;
+  bool is_behind_side(const std::array<const double*, 3>& at, std::size_t k) const;
 
   const Scene& scene_;
   const Layout& layout_;
@@ -88,6 +91,8 @@ class GrainSource : public Model {
   PassedSide entered_;
   std::size_t place_ = 0;  // of its row in State::departed
   Workspace* w_ = nullptr;
+  std::optional<SphereRoom> room_;
+  std::vector<char> by_particles_;  // by phase: a wall whose particles are spheres
 };
 
 }  // namespace barchan

@@ -47,8 +47,8 @@ void SphereBodies::begin(const Layout& layout, State& state) {
   for (const PlanEntry& e : layout.entries) {
     if (!e.own_steps || !e.by_outlines) continue;
     const std::size_t grains = layout.phases[e.a].own_steps ? e.a : e.b;
-    if (remembers_[grains] != 0) continue;
-    memory_[grains] = state.phases[grains].add_own<Memory>("bodies that it touches", Kept::state);
+    if (remembers_[grains] != 0 || !layout.phases[e.partner(grains)].moves) continue;
+    memory_[grains] = state.phases[grains].add_own<SolidTouches>("bodies that it touches", Kept::state);
     remembers_[grains] = 1;
   }
 }
@@ -77,7 +77,8 @@ void SphereBodies::attach(const Scene& scene, const Layout& layout, const Sphere
     while (first > 0 && state.bodies[first - 1].phase == phase) --first;
     const RigidBody& start = own[b - first];
     const double spacing = layout.phases[phase].spacing;
-    bodies_.emplace_back(b, phase, BodyBorder(start, scene, spacing, start.reach + spacing, widest + spacing));
+    bodies_.emplace_back(b, phase, b - first,
+                         BodyBorder(start, scene, spacing, start.reach + spacing, widest + spacing));
     Body& body = bodies_.back();
     body.name = layout.phases[phase].name + (own.size() > 1 ? "_" + std::to_string(b - first + 1) : "");
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout.dimensions); ++d)
@@ -91,7 +92,11 @@ void SphereBodies::attach(const Scene& scene, const Layout& layout, const Sphere
                        brief(1.0 / inverse) + " kg, less than the lightest sphere that touches it (" + brief(least) +
                        " kg): the steps of contacts follow from the spheres; expected a heavier body");
     axes_.emplace_back(start);
+    const auto surface = SolidSurface::of(scene.fills[start.fill].shape, scene, spacing, widest + spacing);
+    if (!surface) throw std::logic_error("spheres touch a body without a surface");
+    solids_.add_surface(solids_.add_solid(), *surface);
   }
+  solids_.prepare(period_);
   laws_.assign(n * bodies_.size(), SphereSearch::none);
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t b = 0; b < bodies_.size(); ++b)
@@ -103,6 +108,8 @@ void SphereBodies::see(Body& body) {
   const RigidBody& now = state_of(body);
   OwnAxes& axes = axes_[static_cast<std::size_t>(&body - bodies_.data())];
   axes = OwnAxes(now);
+  solids_.move(static_cast<std::uint32_t>(&body - bodies_.data()), layout_->phases[body.phase].rigid_bodies[body.own],
+               now);
   body.place = now.now.place;
   body.velocity = now.now.velocity;
   body.rate = axes.to_space(own_angular_velocity(now));
@@ -183,6 +190,7 @@ void SphereBodies::touch(const Present& s, const SphereStep& step) {
   if (tallies_.size() < blocks) {
     tallies_.resize(blocks);
     loads_.resize(blocks * bodies_.size());
+    near_.resize(blocks * bodies_.size());
   }
   layout_->dimensions == 2 ? touch_all<2>(s, step) : touch_all<3>(s, step);
   Tally all;
@@ -212,20 +220,29 @@ void SphereBodies::touch_all(const Present& s, const SphereStep& step) {
   for (std::int64_t i = 0; i < blocks; ++i) {
     const auto q = static_cast<std::size_t>(i);
     std::array<double, 6>* const loads = loads_.data() + q * bodies_.size();
+    std::uint16_t* const near = near_.data() + q * bodies_.size();
     std::fill_n(loads, bodies_.size(), std::array<double, 6>{});
     tallies_[q] = {};
     for (const Part& part : s.parts) {
       const std::size_t begin = std::max(part.first, q * block),
                         end = std::min(part.first + part.count, (q + 1) * block);
-      for (std::size_t k = begin; k < end; ++k) touch_one<Dim>(s, step, part, k, tallies_[q], loads);
+      for (std::size_t k = begin; k < end; ++k) touch_one<Dim>(s, step, part, k, tallies_[q], loads, near);
     }
   }
 }
 
-/// The bodies that may touch a sphere.
+/// m, a place of a sphere from the place of the body, in the image next to it.
+Vec3 SphereBodies::arm_of(const Body& body, const Vec3& at) const {
+  Vec3 arm = at - body.place;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_->dimensions); ++d)
+    if (period_[d] > 0.0) arm[d] -= period_[d] * std::round(arm[d] / period_[d]);
+  return arm;
+}
+
+/// The contacts of a sphere with all bodies. `near`: room for the numbers of the bodies.
 template <int Dim>
 void SphereBodies::touch_one(const Present& s, const SphereStep& step, const Part& part, std::size_t sphere,
-                             Tally& tally, std::array<double, 6>* loads) {
+                             Tally& tally, std::array<double, 6>* loads, std::uint16_t* near) {
   using R = SphereRecord<Dim>;
   constexpr std::size_t stride = Dim == 2 ? 4 : 8;
   std::fill_n(forces_.data() + sphere * stride, stride, 0.0);
@@ -237,61 +254,67 @@ void SphereBodies::touch_one(const Present& s, const SphereStep& step, const Par
     at[d] = r[d];
     v[d] = r[R::velocity + d];
   }
-  Memory& memory = state_->phases[part.phase].own(memory_[part.phase])[sphere - part.first];
+  const std::uint32_t* const laws = laws_.data() + part.phase * bodies_.size();
+  std::size_t count = 0;
+  double reach = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const std::uint32_t law = laws_[part.phase * bodies_.size() + b];
-    if (law == SphereSearch::none) continue;
+    if (laws[b] == SphereSearch::none) continue;
     const Body& body = bodies_[b];
     double& far = far_[sphere * bodies_.size() + b];
     const double way = s.dt * (norm(v) + norm(body.velocity) + norm(body.rate) * (body.border.reach() + radius));
     far -= way;
     if (far > way) continue;  // a contact sets in up to a step before the touch
-    Meeting m{sphere, b, law, radius, at - body.place, {}, v, {}};
-    for (std::size_t d = 0; d < Dim; ++d)
-      if (period_[d] > 0.0) m.arm[d] -= period_[d] * std::round(m.arm[d] / period_[d]);
-    const double out = norm(m.arm) - body.border.reach() - radius;
-    const auto gap = out > way ? std::nullopt : body.border.gap(axes_[b], m.arm);
+    const Vec3 arm = arm_of(body, at);
+    const double out = norm(arm) - body.border.reach() - radius;
+    const auto gap = out > way ? std::nullopt : body.border.gap(axes_[b], arm);
     far = out > way ? out : gap ? gap->distance - radius : 0.0;
-    const bool near = gap && std::isfinite(gap->distance);
-    if (gap && !near) tally.deepest = std::max(tally.deepest, 1.0);
-    if (near) {
-      m.gap = *gap;
-      m.carried = body.velocity + cross(body.rate, m.arm - gap->distance * gap->normal);
+    if (!gap || !(far < way)) continue;
+    if (std::isinf(gap->distance)) tally.deepest = std::max(tally.deepest, 1.0);
+    near[count++] = static_cast<std::uint16_t>(b);
+    reach = std::max(reach, radius + way);
+  }
+  SolidTouches& touches = state_->phases[part.phase].own(memory_[part.phase])[sphere - part.first];
+  if (count == 0 && touches.of[0].with == 0) return;
+  std::array<SolidSurfaces::Contact, SolidTouches::most> found;
+  const std::size_t contacts = solids_.touch(at, radius, reach, {near, count}, found, 0);
+  const SolidTouches before = touches;
+  touches = {};
+  std::array<bool, SolidTouches::most> goes_on{};
+  std::size_t n = 0;
+  for (std::size_t c = 0; c < contacts && !std::isinf(found[c].distance); ++c) {
+    const std::size_t b = found[c].surface;
+    const Body& body = bodies_[b];
+    Meeting m{sphere, b, laws[b], radius, {found[c].distance, found[c].normal}, {}, v, {}};
+    m.foot = arm_of(body, at) - m.gap.distance * m.gap.normal;
+    m.carried = body.velocity + cross(body.rate, m.foot);
+    if (!(radius - m.gap.distance > -s.dt * std::abs(dot(v - m.carried, m.gap.normal)))) continue;
+    SolidTouch& touch = touches.of[n++];
+    const std::size_t old = before.find(m.gap.normal, goes_on);
+    if (old < SolidTouches::most) {
+      goes_on[old] = true;
+      touch = before.of[old];
     }
-    const bool touches = near && radius - gap->distance > -s.dt * std::abs(dot(v - m.carried, gap->normal));
-    with_parts(step.laws[law], step.has, [&](const auto& parts) {
-      if (touches) meet<Dim>(parts, step.contacts, s, m, memory, tally, loads[b]);
-      else part_from<Dim>(parts, b, memory, tally);
-    });
+    with_parts(step.laws[m.law], step.has,
+               [&](const auto& parts) { meet<Dim>(parts, step.contacts, s, m, touch, tally, loads[b]); });
   }
-}
-
-/// What the springs across the normal held is lost.
-template <int Dim, class Law>
-void SphereBodies::part_from(const Law& law, std::size_t body, Memory& memory, Tally& tally) {
-  for (Touch& t : memory.of) {
-    if (t.body != static_cast<std::int64_t>(body) + 1) continue;
-    for (std::size_t k = 0; k < Law::template springs<Dim>; ++k)
-      tally.lost += law.left_behind() * t.memory[k] * t.memory[k];
-    t = {};
-  }
+  // What the springs across the normal of the others held is lost.
+  for (std::size_t k = 0; k < SolidTouches::most && before.of[k].with != 0; ++k)
+    if (!goes_on[k])
+      with_parts(step.laws[laws[before.of[k].with - 1]], step.has, [&](const auto& law) {
+        using Law = std::decay_t<decltype(law)>;
+        for (std::size_t q = 0; q < Law::template springs<Dim>; ++q)
+          tally.lost += law.left_behind() * before.of[k].memory[q] * before.of[k].memory[q];
+      });
 }
 
 /// The forces of a contact; the body gets what the sphere loses, with the moment about its place.
 template <int Dim, class Law>
-void SphereBodies::meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, Memory& memory,
+void SphereBodies::meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, SolidTouch& touch,
                         Tally& tally, std::array<double, 6>& load) {
   using R = SphereRecord<Dim>;
   constexpr std::size_t dim = Dim, first_spin = Dim == 2 ? 2 : 0, numbers = Law::template numbers<dim>;
   const Body& body = bodies_[m.body];
-  const auto name = static_cast<std::int64_t>(m.body) + 1;
-  Touch* touch = nullptr;
-  for (Touch& t : memory.of)
-    if (t.body == name) touch = &t;
-  for (Touch& t : memory.of)
-    if (!touch && t.body == 0) touch = &t;
   const double *r = s.records + m.sphere * R::size, overlap = m.radius - m.gap.distance;
-  const Vec3 foot = m.arm - m.gap.distance * m.gap.normal;
   TouchingSpheres<One, dim> pair;
   for (std::size_t d = 0; d < dim; ++d) {
     pair.normal[d] = One(m.gap.normal[d]);
@@ -306,15 +329,15 @@ void SphereBodies::meet(const Law& law, const StepOfContacts& dt, const Present&
   pair.lever_b = One(0.0);
   pair.reduced_radius = One(m.radius);
   pair.inverse_mass = One(s.passive[m.sphere * passive_size + passive_mass] +
-                          inverse_mass(state_of(body), axes_[m.body], foot, m.gap.normal) / layout_->slab);
+                          inverse_mass(state_of(body), axes_[m.body], m.foot, m.gap.normal) / layout_->slab);
   pair.reduced_mass = One(1.0) / pair.inverse_mass;
   std::array<One, numbers> slip;
-  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(touch ? touch->memory[k] : 0.0);
+  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(touch.memory[k]);
   const auto f = Law::touch(typename Law::template Constants<One>(law, dt), pair, slip);
-  if (touch) {
-    touch->body = name;
-    for (std::size_t k = 0; k < numbers; ++k) touch->memory[k] = slip[k].v;
-  }
+  touch.with = static_cast<std::int64_t>(m.body) + 1;
+  touch.distance = m.gap.distance;
+  for (std::size_t d = 0; d < 3; ++d) touch.normal[d] = m.gap.normal[d];
+  for (std::size_t k = 0; k < numbers; ++k) touch.memory[k] = slip[k].v;
   Vec3 force{}, turn{};
   double* const to = forces_.data() + m.sphere * (Dim == 2 ? 4 : 8);
   for (std::size_t d = 0; d < dim; ++d) to[d] += force[d] = f.force[d].v;
@@ -322,7 +345,7 @@ void SphereBodies::meet(const Law& law, const StepOfContacts& dt, const Present&
     to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
     turn[first_spin + d] = f.torque_b[d].v;
   }
-  const Vec3 torque = turn - cross(foot, force);
+  const Vec3 torque = turn - cross(m.foot, force);
   for (std::size_t d = 0; d < 3; ++d) {
     load[d] -= force[d];
     load[3 + d] += torque[d];

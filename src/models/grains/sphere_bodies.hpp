@@ -57,6 +57,11 @@ class SphereBodies {
   /// By sphere as in the sums of models/grains/sphere_forces.cpp: 2D fx fy t -, 3D fx fy fz - tx ty tz -.
   const double* forces() const { return forces_.data(); }
 
+  /// What the spheres of a phase remember of bodies; null: they touch none.
+  const SolidTouches* touches(std::size_t phase) const {
+    return any() && remembers_[phase] != 0 ? state_->phases[phase].own(memory_[phase]) : nullptr;
+  }
+
   double lost() const { return lost_; }          ///< J, in the last step
   double stored() const { return stored_; }      ///< J
   double deepest() const { return deepest_; }    ///< overlap over the sphere's diameter
@@ -66,18 +71,10 @@ class SphereBodies {
   void archive(Archive& a);
 
  private:
-  static constexpr std::size_t slots = 3;  // bodies that a sphere touches at once
-  struct Touch {
-    std::int64_t body = 0;  // its number in bodies_ and 1; 0: none
-    double memory[most_remembered] = {};
-  };
-  struct Memory {
-    Touch of[slots];
-  };
   struct Body {
-    Body(std::size_t its_number, std::size_t its_phase, BodyBorder its_border)
-        : number(its_number), phase(its_phase), border(std::move(its_border)) {}
-    std::size_t number, phase;  // in the state; of the scene
+    Body(std::size_t its_number, std::size_t its_phase, std::size_t among, BodyBorder its_border)
+        : number(its_number), phase(its_phase), own(among), border(std::move(its_border)) {}
+    std::size_t number, phase, own;  // in the state; of the scene; among those of its phase
     BodyBorder border;
     RigidMotion end;                   // of a driven one, where the step of the scene ends
     Vec3 place{}, velocity{}, rate{};  // of the present step, in space
@@ -86,15 +83,15 @@ class SphereBodies {
     std::string name;
     RowMean mean_force, mean_torque;
   };
-  /// A sphere and a body that may touch.
+  /// A sphere and a body that touch.
   struct Meeting {
     std::size_t sphere, body;
     std::uint32_t law;
     double radius;  // m, of the sphere
-    Vec3 arm;       // m, its centre from the body's place
     Gap gap;        // of its centre
+    Vec3 foot;      // m, of the contact, from the body's place
     Vec3 velocity;  // m/s, of the sphere
-    Vec3 carried;   // m/s, of the body at the nearest place of its border
+    Vec3 carried;   // m/s, of the body there
   };
   /// Sums over a block of spheres.
   struct Tally {
@@ -104,12 +101,11 @@ class SphereBodies {
   void touch_all(const Present& s, const SphereStep& step);
   template <int Dim>
   void touch_one(const Present& s, const SphereStep& step, const Part& part, std::size_t sphere, Tally& tally,
-                 std::array<double, 6>* loads);
+                 std::array<double, 6>* loads, std::uint16_t* near);
+  Vec3 arm_of(const Body& body, const Vec3& at) const;
   template <int Dim, class Law>
-  void meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, Memory& memory, Tally& tally,
+  void meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, SolidTouch& touch, Tally& tally,
             std::array<double, 6>& load);
-  template <int Dim, class Law>
-  void part_from(const Law& law, std::size_t body, Memory& memory, Tally& tally);
   void go_back(Body& body, double step);
   void kick(Body& body, double time);
   void see(Body& body);
@@ -118,10 +114,12 @@ class SphereBodies {
   const Layout* layout_ = nullptr;
   State* state_ = nullptr;
   std::vector<Body> bodies_;
-  std::vector<OwnAxes> axes_;              // by body, of the present step
-  std::vector<std::uint32_t> laws_;        // by phase and body; SphereSearch::none
-  std::vector<OwnColumn<Memory>> memory_;  // by phase
-  std::vector<char> remembers_;            // by phase: it has this column
+  std::vector<OwnAxes> axes_;                    // by body, of the present step
+  std::vector<std::uint32_t> laws_;              // by phase and body; SphereSearch::none
+  SolidSurfaces solids_;                         // by body one, with one surface
+  std::vector<std::uint16_t> near_;              // by block and body: those that may touch the present sphere
+  std::vector<OwnColumn<SolidTouches>> memory_;  // by phase
+  std::vector<char> remembers_;                  // by phase: it has this column
   AlignedVector<double> forces_;
   std::vector<double> far_;                   // m, by sphere and body: how far they may come nearer before they touch
   std::vector<std::array<double, 6>> loads_;  // by block and body

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "models/grains/solid_walls.hpp"
 #include "models/grains/sphere_motion.hpp"
 #include "models/grains/sphere_vectors.hpp"
 
@@ -203,11 +204,59 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
     }
 }
 
-/// The chunk's spheres at the sides of the domain: a side is a sphere without end that does not move.
+/// Where a sphere touches what does not yield: a side of the domain or a wall.
+template <int Dim>
+struct Surface {
+  std::array<double, Dim> normal, velocity, place;  // m/s, of the wall there; m
+  std::array<double, SphereRecord<Dim>::spins> rate;
+  double distance;  // m, of the sphere's centre
+  bool is_felt;     // by a sphere that sleeps too
+};
+
+/// The forces of a surface, which is a sphere without end, on a sphere of the chunk. `memory`: of the contact.
+template <int Dim, class Law>
+void press(const Law& law, const SphereStep& step, SphereChunk& chunk, std::size_t number, std::size_t sphere,
+           const Surface<Dim>& of, double* memory, Sums<Dim>& sums) {
+  using R = SphereRecord<Dim>;
+  constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>;
+  const double* r = step.records + sphere * R::size;
+  const double radius = r[R::radius], overlap = radius - of.distance;
+  TouchingSpheres<One, Dim> s;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    s.normal[d] = One(of.normal[d]);
+    s.velocity[d] = One(r[R::velocity + d] - of.velocity[d]);
+  }
+  for (std::size_t d = 0; d < spins; ++d) {
+    s.spin_a[d] = One(r[R::spin + d]);
+    s.spin_b[d] = One(of.rate[d]);
+  }
+  s.overlap = One(overlap);
+  s.lever_a = One(of.distance);
+  s.lever_b = One(0.0);
+  s.reduced_radius = One(radius);
+  s.inverse_mass = One(step.passive[sphere * passive_size + passive_mass]);
+  s.reduced_mass = One(1.0) / s.inverse_mass;
+  std::array<One, numbers> slip;
+  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(memory[k]);
+  const auto f = Law::touch(typename Law::template Constants<One>(law, step.contacts), s, slip);
+  for (std::size_t k = 0; k < numbers; ++k) memory[k] = slip[k].v;
+  const bool sleeps = step.sleep && step.sleep->asleep[sphere] && !of.is_felt;
+  double* to = sums.of + (sleeps ? chunk.end - chunk.begin : sphere - chunk.begin) * Sums<Dim>::size;
+  std::array<double, Dim> force;
+  for (std::size_t d = 0; d < Dim; ++d) to[d] += force[d] = f.force[d].v;
+  for (std::size_t d = 0; d < spins; ++d) to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
+  push_wall<Dim>(step, chunk, number, force, of.place);
+  chunk.lost += f.lost.v;
+  chunk.stored += f.stored.v;
+  chunk.deepest = std::max(chunk.deepest, 0.5 * overlap / radius);
+  chunk.contacts += 1.0;
+}
+
+/// The chunk's spheres at the sides of the domain. Who sleeps feels no force of a side: it is as constant as those of
+/// others that sleep.
 template <int Dim, class Law>
 void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereChunk::AtSide& at, Sums<Dim>& sums) {
   using R = SphereRecord<Dim>;
-  constexpr std::size_t spins = R::spins, numbers = Law::template numbers<Dim>;
   const double* r = step.records + at.sphere * R::size;
   const double radius = r[R::radius], distance = at.sign * (r[at.axis] - at.place), overlap = radius - distance;
   const double parts = at.sign * r[R::velocity + at.axis];
@@ -219,45 +268,74 @@ void side_of(const Law& law, const SphereStep& step, SphereChunk& chunk, SphereC
     return;
   }
   at.touches = 1;
-  TouchingSpheres<One, Dim> s;
+  Surface<Dim> of{{}, {}, {}, {}, distance, false};
   for (std::size_t d = 0; d < Dim; ++d) {
-    s.normal[d] = One(d == at.axis ? at.sign : 0.0);
-    s.velocity[d] = One(r[R::velocity + d]);
+    of.normal[d] = d == at.axis ? at.sign : 0.0;
+    of.place[d] = d == at.axis ? at.place : r[d];
   }
-  for (std::size_t d = 0; d < spins; ++d) {
-    s.spin_a[d] = One(r[R::spin + d]);
-    s.spin_b[d] = One(0.0);
-  }
-  s.overlap = One(overlap);
-  s.lever_a = One(distance);
-  s.lever_b = One(0.0);
-  s.reduced_radius = One(radius);
-  s.inverse_mass = One(step.passive[at.sphere * passive_size + passive_mass]);
-  s.reduced_mass = One(1.0) / s.inverse_mass;
-  std::array<One, numbers> slip;
-  for (std::size_t k = 0; k < numbers; ++k) slip[k] = One(at.memory[k]);
-  const auto f = Law::touch(typename Law::template Constants<One>(law, step.contacts), s, slip);
-  for (std::size_t k = 0; k < numbers; ++k) at.memory[k] = slip[k].v;
-  // Who sleeps feels no force of a side: it is as constant as those of others that sleep.
-  const bool sleeps = step.sleep && step.sleep->asleep[at.sphere];
-  double* to = sums.of + (sleeps ? chunk.end - chunk.begin : at.sphere - chunk.begin) * Sums<Dim>::size;
-  for (std::size_t d = 0; d < Dim; ++d) to[d] += f.force[d].v;
-  for (std::size_t d = 0; d < spins; ++d) to[(Dim == 2 ? 2 : 4) + d] += f.torque_a[d].v;
-  std::array<double, Dim> force, place;
-  for (std::size_t d = 0; d < Dim; ++d) {
-    force[d] = f.force[d].v;
-    place[d] = d == at.axis ? at.place : r[d];
-  }
-  push_wall<Dim>(step, chunk, at.law, force, place);
-  chunk.lost += f.lost.v;
-  chunk.stored += f.stored.v;
-  chunk.deepest = std::max(chunk.deepest, 0.5 * overlap / radius);
-  chunk.contacts += 1.0;
+  press<Dim>(law, step, chunk, at.law, at.sphere, of, at.memory, sums);
 }
 
 template <class F>
 void with_law(const SphereStep& step, std::size_t number, F&& f) {
   with_parts(step.laws[number], step.has, f);
+}
+
+/// The chunk's spheres at walls that have surfaces. A wall that travels is felt by those that sleep too.
+template <int Dim>
+void walls_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::AtWalls& at, Sums<Dim>& sums) {
+  using R = SphereRecord<Dim>;
+  const SphereColumns& columns = step.columns[chunk.phase];
+  const double* r = step.records + at.sphere * R::size;
+  const double radius = r[R::radius];
+  std::array<double, 3> x{}, v{};
+  for (std::size_t d = 0; d < Dim; ++d) {
+    x[d] = r[d];
+    v[d] = r[R::velocity + d];
+  }
+  const std::size_t k = at.sphere - columns.first;
+  std::array<SolidWalls::Contact, SolidWalls::most> found;
+  const std::size_t count =
+      step.walls->touch(x, v, radius, step.dt, chunk.phase, at, columns.bodies ? columns.bodies + k : nullptr, found);
+  SolidTouches& touches = columns.walls[k];
+  if (count == 0 && touches.of[0].with == 0) return;
+  const SolidTouches before = touches;
+  touches = {};
+  std::array<bool, SolidTouches::most> goes_on{};
+  std::size_t n = 0;
+  for (std::size_t c = 0; c < count; ++c) {
+    const SolidWalls::Contact& contact = found[c];
+    if (std::isinf(contact.distance)) {
+      chunk.deepest = std::max(chunk.deepest, 1.0);
+      continue;
+    }
+    SolidTouch& touch = touches.of[n++];
+    const std::size_t old = before.find(contact.normal, goes_on);
+    if (old < SolidTouches::most) {
+      goes_on[old] = true;
+      touch = before.of[old];
+    }
+    touch.with = static_cast<std::int64_t>(contact.law) + 1;
+    touch.distance = contact.distance;
+    Surface<Dim> of{{}, {}, {}, {}, contact.distance, at.moves != 0};
+    for (std::size_t d = 0; d < 3; ++d) touch.normal[d] = contact.normal[d];
+    for (std::size_t d = 0; d < Dim; ++d) {
+      of.normal[d] = contact.normal[d];
+      of.velocity[d] = contact.velocity[d];
+      of.place[d] = x[d] + contact.foot[d];
+    }
+    for (std::size_t d = 0; d < R::spins; ++d) of.rate[d] = contact.rate[Dim == 2 ? 2 : d];
+    with_law(step, contact.law,
+             [&](const auto& law) { press<Dim>(law, step, chunk, contact.law, at.sphere, of, touch.memory, sums); });
+  }
+  // What the springs across the normal of the others held is lost.
+  for (std::size_t q = 0; q < SolidTouches::most && before.of[q].with != 0; ++q)
+    if (!goes_on[q])
+      with_law(step, static_cast<std::size_t>(before.of[q].with - 1), [&](const auto& law) {
+        using Law = std::decay_t<decltype(law)>;
+        for (std::size_t s = 0; s < Law::template springs<Dim>; ++s)
+          chunk.lost += law.left_behind() * before.of[q].memory[s] * before.of[q].memory[s];
+      });
 }
 
 /// What a contact of two that rest stores, a pair of the list.
@@ -324,6 +402,7 @@ void step_chunk(const SphereStep& step, SphereChunk& chunk) {
     with_law(step, group.law, [&](const auto& law) { group_of<Dim>(law, step, chunk, group, sums, tally); });
   for (auto& at : chunk.sides)
     with_law(step, at.law, [&](const auto& law) { side_of<Dim>(law, step, chunk, at, sums); });
+  for (const auto& at : chunk.walls) walls_of<Dim>(step, chunk, at, sums);
   if (step.by_bodies)
     for (std::size_t k = 0; k < (chunk.end - chunk.begin) * Sums<Dim>::size; ++k)
       sums.of[k] += step.by_bodies[chunk.begin * Sums<Dim>::size + k];

@@ -3,6 +3,7 @@
 
 #include "models/grains/spheres.hpp"
 #include "scene/contact_words.hpp"
+#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -18,6 +19,17 @@ constexpr double steps_by_damping = 12.0;
 /// Mass of a sphere of the phase (kg, not by depth): of the mean diameter, times a share of its radius cubed.
 double mass_of(const Layout& layout, std::size_t phase, double share = 1.0) {
   return layout.phases[phase].mass * layout.slab * share * share * share;
+}
+
+/// Whether spheres touch the wall by surfaces of shapes and by sides of the domain alone.
+bool by_surfaces(const Scene& scene, const Phase& wall) {
+  bool any = false;
+  for (const Fill& fill : scene.fills) {
+    if (fill.phase != wall.name || std::holds_alternative<SidesShape>(fill.shape)) continue;
+    if (!touched_by_surface(scene, wall, fill.shape)) return false;
+    any = true;
+  }
+  return any;
 }
 
 /// The phases of an entry whose particles are moved; the other one is a wall.
@@ -42,11 +54,16 @@ typename Row::Law law_of(const Scene& scene, const Layout& layout, const std::ve
 
 }  // namespace
 
-void describe_sphere_contact(const Scene&, const Interaction& pair, const Layout& layout, PlanEntry& e) {
+void describe_sphere_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
   for (const Word& w : words_of<ContactLaw>)
     if (w.meaning == static_cast<int>(pair.law)) e.law = w.word;
   e.kernel_word = "none";
   e.meaning = "spheres: touching decides";
+  for (const std::size_t k : {e.a, e.b})
+    if (by_surfaces(scene, scene.phases[k])) {
+      e.by_outlines = true;
+      e.meaning = "spheres and surfaces of shapes: touching decides";
+    }
   e.radius = layout.touching_distance(e);
   e.searched = false;  // by SphereSearch
   e.own_steps = e.gives_length = true;
@@ -90,7 +107,8 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
       has_.rubs = has_.rubs || law.friction.friction > 0.0 || has_.rolls;
       laws_.emplace_back(law);
     });
-    reach_ = std::max(reach_, e.radius);
+    const bool stays = !layout.phases[e.a].moves || !layout.phases[e.b].moves;
+    if (!stays || !e.by_outlines) reach_ = std::max(reach_, e.radius);
   }
   for (const auto& p : layout.phases)
     if (p.own_steps) reach_ = std::max(reach_, p.largest_size);

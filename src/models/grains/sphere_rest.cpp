@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/grains/solid_walls.hpp"
+
 namespace barchan {
 
 namespace {
@@ -53,6 +55,37 @@ Meeting of_side(const SphereStep& step, const SphereSet& s, const SphereChunk::A
   m.reach = m.lever = r[s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius];
   m.tangential = tangential_stiffness(step.laws[at.law], m.reach - norm(m.branch), m.lever);
   return m;
+}
+
+Meeting of_wall(const SphereStep& step, const SphereSet& s, std::uint32_t sphere, const SolidTouch& touch) {
+  const std::size_t stride = s.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size;
+  Meeting m;
+  m.a = s.numbers[sphere];
+  m.b = Meeting::side;
+  for (std::size_t d = 0; d < 3; ++d) m.branch[d] = -touch.distance * touch.normal[d];
+  m.reach = m.lever =
+      s.records[sphere * stride + (s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius)];
+  m.tangential =
+      tangential_stiffness(step.laws[static_cast<std::size_t>(touch.with - 1)], m.reach - touch.distance, m.lever);
+  return m;
+}
+
+/// What a sphere that stands still touches of walls, without memory.
+SolidTouches touches_of_walls(const SphereStep& step, const SphereSet& s, const SphereChunk& chunk,
+                              const SphereChunk::AtWalls& at) {
+  const std::size_t stride = s.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size;
+  const double* r = s.records + at.sphere * stride;
+  std::array<SolidWalls::Contact, SolidWalls::most> found;
+  const std::size_t count = step.walls->touch({r[0], r[1], s.dimensions == 2 ? 0.0 : r[2]}, {},
+                                              r[s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius],
+                                              0.0, chunk.phase, at, nullptr, found);
+  SolidTouches touches;
+  for (std::size_t c = 0; c < count; ++c) {
+    touches.of[c].with = static_cast<std::int64_t>(found[c].law) + 1;
+    touches.of[c].distance = found[c].distance;
+    for (std::size_t d = 0; d < 3; ++d) touches.of[c].normal[d] = found[c].normal[d];
+  }
+  return touches;
 }
 
 /// Calls f(meeting, memory, distance of its numbers, place) for all pairs of a chunk, then for all its spheres at
@@ -138,6 +171,20 @@ void SphereRest::recall(const SphereStep& step, const SphereSet& s, std::span<Sp
       if (m.b == Meeting::side) chunk.sides[at].touches = 1;
       else chunk.set_touching(at);
     });
+    for (const SphereChunk::AtWalls& at : chunk.walls) {
+      if (!step.has.rubs) break;
+      const SolidTouches touches = touches_of_walls(step, s, chunk, at);
+      SolidTouches& kept = step.columns[chunk.phase].walls[at.sphere - step.columns[chunk.phase].first];
+      std::size_t n = 0;
+      for (const SolidTouch& touch : touches.of) {
+        if (touch.with == 0) break;
+        const Meeting m = of_wall(step, s, at.sphere, touch);
+        const RestingContact* own = find(m.a, m.branch, m.reach);
+        if (!own) continue;
+        kept.of[n] = touch;
+        set_slips(step, m, own->force, own->torque, kept.of[n++].memory, 1);
+      }
+    }
   }
   contacts_.clear();
 }
@@ -155,6 +202,13 @@ std::vector<RestingContact> contacts_at_rest(const SphereStep& step, const Spher
       if (!touches || !own || !step.has.rubs || m.a < first || m.a >= first + count) return;
       contacts.push_back(contact_of(step, m, m.a - first, memory, apart));
     });
+  for (const SphereChunk& chunk : chunks)
+    for (const SphereChunk::AtWalls& at : chunk.walls)
+      for (const SolidTouch& touch : step.columns[chunk.phase].walls[at.sphere - step.columns[chunk.phase].first].of) {
+        if (touch.with == 0 || !step.has.rubs) break;
+        const Meeting m = of_wall(step, s, at.sphere, touch);
+        if (m.a >= first && m.a < first + count) contacts.push_back(contact_of(step, m, m.a - first, touch.memory, 1));
+      }
   return contacts;
 }
 

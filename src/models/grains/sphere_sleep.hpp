@@ -130,6 +130,9 @@ void SphereSleep::sort_out(const SphereSet& s, SphereChunk& chunk, F&& beside) {
     chunk.live[q] = static_cast<std::uint8_t>(bits);
     any |= bits;
   }
+  for (const SphereChunk::AtWalls& at : chunk.walls)
+    if (std::uint8_t& of = mark[at.sphere - chunk.begin]; at.moves != 0 && at_[at.sphere])
+      of = static_cast<std::uint8_t>(of | at_border);
   chunk.any_live = any != 0;
   chunk.awake.clear();
   chunk.border.clear();

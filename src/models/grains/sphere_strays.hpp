@@ -36,6 +36,7 @@ class SphereStrays {
   const double* places() const { return places_.data(); }
   /// m, of everybody who is no stray, of walls too.
   double allowance() const { return least_; }
+  double allowance_of(std::uint32_t sphere) const { return allowance_[sphere]; }  ///< m
   double slack() const { return 2.0 * least_; }
   /// One over the square of each allowance (1/m2).
   const float* tightness() const { return tightness_.data(); }

@@ -81,11 +81,21 @@ struct SphereChunk : ContactBatches {
     double memory[ContactMemory::most_numbers] = {};
   };
 
+  /// A sphere near walls that it touches by their surfaces (models/grains/solid_walls.hpp).
+  struct AtWalls {
+    static constexpr std::uint16_t most = 8;
+    std::uint32_t sphere = 0;
+    std::uint16_t count = 0;  // of the surfaces; more than `most`: all that its phase touches
+    std::uint16_t moves = 0;  // 1: one of them may
+    std::uint16_t near[most] = {};
+  };
+
   std::size_t begin = 0, end = 0;  // spheres
   std::size_t phase = 0;           // of the scene
   std::vector<Group> groups;
   AlignedVector<std::uint32_t> a, b;  // by pair; what pads them is the two far away
   std::vector<AtSide> sides;
+  std::vector<AtWalls> walls;
   // Who sleeps decides which pairs are evaluated: those with one that is awake. Empty where no sphere may sleep.
   AlignedVector<std::uint8_t> live;  // by batch: a bit a pair
   bool any_live = true;              // of these bits
@@ -104,7 +114,7 @@ struct SphereChunk : ContactBatches {
   bool wakes = false;                         // somebody of the border
   std::vector<std::array<double, 6>> pushed;  // by watched law: force on the wall (N) and its torque (N m)
 
-  bool idle() const { return !all_awake && awake.empty() && !any_live && sides.empty(); }
+  bool idle() const { return !all_awake && awake.empty() && !any_live && sides.empty() && walls.empty(); }
   /// Which of the pairs of a batch are evaluated, as bits.
   std::uint32_t live_of(std::size_t q) const { return live.empty() ? 0xffu : live[q]; }
   /// Calls f with each sphere that moves.
@@ -132,8 +142,12 @@ struct SleepStep {
 /// Where the last step of a bundle leaves the spheres of a phase. Null: the phase has no such field.
 struct SphereColumns {
   double *position[3]{}, *velocity[3]{}, *acceleration[3]{}, *spin[3]{}, *spin_rate[3]{};
-  std::size_t first = 0;  // sphere at the columns' begin
+  SolidTouches* walls = nullptr;         // what they remember of walls
+  const SolidTouches* bodies = nullptr;  // and of rigid bodies
+  std::size_t first = 0;                 // sphere at the columns' begin
 };
+
+class SolidWalls;
 
 /// A law whose forces on its wall are summed, and the place of the torque (m).
 struct WatchedLaw {
@@ -162,6 +176,7 @@ struct SphereStep {
   ContactParts has;                        // of the laws
   std::size_t numbers = 0;                 // of the memory of a pair
   const SleepStep* sleep = nullptr;        // null: nobody sleeps
+  const SolidWalls* walls = nullptr;       // those that spheres touch by their surfaces
   std::span<const WatchedLaw> watched;
   const double* by_bodies =
       nullptr;  // by sphere, as the sums of a chunk: what rigid bodies do to it; null: none is there

@@ -8,6 +8,7 @@
 
 #include "models/grains/pair_order.hpp"
 #include "models/grains/sphere_forces.hpp"
+#include "models/grains/sphere_room.hpp"
 
 namespace barchan {
 
@@ -34,6 +35,11 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       continue;
     add_wall(k, blocks[k]);
   }
+  check_room_at_start(scene_, layout_, laws_.table(), blocks);
+  wall_touches_.resize(n);
+  if (solid_walls_.any())
+    for (const Part& part : parts_)
+      wall_touches_[part.phase] = state.phases[part.phase].add_own<SolidTouches>("walls that it touches", Kept::state);
   bodies_.begin(layout_, state);
 }
 
@@ -54,6 +60,8 @@ void Spheres::attach(Workspace& w) {
   search_.prepare(layout_.bounds, laws_.reach(), n, laws_.table(), sides_with_spheres(), step_.numbers);
   watch_walls();
   bind_walls();
+  solid_walls_.attach(layout_, laws_.table(), w.wall_motions);
+  step_.walls = &solid_walls_;
   bodies_.attach(scene_, layout_, laws_, w.state);
   body_parts_.reserve(parts_.size());
   kept_of_bodies_.reserve(steps_told_together);
@@ -114,6 +122,8 @@ void Spheres::point_at_columns() {
     PhaseParticles& p = w_->particles(part.phase);
     SphereColumns& c = columns_[part.phase];
     c.first = part.first;
+    c.walls = solid_walls_.any() ? p.own(wall_touches_[part.phase]) : nullptr;
+    c.bodies = bodies_.touches(part.phase);
     for (int d = 0; d < layout_.dimensions; ++d) {
       c.position[d] = p.column(Field::position, d);
       c.velocity[d] = p.column(Field::velocity, d);

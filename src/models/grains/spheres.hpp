@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/errors.hpp"
+#include "models/grains/solid_walls.hpp"
 #include "models/grains/sphere_bodies.hpp"
 #include "models/grains/sphere_forcing.hpp"
 #include "models/grains/sphere_rest.hpp"
@@ -162,6 +163,7 @@ class Spheres : public Model {
   void share_memory();
   void share_flags(bool& more);
   void share_columns();
+  void share_wall_touches();
   std::vector<double*> shared_columns(const Part& part) const;
   static bool go_together(const Part& part);
   void copy_radii();
@@ -196,7 +198,9 @@ class Spheres : public Model {
   std::vector<Part> parts_;    // of the phases of grains
   std::vector<double> fixed_;  // x y z r of the walls' spheres
   std::vector<std::uint8_t> fixed_kind_;
-  std::vector<SphereWall> walls_;  // that travel
+  std::vector<SphereWall> walls_;  // of spheres, that travel
+  SolidWalls solid_walls_;
+  std::vector<OwnColumn<SolidTouches>> wall_touches_;  // by phase; only where solid_walls_ has some
   SphereForcing forcing_;
   SphereBodies bodies_;
   std::vector<SphereBodies::Part> body_parts_;  // as parts_

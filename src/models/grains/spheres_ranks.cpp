@@ -65,6 +65,7 @@ void Spheres::share_flags(bool& more) {
 void Spheres::share_columns() {
   ++told_.columns;
   if (!shares_.on()) return;
+  if (solid_walls_.any()) share_wall_touches();
   for (const Part& part : parts_) {
     const std::vector<std::size_t> counts = shares_.spheres_of_ranks(part.first, part.first + part.count);
     const std::vector<double*> columns = shared_columns(part);
@@ -72,6 +73,25 @@ void Spheres::share_columns() {
     else
       for (double* const column : columns) ranks::active()->gather_in_place(column, counts, sizeof(double));
   }
+}
+
+/// After a bundle: every rank gets what all spheres remember of walls.
+void Spheres::share_wall_touches() {
+  struct Remembers {
+    std::uint64_t part, sphere;
+    SolidTouches touches;
+  };
+  std::vector<Remembers> all;
+  for (std::size_t q = 0; q < parts_.size(); ++q) {
+    const SphereColumns& c = columns_[parts_[q].phase];
+    for (std::size_t k = 0; k < parts_[q].count; ++k) {
+      if (c.walls[k].of[0].with == 0) continue;
+      if (shares_.has(parts_[q].first + k)) all.push_back({q, k, c.walls[k]});
+      else c.walls[k] = {};
+    }
+  }
+  ranks::join(all);
+  for (const Remembers& one : all) columns_[parts_[one.part].phase].walls[one.sphere] = one.touches;
 }
 
 /// The columns of a part that all ranks get after a bundle.

@@ -120,6 +120,10 @@ void Spheres::search() {
   if (must_search_) share_memory();
   kept_memory_ = false;
   search_.find(set(), slack(), own_chunks());
+  if (solid_walls_.any()) {
+    for (SphereChunk& chunk : own_chunks()) solid_walls_.find(set(), slack(), chunk);
+    solid_walls_.list();
+  }
   rest_.recall(step_, set(), own_chunks());
   strays_.take_cells(search_.cells());
   shares_.find(chunks_);
@@ -173,6 +177,8 @@ bool Spheres::search_strays(double dt, bool stepped) {
   }
   for (const std::uint32_t k : gone_) {
     strays_.renew(s, k, dt, search_.sides(), chunks_, shares_);
+    if (solid_walls_.any() && shares_.has(k))
+      solid_walls_.find_anew(s, k, strays_.allowance() + strays_.allowance_of(k), chunks_[strays_.chunk_of(k)]);
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
       layout_.dimensions == 2 ? set_way<2>(records_[now_].data() + k * SphereRecord<2>::size, d, 0.0f)
                               : set_way<3>(records_[now_].data() + k * SphereRecord<3>::size, d, 0.0f);

@@ -72,6 +72,9 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
                                                                                                               : 1u;
     n += static_cast<std::uint64_t>(
         std::count_if(chunk.sides.begin(), chunk.sides.end(), [&](const auto& at) { return at.law == law; }));
+    n += static_cast<std::uint64_t>(std::count_if(chunk.walls.begin(), chunk.walls.end(), [&](const auto& at) {
+      return solid_walls_.may_touch(at, chunk.phase, law);
+    }));
   }
   // Who asks adds up the ranks where one of the phases is no whole one.
   if (!layout_.is_whole(entry.a) || !layout_.is_whole(entry.b)) return shares_.on() || ranks::is_first() ? n : 0;
@@ -135,6 +138,7 @@ void Spheres::archive(Archive& a) {
   a.number("set of records", now_);
   if (!watched_.empty()) a.array("forces on walls", pushing_);
   bodies_.archive(a);
+  solid_walls_.archive(a);
   a.array("records of spheres", records_[now_]);
   a.array("numbers of spheres", listed_numbers_);
   a.number("others sleep", others_sleep_);
@@ -161,6 +165,7 @@ void Spheres::archive_chunk(Archive& a, SphereChunk& chunk) {
   a.array("second of pairs", chunk.b);
   chunk.ContactBatches::archive(a);
   a.array("at sides", chunk.sides);
+  a.array("at walls", chunk.walls);
   if (!sleep_.on()) return;
   a.number("all awake", chunk.all_awake);
   a.array("evaluated pairs", chunk.live);

@@ -1,19 +1,31 @@
-// Walls as spheres: those that stay, and those that a [[motion]] carries, step of contacts by step.
+// Walls of spheres: by their surfaces where the shapes have some, else as spheres; those that stay, and those that a
+// [[motion]] carries, step of contacts by step.
 #include <algorithm>
 #include <cmath>
 
 #include "models/grains/spheres.hpp"
 #include "models/walls/wall_motion.hpp"
+#include "scene/ball_surfaces.hpp"
 
 namespace barchan {
 
-/// Particles of walls inside the domain are spheres; those behind a side of it are the side. A wall that travels is no
-/// side: all of its particles are spheres.
+/// Fills whose shapes have surfaces are these. Of the others particles inside the domain are spheres; those behind a
+/// side of it are the side. A wall that travels is no side: all of its particles are spheres.
 void Spheres::add_wall(std::size_t phase, const ParticleBlock& block) {
   const PlanPhase& plan = layout_.phases[phase];
   const Bounds& bounds = layout_.bounds;
   const std::size_t before = fixed_kind_.size();
+  std::vector<bool> by_surface(block.position.size(), false);
+  for (std::size_t k = 0; k < block.parts.size(); ++k) {
+    const Fill& fill = scene_.fills[block.parts[k].fill];
+    if (!touched_by_surface(scene_, scene_.phases[phase], fill.shape)) continue;
+    solid_walls_.add(scene_, layout_, phase, fill, laws_.reach());
+    const std::size_t end = k + 1 < block.parts.size() ? block.parts[k + 1].first : block.position.size();
+    std::fill(by_surface.begin() + static_cast<std::ptrdiff_t>(block.parts[k].first),
+              by_surface.begin() + static_cast<std::ptrdiff_t>(end), true);
+  }
   for (std::size_t i = 0; i < block.position.size(); ++i) {
+    if (by_surface[i]) continue;
     const Vec3& x = block.position[i];
     bool inside = true;
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
@@ -23,7 +35,8 @@ void Spheres::add_wall(std::size_t phase, const ParticleBlock& block) {
     fixed_.insert(fixed_.end(), {x[0], x[1], x[2], radius});
     fixed_kind_.push_back(static_cast<std::uint8_t>(phase));
   }
-  if (plan.travels) walls_.push_back({phase, before, fixed_kind_.size() - before, nullptr});
+  if (plan.travels && fixed_kind_.size() > before)
+    walls_.push_back({phase, before, fixed_kind_.size() - before, nullptr});
 }
 
 void Spheres::bind_walls() {
@@ -71,6 +84,9 @@ void Spheres::carry_walls(double elapsed) {
   step_.fastest_wall = 0.0;
   for (const SphereWall& wall : walls_)
     layout_.dimensions == 2 ? carry_wall<2>(wall, elapsed) : carry_wall<3>(wall, elapsed);
+  if (!solid_walls_.any()) return;
+  solid_walls_.carry(w_->state.time, elapsed, each_);
+  walls_left_ = walls_left_ || solid_walls_.left(strays_.allowance(), each_);
 }
 
 }  // namespace barchan

@@ -34,6 +34,7 @@ void declare_wall(const Scene& scene, std::size_t number, Layout& layout) {
   const WallKeys& keys = scene.phases[number].wall();
   layout.phases[number].surface_speed = largest_in_time(scene, keys.velocity);
   layout.phases[number].sphere_records = keys.diameter.has_value();
+  if (keys.diameter) layout.phases[number].largest_size = keys.diameter->largest();
   layout.phases[number].travels = motion_of(scene, scene.phases[number]) != nullptr;
 }
 
