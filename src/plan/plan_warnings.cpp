@@ -4,9 +4,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/errors.hpp"
 #include "output/numbers.hpp"
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
+#include "scene/flow_ends.hpp"
+#include "scene/located.hpp"
+#include "scene/shape_content.hpp"
+#include "scene/thin_wall.hpp"
 
 namespace barchan {
 namespace {
@@ -111,6 +116,110 @@ void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blo
         plan.warnings.emplace_back(text);
       }
     }
+  }
+}
+
+/// Lengths of boxes and of the domain that rows of a fill must make up, along all axes (m).
+std::vector<double> lengths_of_rows(const Scene& scene, const Fill& fill) {
+  std::vector<double> lengths;
+  const auto* box = std::get_if<BoxShape>(&fill.shape);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+    if (box || std::holds_alternative<TheRestShape>(fill.shape))
+      lengths.push_back(box ? box->max[d] - box->min[d] : scene.domain.size[d]);
+  return lengths;
+}
+
+/// The spacings next to dx, finer and coarser, of which all lengths are whole numbers; empty: none within a factor of
+/// two, or there are no lengths.
+std::string spacings_that_fit(const std::vector<double>& lengths, double dx) {
+  if (lengths.empty()) return "";
+  const auto fits = [&](double spacing) {
+    return std::all_of(lengths.begin(), lengths.end(), [&](double length) {
+      const double count = length / spacing;
+      return count > 0.5 && std::abs(count - std::round(count)) < 1e-4 * count / static_cast<double>(lengths.size());
+    });
+  };
+  const double rows = lengths.front() / dx;
+  std::string text;
+  const auto add = [&](double spacing) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.8g", spacing);
+    text += (text.empty() ? "" : " or ") + std::string(number);
+  };
+  for (double n = std::floor(rows) + 1.0; n <= 2.0 * rows + 1.0; ++n)
+    if (fits(lengths.front() / n)) {
+      add(lengths.front() / n);
+      break;
+    }
+  for (double n = std::ceil(rows) - 1.0; n >= 1.0 && n >= 0.5 * rows; --n)
+    if (fits(lengths.front() / n)) {
+      add(lengths.front() / n);
+      break;
+    }
+  return text;
+}
+
+/// A fluid and an elastic body have the mass of their rows, which need not be that of their shapes.
+void warn_of_missed_mass(const Scene& scene, Plan& plan) {
+  constexpr double share = 1e-3;
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& p = plan.phases[k];
+    if (!(p.flows || p.deforms) || p.count == 0 || !flow_ends(scene, scene.phases[k]).empty()) continue;
+    double content = 0.0;
+    std::vector<double> lengths;
+    bool known = true, boxes = true;
+    for (std::size_t f = 0; f < scene.fills.size() && known; ++f) {
+      const Fill& fill = scene.fills[f];
+      // What settled or lies at random holds less than its shape.
+      known = std::none_of(plan.phases.begin(), plan.phases.end(),
+                           [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; });
+      if (fill.phase != p.name || !known) continue;
+      const auto held = content_of_fill(scene, f, {}, rough_sampling);
+      known = held.has_value();
+      if (known) content += held->content;
+      const std::vector<double> own = lengths_of_rows(scene, fill);
+      lengths.insert(lengths.end(), own.begin(), own.end());
+      boxes = boxes && !own.empty();
+    }
+    const bool told = std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+      const std::string start = "fill." + std::to_string(&fill - scene.fills.data()) + ".shape.box: along";
+      return fill.phase == p.name && std::any_of(plan.warnings.begin(), plan.warnings.end(),
+                                                 [&](const std::string& other) { return other.starts_with(start); });
+    });
+    if (told || !known || !(content > 0.0)) continue;
+    const double rows = static_cast<double>(p.count) * std::pow(p.spacing, plan.dimensions);
+    if (std::abs(rows / content - 1.0) <= share) continue;
+    const std::string fitting = boxes ? spacings_that_fit(lengths, p.spacing) : "";
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "phases.%s: the mass of its %zu particles of %.6g m is %+.2f %% off that of its "
+                  "shapes: rows do not fit them, and where walls stand a gap or a row too many is left; ",
+                  p.name.c_str(), p.count, p.spacing, 100.0 * (rows / content - 1.0));
+    plan.warnings.push_back(text + (fitting.empty() ? "a smaller spacing or packing = \"relaxed\" misses less"
+                                                    : "a spacing of " + fitting + " m fits"));
+  }
+}
+
+/// A fluid that is on both sides of a wall, or may come there.
+void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
+  for (const PlanEntry& e : plan.entries) {
+    if (!e.extends || plan.phases[e.other].moves || plan.phases[e.other].count == 0) continue;
+    const auto thin = thin_wall(scene, blocks, e.other, e.fluid, e.radius);
+    if (!thin) continue;
+    const double spacing = plan.phases[e.other].spacing, needed = 2.0 * e.radius - e.spacing;
+    char text[500];
+    std::snprintf(text, sizeof text,
+                  ": the wall \"%s\" is %.2g rows of %.4g m thick at (%.4g, %.4g%s%s) m, and the kernel of \"%s\" "
+                  "reaches through it: %s; expected a wall of %.4g m, twice the kernel radius less a spacing, which "
+                  "this one is with a spacing of %.3g m",
+                  plan.phases[e.other].name.c_str(), thin->rows, spacing, thin->at[0], thin->at[1],
+                  plan.dimensions == 3 ? ", " : "", plan.dimensions == 3 ? brief(thin->at[2]).c_str() : "",
+                  plan.phases[e.fluid].name.c_str(),
+                  thin->wet[0] && thin->wet[1] ? "the fluid on one side presses the fluid on the other"
+                                               : "a fluid that comes to both sides acts on itself through the wall",
+                  needed, thin->rows * spacing * e.spacing / needed);
+    if (thin->wet[0] && thin->wet[1]) throw SceneError(located(scene, "interactions." + e.name) + text);
+    plan.warnings.push_back("interactions." + e.name + text);
   }
 }
 
@@ -275,6 +384,8 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_lattices(plan);
   warn_of_background_pressure(scene, plan);
   warn_of_thickness(scene, blocks, plan);
+  warn_of_missed_mass(scene, plan);
+  look_at_thin_walls(scene, blocks, plan);
   warn_of_held_speed_over_grains(scene, plan);
   warn_of_strong_winds(plan);
   warn_of_output(scene, plan);

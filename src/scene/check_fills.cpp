@@ -160,6 +160,9 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
   const bool body = phase.kind() == PhaseKind::elastic || phase.kind() == PhaseKind::rigid;
   const bool continuous = phase.kind() == PhaseKind::fluid || body;
+  for (const char* key : {".mass", ".centre", ".inertia"})
+    if (phase.kind() != PhaseKind::rigid && report.has(dotted + key))
+      report(dotted + key, "only a rigid body has a mass of its own; expected a phase of kind rigid");
   if (phase.kind() != PhaseKind::rigid && report.has(dotted + ".angular-velocity"))
     report(dotted + ".angular-velocity", "only a rigid body turns as a whole; expected a phase of kind rigid");
   const bool close = fill.packing == Packing::hexagonal || fill.packing == Packing::random;

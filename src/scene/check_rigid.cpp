@@ -3,6 +3,7 @@
 
 #include "scene/checks.hpp"
 #include "scene/couplings.hpp"
+#include "scene/formula.hpp"
 
 namespace barchan {
 namespace {
@@ -113,6 +114,28 @@ void check_surfaces(const Scene& scene, const Interaction& pair, const Report& r
         "boxes in three dimensions may touch along their edges, which is not there yet; expected spheres on one side");
 }
 
+/// Moments of inertia that a body can have.
+void check_inertia(const Scene& scene, std::size_t k, const Report& report) {
+  const Fill& fill = scene.fills[k];
+  const std::string dotted = "fill." + std::to_string(k);
+  if (fill.centre && !fill.inertia && !report.touched(dotted + ".centre"))
+    report(dotted + ".centre",
+           "the inertia of the shape is that about its own centre; expected inertia = ... next to it");
+  if (!fill.inertia || report.touched(dotted + ".inertia")) return;
+  Vec3 about{};
+  for (std::size_t d = 0; d < 3; ++d) about[d] = Formula(fill.inertia->about[d])({});
+  const std::size_t first = scene.dimensions == 2 ? 2 : 0;
+  for (std::size_t d = first; d < 3; ++d) {
+    const double others = about[(d + 1) % 3] + about[(d + 2) % 3];
+    if (!(about[d] > 0.0)) return report(dotted + ".inertia", "expected moments above 0 (kg m2)");
+    if (first == 0 && about[d] > others * (1.0 + 1e-9))
+      return report(dotted + ".inertia",
+                    "the moment about " + std::string(1, "xyz"[d]) +
+                        " is more than the other two together, which no body has; expected one of at most " +
+                        number_text(others) + " kg m2");
+  }
+}
+
 /// Keys of contacts that nothing reads.
 void check_stiffness(const Scene& scene, const Phase& phase, const Report& report) {
   const std::string dotted = "phases." + phase.name;
@@ -139,6 +162,9 @@ void check_rigid(const Scene& scene, const Report& report) {
     check_partner(scene, pair, *a, *b, report);
     if (touch_by_surfaces(*a, *b)) check_surfaces(scene, pair, report);
   }
+  for (std::size_t k = 0; k < scene.fills.size(); ++k)
+    if (const Phase* phase = find_phase(scene, scene.fills[k].phase); phase && known(*phase) && rigid(*phase))
+      check_inertia(scene, k, report);
   for (const Phase& phase : scene.phases)
     if (known(phase) && rigid(phase) && !report.touched("interactions")) check_stiffness(scene, phase, report);
 }

@@ -16,6 +16,7 @@
 #include "scene/places.hpp"
 #include "scene/random.hpp"
 #include "scene/region.hpp"
+#include "scene/shape_content.hpp"
 #include "scene/shapes.hpp"
 #include "scene/shared_start.hpp"
 
@@ -188,14 +189,11 @@ void append(ParticleBlock& block, const std::vector<Vec3>& places, const Fill& f
   }
 }
 
-/// Adds the rotation about the mean place of the new particles, of a rigid body.
-void turn(ParticleBlock& block, std::size_t first, const AxialExpression& rate) {
+/// Adds the rotation of a rigid body about its centre of mass to the new particles.
+void turn(ParticleBlock& block, std::size_t first, const AxialExpression& rate, const Vec3& centre) {
   const Vec3 w{Formula(rate.about[0])({}), Formula(rate.about[1])({}), Formula(rate.about[2])({})};
-  Vec3 centre{};
-  const std::size_t n = block.position.size();
-  for (std::size_t i = first; i < n; ++i) centre = centre + block.position[i];
-  centre = 1.0 / static_cast<double>(n - first) * centre;
-  for (std::size_t i = first; i < n; ++i) block.velocity[i] = block.velocity[i] + cross(w, block.position[i] - centre);
+  for (std::size_t i = first; i < block.position.size(); ++i)
+    block.velocity[i] = block.velocity[i] + cross(w, block.position[i] - centre);
 }
 
 /// Radii of new spheres. The seed is another one than that of their places.
@@ -355,8 +353,9 @@ std::vector<ParticleBlock> generate(const Scene& scene, const Settle& settle) {
     ParticleBlock& block = blocks[number];
     const std::size_t first = block.position.size();
     block.parts.push_back({k, first});
+    if (phase->kind() == PhaseKind::rigid) block.parts.back().body = content_of_body(scene, k, made.places);
     append(block, made.places, fill, scene);
-    if (fill.angular_velocity) turn(block, first, *fill.angular_velocity);
+    if (fill.angular_velocity) turn(block, first, *fill.angular_velocity, block.parts.back().body->centre);
     append_settled(block, first, made.settled);
     if (const auto size = phase->diameter()) append_radii(block, *size, fill.seed);
     check_together(made.piece.first, [&](std::size_t& at) { check_values(block, first, k, scene, at); });

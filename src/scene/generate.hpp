@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "scene/content.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -28,7 +29,8 @@ struct ParticleBlock {
   std::vector<Vec3> velocity;      // m/s
   std::vector<double> pressure{};  // Pa, initial; empty when no fill of the phase gives one
   struct Part {
-    std::size_t fill, first;  // number of the fill; its first particle here, the others follow
+    std::size_t fill, first;        // number of the fill; its first particle here, the others follow
+    std::optional<Content> body{};  // of a rigid body: what its shape holds
   };
   std::vector<Part> parts{};               // by fill of the phase, in order
   std::vector<double> radius{};            // m, of spheres; empty when the phase gives no diameter

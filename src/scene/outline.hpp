@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec3.hpp"
+#include "scene/content.hpp"
 #include "scene/scene.hpp"
 
 namespace barchan {
@@ -26,6 +27,7 @@ class Outline {
   double depth(const Vec3& x) const;
 
   double content() const { return content_; }  ///< area (m2) or volume (m3) inside
+  Content moments() const;                     ///< the same with its centre and its second moments; in 2D x, y alone
   double border() const { return border_; }    ///< length (m) or area (m2) of the border
   const Vec3& lower() const { return lower_; }
   const Vec3& upper() const { return upper_; }
@@ -39,6 +41,7 @@ class Outline {
   bool cuts(const Facet& facet, const Vec3& x) const;
   void sort_into_cells();
   void measure();
+  Vec3 outwards(const Facet& facet) const;
   Cell cell_of(const Vec3& x) const;
   /// The column along x in which the place lies; `rows_`^2 columns in three dimensions.
   std::size_t row_of(double y, double z) const;

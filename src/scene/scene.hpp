@@ -269,6 +269,9 @@ struct Fill {
   unsigned seed{};
   VectorExpression velocity;                        // m/s, formulas in x, y, z
   std::optional<AxialExpression> angular_velocity;  // 1/s, of a rigid body about its centre; added to `velocity`
+  std::optional<double> mass;                       // kg, of a rigid body; empty: density times what the shape holds
+  std::optional<Vec3> centre;                       // m, its centre of mass; empty: that of the shape
+  std::optional<AxialExpression> inertia;           // kg m2, about axes through its centre; empty: that of the shape
   std::optional<LogProfile> log_profile;            // added to `velocity`, along x
   Expression pressure;                              // Pa, fluid phases: initial pressure
   bool hydrostatic{};                               // fluid phases: start from the hydrostatic pressure instead

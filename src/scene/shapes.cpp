@@ -21,18 +21,10 @@
 namespace barchan {
 namespace {
 
-using Inside = std::function<bool(const Vec3&)>;
-
-struct Region {
-  Vec3 lower{}, upper{};  // m, of all places that could be inside
-  Vec3 anchor{};          // m, a place of the lattice
-  Inside inside;
-};
-
 /// The part of the domain in which the fill's lattice lives. Rows fill the nearest whole number of cells; other
 /// packings keep half a spacing from sides that are not periodic.
-Region domain_region(const Scene& scene, Packing packing, double dx) {
-  Region region;
+ShapeRegion domain_region(const Scene& scene, Packing packing, double dx) {
+  ShapeRegion region;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double low = scene.domain.origin[axis], size = scene.domain.size[axis];
     region.anchor[axis] = low + 0.5 * dx;
@@ -48,7 +40,7 @@ Region domain_region(const Scene& scene, Packing packing, double dx) {
 }
 
 /// Bounds of a shape that may stick out of the domain, but not once around a periodic axis.
-void bound(Region& region, const Scene& scene, const Vec3& lower, const Vec3& upper, std::size_t axes) {
+void bound(ShapeRegion& region, const Scene& scene, const Vec3& lower, const Vec3& upper, std::size_t axes) {
   for (std::size_t axis = 0; axis < axes; ++axis) {
     const bool periodic = scene.domain.periodic[axis];
     region.lower[axis] = periodic ? std::max(region.lower[axis], lower[axis]) : lower[axis];
@@ -57,7 +49,7 @@ void bound(Region& region, const Scene& scene, const Vec3& lower, const Vec3& up
 }
 
 /// A round shape hangs on its centre, whatever the domain; `axes`: 2 for what goes through all of z.
-void bound_round(Region& region, const Vec3& centre, double radius, double spacing, std::size_t axes) {
+void bound_round(ShapeRegion& region, const Vec3& centre, double radius, double spacing, std::size_t axes) {
   for (std::size_t axis = 0; axis < axes; ++axis) {
     region.anchor[axis] = centre[axis];
     region.lower[axis] = centre[axis] - radius - spacing;
@@ -69,7 +61,7 @@ class RegionOf {
  public:
   RegionOf(const Scene& scene, const Fill& fill)
       : scene_(scene), spacing_(spacing_of(scene, fill)), region_(domain_region(scene, fill.packing, spacing_)) {}
-  Region take() { return std::move(region_); }
+  ShapeRegion take() { return std::move(region_); }
 
   void operator()(const BoxShape& box) { bound(region_, scene_, box.min, box.max, scene_.dimensions == 3 ? 3 : 2); }
   void operator()(const DiscShape& disc) { round(disc.centre, -1.0, disc.radius, 2); }
@@ -113,7 +105,7 @@ class RegionOf {
   }
   const Scene& scene_;
   double spacing_;  // m
-  Region region_;
+  ShapeRegion region_;
 };
 
 std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spacing) {
@@ -127,7 +119,7 @@ std::vector<Vec3> cube_places(const CubeShape& cube, int dimensions, double spac
 }
 
 /// Places of a lattice of the region. That of spheres is widened along periodic axes until whole rows fit.
-std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const Region& region, double dx,
+std::vector<Vec3> stretched_lattice(const Scene& scene, const Fill& fill, const ShapeRegion& region, double dx,
                                     const ranks::Share& share) {
   const Phase* phase = find_phase(scene, fill.phase);
   if (!phase || !phase->diameter() || !hangs_on_origin(fill.shape))
@@ -183,7 +175,7 @@ double cells_between(const Scene& scene, const Vec3& lower, const Vec3& upper, d
 }
 
 /// Random sequential addition. `none`: where spheres have no room, or null.
-std::vector<Vec3> random_places(const Scene& scene, const Region& region, double cells, unsigned seed, double dx,
+std::vector<Vec3> random_places(const Scene& scene, const ShapeRegion& region, double cells, unsigned seed, double dx,
                                 const Occupied& occupied, const NoRoom* none) {
   const PeriodicSpace space(scene.domain);
   Random random(seed);
@@ -218,10 +210,14 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
 
 }  // namespace
 
+ShapeRegion region_of_shape(const Scene& scene, const Fill& fill) {
+  RegionOf region_of(scene, fill);
+  std::visit(region_of, fill.shape);
+  return region_of.take();
+}
+
 void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains) {
-  RegionOf region_of(scene, scene.fills[k]);
-  std::visit(region_of, scene.fills[k].shape);
-  const Region region = region_of.take();
+  const ShapeRegion region = region_of_shape(scene, scene.fills[k]);
   std::vector<Vec3>& places = grains.position;
   constexpr std::size_t gone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> number(places.size(), gone);
@@ -272,9 +268,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupie
     places = rows_outside(scene, *sides, dx);
     std::erase_if(places, [&](const Vec3& x) { return occupied.outside.owner_near(x, dx, overlap_distance) >= 0; });
   } else {
-    RegionOf region_of(scene, fill);
-    std::visit(region_of, fill.shape);
-    const Region region = region_of.take();
+    const ShapeRegion region = region_of_shape(scene, fill);
     const double cells = cells_between(scene, region.lower, region.upper, dx);
     check_room(scene, k, cells);
     if (fill.packing == Packing::random) {

@@ -1,6 +1,7 @@
 // Shape -> places of particles. Internal to src/scene.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "scene/generate.hpp"
@@ -39,6 +40,16 @@ struct Occupied {
            of_fluids.owner_near(x, spacing, distance, except) >= 0;
   }
 };
+
+/// Where a fill may have particles.
+struct ShapeRegion {
+  Vec3 lower{}, upper{};                    // m, of all places that could be inside
+  Vec3 anchor{};                            // m, a place of the lattice
+  std::function<bool(const Vec3&)> inside;  // of those between the two
+};
+/// Without what earlier fills hold. Nothing is bounded of a cube, points, a file and sides, which place their particles
+/// themselves.
+ShapeRegion region_of_shape(const Scene& scene, const Fill& fill);
 
 /// Least distance, in the mean spacing of the two, that "the-rest" keeps from earlier particles. Below one, so that the
 /// first row over a bed whose rows do not line up is not lost; a bed of rows lines up with the rest and is exactly one

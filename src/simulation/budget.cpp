@@ -54,6 +54,7 @@ Budget::Sums Budget::sums(const State& state) const {
   Sums s;
   for (const Moving& moving : moving_) {
     const PhaseParticles& p = state.phases[moving.phase];
+    if (has_bodies(state, moving.phase)) continue;
     const ranks::Alone alone(p.is_whole());
     const std::size_t n = p.size();
     s.mass += reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i); });
@@ -74,10 +75,18 @@ Budget::Sums Budget::sums(const State& state) const {
                   });
     }
   }
+  for (const RigidBody& body : state.bodies) {
+    const Vec3 momentum = body.mass * centre_velocity(body);
+    s.mass += body.mass;
+    for (std::size_t d = 0; d < 3; ++d) s.momentum[d] += momentum[d];
+    s.kinetic += kinetic_energy(body);
+    s.potential -= body.mass * dot(gravity_, centre_of(body));
+  }
   if (keeps_turning_) {
     std::vector<const PhaseParticles*> bodies;
-    for (const Moving& moving : moving_) bodies.push_back(&state.phases[moving.phase]);
-    s.turning = turning_of(bodies.data(), bodies.size());
+    for (const Moving& moving : moving_)
+      if (!has_bodies(state, moving.phase)) bodies.push_back(&state.phases[moving.phase]);
+    s.turning = turning_of(bodies.data(), bodies.size(), state.bodies);
   }
   for (const Departed& gone : state.departed) {
     s.potential += gone.kinetic + gone.potential + gone.stored;

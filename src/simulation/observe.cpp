@@ -143,19 +143,29 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
     fastest = std::max(fastest, s);
     return sizes ? s * p.mass_of(i) / p.mass() : s;
   });
+  // The particles of rigid bodies have not their mass.
+  const bool rigid = has_bodies(state_, k);
+  double kinetic = rigid ? 0.0 : 0.5 * p.mass() * square;
   std::array<double, 3> mean{};
   for (int d = 0; d < plan_.dimensions; ++d) {
     const auto c = static_cast<std::size_t>(d);
     const double total = reproducible_sum(n, [&](std::size_t i) { return is_shown(p, i) ? v[c][i] : 0.0; });
+    mean[c] = shown > 0 ? total / static_cast<double>(shown) : 0.0;
+    if (rigid) continue;
     row.values[HistoryRow::momentum_x + c] +=
         sizes ? reproducible_sum(n, [&](std::size_t i) { return is_shown(p, i) ? p.mass_of(i) * v[c][i] : 0.0; })
               : p.mass() * total;
-    mean[c] = shown > 0 ? total / static_cast<double>(shown) : 0.0;
+  }
+  for (const RigidBody& body : state_.bodies) {
+    if (body.phase != k) continue;
+    const Vec3 momentum = body.mass * centre_velocity(body);
+    for (std::size_t c = 0; c < 3; ++c) row.values[HistoryRow::momentum_x + c] += momentum[c];
+    kinetic += kinetic_energy(body);
   }
   fastest = std::sqrt(ranks::largest(fastest));
   row.raise(HistoryRow::largest_speed, fastest);
   const std::string& name = plan_.phases[k].name;
-  row.add(name + "_kinetic_energy [J]", 0.5 * p.mass() * square);
+  row.add(name + "_kinetic_energy [J]", kinetic);
   row.add(name + "_largest_speed [m/s]", fastest);
   row.add(name + "_mean_vx [m/s]", mean[0]);
 }

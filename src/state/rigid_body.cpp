@@ -61,6 +61,23 @@ Vec3 own_angular_velocity(const RigidBody& body) {
   return {l[0] / body.inertia[0], l[1] / body.inertia[1], l[2] / body.inertia[2]};
 }
 
+Vec3 centre_of(const RigidBody& body) { return body.now.place + OwnAxes(body).to_space(body.centre); }
+
+Vec3 centre_velocity(const RigidBody& body) {
+  return body.now.velocity + OwnAxes(body).to_space(cross(own_angular_velocity(body), body.centre));
+}
+
+/// The spin of a body about its place is that of its parts as they move about the place.
+Vec3 turning_about_centre(const RigidBody& body) {
+  const Vec3 about_place = cross(own_angular_velocity(body), body.centre);
+  return OwnAxes(body).to_space(body.now.spin - body.mass * cross(body.centre, about_place));
+}
+
+double kinetic_energy(const RigidBody& body) {
+  const Vec3 v = centre_velocity(body), rate = OwnAxes(body).to_space(own_angular_velocity(body));
+  return 0.5 * body.mass * dot(v, v) + 0.5 * dot(rate, turning_about_centre(body));
+}
+
 Vec3 spin_of(const RigidBody& body, const Vec3& rate) {
   return {rate[0] * body.inertia[0], rate[1] * body.inertia[1], rate[2] * body.inertia[2]};
 }

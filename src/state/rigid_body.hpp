@@ -50,6 +50,13 @@ class OwnAxes {
 
 /// 1/s, along its own axes.
 Vec3 own_angular_velocity(const RigidBody& body);
+/// m and m/s, of its centre of mass.
+Vec3 centre_of(const RigidBody& body);
+Vec3 centre_velocity(const RigidBody& body);
+/// kg m2/s, about its centre of mass, in space.
+Vec3 turning_about_centre(const RigidBody& body);
+/// J.
+double kinetic_energy(const RigidBody& body);
 /// Its own angular momentum (kg m2/s) for an angular velocity (1/s) along its own axes.
 Vec3 spin_of(const RigidBody& body, const Vec3& rate);
 /// Turns for a time (s) without any torque. 2D: exact. 3D: Hamilton's function of the free body, the sum of

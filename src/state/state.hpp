@@ -3,6 +3,7 @@
 // (simulation/simulation.hpp, archive).
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <string>
@@ -57,5 +58,11 @@ struct State {
   /// Particles of the same phases and counts must be there: loading overwrites their values.
   void archive(Archive& a);
 };
+
+/// Whether the phase consists of rigid bodies: its mass and its momentum are theirs, not those of its particles.
+inline bool has_bodies(const State& state, std::size_t phase) {
+  return std::any_of(state.bodies.begin(), state.bodies.end(),
+                     [&](const RigidBody& body) { return body.phase == phase; });
+}
 
 }  // namespace barchan

@@ -320,6 +320,40 @@ TEST(TotalLagrangianBodies, ABlockThatFallsOnItsCornerDoesNotPassTheFloor) {
   EXPECT_LT(change, 0.01);
 }
 
+/// A plate of so many cells of 4 mm in a domain of 50 along a periodic axis, from a cell on; its marker's place.
+double marked(int first, int cells, double time) {
+  const auto place = [](int cell) { return number(0.004 * cell); };
+  const std::string text =
+      "spacing = 4e-3\n[domain]\nsize = [0.2, 0.04]\nperiodic = [\"x\"]\n[phases.plate]\nkind = \"elastic\"\n"
+      "density = 1000\nyoung = 2e6\npoisson = 0.3\n[interactions]\nplate-plate = 1.6\n[[fill]]\nphase = \"plate\"\n"
+      "shape = { formula = \"fmod(x - " +
+      place(first) + " + 0.4, 0.2) < " + place(cells) +
+      " && abs(y - 0.02) < 0.01 ? 1 : 0\" }\nvelocity = [1, 0]\n[[marker]]\nname = \"m\"\nphase = "
+      "\"plate\"\n[time]\nend "
+      "= 1\n";
+  const Scene scene = parse_scene(text, "marked.toml");
+  const auto blocks = generate(scene);
+  Simulation run(scene, make_plan(scene, blocks), blocks);
+  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
+  const auto names = run.history_columns();
+  const auto at = std::find(names.begin(), names.end(), "m_x [m]");
+  return run.history_row()[static_cast<std::size_t>(at - names.begin())];
+}
+
+TEST(Markers, AreInTheMiddleOfABodyThatLiesAcrossAPeriodicSide) {
+  double worst = 0.0;
+  for (const int cells : {3, 10, 20, 40})
+    for (const int first : {0, 5, 20, 31, 40, 44, 48}) {
+      const double middle = 0.004 * (first + 0.5 * cells);
+      for (const double time : {0.0, 2e-3}) {
+        const double off = marked(first, cells, time) - middle - time;
+        worst = std::max(worst, std::abs(off - 0.2 * std::round(off / 0.2)));
+      }
+    }
+  report("place of a marker, images of the domain apart, m", worst, 1e-9);
+  EXPECT_LT(worst, 1e-9);
+}
+
 TEST(BodyContact, ContactForceIsWhatMovesABody) {
   const std::string field = "output.fields=[\"contact_force\"]";
   Drive bars("verification/two_bars", {field, "precision=\"double\""});

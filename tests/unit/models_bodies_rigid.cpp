@@ -193,20 +193,118 @@ shape = { sphere = { centre = [2.5, 2.5, 2.5], radius = 0.3 } }
 end = 1
 )toml";
 
-TEST(RigidStart, MassInertiaAndMotionAreThoseOfTheParticles) {
+TEST(RigidStart, MassInertiaAndMotionAreThoseOfTheShape) {
   const Scene scene = parse_scene(scene_text, "s.toml");
   const Plan plan = make_plan(scene, generate(scene));
   ASSERT_EQ(plan.phases[0].rigid_bodies.size(), 2u) << "one a fill";
   const RigidBody& b = plan.phases[0].rigid_bodies[0];
   EXPECT_NEAR(b.mass, 1000 * 1.0 * 0.4 * 0.2, 1e-9);
-  // n points of a spacing dx along a side: their mean square from the middle is (n^2 - 1) dx^2/12.
-  const auto square = [](double n) { return (n * n - 1.0) * 0.01 / 12.0; };
-  EXPECT_NEAR(b.inertia[0], b.mass * (square(4) + square(2)), 1e-9);
-  EXPECT_NEAR(b.inertia[1], b.mass * (square(10) + square(2)), 1e-9);
-  EXPECT_NEAR(b.inertia[2], b.mass * (square(10) + square(4)), 1e-9);
+  EXPECT_NEAR(b.inertia[0], b.mass * (0.16 + 0.04) / 12.0, 1e-9);
+  EXPECT_NEAR(b.inertia[1], b.mass * (1.0 + 0.04) / 12.0, 1e-9);
+  EXPECT_NEAR(b.inertia[2], b.mass * (1.0 + 0.16) / 12.0, 1e-9);
   EXPECT_NEAR(norm(b.now.velocity - Vec3{1, 2, 3}), 0.0, 1e-12);
   EXPECT_NEAR(norm(OwnAxes(b).to_space(own_angular_velocity(b)) - Vec3{0.5, 0.6, 0.7}), 0.0, 1e-12);
   EXPECT_NEAR(norm(b.now.place - Vec3{1.5, 1.2, 1.1}), 0.0, 1e-12);
+}
+
+/// The body of a shape on a lattice of a spacing, with 1000 kg/m3, in a domain from 0 to 3 m.
+RigidBody body_of(int dimensions, double spacing, const std::string& fill) {
+  const bool solid = dimensions == 3;
+  const Scene scene =
+      parse_scene("dimensions = " + std::to_string(dimensions) + "\nspacing = " + std::to_string(spacing) +
+                      "\n[domain]\nsize = [3, 3" + (solid ? ", 3" : "") +
+                      "]\n[phases.hole]\nkind = \"wall\"\n[phases.a]\nkind = \"rigid\"\ndensity = "
+                      "1000\n[interactions]\n" +
+                      fill + "\n[time]\nend = 1\nlargest-speed = 1\n",
+                  "s.toml");
+  return make_plan(scene, generate(scene)).phases[1].rigid_bodies.at(0);
+}
+
+struct Moments {
+  double mass, inertia;  // kg, kg m2: about z in 2D, the sum of the three in 3D
+  Vec3 centre;
+};
+
+void expect_moments(int dimensions, const std::string& fill, const Moments& exact, std::vector<double> spacings) {
+  for (const double spacing : spacings) {
+    const RigidBody b = body_of(dimensions, spacing, fill);
+    const double inertia = dimensions == 2 ? b.inertia[2] : b.inertia[0] + b.inertia[1] + b.inertia[2];
+    EXPECT_NEAR(b.mass / exact.mass, 1.0, 1e-3) << fill << " at " << spacing;
+    EXPECT_NEAR(inertia / exact.inertia, 1.0, 1e-3) << fill << " at " << spacing;
+    EXPECT_LT(norm(b.now.place - exact.centre), 1e-3) << fill << " at " << spacing;
+  }
+}
+
+std::string shaped(const std::string& shape) { return "[[fill]]\nphase = \"a\"\nshape = { " + shape + " }\n"; }
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Whatever the spacing of the particles: from one of them on.
+TEST(RigidStart, ShapesInThePlaneHaveTheirMassAndInertia) {
+  const std::vector<double> spacings{0.31, 0.2, 0.13, 0.1, 0.077, 0.05, 0.031, 0.025};
+  const auto disc = [](double r) { return 1000 * pi * r * r; };
+  expect_moments(2, shaped("box = { min = [1.1, 1], max = [1.9, 1.5] }"),
+                 {400, 400 * (0.64 + 0.25) / 12.0, {1.5, 1.25, 0}}, spacings);
+  expect_moments(2, shaped("disc = { centre = [1.5, 1.4], radius = 0.25 }"),
+                 {disc(0.25), 0.5 * disc(0.25) * 0.0625, {1.5, 1.4, 0}}, spacings);
+  const double ring = disc(0.6) - disc(0.3);
+  expect_moments(2, shaped("ring = { centre = [1.5, 1.4], inner = 0.3, outer = 0.6 }"),
+                 {ring, 0.5 * ring * (0.09 + 0.36), {1.5, 1.4, 0}}, {0.2, 0.13, 0.1, 0.077, 0.05, 0.031});
+  // Two boxes of 0.8 by 0.4 and 0.4 by 0.4, an L; turned about nothing but its mass centre.
+  const double lower = 320, upper = 160, about = lower + upper;
+  const Vec3 centre{(lower * 1.4 + upper * 1.2) / about, (lower * 1.2 + upper * 1.6) / about, 0.0};
+  const double low2 = std::pow(1.4 - centre[0], 2) + std::pow(1.2 - centre[1], 2),
+               up2 = std::pow(1.2 - centre[0], 2) + std::pow(1.6 - centre[1], 2);
+  const Moments ell{about, lower * ((0.64 + 0.16) / 12.0 + low2) + upper * ((0.16 + 0.16) / 12.0 + up2), centre};
+  expect_moments(2, shaped("polygon = [[1, 1], [1.8, 1], [1.8, 1.4], [1.4, 1.4], [1.4, 1.8], [1, 1.8]]"), ell,
+                 spacings);
+  expect_moments(2, shaped("formula = \"x > 1 && x < 1.8 && y > 1 && y < 1.8 && !(x > 1.4 && y > 1.4) ? 1 : 0\""), ell,
+                 spacings);
+  const double ellipse = 1000 * pi * 0.5 * 0.3;
+  expect_moments(2, shaped("formula = \"1 - ((x - 1.5)/0.5)^2 - ((y - 1.4)/0.3)^2\""),
+                 {ellipse, 0.25 * ellipse * (0.25 + 0.09), {1.5, 1.4, 0}}, spacings);
+  const double gone = disc(0.3);
+  expect_moments(2,
+                 "[[fill]]\nphase = \"hole\"\nshape = { disc = { centre = [1.5, 1.5], radius = 0.3 } }\n"
+                 "[[fill]]\nphase = \"a\"\nleave-out = \"earlier-fills\"\nshape = { box = { min = [0.9, 0.9], max = "
+                 "[2.1, 2.1] } }\n",
+                 {1440 - gone, 1440 * 1.44 / 6.0 - 0.5 * gone * 0.09, {1.5, 1.5, 0}}, {0.1, 0.077, 0.05, 0.031});
+}
+
+TEST(RigidStart, ShapesInSpaceHaveTheirMassAndInertia) {
+  const std::vector<double> spacings{0.31, 0.27, 0.21, 0.17, 0.13, 0.11, 0.1, 0.09};
+  expect_moments(3, shaped("box = { min = [1, 1, 1], max = [1.8, 1.5, 1.4] }"),
+                 {160, 160 * (0.64 + 0.25 + 0.16) / 6.0, {1.4, 1.25, 1.2}}, spacings);
+  const double ball = 4000.0 / 3.0 * pi * 0.027;
+  expect_moments(3, shaped("sphere = { centre = [1.5, 1.4, 1.3], radius = 0.3 }"),
+                 {ball, 3 * 0.4 * ball * 0.09, {1.5, 1.4, 1.3}}, spacings);
+  const double rod = 3000 * pi * 0.04;
+  expect_moments(3, shaped("disc = { centre = [1.5, 1.4, 0], radius = 0.2 }"),
+                 {rod, rod * (0.04 + 9.0 / 6.0), {1.5, 1.4, 1.5}}, spacings);
+  const double tube = 3000 * pi * 0.27;
+  expect_moments(3, shaped("ring = { centre = [1.5, 1.4, 0], inner = 0.3, outer = 0.6 }"),
+                 {tube, tube * (0.45 + 9.0 / 6.0), {1.5, 1.4, 1.5}}, {0.2, 0.17, 0.13, 0.11});
+  expect_moments(3, shaped("polygon = [[1, 1], [1.8, 1], [1.8, 1.5], [1, 1.5]]"),
+                 {1200, 1200 * (0.64 + 0.25 + 9.0) / 6.0, {1.4, 1.25, 1.5}}, spacings);
+  const double egg = 4000.0 / 3.0 * pi * 0.5 * 0.3 * 0.4;
+  expect_moments(3, shaped("formula = \"1 - ((x - 1.5)/0.5)^2 - ((y - 1.4)/0.3)^2 - ((z - 1.3)/0.4)^2\""),
+                 {egg, 0.4 * egg * (0.25 + 0.09 + 0.16), {1.5, 1.4, 1.3}}, {0.21, 0.13});
+}
+
+TEST(RigidStart, TakesTheMassTheCentreAndTheInertiaThatTheFillSays) {
+  const std::string box = "[[fill]]\nphase = \"a\"\nshape = { box = { min = [1, 1], max = [1.8, 1.4] } }\n";
+  const RigidBody heavy = body_of(2, 0.1, box + "mass = 5\n");
+  EXPECT_EQ(heavy.mass, 5.0);
+  EXPECT_NEAR(heavy.inertia[2], 5.0 * (0.64 + 0.16) / 12.0, 1e-12) << "in proportion";
+  const RigidBody loaded =
+      body_of(2, 0.1, box + "mass = 5\ninertia = 0.7\ncentre = [1.1, 1.1]\nangular-velocity = 2\nvelocity = [1, 0]\n");
+  EXPECT_NEAR(loaded.inertia[2], 0.7, 1e-12);
+  EXPECT_NEAR(norm(loaded.now.place - Vec3{1.1, 1.1, 0}), 0.0, 1e-12);
+  EXPECT_NEAR(norm(loaded.now.velocity - Vec3{1, 0, 0}), 0.0, 1e-12) << "it turns about its centre of mass";
+  EXPECT_NEAR(own_angular_velocity(loaded)[2], 2.0, 1e-12);
+  const RigidBody turned = body_of(2, 0.1, box + "[[motion]]\nphase = \"a\"\nabout = [1, 1.2]\n");
+  EXPECT_NEAR(turned.inertia[2], 320 * ((0.64 + 0.16) / 12.0 + 0.16), 1e-9) << "about the place";
+  EXPECT_NEAR(kinetic_energy(loaded), 0.5 * 5.0 + 0.5 * 0.7 * 4.0, 1e-12);
 }
 
 void expect_body_refused(std::string text, const std::string& from, const std::string& to, const std::string& words) {
@@ -238,6 +336,9 @@ TEST(RigidStart, RefusesWhatCannotBe) {
   expect_body_refused(scene_text, "[time]", "[[motion]]\nphase = \"a\"\n[[motion]]\nphase = \"a\"\n[time]",
                       "holds already");
   expect_body_refused(scene_text, first, first + "\npressure = 1", "only fluids");
+  expect_body_refused(scene_text, first, first + "\ncentre = [1, 1, 1]", "expected inertia = ... next to it");
+  expect_body_refused(scene_text, first, first + "\ninertia = [1, 1, 3]", "more than the other two together");
+  expect_body_refused(scene_text, first, first + "\ninertia = [1, 0, 1]", "expected moments above 0");
   expect_body_refused(scene_text, "density = 1000", "density = 1000\nstiffness = 1e6", "nothing reads it");
   std::string boxes = scene_text;
   const std::string sphere = "shape = { sphere = { centre = [2.5, 2.5, 2.5], radius = 0.3 } }";

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "plan/plan.hpp"
 #include "plan/run_cost.hpp"
 #include "scene/reader.hpp"
@@ -157,6 +158,46 @@ end = 1
   EXPECT_TRUE(warns(plan("sand-floor"), "no entry sand-floor"));
   EXPECT_TRUE(warns(plan("air-lid"), "no entry air-lid"));
   EXPECT_EQ(plan("sand-lid").warnings.size(), 1u);
+}
+
+TEST(PlanWarns, OfRowsThatMissTheMassOfTheirShape) {
+  EXPECT_FALSE(warns(box("", "", "0.8"), "the mass of its"));
+  const Plan low = box("", "", "0.83");
+  EXPECT_TRUE(warns(low, "phases.water: the mass of its 340 particles of 0.05 m is +2.41 % off"))
+      << low.warnings.front();
+  EXPECT_TRUE(warns(box("max = [1, 1]", "max = [0.975, 1]"), "a spacing of 0.025 m fits"));
+  EXPECT_TRUE(warns(box("box = { min = [0, 0], max = [1, 1] }", "disc = { centre = [0.5, 0.5], radius = 0.13 }"),
+                    "packing = \"relaxed\" misses less"));
+  EXPECT_FALSE(warns(box("max = [1, 1] } }",
+                         "max = [1, 1] } }\n[[inflow]]\nphase = \"water\"\nside = \"left\"\n"
+                         "velocity = [1, 0]\n[[outflow]]\nphase = \"water\"\nside = \"right\" #"),
+                     "the mass of its"))
+      << "zones beyond the sides belong to no shape";
+}
+
+/// Two pools with a wall of some rows between them; with `right`, water on both sides.
+Plan pools(int rows, bool right) {
+  const std::string edge = std::to_string(0.5 + 0.05 * rows);
+  std::string walls = "[[fill]]\nphase = \"gate\"\nshape = { box = { min = [0.5, 0], max = [" + edge +
+                      ", 1] } }\n[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [0.5, 0.8] } }\n";
+  if (right) walls += "[[fill]]\nphase = \"water\"\nshape = { box = { min = [" + edge + ", 0], max = [1, 0.8] } }\n";
+  return box("[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [1, 1] } }\n",
+             walls + "[phases.gate]\nkind = \"wall\"\n[interactions.water-gate]\nradius = 2.6\n");
+}
+
+TEST(PlanWarns, OfWallsThroughWhichAFluidSeesItself) {
+  for (const int rows : {1, 2, 3}) {
+    const Plan dry = pools(rows, false);
+    EXPECT_TRUE(warns(dry, "the wall \"gate\" is " + std::to_string(rows) + " rows of 0.05 m thick")) << rows;
+    EXPECT_TRUE(warns(dry, "expected a wall of 0.21 m")) << rows;
+    try {
+      pools(rows, true);
+      ADD_FAILURE() << rows << " rows between two pools";
+    } catch (const SceneError& e) {
+      EXPECT_NE(std::string(e.what()).find("presses the fluid on the other"), std::string::npos) << e.what();
+    }
+  }
+  for (const int rows : {4, 5}) EXPECT_FALSE(warns(pools(rows, true), "rows of 0.05 m thick")) << rows;
 }
 
 TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {

@@ -22,32 +22,53 @@ Vec3 vector_of(const PhaseParticles& p, Field field, std::size_t i) {
   return v;
 }
 
+/// `centre`, `velocity` (m, m/s): of the common centre of mass.
+void add_body(Turning& t, const RigidBody& body, const Vec3& centre, const Vec3& velocity) {
+  const Vec3 arm = centre_of(body) - centre, speed = centre_velocity(body) - velocity,
+             turning = turning_about_centre(body), rate = OwnAxes(body).to_space(own_angular_velocity(body));
+  // The sum of m r^2 about its place: half of the sum of the three moments.
+  const double about_place =
+      body.dimensions == 2 ? body.inertia[2] : 0.5 * (body.inertia[0] + body.inertia[1] + body.inertia[2]);
+  t.momentum = t.momentum + turning + body.mass * cross(arm, speed);
+  t.inertia += about_place - body.mass * dot(body.centre, body.centre) + body.mass * dot(arm, arm);
+  t.energy += 0.5 * dot(rate, turning) + 0.5 * body.mass * dot(speed, speed);
+}
+
 }  // namespace
 
-Turning turning_of(const PhaseParticles* const* phases, std::size_t count) {
+Turning turning_of(const PhaseParticles* const* phases, std::size_t count, const std::vector<RigidBody>& bodies) {
   Turning t;
-  const double mass = sum_over(phases, count, [](const PhaseParticles&, std::size_t) { return 1.0; });
+  double mass = sum_over(phases, count, [](const PhaseParticles&, std::size_t) { return 1.0; });
+  for (const RigidBody& body : bodies) mass += body.mass;
   if (!(mass > 0.0)) return t;
+  const int dimensions = count > 0 ? phases[0]->dimensions() : bodies.front().dimensions;
   Vec3 centre{}, velocity{};
-  for (int d = 0; d < phases[0]->dimensions(); ++d) {
-    const auto mean = [&](Field field) {
-      return sum_over(phases, count, [&](const PhaseParticles& p, std::size_t i) { return p.column(field, d)[i]; }) /
-             mass;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions); ++d) {
+    const auto first_moment = [&](Field field) {
+      return sum_over(phases, count,
+                      [&](const PhaseParticles& p, std::size_t i) { return p.column(field, static_cast<int>(d))[i]; });
     };
-    centre[static_cast<std::size_t>(d)] = mean(Field::position);
-    velocity[static_cast<std::size_t>(d)] = mean(Field::velocity);
+    centre[d] = first_moment(Field::position);
+    velocity[d] = first_moment(Field::velocity);
+    for (const RigidBody& body : bodies) {
+      centre[d] += body.mass * centre_of(body)[d];
+      velocity[d] += body.mass * centre_velocity(body)[d];
+    }
+    centre[d] /= mass;
+    velocity[d] /= mass;
   }
   const auto arm = [&](const PhaseParticles& p, std::size_t i) { return vector_of(p, Field::position, i) - centre; };
   const auto speed = [&](const PhaseParticles& p, std::size_t i) {
     return vector_of(p, Field::velocity, i) - velocity;
   };
-  for (std::size_t c = phases[0]->dimensions() == 2 ? 2 : 0; c < 3; ++c)
+  for (std::size_t c = dimensions == 2 ? 2 : 0; c < 3; ++c)
     t.momentum[c] = sum_over(phases, count,
                              [&](const PhaseParticles& p, std::size_t i) { return cross(arm(p, i), speed(p, i))[c]; });
   t.inertia =
       sum_over(phases, count, [&](const PhaseParticles& p, std::size_t i) { return dot(arm(p, i), arm(p, i)); });
   t.energy = 0.5 * sum_over(phases, count,
                             [&](const PhaseParticles& p, std::size_t i) { return dot(speed(p, i), speed(p, i)); });
+  for (const RigidBody& body : bodies) add_body(t, body, centre, velocity);
   return t;
 }
 

@@ -7,6 +7,7 @@
 #include "models/history_row.hpp"
 #include "models/layout.hpp"
 #include "state/particles.hpp"
+#include "state/rigid_body.hpp"
 
 namespace barchan {
 
@@ -17,8 +18,8 @@ struct Turning {
   double energy = 0.0;   // J, sum of m (v - V)^2/2: of the motion about the centre
 };
 
-/// Of `count` phases together. Places must not go through periodic sides, see has_centre().
-Turning turning_of(const PhaseParticles* const* phases, std::size_t count);
+/// Of `count` phases and of rigid bodies together. Places must not go through periodic sides, see has_centre().
+Turning turning_of(const PhaseParticles* const* phases, std::size_t count, const std::vector<RigidBody>& bodies = {});
 
 /// False where a side across which a turning goes is periodic: places of one body are then on both ends.
 bool has_centre(const Layout& layout);

@@ -23,6 +23,14 @@ double step_of(const RigidBody& body, double spacing) {
   return step;
 }
 
+/// A sum whose bits no order decides.
+template <class F>
+Vec3 sum_of(std::size_t n, F&& f) {
+  Vec3 total{};
+  for (std::size_t d = 0; d < 3; ++d) total[d] = reproducible_sum(n, [&](std::size_t k) { return f(k)[d]; });
+  return total;
+}
+
 PhaseRules rigid_rules(const PlanPhase& p, double largest_speed, const std::string& step_key) {
   const std::string key = "phases." + p.name + ".stiffness";
   PhaseRules r;
@@ -94,6 +102,10 @@ void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       p.own(arm_)[body.first + k] = axes.to_own(x[body.first + k] - body.now.place);
       p.own(body_of_)[body.first + k] = static_cast<std::uint32_t>(state.bodies.size() - first_body_);
     }
+    const Vec3 mean = 1.0 / static_cast<double>(body.count) *
+                      sum_of(body.count, [&](std::size_t k) { return p.own(arm_)[body.first + k]; });
+    levers_.push_back(body.centre - mean);
+    mass_shares_.push_back(body.mass / (p.mass() * static_cast<double>(body.count)));
     state.bodies.push_back(body);
   }
 }
@@ -204,12 +216,35 @@ void RigidPhase::kick_and_drift() {
 void RigidPhase::clear_loads() {
   PhaseParticles& p = w_->particles(number_);
   for (int d = 0; d < layout_.dimensions; ++d) std::fill_n(p.column(Field::acceleration, d), p.size(), 0.0);
-  forces_.add(p, w_->state.time, true);
   for (std::size_t k = 0; k < bodies(); ++k) body(k).now.touch_force = body(k).now.touch_torque = Vec3{};
+  if (forces_.any()) add_forcings(p);
 }
 
-/// What its particles feel by themselves.
-void RigidPhase::add_particles(RigidBody& body) const {
+/// A [[forcing]] accelerates the mass of a body, which is not that of its particles and need not have its centre where
+/// their mean is: they are points at which the force is looked up.
+void RigidPhase::add_forcings(PhaseParticles& p) {
+  forces_.add(p, w_->state.time, true);
+  const std::uint32_t* const body_of = p.own(body_of_);
+  for (int d = 0; d < layout_.dimensions; ++d) {
+    double* const a = p.column(Field::acceleration, d);
+    for (std::size_t k = 0; k < p.size(); ++k) a[k] *= mass_shares_[body_of[k]];
+  }
+  const ranks::Alone alone(p.is_whole());
+  for (std::size_t b = 0; b < bodies(); ++b) {
+    const std::uint32_t* const place_of = p.places() + body(b).first;
+    const Vec3 force = p.mass() * sum_of(body(b).count, [&](std::size_t k) {
+                         Vec3 a{};
+                         for (int d = 0; d < layout_.dimensions; ++d)
+                           a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d)[place_of[k]];
+                         return a;
+                       });
+    body(b).now.touch_torque = cross(OwnAxes(body(b)).to_space(levers_[b]), force);
+  }
+}
+
+/// The forces on its particles.
+void RigidPhase::add_particles(std::size_t number) {
+  RigidBody& body = this->body(number);
   const PhaseParticles& p = w_->particles(number_);
   const OwnAxes axes(body);
   const Vec3* const arm = p.own(arm_);
@@ -245,7 +280,7 @@ void RigidPhase::sum_loads() {
   const Vec3& gravity = scene_.domain.gravity;
   for (std::size_t k = 0; k < bodies(); ++k) {
     RigidBody& b = body(k);
-    if (felt_) add_particles(b);
+    if (felt_) add_particles(k);
     const Vec3 weight = b.mass * gravity;
     b.now.force = b.now.touch_force + weight;
     b.now.torque = b.now.touch_torque;

@@ -39,6 +39,7 @@ class RigidPhase : public Model {
  private:
   void kick_and_drift();
   void clear_loads();
+  void add_forcings(PhaseParticles& p);
   void sum_loads();
   void finish_kick();
   void sum_up(std::size_t number);
@@ -46,7 +47,7 @@ class RigidPhase : public Model {
   void drive(RigidBody& body, double time) const;
   void end_step(RigidBody& body) const;
   std::array<Vec3, 2> driven(const RigidBody& body) const;
-  void add_particles(RigidBody& body) const;
+  void add_particles(std::size_t number);
   void hold_torque(RigidBody& body);
   /// A body as its particles see it, in space.
   struct Carrier {
@@ -72,6 +73,8 @@ class RigidPhase : public Model {
   bool touches_spheres_ = false;                   // in the steps of contacts (models/grains/sphere_bodies.hpp)
   bool felt_ = false;                              // particles feel something by themselves
   std::vector<Carrier> carriers_;                  // by body, of the task that runs
+  std::vector<double> mass_shares_;                // by body: its mass over that of its particles
+  std::vector<Vec3> levers_;                       // m, by body: its centre of mass from the mean of its particles
   std::vector<Vec3> old_rates_;                    // 1/s, by body, of the step before its kick
   std::vector<RigidHold> holds_;                   // by [[motion]]
   OwnColumn<Vec3> arm_;                            // m, from the body's place along its own axes

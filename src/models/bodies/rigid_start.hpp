@@ -8,10 +8,10 @@
 
 namespace barchan {
 
-/// One body a fill of the phase, with the mass and the inertia of its particles as points, so that momentum and energy
-/// of the particles are those of the body; with the rigid motion that has their momentum and angular momentum. A body
-/// that a [[motion]] turns about a place has that place, else its centre of mass.
-/// Throws SceneError: particles in one line, a body that stands across a periodic side, one that two motions hold, a
+/// One body a fill of the phase, with the mass, the centre and the inertia of its shape (scene/shape_content.hpp) or
+/// those that the fill says, and with the rigid motion of its particles. A body that a [[motion]] turns about a place
+/// has that place, else its centre of mass.
+/// Throws SceneError: points in one line, a body that stands across a periodic side, one that two motions hold, a
 /// motion that holds none.
 std::vector<RigidBody> rigid_bodies(const Scene& scene, const ParticleBlock& block, std::size_t phase,
                                     const Layout& layout);

@@ -1,6 +1,8 @@
 #include "models/bodies/sets.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "base/errors.hpp"
@@ -164,14 +166,43 @@ void MarkedSet::begin(State&, const std::vector<ParticleBlock>& blocks) { set_.f
 
 void MarkedSet::attach(Workspace& w) { set_.attach(w, "marker." + std::to_string(number_)); }
 
+namespace {
+
+/// Mean of `n` places along a periodic axis (m) of which some may stand on the other end of the domain, `whole`: all
+/// of these as they are. The circular mean is their middle (Mardia & Jupp 2000, section 2.2), about which each has its
+/// nearest image; the mean of those is an image of the true one. The image is the one next to `whole`, so that a body
+/// that goes round the domain goes on; it changes where 0.618 of the places changed sides, of which no number of them
+/// can be exactly.
+template <class Place>
+double periodic_mean(std::size_t size, double n, double period, double whole, const Place& place) {
+  const double turn = 2.0 * std::numbers::pi / period;
+  const double c = reproducible_sum(size, [&](std::size_t q) { return std::cos(turn * place(q)); }),
+               s = reproducible_sum(size, [&](std::size_t q) { return std::sin(turn * place(q)); });
+  if (!(std::hypot(c, s) > 1e-3 * n)) return whole;  // it goes all the way round
+  const double middle = std::atan2(s, c) / turn;
+  const double off = reproducible_sum(size, [&](std::size_t q) {
+    const double way = place(q) - middle;
+    return way - period * std::round(way / period);
+  });
+  const double mean = middle + off / n,
+               image = mean + period * std::floor((whole - mean) / period + 0.3819660112501051);
+  return std::abs(image - whole) < 1e-9 * period ? whole : image;
+}
+
+}  // namespace
+
 void MarkedSet::history(HistoryRow& row) const {
   const PhaseParticles& p = set_.particles();
   const ranks::Alone alone(p.is_whole());
   const auto n = static_cast<double>(set_.count());
   for (int d = 0; d < std::min(layout_.dimensions, 3); ++d) {
+    const auto axis = static_cast<std::size_t>(d);
     const double* x = p.column(Field::position, d);
+    const auto place = [&](std::size_t q) { return x[set_.place(q)]; };
+    const double whole = reproducible_sum(set_.size(), place) / n;
+    const double period = layout_.bounds.high[axis] - layout_.bounds.low[axis];
     row.add(marker_.name + "_" + axes[d] + " [m]",
-            reproducible_sum(set_.size(), [&](std::size_t q) { return x[set_.place(q)]; }) / n);
+            layout_.bounds.periodic[axis] ? periodic_mean(set_.size(), n, period, whole, place) : whole);
   }
 }
 

@@ -41,6 +41,19 @@ bool DrivenWall::on_a_side(const Vec3& x) const {
   return false;
 }
 
+/// Of a particle that is nearest to a face on a side of the domain: the face within a spacing that meets it. The
+/// particles in the edge between the two lie as deep under both, and round-off must not decide.
+std::optional<DrivenWall::Face> DrivenWall::face_next_to(const ContactSurface& surface, const Vec3& x,
+                                                         const Vec3& side) const {
+  const double spacing = layout_.phases[phase_].spacing;
+  const auto gap = surface.gap(x - spacing * side);
+  if (!gap || !(gap->distance < 0.0)) return std::nullopt;
+  const Vec3 foot = x - spacing * side - gap->distance * gap->normal;
+  const double depth = dot(foot - x, gap->normal);
+  if (!(depth > 0.0 && depth <= spacing) || on_a_side(foot)) return std::nullopt;
+  return Face{gap->normal, depth};
+}
+
 /// From the outline of the wall's fill, if it has one and no other fill goes on where it ends. Where that says nothing,
 /// the normal is that of the wall's own particles, and the depth is unknown.
 void DrivenWall::find_faces(PhaseParticles& p, const std::vector<Vec3>& places) {
@@ -58,8 +71,8 @@ void DrivenWall::find_faces(PhaseParticles& p, const std::vector<Vec3>& places) 
       const auto gap = surface.gap(places[k]);
       if (!gap || !(gap->distance < 0.0) || -gap->distance > reach_) continue;
       if (face.depth > 0.0 && -gap->distance > face.depth) continue;
-      if (on_a_side(places[k] - gap->distance * gap->normal)) continue;
-      face = {gap->normal, -gap->distance};
+      if (!on_a_side(places[k] - gap->distance * gap->normal)) face = {gap->normal, -gap->distance};
+      else if (const auto next = face_next_to(surface, places[k], gap->normal)) face = *next;
     }
     p.column(Field::wall_depth)[k] = face.depth;
     for (int d = 0; d < layout_.dimensions; ++d)

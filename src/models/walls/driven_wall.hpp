@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "models/bodies/contact_surface.hpp"
 #include "models/walls/wall_motion.hpp"
 #include "models/workspace.hpp"
 
@@ -28,6 +29,7 @@ class DrivenWall : public Model {
   };
   void find_faces(PhaseParticles& p, const std::vector<Vec3>& places);
   bool on_a_side(const Vec3& x) const;
+  std::optional<Face> face_next_to(const ContactSurface& surface, const Vec3& x, const Vec3& side) const;
   void go();
   void tell();
   void tell_fluids();
