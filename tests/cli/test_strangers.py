@@ -227,6 +227,19 @@ class Damage(Case):
         piece.write_bytes(piece.read_bytes()[:-100])
         return self.page(folder)
 
+    def test_cells_that_do_not_fit(self):
+        """Python needs no cells, but ParaView trusts them: pvstate/render checks them first."""
+        from barchan.frame import check
+        file = pathlib.Path(barchan.write_grains(self.folder / "a.vtp", [[0, 0], [1, 0], [0, 1]], .1))
+        check(file)
+        whole = file.read_bytes()
+        at = whole.rindex((0).to_bytes(8, "little") + (1).to_bytes(8, "little") + (2).to_bytes(8, "little"))
+        for place, number in ((at, 3), (at, 1 << 62), (at + 8, -1), (at + 32, 4), (at + 48, 4)):  # three corners, a length, three ends
+            file.write_bytes(whole[:place] + number.to_bytes(8, "little", signed=True) + whole[place + 8:])
+            self.assertEqual(len(barchan.Frame(file)), 3)
+            with self.assertRaisesRegex(barchan.Unreadable, "a.vtp: the cells of Verts do not fit the points"):
+                check(file)
+
     def ask(self, statuses, *words):
         ended = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, timeout=60)
         self.assertIn(ended.returncode, statuses, (words, ended.stderr[-500:]))
