@@ -7,6 +7,6 @@ from barchan_bench import ROOT
 
 sys.path.insert(0, str(ROOT / "python"))
 from barchan.errors import Unreadable  # noqa: E402, F401
-from barchan.frame import Frame, strings, without_warnings, write_particles  # noqa: E402, F401
+from barchan.frame import Frame, write_particles  # noqa: E402, F401
 from barchan.series import entries as series  # noqa: E402, F401
 from barchan.tables import Table, table  # noqa: E402, F401

@@ -28,7 +28,7 @@ LIMIT = 1.0  # s
 
 
 def arrays(file):
-    """What VTK reads of a frame, as bytes; None when it reads nothing."""
+    """What the package of python/ reads of a frame, as bytes; None when it reads nothing."""
     try:
         read = frame.Frame(file)
     except frame.Unreadable:
@@ -120,7 +120,6 @@ class Damager:
             self.check(status == 2, f"{what}: status {status}")
 
     def main(self):
-        frame.without_warnings()
         out = self.top / "whole"
         run.scene(self.options.program, SCENE, out, SMALL)
         frames = [out / "taylor_green_000001.vtp", self.top / "frame.vtu", self.top / "impact.vtp"]

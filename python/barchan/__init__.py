@@ -3,11 +3,11 @@
     import barchan
     velocity = barchan.open("out/dune")[-1]["velocity"]     # (particles, 3), m/s, of the last frame
 
-Plain Python over NumPy and VTK's Python modules, for Debian's /usr/bin/python3. There are no bindings to the C++ code (pybind11, for example): the package reads the files that the program
+Plain Python over NumPy, for Debian's /usr/bin/python3. There are no bindings to the C++ code (pybind11, for example): the package reads the files that the program
 writes, and starts the program. So it needs no compiler, it fits every build of the program, and a run that crashes or takes all memory does not end the interpreter.
 docs/python.md describes it.
 
-Each name is loaded from its file when it is first used: scenes do without NumPy, all but frames without VTK.
+Each name is loaded from its file when it is first used: scenes do without NumPy.
 """
 
 import importlib

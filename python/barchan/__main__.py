@@ -23,11 +23,11 @@ def main(words):
         print(f"barchan: {error}", file=sys.stderr)
         return error.status or (4 if isinstance(error, ImportError) else 2)
     except ImportError as error:
-        debian = {"numpy": "python3-numpy", "vtkmodules": "python3-paraview", "matplotlib": "python3-matplotlib"}.get(str(error.name).split(".")[0])
+        debian = {"numpy": "python3-numpy", "matplotlib": "python3-matplotlib"}.get(str(error.name).split(".")[0])
         print(f"barchan: {sys.executable} cannot load {error.name}: {error}" + (f"; apt install {debian}" if debian else ""), file=sys.stderr)
         return 4
-    except OSError as error:
-        print(f"barchan: {error}", file=sys.stderr)
+    except (OSError, MemoryError) as error:
+        print(f"barchan: {error or 'there is not enough memory'}", file=sys.stderr)
         return 4
 
 

@@ -198,6 +198,17 @@ def _row(document, name, kind, size):
     raise Unreadable(f"{document.path}: {name}={document.about.get(name)!r:.60} is no row of {size} numbers")
 
 
+def check(path):
+    """Throws Unreadable unless a frame is whole, its cells too: what VTK's readers, which trust a file, may be given."""
+    path = pathlib.Path(path)
+    for file in pieces(path) or [path]:
+        document = vtk_xml.Document(file, PARTICLES)
+        for array in document.named("FieldData").values():
+            document.words(array) if array.type == "String" else document.numbers(array)
+        document.check_cells(document.count("NumberOfPoints"))
+    Frame(path)
+
+
 def write_particles(path, x, phase, **arrays):
     """Writes particles of one phase at x (n, 3) with these arrays as a .vtp frame, as a scene takes it for the shape of a fill."""
     vtk_xml.write_particles(path, x, {**arrays, "phase": numpy.zeros(len(x), numpy.uint8), "id": numpy.arange(len(x), dtype=numpy.int64)}, {"phase_names": [phase]})

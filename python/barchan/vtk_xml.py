@@ -56,8 +56,8 @@ class Document:
         with files.opened(self.path) as file:
             self._guarded(self._read_head, file, kinds)
 
-    def numbers(self, array, tuples):
-        """The values of an array of so many tuples, (tuples,) or (tuples, components)."""
+    def numbers(self, array, tuples=None):
+        """The values of an array of so many tuples, (tuples,) or (tuples, components); without `tuples` of as many as there are."""
         return self._guarded(self._numbers, array, tuples)
 
     def words(self, array):
@@ -67,6 +67,22 @@ class Document:
     def count(self, name):
         """A whole number that the piece states, such as NumberOfPoints."""
         return self._guarded(lambda: _whole(self.piece.get(name, "0"), 1 << 60, name))
+
+    def check_cells(self, points):
+        """Throws Unreadable unless the cells have points of which there are `points`: VTK's readers and filters trust them."""
+        for section in ("Verts", "Lines", "Strips", "Polys", "Cells"):
+            arrays = self.named(section)
+            if not arrays:
+                continue
+            if not {"connectivity", "offsets"} <= set(arrays):
+                self.fail(f"{section} has no connectivity or no offsets")
+            ends = self.numbers(arrays["offsets"], self.count("NumberOfCells" if section == "Cells" else f"NumberOf{section}"))
+            corners = self.numbers(arrays["connectivity"])
+            if corners.dtype.kind not in "iu" or ends.dtype.kind not in "iu" or corners.ndim > 1 or ends.ndim > 1:
+                self.fail(f"the cells of {section} are no whole numbers")
+            steps = numpy.diff(ends.astype(numpy.int64), prepend=0)
+            if (steps < 0).any() or steps.sum() != len(corners) or (len(corners) and not 0 <= corners.min() <= corners.max() < points):
+                self.fail(f"the cells of {section} do not fit the points")
 
     def named(self, section):
         """The arrays of a section by name."""
@@ -134,10 +150,11 @@ class Document:
     def _numbers(self, array, tuples):
         if array.type == "String":
             raise ValueError(f'array "{array.name}" holds texts; expected numbers')
-        if array.tuples not in (None, tuples):
+        if tuples is not None and array.tuples not in (None, tuples):
             raise ValueError(f'array "{array.name}" has {array.tuples} tuples; expected {tuples}')
+        values = self._values(array, None if tuples is None else tuples * array.components)
+        tuples = len(values) // array.components if tuples is None else tuples
         count = tuples * array.components
-        values = self._values(array, count)
         if len(values) != count:
             raise ValueError(f'array "{array.name}" has {len(values)} numbers; expected {count}')
         return values.reshape(tuples, array.components) if array.components > 1 else values

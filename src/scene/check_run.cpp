@@ -32,8 +32,9 @@ void check_state(const Scene& scene, const Report& report) {
     std::erase(name, ' ');
     const std::string there = known.empty() ? "a name" : one_of(known);
     if (!is_plain(name))
-      return report("state", "\"" + name + "\" is not the name of a state in pvstate; expected " + there +
-                                 "; a state of your own is a file for pvstate/render SERIES --state FILE");
+      return report("state",
+                    "\"" + name + "\" is not the name of a state in pvstate; expected " + there +
+                        "; a state of your own is named on the command line: pvstate/render SERIES --state own.py");
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
       return report("state", "there is no state \"" + name + "\" in pvstate; expected " + there +
                                  did_you_mean(nearest(name, known)));

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/data_folder.hpp"
 #include "base/errors.hpp"
 #include "scene/generate.hpp"
 #include "scene/keys.hpp"
@@ -26,7 +27,7 @@ using testing::with;
 struct Malformed {
   const char* name;
   std::string text;
-  std::string message;  // FILE stands for the scene's file, FIELDS and KINDS for the names of all fields and kinds
+  std::string message;  // FILE stands for the scene's file, FIELDS, KINDS and STATES for all their names
 };
 void PrintTo(const Malformed& scene, std::ostream* out) { *out << scene.name; }
 
@@ -38,9 +39,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 std::string message_of(const Malformed& scene, const std::string& file) {
   const std::string kinds = one_of(choices(*find_key("phases", "kind")));
+  const std::string with_states = replaced(scene.message, "STATES", one_of(names_of_states()));
   return replaced(
-      replaced(replaced(scene.message, "FILE", file), "FIELDS", one_of(choices(*find_key("output", "fields")))),
-      "KINDS", kinds);
+      replaced(replaced(with_states, "FILE", file), "FIELDS", one_of(choices(*find_key("output", "fields")))), "KINDS",
+      kinds);
 }
 
 /// The dune with one thing changed.

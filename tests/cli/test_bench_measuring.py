@@ -223,7 +223,6 @@ class Package(unittest.TestCase):
         self.assertEqual((len(frames.table(file)["time"]), frames.table(file).rows()), (0, []))
 
     def test_what_is_no_frame_is_unreadable(self):
-        frames.without_warnings()
         for name, read in (("a.vtp", frames.Frame), ("a.vtu", frames.Frame), ("a.pvd", frames.series)):
             file = self.folder() / name
             file.write_text("<VTKFile")

@@ -189,7 +189,7 @@ class Reports(unittest.TestCase):
         Image.fromarray(noise).save(folder / "pictures/airflow_000000.png")
         for k in range(1, 5):
             shutil.copy(folder / "pictures/airflow_000000.png", folder / f"pictures/airflow_{k:06d}.png")
-        (folder / "pictures/airflow.mp4").write_bytes(b"0" * 1000)
+        (folder / "pictures/airflow.mp4").write_bytes(b"\0\0\0\x18ftypisom" + b"0" * 1000)
         page = self.report("rendered", "--no-plan")
         self.assertEqual([uri[:16] for uri in page.images], ["data:image/jpeg;"] * 3)
         self.assertIn("airflow: frame 2, 0.002 s", page.text)

@@ -64,6 +64,9 @@ TEST(Pvd, ThatIsWrongSaysWhere) {
   refused(begin + "<DataSet timestep=\"0\"/>" + end, {"s.pvd", "line 3", "'file'"});
   refused(begin + "<DataSet timestep=\"0\" file=\"a.vtp", {"s.pvd", "line 3"});
   refused(begin + "<!-- ", {"s.pvd", "line 3"});
+  for (const std::string& outside : Names{"/etc/passwd", "../a.vtp", "b/../../a.vtp", ""})
+    refused(begin + "<DataSet timestep=\"0\" file=\"" + outside + "\"/>" + end,
+            {"s.pvd", "line 3", "file=\"" + outside + "\" is not a file below the folder of the list"});
   expect_output_error([&] { read_pvd(directory / "none.pvd"); }, {"none.pvd", "No such file"});
 }
 

@@ -13,7 +13,6 @@ import tomllib
 from .. import files, program
 from ..errors import BarchanError, NoSeries, SceneError, Unreadable
 from ..series import Series, Tables, open as open_series
-from ..tables import table
 from .shapes import RUN, SALTATION, fitting
 
 STATUS = {"end": 0, "TERMINATE": 0, "breakdown": 3, "output failed": 4, "SIGHUP": 129, "SIGINT": 130, "SIGQUIT": 131, "SIGTERM": 143, "SIGXCPU": 152}

@@ -6,6 +6,7 @@ import pathlib
 import shlex
 import sys
 
+from .. import files
 from ..errors import OutputError, PackageMissing, SceneError, nearest
 from ..program import find_program
 from . import results
@@ -92,7 +93,7 @@ def write_page(out, options, words, lines, expected, keys, measures, notes):
     except PackageMissing as error:
         print(f"barchan: warning: no page: {error}", file=sys.stderr)
         return
-    (out / "sweep.html").write_text(text)
+    files.write_whole(out / "sweep.html", text)
     print(f"page      {out / 'sweep.html'}")
 
 

@@ -1,15 +1,16 @@
 """The table of a sweep: for each case the values of its keys, how it ended, and what was asked of its history."""
 
 import csv
-import json
+import io
 import math
-import os
 import pathlib
 import re
 
 import numpy
 
-from ..errors import BarchanError, SceneError, UnknownName, nearest
+from .. import files
+from ..errors import BarchanError, SceneError, UnknownName, Unreadable, nearest
+from ..report.shapes import RUN, fitting
 from ..tables import bare, table
 
 WAYS = {"last": lambda v: v[-1], "first": lambda v: v[0], "mean": numpy.mean, "max": numpy.max, "min": numpy.min}
@@ -49,14 +50,14 @@ def row(ended, measures, start=0.):
     """A line of the table, as a dictionary; and the names of columns that this history does not have, with a message for each."""
     run, missing = {}, {}
     try:
-        run = json.loads((ended.folder / "run.json").read_text())
-    except (OSError, ValueError):
+        run = fitting(files.document(files.below(ended.folder, ended.folder / "run.json")), RUN, "run.json", [])
+    except Unreadable:
         pass
     line = {"run": ended.folder.name, **ended.case.values, "status": ended.status, "end_reason": reason(ended, run), "simulated_time": run.get("simulated_time", math.nan),
             "steps": run.get("steps", 0), "wall_seconds": run.get("wall_seconds", math.nan)}
     history = None
     try:
-        history = table(ended.folder / "history.csv") if run else None
+        history = table(files.below(ended.folder, ended.folder / "history.csv")) if run else None
     except BarchanError:
         pass
     for column, way in measures:
@@ -80,12 +81,11 @@ def reason(ended, run):
 
 def write(file, lines):
     """The table as a .csv, whole or not at all; nan where nothing was measured."""
-    part = pathlib.Path(file).with_suffix(".csv.part")
-    with part.open("w", newline="") as out:
-        writer = csv.DictWriter(out, list(lines[0]) if lines else ["run"], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({key: repr(v) if isinstance(v, float) else v for key, v in line.items()} for line in lines)
-    os.replace(part, file)
+    out = io.StringIO(newline="")
+    writer = csv.DictWriter(out, list(lines[0]) if lines else ["run"], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: repr(v) if isinstance(v, float) else v for key, v in line.items()} for line in lines)
+    files.write_whole(file, out.getvalue())
 
 
 def read(file):

@@ -9,11 +9,14 @@ import dataclasses
 import fcntl
 import hashlib
 import json
-import os
 import pathlib
 import signal
 import subprocess
+import tempfile
 import time
+
+from .. import files
+from ..errors import Unreadable
 
 LONGEST_WAIT = 120  # s for a run of before that still writes its checkpoint
 
@@ -69,8 +72,10 @@ class Runner:
     def result(self, case):
         """What is known of a case that ran before to its end with these settings and this scene; else None."""
         try:
-            found = json.loads((self.out / case.folder / "case.json").read_text())
-        except (OSError, ValueError):
+            found = files.document(files.below(self.out, self.out / case.folder / "case.json"))
+        except Unreadable:
+            return None
+        if not isinstance(found, dict) or type(found.get("status")) is not int or not isinstance(found.get("said"), str):
             return None
         if found.get("scene") != self.checksum or found.get("settings") != list(case.settings) or found.get("options", []) != list(case.options):
             return None
@@ -87,7 +92,7 @@ class Runner:
     def _launch(self, case, folder, restart):
         words = [self.program, "run", str(self.file), "--out", str(folder), "--quiet", "--threads", str(self.threads), *restart, *case.options,
                  *(word for each in case.settings for word in ("--set", each))]
-        said = (folder / "said.txt").open("w+")
+        said = tempfile.TemporaryFile("w+", errors="replace")
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said, start_new_session=True, preexec_fn=self._end_with_me)
         self._running[case.folder] = (process, case, folder, said, time.monotonic(), restart)
 
@@ -109,7 +114,6 @@ class Runner:
             said.seek(0)
             text = said.read()
             said.close()
-            (folder / "said.txt").unlink()
             status = process.returncode if process.returncode >= 0 else 128 - process.returncode
             if status == 2 and restart and self.stopped is None:  # the checkpoint is of another scene, or damaged: from the beginning
                 self._launch(case, folder, [])
@@ -118,15 +122,8 @@ class Runner:
                 continue  # not done: it goes on next time
             ended.append(Ended(case, folder, status, text, time.monotonic() - begin))
             if status <= 128:  # a run that a signal ended from outside, or that crashed, is told but not done
-                keep(folder / "case.json", {"settings": list(case.settings), "options": list(case.options), "scene": self.checksum, "status": status, "said": text})
+                files.write_whole(folder / "case.json", json.dumps({"settings": list(case.settings), "options": list(case.options), "scene": self.checksum, "status": status, "said": text}, indent=1) + "\n")
         return ended
-
-
-def keep(file, content):
-    """Writes a JSON file whole or not at all."""
-    part = file.with_name(file.name + ".part")
-    part.write_text(json.dumps(content, indent=1) + "\n")
-    os.replace(part, file)
 
 
 def wait_for(folder):
