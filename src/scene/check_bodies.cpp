@@ -136,12 +136,26 @@ void check_names(const std::vector<Named>& all, const std::string& section, cons
   }
 }
 
+/// Waves of compression become fast as 1/sqrt(1 - 2 nu), and the pressure large: a square that was stretched at 10 1/s
+/// gained 1e-5 of its energy in 200 us with 0.49, 1.3e-4 with 0.499, 1.3e-3 with 0.4999, 6 % with 0.4999999999.
+void check_poisson(const Phase& phase, const Report& report) {
+  constexpr double most = 0.4999;
+  const std::string dotted = "phases." + phase.name + ".poisson";
+  if (phase.elastic().poisson > most && !report.touched(dotted))
+    report(dotted, number_text(phase.elastic().poisson) +
+                       " is so near to 0.5 that the body does not keep its energy; expected at most " +
+                       number_text(most) + " (rubber: 0.49 to 0.4995)");
+}
+
 }  // namespace
 
 void check_bodies(const Scene& scene, const Report& report) {
   const auto known = [&](const Phase& phase) { return !report.touched("phases." + phase.name); };
   for (const Phase& phase : scene.phases)
-    if (known(phase) && phase.kind() == PhaseKind::elastic) check_formulation(phase, report);
+    if (known(phase) && phase.kind() == PhaseKind::elastic) {
+      check_formulation(phase, report);
+      check_poisson(phase, report);
+    }
   for (const Interaction& pair : scene.interactions) {
     const Phase *a = find_phase(scene, pair.a), *b = find_phase(scene, pair.b);
     if (a && b && known(*a) && known(*b) && !report.touched("interactions." + pair.a + "-" + pair.b))

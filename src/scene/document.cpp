@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/errors.hpp"
+#include "scene/text_table.hpp"
 
 namespace barchan {
 namespace {
@@ -246,6 +247,7 @@ std::string bare_word(std::string_view text, unsigned line) {
 toml::table parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides,
                            Problems& problems) {
   toml::table document;
+  if (const std::string why = why_no_text(text); !why.empty()) problems.fail({{1, 1}, {1, 1}, nullptr}, "", why);
   if (const unsigned line = line_of_endless_key(text))
     problems.fail({{line, 1}, {line, 1}, nullptr}, "",
                   "a key of more than " + std::to_string(most_parts) + " parts; expected a key as in docs/scenes.md");

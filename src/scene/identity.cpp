@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <set>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "base/input_file.hpp"
+#include "base/memory.hpp"
 #include "scene/reader.hpp"
 
 namespace barchan {
@@ -17,12 +19,12 @@ namespace {
 
 using Values = std::map<std::string, std::string>;
 
-/// Of a file that cannot be read, "": who reads it for the scene says why.
+/// Of a file that cannot be read, or is larger than the memory that is left, "": who reads it for the scene says why.
 std::string checksum_of(const std::string& path) {
   unsigned long sum = crc32_z(0, nullptr, 0);
   std::uint64_t size = 0;
   try {
-    const InputFile file(path);
+    const InputFile file(path, static_cast<std::uint64_t>(std::min(available_memory().bytes, 1e18)));
     std::vector<char> bytes(65536);
     while (const std::size_t come = file.read(size, bytes.data(), bytes.size())) {
       sum = crc32_z(sum, reinterpret_cast<const Bytef*>(bytes.data()), come);
@@ -69,7 +71,8 @@ std::map<std::string, std::string> checksums_of_files(const Scene& scene) {
   };
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     std::string file;
-    if (const auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape)) file = surface->file;
+    const auto* surface = std::get_if<SurfaceShape>(&scene.fills[k].shape);
+    if (surface && !surface->facets.empty()) file = surface->file;  // else it was refused
     if (const auto* grains = std::get_if<FileShape>(&scene.fills[k].shape)) file = grains->file;
     add("fill", k, file);
   }

@@ -23,10 +23,13 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <type_traits>
 
+#include "base/input_file.hpp"
 #include "base/memory.hpp"
 #include "scene/mesh_solid.hpp"
 #include "scene/mesh_words.hpp"
+#include "scene/text_table.hpp"
 
 namespace barchan {
 
@@ -96,6 +99,14 @@ template <class Reader>
 void read_with(const std::string& path, int part, Mesh& mesh, const Listener& listener) {
   vtkNew<Reader> reader;
   reader->SetFileName(path.c_str());
+  std::string text;
+  if constexpr (std::is_same_v<Reader, vtkGenericDataObjectReader>) {  // it does not pass over a byte-order mark
+    text = read_input(path);
+    if (const std::string_view plain = without_mark(text); plain.size() < text.size()) {
+      reader->ReadFromInputStringOn();
+      reader->SetBinaryInputString(plain.data(), static_cast<int>(plain.size()));
+    }
+  }
   reader->Update();
   auto* data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   if (!data || reader->GetErrorCode() != 0 || listener.heard) refuse(unreadable);

@@ -200,7 +200,7 @@ constexpr Key rows_of_keys[] = {
     {"fill.shape", "ring", shape<RingShape>(), "", "Ring; in 3D a tube along z."},
     {"fill.shape", "polygon", in_shape<&PolygonShape::corners>().like("[[0, 0], [0.1, 0], [0.05, 0.08]]"), "m", "Corners [x, y]; in 3D a prism along z."},
     {"fill.shape", "surface", in_shape<&SurfaceShape::file>().like("\"gear.stl\""), "", "File, from the folder of the scene, with a closed surface of triangles (.stl .obj .ply .vtp .vtu .vtk), the border of solid cells (.vtu .vtk), or a closed outline in x, y: "
-     "lines (.vtp .vtu .vtk), the border of flat cells of one z, or corners (.csv). In 3D an outline is a prism along z."},
+     "lines (.vtp .vtu .vtk), the border of flat cells of one z, or corners (.csv; the unit of its heading counts, as x [mm], y [mm]). In 3D an outline is a prism along z."},
     {"fill.shape", "part", in_shape<&SurfaceShape::part, belongs>("all").like("2"), "",
      "Only with surface, of .vtu .vtp .vtk: the cells of this number in the cell data gmsh:physical (meshio), CellEntityIds (Gmsh's .vtk) or medit:ref.", {.at_least = 1}},
     {"fill.shape", "scale", placed<&Placement::scale>(1.0).like("1e-3"), "", "Only with polygon or surface: factor on all lengths, as 1e-3 for a file in millimetres.", positive},
@@ -266,7 +266,7 @@ constexpr Key rows_of_keys[] = {
      "Velocity of what enters: components, { log-profile = ... } or { profile = \"FILE\" }. Sound that comes to the side leaves through it.", {}, "x y z t"},
     {"inflow.velocity", "log-profile", at<&Inflow::log_profile>("required without profile"), "", "Logarithmic wind along x, Halik et al. 2015 eq. (18); on the left side."},
     {"inflow.velocity", "profile", at<&Inflow::profile>("none: log-profile"), "",
-     "File with the velocity by height, as profile_NAME.csv of a [[profile]] of an earlier run: columns y [m] and velocity_mean_x (y, z) or velocity_x [m/s]; linear between its "
+     "File with the velocity by height, as profile_NAME.csv of a [[profile]] of an earlier run: columns y [m] and velocity_mean_x (y, z) or velocity_x [m/s], or in another unit that the heading names; linear between its "
      "rows, below and above them as in the first and last. On a side beside the ground. A path from the folder of the scene."},
     {"inflow.velocity.log-profile", "friction-velocity", at<&LogProfile::friction_velocity>(required), "m/s", "Friction velocity u*.", not_negative},
     {"inflow.velocity.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},

@@ -14,7 +14,7 @@ import tempfile
 import time
 import unittest
 
-PROGRAM = sys.argv[1]
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 SOURCE = pathlib.Path(sys.argv[2])
 
 WATER = """spacing = 0.1
@@ -217,7 +217,7 @@ class Tables(Case):
 
     def test_meshes_with_a_mark(self):
         corpus = SOURCE / "tests/fuzz/corpus/mesh"
-        for name in ("text.stl", "a.obj", "text.ply", "binary_little_endian.ply"):
+        for name in ("text.stl", "a.obj", "text.ply", "binary_little_endian.ply", "text.vtk", "text.vtp"):
             content = (corpus / name).read_bytes()
             windows = content.replace(b"\n", b"\r\n") if b"binary" not in content[:200] else content
             shape = '{ surface = "FILE", scale = 0.9 }'
@@ -227,6 +227,15 @@ class Tables(Case):
             with self.subTest(name):
                 self.write("marked" + pathlib.Path(name).suffix, MARK + windows)
                 self.assertEqual(self.places(shape.replace("FILE", "marked" + pathlib.Path(name).suffix), scene), expected)
+
+    def test_scenes_with_a_mark(self):
+        scene = WATER.replace("SHAPE", '"the-rest"')
+        expected = self.places('"the-rest"')
+        self.write("m.toml", MARK + scene.replace("\n", "\r\n").encode())
+        self.barchan("generate", "m.toml", "-o", "m.vtp")
+        self.assertEqual((self.folder / "m.vtp").read_bytes(), expected)
+        self.write("u.toml", scene.encode("utf-16"))
+        self.assertIn("u.toml:1:1: is text in UTF-16; expected UTF-8", self.barchan("plan", "u.toml", status=2))
 
     def profile(self, head, rows, separator=",", end="\n", mark=b""):
         return mark + (end.join([head] + [separator.join(row) for row in rows]) + end).encode()
@@ -241,7 +250,7 @@ class Tables(Case):
             with self.subTest(name):
                 for file in ("plain.csv", "other.csv"):
                     self.write("other.csv", content)
-                    self.write(file + ".toml", AIR.replace("FILE", file).replace("end = 0.001", "step = 1e-3\nend = 0.003"))
+                    self.write(file + ".toml", AIR.replace("FILE", file).replace("sound-speed = 30", "sound-speed = 300"))
                     self.barchan("run", file + ".toml", "--quiet", "--threads", "1", "--out", file + ".out")
                 self.barchan("compare", "plain.csv.out/plain.csv.pvd", "other.csv.out/other.csv.pvd", "--tolerance", "0")
         for head, said in (("y [mile],velocity_x", 'has the column y in "mile"; expected a unit of length (m, mm'),
@@ -256,9 +265,9 @@ class Values(Case):
     def test_formulas_have_the_bounds_of_numbers(self):
         wall = WATER.replace("SHAPE", '{ box = { min = [0, 0], max = [1, 0.5] } }').replace("[time]", '[[fill]]\nphase = "wall"\nshape = { sides = ["bottom"] }\n[time]')
         wall = wall.replace("[interactions]", '[phases.wall]\nkind = "wall"\nvelocity = ["VALUE", 0]\n[interactions]\nwater-wall = 2.1')
-        for value, said in (("1/0", "gives inf at t = 0 s"), ("sqrt(-1)", "gives -nan"), ("1/(t - 5e-4)", "gives inf at t = 0.0005 s")):
+        for value, said in (("1/0", "gives inf at t = 0 s"), ("sqrt(-1)", "nan at t = 0 s"), ("1/(t - 5e-4)", "gives inf at t = 0.0005 s")):
             with self.subTest(value):
-                self.refused(wall.replace("VALUE", value), 's.toml:10:13: phases.wall.velocity: the formula "' + value + '"', said.replace("-nan", ""), "expected a finite number at all times")
+                self.refused(wall.replace("VALUE", value), 's.toml:11:12: phases.wall.velocity: the formula "' + value + '"', said, "expected a finite number at all times")
         force = WATER.replace("SHAPE", '"the-rest"') + '[[forcing]]\nphase = "water"\nacceleration = [0, "x/0"]\n'
         self.refused(force, "forcing.0.acceleration")
         fill = WATER.replace("SHAPE", '"the-rest"\nvelocity = ["log(-1)", 0]\npressure = "1/0"')
@@ -269,7 +278,7 @@ class Values(Case):
 
     def test_a_formula_that_fails_in_a_run_names_its_key(self):
         scene = WATER.replace("SHAPE", '"the-rest"').replace("end = 0.001", "end = 0.01")
-        self.write("s.toml", scene + '[[forcing]]\nphase = "water"\nrate = 1\nvelocity = ["1/((x-0.35)^2 + (y-0.55)^2 - 1e-30) + sqrt(0.003 - t + 10*(x > 0.3))", 0]\n')
+        self.write("s.toml", scene + '[[forcing]]\nphase = "water"\nrate = 1\nvelocity = ["sqrt(0.003 - t + 10*(x > 0.3))", 0]\n')
         self.assertIn("forcing.0.velocity: the formula", self.barchan("run", "s.toml", "--quiet", "--threads", "1", status=3))
 
     def test_motions(self):
@@ -304,6 +313,13 @@ class Values(Case):
                     self.assertEqual("influx.0.flux: " in self.barchan(*command), warned)
         self.write("s.toml", scene + INFLUX.replace("FLUX", "0.02").replace("speed = 2", "speed = 2000"))
         self.assertIn("influx.0.speed: at 2000 m/s", self.barchan("plan", "s.toml"))
+
+    def test_bodies_that_are_nearly_incompressible(self):
+        body = WATER.replace('kind = "fluid"', 'kind = "elastic"\nyoung = 1e6\npoisson = VALUE').replace("viscosity = 1e-3\nsound-speed = 20\n", "")
+        body = body.replace("water-water = 2.1", "water-water = {}").replace("SHAPE", "{ box = { min = [0, 0], max = [0.5, 0.5] } }")
+        self.refused(body.replace("VALUE", "0.4999999999"), "phases.water.poisson: 0.4999999999 is so near to 0.5", "expected at most 0.4999")
+        self.write("s.toml", body.replace("VALUE", "0.4995"))
+        self.barchan("plan", "s.toml")
 
     def test_gravity_along_z(self):
         scene = SAND.replace("size = [0.03, 0.03]", "size = [0.01, 0.01, 0.01]").replace("spacing", "dimensions = 3\nspacing", 1)
