@@ -25,7 +25,7 @@ BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::ar
   using simd::fnma;
   std::array<V, N> force;
   const V slower = fma(dashpot * inverse_mass, V(0.5) * dt, V(1.0)), inverse = V(1.0) / (slower * stiffness);
-  const V centred = inverse * stiffness, back = inverse * slower;
+  const V centred = inverse * stiffness;
   V f2(1e-200), was(0.0), now(0.0), work(0.0);
   for (std::size_t k = 0; k < N; ++k) {
     slip[k] = fma(way[k], dt * in_touch, slip[k]);
@@ -33,10 +33,14 @@ BARCHAN_SIMD_INLINE std::array<V, N> slide(std::array<V, N>& slip, const std::ar
     f2 = fma(force[k], force[k], f2);
   }
   const auto slides = f2 > limit * limit;
-  const V share = select(slides, limit / simd::sqrt(f2), V(1.0));
+  if (to_bits(slides) != 0) {
+    const V share = select(slides, limit / simd::sqrt(f2), V(1.0)), back = inverse * slower;
+    for (std::size_t k = 0; k < N; ++k) {
+      force[k] = force[k] * share;
+      slip[k] = select(slides, -force[k] * back, slip[k]);
+    }
+  }
   for (std::size_t k = 0; k < N; ++k) {
-    force[k] = force[k] * share;
-    slip[k] = select(slides, -force[k] * back, slip[k]);
     was = fma(old[k], old[k], was);
     now = fma(slip[k], slip[k], now);
     work = fma(force[k], fma(force[k] * inverse_mass, V(0.5) * dt, velocity[k]), work);

@@ -311,5 +311,179 @@ largest-speed = 2
   }
 }
 
+/// A free sphere in a field of force.
+const std::string forced = R"toml(
+spacing = 2e-3
+[domain]
+size = [0.2, 0.2]
+[phases.ball]
+kind = "grains"
+density = 2500
+diameter = 2e-3
+stiffness = 20
+restitution = 1
+[interactions]
+ball-ball = { law = "linear" }
+[[fill]]
+phase = "ball"
+shape = { points = [[0.15, 0.1]] }
+[[forcing]]
+phase = "ball"
+acceleration = ["-400*(x - 0.1)", 0]
+[time]
+end = 1000
+largest-speed = 1.2
+)toml";
+
+double of_ball(const Simulation& run, Field field, int axis = 0) { return run.phases()[0].column(field, axis)[0]; }
+
+// Ten steps a period, 1,000 periods. Velocity Verlet keeps v^2/2 + w^2 x^2/2 (1 - (w dt)^2/4) of a trap exactly; with a
+// force held from the begin of the step the energy grew by exp(w^2 dt t/2), in one period by 7.
+TEST(ForcedSpheres, KeepTheEnergyOfATrap) {
+  const double w = 20.0, dt = 2.0 * std::numbers::pi / w / 10.0, share = 1.0 - 0.25 * w * w * dt * dt;
+  const auto run = small::simulation(forced, {"time.step=" + std::to_string(dt)});
+  const auto energy = [&] {
+    return 0.5 * std::pow(of_ball(*run, Field::velocity), 2) +
+           0.5 * share * std::pow(w * (of_ball(*run, Field::position) - 0.1), 2);
+  };
+  const double start = energy();
+  double worst = 0.0;
+  for (int k = 0; k < 10000; ++k) {
+    run->step(1e6);
+    worst = std::max(worst, std::abs(energy() / start - 1.0));
+  }
+  report("energy of a trap, 1,000 periods of ten steps", worst, 1e-3);
+  EXPECT_LT(worst, 1e-3);
+}
+
+// A circle about a centre whose pull falls with the square of the distance, for a hundred turns: the speed stays.
+TEST(ForcedSpheres, StayOnACircle) {
+  const std::string pull = "/sqrt((x - 0.1)^2 + (y - 0.1)^2)^3";
+  const double speed = 1.0, radius = 0.05, turn = 2.0 * std::numbers::pi * radius / speed;
+  const auto run = small::simulation(
+      forced, {"forcing.0.acceleration=[\"-0.05*(x - 0.1)" + pull + "\", \"-0.05*(y - 0.1)" + pull + "\"]",
+               "fill.0.velocity=[0, 1]", "time.step=" + std::to_string(turn / 100.0)});
+  double worst = 0.0;
+  for (int k = 0; k < 10000; ++k) {
+    run->step(1e6);
+    worst =
+        std::max(worst, std::abs(std::hypot(of_ball(*run, Field::velocity), of_ball(*run, Field::velocity, 1)) - 1));
+  }
+  report("speed on a circle, 100 turns of 100 steps", worst, 2e-3);
+  EXPECT_LT(worst, 2e-3);
+}
+
+// A spring that changes with time: half the step, a quarter of the error.
+TEST(ForcedSpheres, AreOfSecondOrderInPlaceAndTime) {
+  const auto after = [](double dt) {
+    const auto run = small::simulation(forced, {"forcing.0.acceleration=[\"-400*(1 + 0.5*sin(7*t))*(x - 0.1)\", 0]",
+                                                "time.step=" + std::to_string(dt)});
+    while (run->time() < 1.0 - 1e-9) run->step(1.0 - run->time());
+    return of_ball(*run, Field::position);
+  };
+  const double coarse = after(4e-3), fine = after(2e-3), finest = after(1e-3);
+  EXPECT_NEAR((coarse - fine) / (fine - finest), 4.0, 0.2);
+}
+
+// A trap of 2,000 1/s in steps that its contacts would make 3e-4 s long: the forcing limits them.
+TEST(ForcedSpheres, TakeTheStepsOfAStiffForcing) {
+  const auto run = small::simulation(
+      forced, {"forcing.0.acceleration=[\"-4e6*(x - 0.1)\", 0]", "fill.0.shape={ points = [[0.1001, 0.1]] }"});
+  double worst = 0.0;
+  while (run->time() < 1.0) {
+    run->step(1.0);
+    const double v = of_ball(*run, Field::velocity), x = of_ball(*run, Field::position) - 0.1;
+    worst = std::max(worst, std::abs((v * v + 4e6 * x * x) / 0.04 - 1.0));
+  }
+  report("energy of a stiff trap, 320 periods", worst, 2e-3);
+  EXPECT_LT(worst, 2e-3);
+}
+
+/// Ten balls of 5 mm on each other, that just touch.
+std::string stack(const std::string& law, const std::string& e) {
+  std::string points;
+  for (int k = 0; k < 10; ++k)
+    points += (k ? ", " : "") + std::string("[0.025, ") + std::to_string(0.0025 + 5e-3 * k) + ", 0.025]";
+  return R"toml(
+dimensions = 3
+spacing = 5e-3
+[domain]
+size = [0.05, 0.1, 0.05]
+gravity = [0, -9.81, 0]
+[phases.ball]
+kind = "grains"
+density = 2500
+diameter = 5e-3
+friction = 0.3
+restitution = )toml" +
+         e + (law == "linear" ? "\nstiffness = 2000" : "\nyoung = 1e7\npoisson = 0.3") + R"toml(
+[phases.floor]
+kind = "wall"
+[interactions]
+ball-ball = { law = ")toml" +
+         law + R"toml(" }
+ball-floor = { law = ")toml" +
+         law + R"toml(" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "ball"
+shape = { points = [)toml" +
+         points + R"toml(] }
+[time]
+end = 2
+largest-speed = 0.1
+)toml";
+}
+
+class SpheresAtRest : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
+INSTANTIATE_TEST_SUITE_P(Laws, SpheresAtRest,
+                         ::testing::Combine(::testing::Values("linear", "hertz"), ::testing::Values("0.1", "0.5")));
+
+// The dashpots of a stack at rest carry nothing: each overlap is what its load gives by the law, and the lost energy
+// stays what it is. With velocities that had their contact's own force alone it fell for ever.
+TEST_P(SpheresAtRest, OverlapByTheirLoad) {
+  const auto& [law, e] = GetParam();
+  const auto run = small::simulation(stack(law, e), {});
+  const auto until = [&](double end) {
+    while (run->time() < end - 1e-9) run->step(end - run->time());
+  };
+  until(1.5);
+  const double before = value(*run, "contacts_lost_energy [J]");
+  until(2.0);
+  const double weight = 2500.0 * std::numbers::pi / 6.0 * std::pow(5e-3, 3) * 9.81,
+               stored = value(*run, "contacts_stored_energy [J]");
+  EXPECT_NEAR(value(*run, "contacts_lost_energy [J]"), before, 0.5e-9 * stored);
+  std::vector<double> y;
+  for (std::size_t k = 0; k < 10; ++k) y.push_back(run->phases()[0].column(Field::position, 1)[k]);
+  std::sort(y.begin(), y.end());
+  double sum = 0.0, worst = 0.0;
+  for (std::size_t k = 0; k < 10; ++k) {
+    const double load = static_cast<double>(10 - k) * weight,
+                 overlap = k == 0 ? 2.5e-3 - y[0] : 5e-3 - (y[k] - y[k - 1]),
+                 modulus = 4.0 / 3.0 * 0.5 * 1e7 / (1.0 - 0.09), radius = k == 0 ? 2.5e-3 : 1.25e-3,
+                 expected = law == "linear" ? load / 2000.0 : std::pow(load / (modulus * std::sqrt(radius)), 2.0 / 3.0);
+    worst = std::max(worst, std::abs(overlap / expected - 1.0));
+    sum += load * expected * (law == "linear" ? 0.5 : 0.4);
+  }
+  report("overlaps of a stack, " + law + ", e = " + e, worst, 1e-4);
+  EXPECT_LT(worst, 1e-4);
+  EXPECT_NEAR(stored, sum, 1e-3 * sum);
+}
+
+// A run that begins with an overlap has its force from the start: all of the stored energy becomes motion.
+TEST(SpheresAtRest, LetGoWithTheForceOfTheStart) {
+  const double overlap = 1e-5;
+  const auto run =
+      small::simulation(pair_of, {"interactions.balls-balls.law=linear", "phases.balls.restitution=1",
+                                  "phases.balls.stiffness=1e5", "fill.0.velocity=[0, 0, 0]",
+                                  "fill.1.velocity=[0, 0, 0]", "fill.0.shape={ points = [[0.495005, 0.5, 0.5]] }",
+                                  "fill.1.shape={ points = [[0.504995, 0.5, 0.5]] }"});
+  for (int k = 0; k < 200; ++k) run->step(1.0);
+  const double stored = 0.5 * 1e5 * overlap * overlap;
+  EXPECT_NEAR(value(*run, "balls_kinetic_energy [J]"), stored, 5e-3 * stored);
+}
+
 }  // namespace
 }  // namespace barchan
