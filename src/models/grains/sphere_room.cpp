@@ -17,7 +17,7 @@ namespace {
 
 // Of the smaller diameter. Beds at rest have 1e-4 to 1e-2, soft ones more: what settled before, or comes from a file,
 // may overlap as far as contacts bear without harm.
-constexpr double most_at_start = 0.02, most_of_settled = 0.1;
+constexpr double most_at_start = 0.049, most_of_settled = 0.1;
 
 bool touch_as_spheres(const Scene& scene, const Phase& a, const Phase& b) {
   const Interaction* pair = entry_between(scene, a, b);
