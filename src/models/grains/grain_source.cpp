@@ -154,11 +154,10 @@ GrainSource::GrainSource(const Scene& scene, const Layout& layout, std::size_t i
       name_(influx_.phase + "_" + word_of(side_of(influx_.side))),
       by_particles_(scene.phases.size(), 0) {
   for (const Fill& fill : scene.fills) {
-    const Phase& wall = scene.phases[number_of(scene, fill.phase)];
-    const Interaction* pair = entry_between(scene, scene.phases[phase_], wall);
-    if (wall.if_wall() && pair && of_spheres(*pair) && !std::holds_alternative<SidesShape>(fill.shape) &&
-        !touched_by_surface(scene, wall, fill.shape))
-      by_particles_[number_of(scene, fill.phase)] = 1;
+    const std::size_t wall = number_of(scene, fill.phase);
+    if (!layout.phases[wall].moves && touch_as_spheres(layout, phase_, wall) &&
+        !std::holds_alternative<SidesShape>(fill.shape) && !touched_by_surface(scene, scene.phases[wall], fill.shape))
+      by_particles_[wall] = 1;
   }
 }
 

@@ -17,14 +17,14 @@ namespace {
 
 // Of the smaller diameter. Beds at rest have 1e-4 to 1e-2, soft ones more: what settled before, or comes from a file,
 // may overlap as far as contacts bear without harm.
-constexpr double most_at_start = 0.02, most_of_settled = 0.1;
-
-bool touch_as_spheres(const Scene& scene, const Phase& a, const Phase& b) {
-  const Interaction* pair = entry_between(scene, a, b);
-  return pair && of_spheres(*pair);
-}
+constexpr double most_at_start = 0.049, most_of_settled = 0.1;
 
 }  // namespace
+
+bool touch_as_spheres(const Layout& layout, std::size_t a, std::size_t b) {
+  return std::any_of(layout.entries.begin(), layout.entries.end(),
+                     [&](const PlanEntry& e) { return e.own_steps && e.has(a) && e.partner(a) == b; });
+}
 
 SphereRoom::SphereRoom(const Scene& scene, const Layout& layout, std::size_t phase, double reach)
     : layout_(layout), reach_(reach) {
@@ -39,7 +39,7 @@ SphereRoom::SphereRoom(const Scene& scene, const Layout& layout, std::size_t pha
     const Phase* const other = find_phase(scene, fill.phase);
     const auto number = static_cast<std::size_t>(other - scene.phases.data());
     const std::size_t body = bodies[number]++;
-    if (!touch_as_spheres(scene, scene.phases[phase], *other)) continue;
+    if (!touch_as_spheres(layout, phase, number)) continue;
     if (const auto* planes = std::get_if<SidesShape>(&fill.shape)) {
       for (std::size_t axis = 0; axis < static_cast<std::size_t>(layout.dimensions); ++axis)
         for (const bool high : {false, true})
@@ -172,7 +172,7 @@ class StartChecker {
     if (std::all_of(row, row + static_cast<std::ptrdiff_t>(n), [](auto law) { return law == SphereCells::none; }))
       return;
     const Phase& own = scene_.phases[phase];
-    if (!plan.own_steps && !own.if_wall()) return;
+    if (!plan.own_steps && plan.moves) return;
     for (std::size_t k = 0; k < block.parts.size(); ++k) {
       const Fill& fill = scene_.fills[block.parts[k].fill];
       if (!plan.own_steps && touched_by_surface(scene_, own, fill.shape)) continue;

@@ -12,6 +12,9 @@
 
 namespace barchan {
 
+/// Whether particles of two phases touch in the steps of contacts of spheres.
+bool touch_as_spheres(const Layout& layout, std::size_t a, std::size_t b);
+
 /// Sides of the domain, walls and rigid bodies that spheres of a phase touch by their surfaces.
 class SphereRoom {
  public:
