@@ -164,6 +164,22 @@ void check_open(const Scene& scene, const Report& report) {
   else if (open.size() > 1) report("domain.open", "\"none\" stands beside a side; expected it alone, or sides only");
 }
 
+/// On a periodic axis a sphere may touch another one on both sides, but not itself.
+void check_room_for_a_sphere(const Scene& scene, const Report& report, std::size_t axis) {
+  if (report.touched("interactions") || report.touched("phases")) return;
+  for (const Interaction& pair : scene.interactions) {
+    const Phase* phase = pair.a == pair.b && of_spheres(pair) ? find_phase(scene, pair.a) : nullptr;
+    if (!phase || !phase->diameter() || !(scene.domain.size[axis] < phase->diameter()->largest() * (1.0 - 1e-9)))
+      continue;
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "%.10g m along the periodic axis %c is less than the largest diameter of \"%s\": such a sphere "
+                  "overlaps its own image; expected at least %.10g m",
+                  scene.domain.size[axis], static_cast<char>('x' + axis), pair.a.c_str(), phase->diameter()->largest());
+    report("domain.size", text);
+  }
+}
+
 /// A whole number of spacings along a periodic axis, and room for two of the largest kernels.
 void check_domain(const Scene& scene, const Report& report) {
   if (report.touched("domain.size") || report.touched("spacing") || report.touched("dimensions") ||
@@ -189,6 +205,7 @@ void check_domain(const Scene& scene, const Report& report) {
     if (!scene.domain.periodic[axis]) continue;
     const std::string misfit = misfit_of_period(scene, axis);
     if (!misfit.empty()) report("domain.size", misfit);
+    check_room_for_a_sphere(scene, report, axis);
     if (!widest || report.touched("interactions") || !(widest->radius > 0.0)) continue;
     const double least = 2.0 * reach(*widest);
     if (scene.domain.size[axis] > least) continue;

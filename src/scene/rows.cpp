@@ -45,7 +45,7 @@ constexpr Key rows_of_keys[] = {
 
     {"domain", "origin", at<&Domain::origin>("zero"), "m", "Lower corner."},
     {"domain", "size", at<&Domain::size>(required).like("[0.6, 0.2]"), "m",
-     "Lengths along x, y (and z). Along a periodic axis a whole number of spacings, and more than two kernel radii.", positive},
+     "Lengths along x, y (and z). Along a periodic axis a whole number of spacings, more than two kernel radii, and at least the largest diameter of spheres.", positive},
     {"domain", "periodic", periodic("none"), "", "Axes along which the domain repeats itself."},
     {"domain", "open", open_sides_of_domain("the side away from gravity, where no wall stands"), "",
      "Sides through which a fluid with a free surface, or grains with a diameter, leave the run: what passes one is counted and gone. Grains leave through sides that are named here only."},

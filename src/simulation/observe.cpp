@@ -120,6 +120,7 @@ FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& wr
         double value = 0.0;
         if (field == Field::smoothing_length) value = plan_.phases[k].smoothing_length;
         else if (field == Field::density && !p.has(field)) value = scene_.phases[k].density;
+        else if (field == Field::radius && !p.has(field)) value = p.mean_radius();
         else if (p.has(field) && c < width) value = p.column(field, c)[i];
         out.values.push_back(value);
       }

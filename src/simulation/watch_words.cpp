@@ -228,7 +228,10 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
 }
 
 /// Pairing: the kernel no longer separates two particles. A fault when more than a share is nearer than pair_distance
-/// to another particle. A sample decides whether all are counted.
+/// to another particle. A sample decides whether all are counted: of one in `thinning` particles, or of `close_sample`
+/// particles before a state is written or kept on demand. A row of neighbours in 3D has some 250, so that all of them
+/// would take as long as some steps. Of 4096 particles with the share `paired` 205 are expected in pairs, with a
+/// deviation of 14, and 61 make all be counted.
 void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const {
   const PhaseParticles& p = see_.particles[g.phase];
   const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.phases[g.phase].spacing, 2);
@@ -247,8 +250,9 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
     seen = ranks::total(seen);
     return seen > 0 ? static_cast<double>(near) / static_cast<double>(seen) : 0.0;
   };
-  constexpr std::int64_t least_sample = 128, thinning = 64;
-  const std::int64_t stride = all ? 1 : std::max<std::int64_t>(1, std::min(thinning, n / least_sample));
+  constexpr std::int64_t least_sample = 128, thinning = 64, close_sample = 4096;
+  const std::int64_t stride =
+      std::max<std::int64_t>(1, all ? n / close_sample : std::min(thinning, n / least_sample));
   if (stride > 1 && share(looks_ / 2 % stride, stride) < 0.3 * WatchBounds::paired) return;
   const double paired = share(0, 1);
   if (paired <= WatchBounds::paired) return;

@@ -38,7 +38,7 @@ class PhaseParticles {
     const double share = columns_[index(Field::radius)][0][k] / mean_radius_;
     return mass_ * share * share * share;
   }
-  /// The radius of a sphere of mass() (m).
+  /// The radius of a sphere of mass() (m); 0: the particles are no spheres.
   void set_mean_radius(double radius) { mean_radius_ = radius; }
   double mean_radius() const { return mean_radius_; }
 
@@ -155,7 +155,7 @@ class PhaseParticles {
   long changes_ = 0;
   std::uint64_t all_ = 0, rows_at_ = 0;  // of archive_all(): particles of all ranks; place of their columns
   std::int64_t first_id_;
-  double mass_, mean_radius_ = 1.0;
+  double mass_, mean_radius_ = 0.0;
   std::vector<std::int64_t> id_, id_scratch_;
   std::array<std::vector<AlignedVector<double>>, field_count> columns_;
   std::vector<OwnValues> own_;

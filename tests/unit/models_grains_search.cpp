@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <tuple>
 
 #include "models/grains/sphere_search.hpp"
 #include "unit/sphere_sets.hpp"
@@ -62,6 +64,111 @@ TEST(SphereSearch, FindsThePairsOfTheNaiveTwinInAPlane) { compare_sets<2>({false
 TEST(SphereSearch, FindsThePairsOfTheNaiveTwinInAPeriodicPlane) { compare_sets<2>({true, false, false}); }
 TEST(SphereSearch, FindsThePairsOfTheNaiveTwinInSpace) { compare_sets<3>({false, false, false}); }
 TEST(SphereSearch, FindsThePairsOfTheNaiveTwinInPeriodicSpace) { compare_sets<3>({true, false, true}); }
+
+/// Sizes of 1:40: the levels of cells find what one grid of cells as wide as the largest sphere would.
+template <int Dim>
+void compare_levels(std::array<bool, 3> periodic, double slack_here) {
+  Uniform random(41);
+  const Bounds bounds = sets::box(Dim, {9.0, 7.0, Dim == 3 ? 6.0 : 0.0}, periodic, {-1.0, 2.0, -3.0});
+  auto x = sets::scattered(bounds, Dim == 2 ? 3000 : 4000, random);
+  for (Vec3& at : x)  // some have left a periodic domain
+    if (periodic[0] && random(0, 1) < 0.2) at[0] -= 9.0;
+  SphereCast<Dim> cast(bounds, x, 300, 1.0, 1.0, 2, 64, random);  // the reach is 2 m
+  cast.spread_sizes(0.05, random);
+  for (std::size_t k = 0; k < cast.all; ++k)  // most are small, as in a packing
+    if (k % 50 != 0) cast.records[k * SphereCast<Dim>::R::size + SphereCast<Dim>::R::radius] *= 0.1;
+  SphereSearch of;
+  of.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, {}, cast.numbers_of_a_pair);
+  of.take_sizes(cast.sizes());
+  EXPECT_GE(of.levels(), 2u);
+  EXPECT_LT(of.scale(), 0.3 * cast.reach);
+  of.keep(0, cast.moving, cast.all, cast.chunks, cast.numbers.data());
+  of.find(cast.set(), slack_here, cast.chunks);
+  std::size_t pairs = 0;
+  for (std::size_t c = 0; c < cast.chunks.size(); ++c) {
+    const auto naive = cast.expected(c, [&](std::size_t i, std::size_t j) {
+      return cast.distance(i, j) < cast.radius(i) + cast.radius(j) + slack_here;
+    });
+    EXPECT_EQ(cast.listed(cast.chunks[c]), naive) << "chunk " << c;
+    pairs += naive.size();
+  }
+  EXPECT_GT(pairs, cast.all / 4) << "a search with few pairs shows little";
+}
+
+TEST(SphereSearch, FindsSpheresOfAllSizesInAPlane) { compare_levels<2>({false, false, false}, 0.03); }
+TEST(SphereSearch, FindsSpheresOfAllSizesInAPeriodicPlane) { compare_levels<2>({true, true, false}, 0.01); }
+TEST(SphereSearch, FindsSpheresOfAllSizesInSpace) { compare_levels<3>({false, false, false}, 0.1); }
+TEST(SphereSearch, FindsSpheresOfAllSizesInPeriodicSpace) { compare_levels<3>({true, false, true}, 0.05); }
+
+/// Sizes that differ by less than a factor of two are one level, and searched as if nothing were known of them.
+TEST(SphereSearch, HasOneLevelForNarrowSizes) {
+  SphereSizes narrow(1.0), walls(1.0), wide(1.0);
+  for (int k = 0; k < 1000; ++k) {
+    narrow.add(0.5 - 0.0002 * k, true);
+    walls.add(k < 500 ? 0.49 : 0.2, k < 500);
+    wide.add(k == 0 ? 0.5 : 0.01, true);
+  }
+  SphereSearch of;
+  of.prepare(sets::box(3, {9.0, 7.0, 6.0}, {true, false, false}), 1.0, 1, {0}, {}, 3);
+  for (const SphereSizes& sizes : {narrow, walls}) {
+    of.take_sizes(sizes);
+    EXPECT_EQ(of.levels(), 1u);
+    EXPECT_EQ(of.scale(), 1.0);
+  }
+  of.take_sizes(wide);
+  EXPECT_EQ(of.levels(), 2u);
+  EXPECT_NEAR(of.scale(), 0.02, 1e-4) << "one large sphere among many small ones widens no list";
+}
+
+/// On periodic axes that are narrower than two spheres each pair has all images that may touch, once each.
+template <int Dim>
+void compare_images(double wide, double deep) {
+  Uniform random(43);
+  const Bounds bounds = sets::box(Dim, {wide, 7.0, deep}, {true, false, Dim == 3}, {-1.0, 2.0, -3.0});
+  auto x = sets::scattered(bounds, 60, random);
+  for (Vec3& at : x)  // places that nobody put back into the domain
+    if (random(0, 1) < 0.3) at[0] += 3.0 * wide;
+  SphereCast<Dim> cast(bounds, x, 10, 0.35, 0.55, 2, 16, random);
+  SphereSearch of;
+  of.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, {}, cast.numbers_of_a_pair);
+  ASSERT_TRUE(of.images());
+  of.take_sizes(cast.sizes());
+  SphereSet set = cast.set();
+  set.images = true;
+  of.keep(0, cast.moving, cast.all, cast.chunks, cast.numbers.data(), cast.places.data());
+  of.find(set, slack, cast.chunks);
+  using Key = std::tuple<std::uint32_t, std::uint32_t, int, int>;
+  constexpr std::size_t stride = SphereCast<Dim>::R::size;
+  std::size_t twice = 0;
+  for (std::size_t c = 0; c < cast.chunks.size(); ++c) {
+    std::map<Key, int> listed, naive;
+    const SphereChunk& chunk = cast.chunks[c];
+    for (const auto& group : chunk.groups)
+      for (std::size_t at = group.first * SphereChunk::batch; at < group.end * SphereChunk::batch; ++at)
+        if (chunk.a[at] < cast.all)
+          ++listed[{chunk.a[at], chunk.b[at], pair_image::periods(group.image, 0),
+                    pair_image::periods(group.image, 2)}];
+    for (const auto& [pair, how] : cast.expected(c, [](std::size_t, std::size_t) { return true; })) {
+      const auto [a, b] = pair;
+      int images = 0;
+      for (int n = -9; n <= 9; ++n)
+        for (int m = -9; m <= 9; ++m) {
+          const double dx = cast.records[a * stride] - cast.records[b * stride] - n * wide,
+                       dy = cast.records[a * stride + 1] - cast.records[b * stride + 1],
+                       dz = Dim == 3 ? cast.records[a * stride + 2] - cast.records[b * stride + 2] - m * deep : 0.0;
+          if ((Dim == 2 && m != 0) || !(std::hypot(dx, dy, dz) < cast.radius(a) + cast.radius(b) + slack)) continue;
+          naive[{a, b, n, m}] = 1;
+          ++images;
+        }
+      twice += images > 1 ? 1u : 0u;
+    }
+    EXPECT_EQ(listed, naive) << "chunk " << c;
+  }
+  EXPECT_GT(twice, 20u);
+}
+
+TEST(SphereSearch, FindsAllImagesOnANarrowPeriodicAxis) { compare_images<2>(1.3, 0.0); }
+TEST(SphereSearch, FindsAllImagesOnNarrowPeriodicAxes) { compare_images<3>(1.7, 1.2); }
 
 TEST(SphereSearch, FindsTheSidesThatASphereMayTouch) {
   Uniform random(3);

@@ -30,6 +30,7 @@ struct Strayed {
   explicit Strayed(SphereCast<Dim> c, std::vector<SphereSearch::Side> s = {})
       : cast(std::move(c)), sides(std::move(s)) {
     search.prepare(cast.bounds, cast.reach, cast.number_of_kinds, cast.laws, sides, cast.numbers_of_a_pair);
+    search.take_sizes(cast.sizes());
     strays.prepare(cast.set(), cast.reach, cast.chunks, cast.numbers_of_a_pair);
     strays.begin(cast.set(), stray_slack);
     shares.divide(cast.chunks, {});
@@ -107,6 +108,28 @@ TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInAPlane) { compare_strays<2>({fal
 TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInAPeriodicPlane) { compare_strays<2>({true, false, false}, 0.3); }
 TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInSpace) { compare_strays<3>({false, false, false}, 0.3); }
 TEST(SphereStrays, AreInTheListsOfTheNaiveTwinInPeriodicSpace) { compare_strays<3>({true, true, false}, 0.0); }
+
+/// Strays of 1:30 in sizes, whose cells are of several levels.
+template <int Dim>
+void compare_sizes(std::array<bool, 3> periodic) {
+  Uniform random(37);
+  const Bounds bounds = sets::box(Dim, {9.0, 8.0, Dim == 3 ? 6.0 : 0.0}, periodic, {-2.0, 1.0, 0.5});
+  SphereCast<Dim> cast(bounds, sets::scattered(bounds, 1200, random), 100, 1.5, 1.5, 2, 64, random);
+  cast.spread_sizes(0.1, random);
+  for (std::size_t k = 0; k < cast.all; ++k)
+    if (k % 40 != 0) cast.records[k * SphereCast<Dim>::R::size + SphereCast<Dim>::R::radius] *= 0.1;
+  Strayed<Dim> strayed(std::move(cast));
+  EXPECT_GE(strayed.search.levels(), 2u);
+  for (std::size_t n = 0; n < 24; ++n) {
+    const std::size_t k = n % 2 == 0 ? 40 * n : 40 * n + 7;  // a large one, a small one
+    strayed.go(k, sets::scattered(bounds, 1, random)[0], n % 3 == 0 ? 0.0 : random(-2.0, 2.0));
+  }
+  strayed.compare("of all sizes");
+}
+
+TEST(SphereStrays, AreInTheListsWhateverTheirSizesInAPeriodicPlane) { compare_sizes<2>({true, false, false}); }
+TEST(SphereStrays, AreInTheListsWhateverTheirSizesInSpace) { compare_sizes<3>({false, false, false}); }
+TEST(SphereStrays, AreInTheListsWhateverTheirSizesInPeriodicSpace) { compare_sizes<3>({false, true, true}); }
 
 TEST(SphereStrays, FindTheSidesThatTheyMayTouch) {
   Uniform random(29);

@@ -60,6 +60,17 @@ struct SphereCast {
     take_places();
   }
 
+  /// Gives the spheres diameters of all orders of magnitude from `least` on (m): as many of each, up to the reach.
+  void spread_sizes(double least, Uniform& random) {
+    for (std::size_t k = 0; k < all; ++k)
+      records[k * R::size + R::radius] = 0.5 * least * std::pow(reach / least, random(0.0, 1.0));
+  }
+  SphereSizes sizes() const {
+    SphereSizes of(reach);
+    for (std::size_t k = 0; k < all; ++k) of.add(radius(k), k < moving);
+    return of;
+  }
+
   void take_places() {
     places.resize(all * Dim);
     for (std::size_t k = 0; k < all; ++k)

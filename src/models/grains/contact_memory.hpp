@@ -7,6 +7,7 @@
 // the lists are made anew, a table by pair (ContactMemory), from which the new lists take them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -100,10 +101,18 @@ class ContactMemory {
   struct Kept {
     std::uint32_t number, with;  // lasting numbers; with: or a side
     double values[most_numbers];
+    /// m, x_a - x_b of the images that touch, where two spheres may touch twice (pair_image). It names the contact:
+    /// periods are not the same any more when a sphere was put back into the domain.
+    std::array<float, 3> apart;
   };
 
-  /// `numbers` of a pair, at most most_numbers.
-  void prepare(std::size_t numbers) { column_.numbers = numbers; }
+  /// `numbers` of a pair, at most most_numbers; `period` (m, 0: not periodic): of the domain, where pairs say which
+  /// images meet.
+  void prepare(std::size_t numbers, int dimensions = 2, const std::array<double, 3>& period = {}) {
+    column_.numbers = numbers;
+    dimensions_ = static_cast<std::size_t>(dimensions);
+    period_ = period;
+  }
   /// Room for so many pairs that touch.
   void reserve(std::size_t pairs) { kept_.reserve(pairs); }
   const PairColumn& column() const { return column_; }
@@ -111,9 +120,9 @@ class ContactMemory {
 
   /// Takes the values of all pairs that touch out of the lists. `before`: lasting numbers of the `all` spheres by their
   /// places when the lists were made. A pair whose first sphere has a place from `begin` to `end` is taken from the
-  /// chunk of that sphere alone.
+  /// chunk of that sphere alone. `places` (m), of all spheres when the lists were made: pairs say which images meet.
   void keep(std::size_t begin, std::size_t end, std::size_t all, std::span<const SphereChunk> chunks,
-            const std::uint32_t* before);
+            const std::uint32_t* before, const double* places = nullptr);
   /// On several ranks, which together have kept each pair once: what is kept goes to the ranks of its spheres.
   /// `ranks`: of those that move, by number.
   void share(const std::vector<std::uint32_t>& ranks);
@@ -126,9 +135,12 @@ class ContactMemory {
   static constexpr std::uint32_t gone = 0xffffffffu;
   std::span<const Kept> kept() const { return kept_; }
   /// The values of a pair; null: it did not touch.
-  const double* find(std::uint32_t number, std::uint32_t with) const;
+  const double* find(std::uint32_t number, std::uint32_t with, const std::array<float, 3>& apart = {}) const;
   /// Puts the values of a pair at its place in a list.
-  void recall(ContactBatches& list, std::size_t place, std::uint32_t number, std::uint32_t with) const;
+  void recall(ContactBatches& list, std::size_t place, std::uint32_t number, std::uint32_t with,
+              const std::array<float, 3>& apart = {}) const;
+  /// x_a - x_b of an image (m); 0 of the nearest one.
+  std::array<float, 3> apart(const double* a, const double* b, std::uint32_t image) const;
 
   static constexpr std::uint32_t first_side = 0xfffffff0u;
   /// A side of the domain as the partner of a sphere.
@@ -139,10 +151,13 @@ class ContactMemory {
  private:
   void count(std::size_t all);
   void order();
+  void order_partners();
 
   PairColumn column_{"contact_memory"};
   std::vector<std::uint32_t> begin_;  // by number: its first place in kept_; one more
   std::vector<Kept> kept_;
+  std::size_t dimensions_ = 2;
+  std::array<double, 3> period_{};  // m
 };
 
 }  // namespace barchan

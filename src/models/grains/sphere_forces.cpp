@@ -89,10 +89,14 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
   const typename Law::template Constants<V> constants(law, step.contacts);
   const V of_a(step.inverse_densities[2 * group.law]), of_b(step.inverse_densities[2 * group.law + 1]);
   const V drop(law.left_behind());
-  std::array<V, Dim> period, turns;
+  constexpr double magic = 6755399441055744.0;  // 1.5 2^52: added and taken off it rounds to the nearest whole number
+  // The periods between two spheres: the nearest whole number, or that of the group's image.
+  std::array<V, Dim> period, turns, start;
   for (std::size_t d = 0; d < Dim; ++d) {
+    const bool nearest = group.image == pair_image::nearest, periodic = step.period[d] > 0.0;
     period[d] = V(step.period[d]);
-    turns[d] = V(step.period[d] > 0.0 ? 1.0 / step.period[d] : 0.0);
+    turns[d] = V(periodic && nearest ? 1.0 / step.period[d] : 0.0);
+    start[d] = V(magic + (periodic && !nearest ? pair_image::periods(group.image, d) : 0));
   }
   const auto count = static_cast<std::uint32_t>(chunk.end - chunk.begin);
   const bool watched =
@@ -102,7 +106,6 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
   const double* records = step.records;
   const std::size_t stride = R::size, of_a_batch = step.numbers * batch;
   double* of_batch = chunk.of_pair(group.first * batch, step.numbers);
-  constexpr double magic = 6755399441055744.0;  // 1.5 2^52: added and taken off it rounds to the nearest whole number
   constexpr std::uint32_t lanes = (1u << width) - 1u;
   for (std::size_t q = group.first; q < group.end; ++q, of_batch += of_a_batch)
     for (std::size_t half = 0; half < batch; half += width) {
@@ -119,7 +122,7 @@ void group_of(const Law& law, const SphereStep& step, SphereChunk& chunk, const 
       V r2(least_square);
       for (std::size_t d = 0; d < Dim; ++d) {
         V r = x_a[d] - x_b[d];
-        const V away = (fma(r, turns[d], V(magic))) - V(magic);
+        const V away = fma(r, turns[d], start[d]) - V(magic);
         r = fnma(away, period[d], r);
         s.normal[d] = r;
         r2 = fma(r, r, r2);
@@ -340,19 +343,18 @@ void walls_of(const SphereStep& step, SphereChunk& chunk, const SphereChunk::AtW
 
 /// What a contact of two that rest stores, a pair of the list.
 template <int Dim, class Law>
-double stored_at_rest(const Law& law, const SphereStep& step, const SphereChunk& chunk, std::uint32_t number,
+double stored_at_rest(const Law& law, const SphereStep& step, const SphereChunk& chunk, const SphereChunk::Group& group,
                       std::size_t pair) {
   using R = SphereRecord<Dim>;
   constexpr std::size_t numbers = Law::template numbers<Dim>;
   const double *a = step.records + chunk.a[pair] * R::size, *b = step.records + chunk.b[pair] * R::size;
-  const double of_a = step.inverse_densities[2 * number] / std::pow(a[R::radius], 3),
-               of_b = step.inverse_densities[2 * number + 1] / std::pow(b[R::radius], 3);
+  const double of_a = step.inverse_densities[2 * group.law] / std::pow(a[R::radius], 3),
+               of_b = step.inverse_densities[2 * group.law + 1] / std::pow(b[R::radius], 3);
   TouchingSpheres<One, Dim> s;
   double r2 = least_square;
   std::array<double, Dim> r{};
   for (std::size_t d = 0; d < Dim; ++d) {
-    r[d] = a[d] - b[d];
-    if (step.period[d] > 0.0) r[d] -= step.period[d] * std::round(r[d] / step.period[d]);
+    r[d] = pair_image::apart(a[d] - b[d], step.period[d], group.image, d);
     r2 += r[d] * r[d];
   }
   const double distance = std::sqrt(r2), reach = a[R::radius] + b[R::radius];
@@ -380,7 +382,7 @@ double rest_of_chunk(const SphereStep& step, const SphereChunk& chunk) {
     with_law(step, group.law, [&](const auto& law) {
       for (std::size_t pair = group.first * batch; pair < group.end * batch; ++pair)
         if (chunk.touching(pair) && (chunk.live_of(pair / batch) >> pair % batch & 1u) == 0)
-          sum += group.weight * stored_at_rest<Dim>(law, step, chunk, group.law, pair);
+          sum += group.weight * stored_at_rest<Dim>(law, step, chunk, group, pair);
     });
   return sum;
 }

@@ -27,7 +27,8 @@ double tangential_stiffness(const AnySphereContact& any, double overlap, double 
   return std::visit([&](const auto& law) { return law.slip_stiffness(reduced_radius, std::max(overlap, 0.0)); }, any);
 }
 
-Meeting of_pair(const SphereStep& step, const SphereSet& s, std::uint32_t a, std::uint32_t b, std::uint32_t law) {
+Meeting of_pair(const SphereStep& step, const SphereSet& s, std::uint32_t a, std::uint32_t b,
+                const SphereChunk::Group& group) {
   const auto dimensions = static_cast<std::size_t>(s.dimensions);
   const std::size_t stride = s.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size,
                     radius = s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius;
@@ -36,12 +37,11 @@ Meeting of_pair(const SphereStep& step, const SphereSet& s, std::uint32_t a, std
   m.a = s.numbers[a];
   m.b = s.numbers[b];
   for (std::size_t d = 0; d < dimensions; ++d) {
-    m.branch[d] = of_b[d] - of_a[d];
-    if (step.period[d] > 0.0) m.branch[d] -= step.period[d] * std::nearbyint(m.branch[d] / step.period[d]);
+    m.branch[d] = -pair_image::apart(of_a[d] - of_b[d], step.period[d], group.image, d);
   }
   m.reach = of_a[radius] + of_b[radius];
   m.lever = of_a[radius] * of_b[radius] / m.reach;
-  m.tangential = tangential_stiffness(step.laws[law], m.reach - norm(m.branch), m.lever);
+  m.tangential = tangential_stiffness(step.laws[group.law], m.reach - norm(m.branch), m.lever);
   return m;
 }
 
@@ -96,7 +96,7 @@ void each_meeting(const SphereStep& step, const SphereSet& s, Chunk& chunk, F&& 
   for (const auto& group : chunk.groups)
     for (std::size_t at = group.first * batch; at < group.end * batch; ++at)
       if (chunk.a[at] < s.all)
-        f(of_pair(step, s, chunk.a[at], chunk.b[at], group.law), chunk.of_pair(at, step.numbers), batch, at);
+        f(of_pair(step, s, chunk.a[at], chunk.b[at], group), chunk.of_pair(at, step.numbers), batch, at);
   for (std::size_t k = 0; k < chunk.sides.size(); ++k)
     f(of_side(step, s, chunk.sides[k]), chunk.sides[k].memory, std::size_t{1}, k);
 }

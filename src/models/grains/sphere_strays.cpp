@@ -26,10 +26,17 @@ void each_pair_of(const SphereChunk& chunk, std::uint32_t sphere, F&& f) {
   }
 }
 
+/// Of the pair at that place of a list.
+std::uint32_t image_of(const SphereChunk& chunk, std::size_t pair) {
+  for (const SphereChunk::Group& group : chunk.groups)
+    if (pair < group.end * SphereChunk::batch) return group.image;
+  return pair_image::nearest;
+}
+
 }  // namespace
 
 void SphereStrays::prepare(const SphereSet& s, double reach, const std::vector<SphereChunk>& chunks,
-                           std::size_t numbers_of_a_pair) {
+                           std::size_t numbers_of_a_pair, double narrowest) {
   dimensions_ = static_cast<std::size_t>(s.dimensions);
   moving_ = s.moving;
   all_ = s.all;
@@ -37,6 +44,7 @@ void SphereStrays::prepare(const SphereSet& s, double reach, const std::vector<S
   stride_ = s.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size;
   radius_ = s.dimensions == 2 ? SphereRecord<2>::radius : SphereRecord<3>::radius;
   reach_ = reach;
+  most_ = std::min(most_of_reach * reach, narrowest / 8.0);
   chunk_.resize(moving_);
   for (std::size_t c = 0; c < chunks.size(); ++c)
     for (std::size_t k = chunks[c].begin; k < chunks[c].end; ++k) chunk_[k] = static_cast<std::uint32_t>(c);
@@ -53,6 +61,7 @@ void SphereStrays::prepare(const SphereSet& s, double reach, const std::vector<S
 void SphereStrays::begin(const SphereSet& s, double slack) {
   least_ = 0.5 * slack;
   slow_ = 0;
+  widest_.fill(0.0);
   const auto n = static_cast<std::int64_t>(all_);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
@@ -66,83 +75,66 @@ void SphereStrays::begin(const SphereSet& s, double slack) {
 
 void SphereStrays::take_cells(const SphereCells& cells) {
   cells_ = cells;
-  head_.assign(cells.count[0] * cells.count[1] * cells.count[2], none);
+  const SphereLevel& last = cells.of_level[cells.levels - 1];
+  head_.assign(last.first + last.count[0] * last.count[1] * last.count[2], none);
+  widest_.fill(0.0);
   for (std::uint32_t k = 0; k < moving_; ++k)
     if (is_stray_[k]) enter(k);
 }
 
-std::size_t SphereStrays::cell_of(const double* x) const {
-  std::size_t c = 0;
-  for (std::size_t d = dimensions_; d-- > 0;) c = c * cells_.count[d] + cells_.coordinate(x[d], d);
-  return c;
-}
-
 void SphereStrays::enter(std::uint32_t stray) {
-  std::uint32_t& head = head_[cell_of(&places_[stray * dimensions_])];
+  std::uint32_t& head = head_[cell_of(stray)];
   next_[stray] = head;
   head = stray;
+  double& widest = widest_[cells_.level_of(stray)];
+  widest = std::max(widest, allowance_[stray]);
 }
 
 void SphereStrays::leave(std::uint32_t stray) {
-  std::uint32_t* at = &head_[cell_of(&places_[stray * dimensions_])];
+  std::uint32_t* at = &head_[cell_of(stray)];
   while (*at != stray) at = &next_[*at];
   *at = next_[stray];
 }
 
-/// Calls f with each cell that has a place within `radius` (m) of x.
-template <class F>
-void SphereStrays::each_cell(const double* x, double radius, F&& f) const {
-  std::array<std::size_t, 3> low{0, 0, 0}, many{1, 1, 1};
-  for (std::size_t d = 0; d < dimensions_; ++d) {
-    const std::size_t n = cells_.count[d];
-    const double period = cells_.period[d], at = x[d] - cells_.low[d],
-                 from = period > 0.0 ? at - period * std::floor(at / period) : at;
-    const double most = static_cast<double>(n) - 1.0, first = std::floor((from - radius) * cells_.inverse_cell[d]),
-                 last = std::floor((from + radius) * cells_.inverse_cell[d]);
-    if (period > 0.0) {
-      if (!(last - first < most)) {
-        many[d] = n;
-        continue;
-      }
-      low[d] = static_cast<std::size_t>(first < 0.0 ? first + most + 1.0 : first);
-      many[d] = static_cast<std::size_t>(last - first) + 1;
-    } else {
-      low[d] = static_cast<std::size_t>(std::clamp(first, 0.0, most));
-      many[d] = static_cast<std::size_t>(std::clamp(last, 0.0, most)) - low[d] + 1;
-    }
-  }
-  for (std::size_t dz = 0; dz < many[2]; ++dz)
-    for (std::size_t dy = 0; dy < many[1]; ++dy) {
-      const std::size_t row = (low[2] + dz) % cells_.count[2] * cells_.count[1] + (low[1] + dy) % cells_.count[1];
-      for (std::size_t dx = 0; dx < many[0]; ++dx) f(row * cells_.count[0] + (low[0] + dx) % cells_.count[0]);
-    }
-}
-
 /// Who may touch the stray before one of the two uses up its allowance, in the order of their places in memory.
+template <std::size_t Dim>
 void SphereStrays::look(const SphereSet& s, std::uint32_t stray) {
   constexpr double guard = 1.0 + 1e-6;  // of what rounding may hide
-  const double *x = &places_[stray * dimensions_], own = allowance_[stray],
-               radius = s.records[stray * stride_ + radius_];
+  const double *x = &places_[stray * Dim], own = allowance_[stray], radius = s.records[stray * stride_ + radius_];
   const std::uint32_t* laws = cells_.laws + s.kinds[stray] * cells_.kinds;
   near_.clear();
   const auto take = [&](std::uint32_t j, double allowance) {
     if (j == stray || laws[s.kinds[j]] == none) return;
     const double reach = radius + s.records[j * stride_ + radius_] + own + allowance;
+    if (s.images) {
+      const bool first = s.numbers[stray] < s.numbers[j];
+      const double* const other = &places_[j * Dim];
+      each_image<Dim>(first ? x : other, first ? other : x, cells_.period, reach, [&](std::uint32_t image, double) {
+        near_.push_back({j, image});
+      });
+      return;
+    }
     double r2 = 0.0;
-    for (std::size_t d = 0; d < dimensions_; ++d) {
-      double apart = x[d] - places_[j * dimensions_ + d];
+    for (std::size_t d = 0; d < Dim; ++d) {
+      double apart = x[d] - places_[j * Dim + d];
       if (cells_.period[d] > 0.0) apart -= cells_.period[d] * std::round(apart / cells_.period[d]);
       r2 += apart * apart;
     }
-    if (r2 < reach * reach) near_.push_back(j);
+    if (r2 < reach * reach) near_.push_back({j, pair_image::nearest});
   };
-  each_cell(x, guard * (reach_ + own + least_), [&](std::size_t c) {
-    for (std::uint32_t q = cells_.begin[c]; q < cells_.begin[c + 1]; ++q)
-      if (!is_stray_[cells_.order[q]]) take(cells_.order[q], least_);
-  });
-  each_cell(x, guard * (reach_ + own + std::max(least_, most_of_reach * reach_)), [&](std::size_t c) {
-    for (std::uint32_t j = head_[c]; j != none; j = next_[j]) take(j, allowance_[j]);
-  });
+  for (std::size_t m = 0; m < cells_.levels; ++m) {
+    const SphereLevel& level = cells_.of_level[m];
+    const double touch = m == 0 ? reach_ : radius + 0.5 * level.largest;  // walls may be larger than the reach
+    cells_.each_run<Dim>(level, x, guard * (touch + own + least_), [&](std::size_t first, std::size_t end) {
+      for (std::uint32_t q = cells_.begin[first]; q < cells_.begin[end]; ++q)
+        if (!is_stray_[cells_.order[q]]) take(cells_.order[q], least_);
+    });
+    if (!(widest_[m] > 0.0)) continue;
+    cells_.each_run<Dim>(level, x, guard * (touch + own + widest_[m]), [&](std::size_t first, std::size_t end) {
+      for (std::size_t c = first; c < end; ++c)
+        for (std::uint32_t j = head_[c]; j != none; j = next_[j]) take(j, allowance_[j]);
+    });
+  }
   std::sort(near_.begin(), near_.end());
   listed_.assign(near_.size(), 0);
 }
@@ -159,13 +151,13 @@ void SphereStrays::renew(const SphereSet& s, std::uint32_t stray, double step,
     places_[stray * dimensions_ + d] = r[d];
     speed2 += r[SphereRecord<2>::velocity + d] * r[SphereRecord<2>::velocity + d];
   }
-  const double most = std::max(least_, most_of_reach * reach_),
+  const double most = std::max(least_, most_),
                allowance = std::clamp(steps_ahead * step * std::sqrt(speed2), least_, most);
   allowance_[stray] = allowance;
   tightness_[stray] = static_cast<float>(1.0 / (allowance * allowance));
   if (allowance == least_) ++slow_;
   enter(stray);
-  look(s, stray);
+  dimensions_ == 2 ? look<2>(s, stray) : look<3>(s, stray);
   drop_others(stray, chunks, shares);
   add_new(s, stray, chunks, shares);
   if (shares.has(stray)) add_sides(s, stray, sides, chunks[chunk_[stray]]);
@@ -176,19 +168,19 @@ void SphereStrays::add_new(const SphereSet& s, std::uint32_t stray, std::span<Sp
                            SphereShares& shares) const {
   const bool own = shares.has(stray);
   for (std::size_t n = 0; n < near_.size(); ++n) {
-    const std::uint32_t j = near_[n];
+    const std::uint32_t j = near_[n].sphere;
     if (listed_[n]) continue;
     const bool first = s.numbers[stray] < s.numbers[j], alone = j >= moving_ || chunk_[j] == chunk_[stray];
-    const std::uint32_t a = first ? stray : j, b = first ? j : stray,
-                        law = cells_.laws[s.kinds[stray] * cells_.kinds + s.kinds[j]];
-    if (own) add(chunks[chunk_[stray]], a, b, law, alone ? 1.0 : 0.5);
+    const NewPair pair{first ? stray : j, first ? j : stray, cells_.laws[s.kinds[stray] * cells_.kinds + s.kinds[j]],
+                       near_[n].image, alone ? 1.0 : 0.5};
+    if (own) add(chunks[chunk_[stray]], pair);
     if (j >= moving_) continue;
     if (!shares.has(j)) {
       if (own) shares.meet(stray, j, chunk_[stray]);
       continue;
     }
     SphereChunk& other = chunks[chunk_[j]];
-    if (!alone) add(other, a, b, law, 0.5);
+    if (!alone) add(other, pair);
     if (!own) shares.meet(j, stray, chunk_[j]);
     if (!s.asleep || !s.asleep[j]) continue;
     const auto at = std::lower_bound(other.border.begin(), other.border.end(), j);
@@ -200,26 +192,27 @@ void SphereStrays::add_new(const SphereSet& s, std::uint32_t stray, std::span<Sp
 void SphereStrays::drop_others(std::uint32_t stray, std::span<SphereChunk> chunks, const SphereShares& shares) {
   const auto look_at = [&](SphereChunk& chunk, auto&& out_of_reach) {
     each_pair_of(chunk, stray, [&](std::size_t pair) {
-      const std::uint32_t j = chunk.a[pair] == stray ? chunk.b[pair] : chunk.a[pair];
-      const auto at = std::lower_bound(near_.begin(), near_.end(), j);
-      if (at != near_.end() && *at == j) {
+      const Partner partner{chunk.a[pair] == stray ? chunk.b[pair] : chunk.a[pair], image_of(chunk, pair)};
+      const auto at = std::lower_bound(near_.begin(), near_.end(), partner);
+      if (at != near_.end() && *at == partner) {
         listed_[static_cast<std::size_t>(at - near_.begin())] = 1;
         return;
       }
       if (chunk.touching(pair)) return;
       drop(chunk, pair);
-      out_of_reach(j);
+      out_of_reach(partner);
     });
   };
   if (!shares.has(stray)) {
-    shares.each_chunk_with(stray, [&](std::size_t c) { look_at(chunks[c], [](std::uint32_t) {}); });
+    shares.each_chunk_with(stray, [&](std::size_t c) { look_at(chunks[c], [](Partner) {}); });
     return;
   }
-  look_at(chunks[chunk_[stray]], [&](std::uint32_t j) {
-    if (j >= moving_ || chunk_[j] == chunk_[stray] || !shares.has(j)) return;
-    SphereChunk& other = chunks[chunk_[j]];
+  look_at(chunks[chunk_[stray]], [&](Partner p) {
+    if (p.sphere >= moving_ || chunk_[p.sphere] == chunk_[stray] || !shares.has(p.sphere)) return;
+    SphereChunk& other = chunks[chunk_[p.sphere]];
     each_pair_of(other, stray, [&](std::size_t same) {
-      if (other.a[same] == j || other.b[same] == j) drop(other, same);
+      if ((other.a[same] == p.sphere || other.b[same] == p.sphere) && image_of(other, same) == p.image)
+        drop(other, same);
     });
   });
 }
@@ -230,20 +223,20 @@ void SphereStrays::drop(SphereChunk& chunk, std::size_t pair) const {
 }
 
 /// Puts a pair that does not touch yet where a batch of its law has room, or into a new one.
-void SphereStrays::add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std::uint32_t law, double weight) const {
+void SphereStrays::add(SphereChunk& chunk, const NewPair& p) const {
   constexpr std::size_t batch = SphereChunk::batch;
   const auto far = static_cast<std::uint32_t>(all_);
   for (std::size_t g = chunk.groups.size(); g-- > 0;) {
     const SphereChunk::Group& group = chunk.groups[g];
-    if (group.law != law || group.weight != weight) continue;
+    if (group.law != p.law || group.weight != p.weight || group.image != p.image) continue;
     for (std::size_t q = group.end; q-- > group.first;) {
       const std::uint32_t* at = chunk.a.data() + q * batch;
       unsigned room = 0;
       for (std::size_t k = 0; k < batch; ++k) room |= unsigned{at[k] == far} << k;
       if (room == 0) continue;
       const std::size_t pair = q * batch + static_cast<std::size_t>(__builtin_ctz(room));
-      chunk.a[pair] = a;
-      chunk.b[pair] = b;
+      chunk.a[pair] = p.a;
+      chunk.b[pair] = p.b;
       evaluate(chunk, pair);
       return;
     }
@@ -254,11 +247,12 @@ void SphereStrays::add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std
   chunk.grow(more_batches, numbers_);
   if (sleep_) chunk.live.resize(batches + more_batches, 0);
   const auto first = static_cast<std::uint32_t>(batches), end = static_cast<std::uint32_t>(batches + more_batches);
-  if (!chunk.groups.empty() && chunk.groups.back().law == law && chunk.groups.back().weight == weight)
+  if (!chunk.groups.empty() && chunk.groups.back().law == p.law && chunk.groups.back().weight == p.weight &&
+      chunk.groups.back().image == p.image)
     chunk.groups.back().end = end;
-  else chunk.groups.push_back({law, first, end, 0, weight});
-  chunk.a[batches * batch] = a;
-  chunk.b[batches * batch] = b;
+  else chunk.groups.push_back({p.law, first, end, p.image, p.weight});
+  chunk.a[batches * batch] = p.a;
+  chunk.b[batches * batch] = p.b;
   evaluate(chunk, batches * batch);
 }
 

@@ -16,9 +16,10 @@ namespace barchan {
 
 class SphereStrays {
  public:
-  /// `reach` (m): the largest sum of radii; `chunks`: those of all moving spheres; `numbers_of_a_pair`: of its memory.
+  /// `reach` (m): the largest sum of radii; `chunks`: those of all moving spheres; `numbers_of_a_pair`: of its memory;
+  /// `narrowest` (m): the shortest periodic axis, where pairs say which images meet.
   void prepare(const SphereSet& spheres, double reach, const std::vector<SphereChunk>& chunks,
-               std::size_t numbers_of_a_pair);
+               std::size_t numbers_of_a_pair, double narrowest = 1e300);
   /// Before a search of all with a `slack` (m): all places are the present ones. They are s.places then.
   void begin(const SphereSet& spheres, double slack);
   /// After it, and after loading.
@@ -44,17 +45,30 @@ class SphereStrays {
   void archive(Archive& a);
 
  private:
+  /// Who may touch a stray: a sphere, and the image of it that does (pair_image).
+  struct Partner {
+    std::uint32_t sphere, image;
+    bool operator==(const Partner&) const = default;
+    bool operator<(const Partner& p) const { return std::pair(sphere, image) < std::pair(p.sphere, p.image); }
+  };
+  /// A pair to be listed.
+  struct NewPair {
+    std::uint32_t a, b, law, image;
+    double weight;
+  };
+
+  template <std::size_t Dim>
   void look(const SphereSet& s, std::uint32_t stray);
-  template <class F>
-  void each_cell(const double* x, double radius, F&& f) const;
-  std::size_t cell_of(const double* x) const;
+  std::size_t cell_of(std::uint32_t sphere) const {
+    return cells_.cell(cells_.of_level[cells_.level_of(sphere)], &places_[sphere * dimensions_], dimensions_);
+  }
   void enter(std::uint32_t stray);
   void leave(std::uint32_t stray);
   void drop_others(std::uint32_t stray, std::span<SphereChunk> chunks, const SphereShares& shares);
   void add_new(const SphereSet& s, std::uint32_t stray, std::span<SphereChunk> chunks, SphereShares& shares) const;
   void drop(SphereChunk& chunk, std::size_t pair) const;
   void evaluate(SphereChunk& chunk, std::size_t pair) const;
-  void add(SphereChunk& chunk, std::uint32_t a, std::uint32_t b, std::uint32_t law, double weight) const;
+  void add(SphereChunk& chunk, const NewPair& pair) const;
   void add_sides(const SphereSet& s, std::uint32_t stray, std::span<const SphereSearch::Side> sides,
                  SphereChunk& chunk) const;
 
@@ -66,16 +80,18 @@ class SphereStrays {
   SphereCells cells_;
   std::size_t dimensions_ = 2, moving_ = 0, all_ = 0, numbers_ = 0, stride_ = 0, radius_ = 0;
   double reach_ = 0.0, least_ = 0.0;
-  bool sleep_ = false;                      // some sphere may
-  std::size_t slow_ = 0;                    // strays since the search whose allowance is the least
-  std::vector<std::uint32_t> chunk_;        // by sphere that moves
-  AlignedVector<double> places_;            // by sphere
-  AlignedVector<float> tightness_;          // by sphere that moves
-  std::vector<double> allowance_;           // m, the same
-  std::vector<std::uint8_t> is_stray_;      // by sphere
-  std::vector<std::uint32_t> head_, next_;  // strays by cell
-  std::vector<std::uint32_t> near_;         // of one
-  std::vector<std::uint8_t> listed_;        // whether the chunk has the pair with each of them
+  bool sleep_ = false;                                     // some sphere may
+  std::size_t slow_ = 0;                                   // strays since the search whose allowance is the least
+  std::vector<std::uint32_t> chunk_;                       // by sphere that moves
+  AlignedVector<double> places_;                           // by sphere
+  AlignedVector<float> tightness_;                         // by sphere that moves
+  std::vector<double> allowance_;                          // m, the same
+  std::vector<std::uint8_t> is_stray_;                     // by sphere
+  std::vector<std::uint32_t> head_, next_;                 // strays by cell
+  std::array<double, SphereCells::most_levels> widest_{};  // m, by level: the largest allowance of its strays
+  double most_ = 0.0;                                      // m, the largest allowance
+  std::vector<Partner> near_;                              // of one
+  std::vector<std::uint8_t> listed_;                       // whether the chunk has the pair with each of them
 };
 
 }  // namespace barchan

@@ -11,7 +11,9 @@
 // that has its forces can move on while its neighbours still read where it was.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -56,6 +58,52 @@ float next_way2(const double* record, double dt) {
 
 inline constexpr std::size_t passive_size = 4, passive_mass = 3;
 
+/// Which images of two spheres a pair is of. Where each periodic axis has room for two spheres, the nearest images
+/// alone can touch, and a pair says nothing: `nearest`. On a narrower axis two spheres may touch on both sides at once;
+/// their pairs are then told apart by n, the periods that are taken off x_a - x_b: of the places that records have,
+/// which no periodic side changes between two searches.
+namespace pair_image {
+
+inline constexpr std::uint32_t nearest = 0;
+inline constexpr int most_periods = 100;
+
+BARCHAN_SIMD_INLINE std::uint32_t of(const std::array<int, 3>& periods) {
+  std::uint32_t code = 1u << 24;
+  for (std::size_t d = 0; d < 3; ++d) code |= static_cast<std::uint32_t>(periods[d] + 128) << 8 * d;
+  return code;
+}
+BARCHAN_SIMD_INLINE int periods(std::uint32_t image, std::size_t axis) {
+  return static_cast<int>(image >> 8 * axis & 0xffu) - 128;
+}
+/// What is left of x_a - x_b (m) along an axis of that period (m; 0: not periodic).
+BARCHAN_SIMD_INLINE double apart(double difference, double period, std::uint32_t image, std::size_t axis) {
+  if (!(period > 0.0)) return difference;
+  return difference - period * (image == nearest ? std::round(difference / period) : periods(image, axis));
+}
+
+}  // namespace pair_image
+
+/// Calls f(image, square of the distance) for all images of two places (m) that are nearer than `reach` (m).
+template <int Dim, class F>
+void each_image(const double* a, const double* b, const std::array<double, 3>& period, double reach, F&& f) {
+  std::array<int, 3> low{}, high{};
+  for (std::size_t d = 0; d < Dim; ++d) {
+    if (!(period[d] > 0.0)) continue;
+    const double apart = a[d] - b[d], most = pair_image::most_periods;
+    low[d] = static_cast<int>(std::clamp(std::ceil((apart - reach) / period[d]), -most, most));
+    high[d] = static_cast<int>(std::clamp(std::floor((apart + reach) / period[d]), -most, most));
+  }
+  for (int z = low[2]; z <= high[2]; ++z)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x) {
+        const std::array<int, 3> n{x, y, z};
+        double apart2 = 0.0;
+        for (std::size_t d = 0; d < Dim; ++d)
+          apart2 += (a[d] - b[d] - n[d] * period[d]) * (a[d] - b[d] - n[d] * period[d]);
+        if (apart2 < reach * reach) f(pair_image::of(n), apart2);
+      }
+}
+
 /// Spheres that move together in one share of a step, and the pairs in which they are. A pair stands in the chunk of
 /// each of its spheres, once; the first of a pair is that with the lower id, so that both chunks compute the same bits.
 /// What the pairs remember stands beside them, batch by batch.
@@ -65,10 +113,10 @@ struct SphereChunk : ContactBatches {
   /// anew; the rest is what single precision may hide.
   static constexpr double used_up = 0.96;
 
-  /// Batches of one law; `weight`: of their energies, 1/2 where another chunk has the pair too.
+  /// Batches of one law and image (pair_image); `weight`: of their energies, 1/2 where another chunk has the pair too.
   struct Group {
     std::uint32_t law = 0, first = 0, end = 0;
-    std::uint32_t none = 0;  // a checkpoint has every byte: none is without a value
+    std::uint32_t image = pair_image::nearest;
     double weight = 1.0;
   };
   /// A sphere at a side of the domain: the side at `place` on `axis` holds what is above (`side` +1) or below (-1).

@@ -29,6 +29,12 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   }
   const std::size_t n = layout_.phases.size();
   for (std::size_t k = 0; k < n; ++k) {
+    if (const auto size = scene_.phases[k].diameter(); size && !layout_.phases[k].own_steps) {
+      PhaseParticles& wall = state.phases[k];
+      wall.set_mean_radius(0.5 * size->mean);
+      if (wall.has(Field::radius))
+        std::copy(blocks[k].radius.begin(), blocks[k].radius.end(), wall.column(Field::radius));
+    }
     const auto row = laws_.table().begin() + static_cast<std::ptrdiff_t>(k * n);
     if (layout_.phases[k].moves ||
         std::all_of(row, row + static_cast<std::ptrdiff_t>(n), [](auto law) { return law == SphereSearch::none; }))

@@ -125,6 +125,7 @@ class Spheres : public Model {
   bool others_are_there() const;
   void renumber();
   void make_room();
+  SphereSizes sizes() const;
 
   std::vector<SphereSearch::Side> sides_with_spheres() const;
   void add_wall(std::size_t phase, const ParticleBlock& block);
@@ -142,6 +143,7 @@ class Spheres : public Model {
   void sort_out_sleepers(bool all);
   void sort_out_woken(std::span<const std::uint32_t> woken);
   void sort_out_chunks();
+  bool is_far_outside(std::size_t sphere) const;
   /// Whether all were searched.
   bool search_strays(double dt, bool stepped);
   template <int Dim>
@@ -186,7 +188,7 @@ class Spheres : public Model {
   void watch_walls();
   void touch_bodies(bool last);
   void sum_pushes(double time);
-  double slack() const { return slack_ * laws_.reach(); }
+  double slack() const { return slack_ * search_.scale(); }
 
   static constexpr long searches_a_sort = 32;
   static constexpr std::size_t steps_told_together = 64;  // sums of so many steps of contacts

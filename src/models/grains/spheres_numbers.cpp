@@ -128,6 +128,18 @@ std::vector<SphereSleep::Part> Spheres::parts_that_may_sleep() const {
   return parts;
 }
 
+/// Of all spheres.
+SphereSizes Spheres::sizes() const {
+  SphereSizes sizes(laws_.reach());
+  for (const Part& part : parts_) {
+    const PhaseParticles& p = w_->particles(part.phase);
+    const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
+    for (std::size_t k = 0; k < p.size(); ++k) sizes.add(radius ? radius[k] : part.mean_radius, true);
+  }
+  for (std::size_t k = 0; k < fixed_kind_.size(); ++k) sizes.add(fixed_[4 * k + 3], false);
+  return sizes;
+}
+
 /// Gives everything by sphere the sizes of the parts; the fixed spheres stand behind them.
 void Spheres::make_room() {
   fit(numbers_, all());
@@ -157,12 +169,9 @@ void Spheres::make_room() {
   layout_.dimensions == 2 ? make_records<2>() : make_records<3>();
   sleep_.make_room(parts_that_may_sleep(), moving_, all());
   for (const SphereWall& wall : walls_) sleep_.keep_awake(moving_ + wall.first, wall.count);
+  search_.take_sizes(sizes());
   search_.reserve(all(), own_chunks(), sleep_.on());
-  SphereSet sizes;
-  sizes.dimensions = layout_.dimensions;
-  sizes.moving = moving_;
-  sizes.all = all();
-  strays_.prepare(sizes, laws_.reach(), chunks_, step_.numbers);
+  strays_.prepare(set(), laws_.reach(), chunks_, step_.numbers, search_.narrowest());
   step_.tightness = strays_.tightness();
   gone_.reserve(moving_);
 }

@@ -36,7 +36,7 @@ Spheres::Extremes Spheres::of_all_ranks(Extremes own) const {
 void Spheres::keep_memory(bool moved) {
   memory_was_shared_ = shares_.on();
   const std::size_t begin = moved ? 0 : shares_.begin(), end = moved ? moving_ : shares_.end();
-  search_.keep(begin, end, all(), own_chunks(), listed_numbers_.data());
+  search_.keep(begin, end, all(), own_chunks(), listed_numbers_.data(), strays_.places());
   if (moved) sleep_.share(shares_, listed_numbers_.data());
 }
 

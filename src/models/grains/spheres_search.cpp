@@ -101,8 +101,8 @@ void Spheres::renew_lists(const Extremes& found, double dt) {
 }
 
 SphereSet Spheres::set() {
-  return {layout_.dimensions, records_[now_].data(), moving_,        all(),
-          numbers_.data(),    kinds_.data(),         sleep_.flags(), strays_.places()};
+  return {layout_.dimensions, records_[now_].data(), moving_,          all(),           numbers_.data(),
+          kinds_.data(),      sleep_.flags(),        strays_.places(), search_.images()};
 }
 
 /// Fills the lists from the present records.
@@ -115,8 +115,8 @@ void Spheres::search() {
                         std::min(0.4, 1.5 * slack_));
   }
   if (!must_search_ && !bodies_.any()) tell_places();
-  strays_.begin(set(), slack());
   if (!kept_memory_) keep_memory(must_search_);
+  strays_.begin(set(), slack());
   if (must_search_) share_memory();
   kept_memory_ = false;
   search_.find(set(), slack(), own_chunks());
@@ -161,6 +161,17 @@ void Spheres::list_strays(double dt, bool stepped) {
   }
 }
 
+/// Whether a sphere is so many periods outside the domain that it must be put back before pair_image cannot count them.
+bool Spheres::is_far_outside(std::size_t sphere) const {
+  bool far = false;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    const double x = strays_.places()[sphere * static_cast<std::size_t>(layout_.dimensions) + d];
+    const double most = 0.25 * pair_image::most_periods * step_.period[d];
+    far = far || (most > 0.0 && std::abs(x - layout_.bounds.low[d]) > most);
+  }
+  return far;
+}
+
 /// Searches those anew who have used up their allowances, or all.
 bool Spheres::search_strays(double dt, bool stepped) {
   layout_.dimensions == 2 ? list_strays<2>(dt, stepped) : list_strays<3>(dt, stepped);
@@ -179,6 +190,7 @@ bool Spheres::search_strays(double dt, bool stepped) {
     strays_.renew(s, k, dt, search_.sides(), chunks_, shares_);
     if (solid_walls_.any() && shares_.has(k))
       solid_walls_.find_anew(s, k, strays_.allowance() + strays_.allowance_of(k), chunks_[strays_.chunk_of(k)]);
+    if (s.images && is_far_outside(k)) since_sort_ = searches_a_sort;
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
       layout_.dimensions == 2 ? set_way<2>(records_[now_].data() + k * SphereRecord<2>::size, d, 0.0f)
                               : set_way<3>(records_[now_].data() + k * SphereRecord<3>::size, d, 0.0f);
