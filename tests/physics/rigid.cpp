@@ -83,6 +83,33 @@ TEST(RigidBodies, ABarThatSwingsHasThePeriodOfThePhysicalPendulum) {
   EXPECT_NEAR(crossings[2] - crossings[0], period, 1e-5 * period) << "the next swing takes as long";
 }
 
+TEST(RigidBodies, ABarHasItsPeriodAtAnySpacing) {
+  for (const char* spacing : {"spacing=0.013", "spacing=0.016", "spacing=0.0199"}) {
+    Drive drive("verification/compound_pendulum", {spacing, "time.end=0.4"});
+    drive.to(0.3);
+    const double angle = column(drive, "bar_angle");
+    const double drop = -0.25 * std::sin(angle), moment = 0.25 / 3.0 + 0.0004 / 12.0;
+    EXPECT_NEAR(std::pow(column(drive, "bar_angular_velocity"), 2), 2.0 * 9.81 * drop / moment, 1e-3 * 40.0) << spacing;
+  }
+}
+
+/// Its rows of particles have 1.03 of the mass of the shape, and their mean stands beside its centre.
+TEST(RigidBodies, AForcingAcceleratesTheMassOfTheShape) {
+  Course course(
+      "spacing = 0.016\n[domain]\nsize = [2, 1]\n[phases.a]\nkind = \"rigid\"\ndensity = "
+      "1000\n[interactions]\n[[fill]]\n"
+      "phase = \"a\"\nshape = { polygon = [[0.103, 0.2], [0.221, 0.2], [0.103, 0.33]] }\n[[forcing]]\nphase = \"a\"\n"
+      "acceleration = [3, 1]\n[time]\nend = 1\nlargest-speed = 3\n");
+  const double mass = 0.5 * 0.118 * 0.13 * 1000;
+  course.to(0.1);
+  EXPECT_NEAR(course["a_velocity_x"], 0.3, 1e-12);
+  EXPECT_NEAR(course["a_velocity_y"], 0.1, 1e-12);
+  EXPECT_NEAR(course["a_angular_velocity"], 0.0, 1e-10);
+  EXPECT_NEAR(course["momentum_x"], 0.3 * mass, 1e-9 * mass);
+  EXPECT_NEAR(course["a_kinetic_energy"], 0.5 * mass * 0.1, 1e-9 * mass);
+  EXPECT_NEAR(course["a_work"], 0.5 * mass * 0.1, 1e-9 * mass);
+}
+
 /// Of the way from the start to a time.
 double acceleration(const std::string& scene, double end) {
   Drive drive(scene);

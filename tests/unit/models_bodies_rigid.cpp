@@ -207,17 +207,17 @@ TEST(RigidStart, MassInertiaAndMotionAreThoseOfTheShape) {
   EXPECT_NEAR(norm(b.now.place - Vec3{1.5, 1.2, 1.1}), 0.0, 1e-12);
 }
 
-/// The body of a shape on a lattice of a spacing, with 1000 kg/m3, in a domain from 0 to 3 m.
+/// The last body of fills on a lattice of a spacing, with 1000 kg/m3, in a domain from 0 to 3 m.
 RigidBody body_of(int dimensions, double spacing, const std::string& fill) {
   const bool solid = dimensions == 3;
   const Scene scene =
       parse_scene("dimensions = " + std::to_string(dimensions) + "\nspacing = " + std::to_string(spacing) +
                       "\n[domain]\nsize = [3, 3" + (solid ? ", 3" : "") +
-                      "]\n[phases.hole]\nkind = \"wall\"\n[phases.a]\nkind = \"rigid\"\ndensity = "
+                      "]\n[phases.a]\nkind = \"rigid\"\ndensity = "
                       "1000\n[interactions]\n" +
                       fill + "\n[time]\nend = 1\nlargest-speed = 1\n",
                   "s.toml");
-  return make_plan(scene, generate(scene)).phases[1].rigid_bodies.at(0);
+  return make_plan(scene, generate(scene)).phases[0].rigid_bodies.back();
 }
 
 struct Moments {
@@ -265,7 +265,7 @@ TEST(RigidStart, ShapesInThePlaneHaveTheirMassAndInertia) {
                  {ellipse, 0.25 * ellipse * (0.25 + 0.09), {1.5, 1.4, 0}}, spacings);
   const double gone = disc(0.3);
   expect_moments(2,
-                 "[[fill]]\nphase = \"hole\"\nshape = { disc = { centre = [1.5, 1.5], radius = 0.3 } }\n"
+                 "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [1.5, 1.5], radius = 0.3 } }\n"
                  "[[fill]]\nphase = \"a\"\nleave-out = \"earlier-fills\"\nshape = { box = { min = [0.9, 0.9], max = "
                  "[2.1, 2.1] } }\n",
                  {1440 - gone, 1440 * 1.44 / 6.0 - 0.5 * gone * 0.09, {1.5, 1.5, 0}}, {0.1, 0.077, 0.05, 0.031});

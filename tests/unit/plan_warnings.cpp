@@ -168,11 +168,6 @@ TEST(PlanWarns, OfRowsThatMissTheMassOfTheirShape) {
   EXPECT_TRUE(warns(box("max = [1, 1]", "max = [0.975, 1]"), "a spacing of 0.025 m fits"));
   EXPECT_TRUE(warns(box("box = { min = [0, 0], max = [1, 1] }", "disc = { centre = [0.5, 0.5], radius = 0.13 }"),
                     "packing = \"relaxed\" misses less"));
-  EXPECT_FALSE(warns(box("max = [1, 1] } }",
-                         "max = [1, 1] } }\n[[inflow]]\nphase = \"water\"\nside = \"left\"\n"
-                         "velocity = [1, 0]\n[[outflow]]\nphase = \"water\"\nside = \"right\" #"),
-                     "the mass of its"))
-      << "zones beyond the sides belong to no shape";
 }
 
 /// Two pools with a wall of some rows between them; with `right`, water on both sides.
