@@ -288,13 +288,6 @@ void not_negative_formula(const Scene& scene, const Expression& e, const std::st
 }
 
 /// A hold needs a fluid and a periodic axis; a forcing says one thing.
-/// A column's friction velocity by formula has the bound of the number.
-void check_winds(const Scene& scene, const Report& report) {
-  for (const Phase& phase : scene.phases)
-    if (const std::string dotted = "phases." + phase.name; !report.touched(dotted + ".kind") && phase.if_column())
-      not_negative_formula(scene, phase.column().friction_velocity, dotted + ".friction-velocity", report);
-}
-
 void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   const std::string dotted = "forcing." + std::to_string(number);
   const Forcing& forcing = scene.forcings[number];
@@ -367,7 +360,6 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_forcings(scene, report);
   check_flow_ends(scene, report);
   check_influxes(scene, report);
-  check_winds(scene, report);
   check_physics(scene, report);
   check_bodies(scene, report);
   check_rigid(scene, report);
