@@ -8,9 +8,13 @@
 #include <mpi.h>
 #include <omp.h>
 #include <sched.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
+#include <ctime>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -25,7 +29,7 @@ namespace barchan {
 
 namespace {
 
-constexpr int tag = 1;
+constexpr int tag = 1, collective_tag = 2;
 
 MPI_Op operation(Communicator::Take how) {
   switch (how) {
@@ -72,17 +76,14 @@ std::size_t sum(const std::vector<std::size_t>& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
-/// Adds the time of a block to what a rank has waited. To ask for processor time is a call of the kernel (0.6e-6 s, as
-/// much as a small reduction). A rank that has its cores alone does not ask: it waits in a loop, so that its processor
-/// time is the wall time.
+/// Adds the time of a block to what a rank has waited, by the clock of its processor: where other programs want its
+/// core too, wall time is no processor time.
 class Waiting {
  public:
-  Waiting(Communicator::Waits& waits, bool shares_cores)
-      : waits_(waits), asks_(shares_cores), processor_(asks_ ? thread_seconds() : 0.0), begin_(Clock::now()) {}
+  explicit Waiting(Communicator::Waits& waits) : waits_(waits), processor_(thread_seconds()), begin_(Clock::now()) {}
   ~Waiting() {
-    const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
-    waits_.seconds += seconds;
-    waits_.processor_seconds += asks_ ? thread_seconds() - processor_ : seconds;
+    waits_.seconds += std::chrono::duration<double>(Clock::now() - begin_).count();
+    waits_.processor_seconds += thread_seconds() - processor_;
   }
   Waiting(const Waiting&) = delete;
   Waiting& operator=(const Waiting&) = delete;
@@ -90,9 +91,87 @@ class Waiting {
  private:
   using Clock = std::chrono::steady_clock;
   Communicator::Waits& waits_;
-  bool asks_;
   double processor_;
   Clock::time_point begin_;
+};
+
+/// How a rank waits for others, and the time that it takes. It looks for the message again and again, as MPI does. On a
+/// machine that gives the cores of the ranks to other programs too, it sleeps between two looks after a moment: a rank
+/// that looks all the time uses up its share of its core, and has none left when the message comes.
+class Patience {
+ public:
+  explicit Patience(Communicator::Waits& waits) : waits_(waits) { prctl(PR_SET_TIMERSLACK, 1000UL); }
+  void always_polite() { polite_until_ = std::numeric_limits<double>::max(); }
+
+  /// Calls what does not wait.
+  template <class Call>
+  void call(Call&& call) {
+    const double begin = now();
+    call();
+    add_short(now() - begin);
+  }
+
+  /// Returns as soon as `done` does so with true.
+  template <class Done>
+  void until(Done&& done) {
+    const double begin = now();
+    while (!done()) {
+      const double seconds = now() - begin;
+      if (seconds < moment) continue;
+      add_short(seconds);
+      wait_long(done);
+      return;
+    }
+    add_short(now() - begin);
+  }
+
+ private:
+  static constexpr double moment = 50e-6;  // s, of looking without a sleep
+  static constexpr long pause = 20'000;    // ns, of sleep
+  static constexpr double look = 20e-3;    // s, between two questions to the system
+  static constexpr double busy = 40.0;     // 1/s, how often a rank loses its core on a machine that others use
+  static constexpr double polite = 0.2;    // s, for which it is then taken to be so
+  static constexpr int looks_a_clock = 64;
+
+  /// A time of some microseconds is processor time. A longer one may be one without a core, and counts as work.
+  void add_short(double seconds) {
+    waits_.seconds += seconds;
+    if (seconds < 2.0 * moment) waits_.processor_seconds += seconds;
+  }
+
+  static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  template <class Done>
+  void wait_long(Done& done) {
+    const Waiting waiting(waits_);
+    while (true) {
+      if (is_polite()) {
+        const timespec time{0, pause};
+        nanosleep(&time, nullptr);
+        if (done()) return;
+      }
+      for (int k = 0; k < looks_a_clock; ++k)
+        if (done()) return;
+    }
+  }
+
+  bool is_polite() {
+    const double at = now();
+    if (at - looked_ < look) return at < polite_until_;
+    rusage use{};
+    getrusage(RUSAGE_THREAD, &use);
+    if (static_cast<double>(use.ru_nivcsw - lost_) > busy * (at - looked_))
+      polite_until_ = std::max(polite_until_, at + polite);
+    looked_ = at;
+    lost_ = use.ru_nivcsw;
+    return at < polite_until_;
+  }
+
+  Communicator::Waits& waits_;
+  double looked_ = now(), polite_until_ = 0.0;
+  long lost_ = 0;  // how often the system has taken the core of this rank
 };
 
 class Mpi final : public Communicator {
@@ -106,8 +185,9 @@ class Mpi final : public Communicator {
     std::vector<char> any(CPU_SETSIZE, 0);  // which cores the ranks of this machine may use
     for (const int core : cores_of_process()) any[static_cast<std::size_t>(core)] = 1;
     MPI_Allreduce(MPI_IN_PLACE, any.data(), CPU_SETSIZE, MPI_BYTE, MPI_BOR, here);
-    if (const auto cores = std::count(any.begin(), any.end(), 1); cores > 0) cores_ = static_cast<int>(cores);
+    if (std::count(any.begin(), any.end(), 1) < on_this_machine_) patience_.always_polite();
     MPI_Comm_free(&here);
+    apart_ = size_ > most_by_pairs || on_this_machine_ < size_;
   }
   int rank() const override { return rank_; }
   int size() const override { return size_; }
@@ -118,12 +198,16 @@ class Mpi final : public Communicator {
   Traffic traffic() const override { return traffic_; }
   Waits waits() const override { return waits_; }
   void all_gather(const void* mine, std::size_t bytes, void* all) override {
-    const Waiting waiting = begin_waiting();
     ++traffic_.collectives;
-    MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
+    if (apart_) {
+      const Waiting waiting(waits_);
+      MPI_Allgather(mine, count_of(bytes), MPI_BYTE, all, count_of(bytes), MPI_BYTE, MPI_COMM_WORLD);
+      return;
+    }
+    exchange_all(mine, bytes, static_cast<char*>(all));
   }
   void gather_in_place(void* all, const std::vector<std::size_t>& counts, std::size_t width) override {
-    const Waiting waiting = begin_waiting();
+    const Waiting waiting(waits_);
     const Items items(width, sum(counts));
     std::vector<int> number, first;
     std::size_t before = 0;
@@ -137,25 +221,21 @@ class Mpi final : public Communicator {
     MPI_Allgatherv(MPI_IN_PLACE, 0, items.type(), all, number.data(), first.data(), items.type(), MPI_COMM_WORLD);
   }
   void broadcast(void* data, std::size_t bytes, int from) override {
-    const Waiting waiting = begin_waiting();
     ++traffic_.collectives;
-    MPI_Bcast(data, count_of(bytes), MPI_BYTE, from, MPI_COMM_WORLD);
+    MPI_Request one = MPI_REQUEST_NULL;
+    MPI_Ibcast(data, count_of(bytes), MPI_BYTE, from, MPI_COMM_WORLD, &one);
+    wait(one);
   }
   void exchange(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                 const std::vector<std::size_t>& receive_counts, std::size_t width) override {
-    const Waiting waiting = begin_waiting();
     start(send, send_counts, receive, receive_counts, width);
     wait();
   }
   void exchange_beside(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
                        const std::vector<std::size_t>& receive_counts, std::size_t width,
                        const std::function<void()>& beside) override {
-    {
-      const Waiting waiting = begin_waiting();
-      start(send, send_counts, receive, receive_counts, width);
-    }
+    start(send, send_counts, receive, receive_counts, width);
     beside();
-    const Waiting waiting = begin_waiting();
     wait();
   }
   void gather(const void* mine, std::size_t count, void* all, const std::vector<std::size_t>& counts,
@@ -166,25 +246,58 @@ class Mpi final : public Communicator {
     exchange(mine, to, all, from, width);
   }
   void send(const void* data, std::size_t bytes, int to) override {
-    const Waiting waiting = begin_waiting();
     note(bytes);
-    MPI_Send(data, count_of(bytes), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+    MPI_Request one = MPI_REQUEST_NULL;
+    MPI_Isend(data, count_of(bytes), MPI_BYTE, to, tag, MPI_COMM_WORLD, &one);
+    wait(one);
   }
   void receive(void* data, std::size_t bytes, int from) override {
-    const Waiting waiting = begin_waiting();
-    MPI_Recv(data, count_of(bytes), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Request one = MPI_REQUEST_NULL;
+    MPI_Irecv(data, count_of(bytes), MPI_BYTE, from, tag, MPI_COMM_WORLD, &one);
+    wait(one);
   }
 
  private:
-  Waiting begin_waiting() { return {waits_, on_this_machine_ * omp_get_max_threads() > cores_}; }
+  static constexpr int most_by_pairs = 8;  // ranks whose collectives are messages from each to each
+
+  /// Of few ranks of one machine: each sends to each. MPI's own collectives look for messages without a pause, and
+  /// those that return at once take twice the time.
   template <class T>
   void all(T* values, std::size_t count, Take how, MPI_Datatype type) {
-    const Waiting waiting = begin_waiting();
     ++traffic_.collectives;
-    MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
+    if (apart_) {
+      const Waiting waiting(waits_);
+      MPI_Allreduce(MPI_IN_PLACE, values, count_of(count), type, operation(how), MPI_COMM_WORLD);
+      return;
+    }
+    const std::size_t bytes = count * sizeof(T);
+    collected_.resize(static_cast<std::size_t>(size_) * bytes);
+    exchange_all(values, bytes, collected_.data());
+    // In the order of the ranks, so that a sum has the same bits on all of them.
+    std::memcpy(values, collected_.data(), bytes);
+    for (int r = 1; r < size_; ++r)
+      MPI_Reduce_local(collected_.data() + static_cast<std::size_t>(r) * bytes, values, count_of(count), type,
+                       operation(how));
+  }
+  /// `bytes` of each rank, one after another.
+  void exchange_all(const void* mine, std::size_t bytes, char* all) {
+    const int n = count_of(bytes);
+    collecting_.clear();
+    for (int r = 0; r < size_; ++r) {
+      char* const place = all + static_cast<std::size_t>(r) * bytes;
+      if (r == rank_) std::memcpy(place, mine, bytes);
+      else MPI_Irecv(place, n, MPI_BYTE, r, collective_tag, MPI_COMM_WORLD, &collecting_.emplace_back());
+    }
+    for (int r = 0; r < size_; ++r)
+      if (r != rank_) MPI_Isend(mine, n, MPI_BYTE, r, collective_tag, MPI_COMM_WORLD, &collecting_.emplace_back());
+    wait(collecting_);
   }
   void start(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
              const std::vector<std::size_t>& receive_counts, std::size_t width) {
+    patience_.call([&] { post(send, send_counts, receive, receive_counts, width); });
+  }
+  void post(const void* send, const std::vector<std::size_t>& send_counts, void* receive,
+            const std::vector<std::size_t>& receive_counts, std::size_t width) {
     const Items items(width, std::max(sum(send_counts), sum(receive_counts)));
     requests_.clear();
     const char* from = static_cast<const char*>(send);
@@ -208,17 +321,33 @@ class Mpi final : public Communicator {
     const std::size_t kept = send_counts[static_cast<std::size_t>(rank_)] * width;
     if (own && own_to_ && kept > 0) std::memcpy(own_to_, own, kept);
   }
-  void wait() { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
+  void wait() { wait(requests_); }
+  void wait(std::vector<MPI_Request>& requests) {
+    patience_.until([&] {
+      int done = 0;
+      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+      return done != 0;
+    });
+  }
+  void wait(MPI_Request& request) {
+    patience_.until([&] {
+      int done = 0;
+      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+      return done != 0;
+    });
+  }
   void note(std::size_t bytes) {
     ++traffic_.messages;
     traffic_.bytes += static_cast<std::int64_t>(bytes);
   }
   Traffic traffic_;
   Waits waits_;
+  Patience patience_{waits_};
   int rank_ = 0, size_ = 1, on_this_machine_ = 1;
-  int cores_ = 1;  // of this machine, that its ranks may use
+  bool apart_ = false;  // on several machines, or too many for collectives by pairs
   char* own_to_ = nullptr;
-  std::vector<MPI_Request> requests_;
+  std::vector<MPI_Request> requests_, collecting_;
+  std::vector<char> collected_;
 };
 
 bool joined = false;

@@ -5,12 +5,15 @@
 
 namespace barchan {
 
-ThreadChooser::ThreadChooser(int most) {
-  for (int count = 1; count < most; count *= 2) counts_.push_back(count);
+ThreadChooser::ThreadChooser(int most, Begin begin) : asked_(begin == Begin::all) {
+  for (int count = 1; count < most; count = asked_ ? most : 2 * count) counts_.push_back(count);
   counts_.push_back(std::max(most, 1));
   seconds_.assign(counts_.size(), 0.0);
   for (const int count : counts_) uses_.push_back({count, 0, 0.0});
-  trying_ = counts_.size() > 1;
+  trying_ = counts_.size() > 1 && !asked_;
+  if (!asked_) return;
+  present_ = best_ = counts_.size() - 1;
+  wait_ = 0.0;  // the first doubt is followed at once
 }
 
 void ThreadChooser::go_to(std::size_t choice) {
@@ -53,7 +56,24 @@ void ThreadChooser::measured(double seconds) {
   go_to(best_);
 }
 
-void ThreadChooser::took(double seconds) {
+/// A trial of one thread may lose as much as one of a team may.
+void ThreadChooser::doubt(double team) {
+  seconds_.back() = team;
+  trying_ = comparing_ = true;
+  go_to(0);
+}
+
+/// The team comes back unless one thread is faster.
+void ThreadChooser::compared(double one) {
+  trying_ = comparing_ = false;
+  seconds_[0] = one;
+  best_ = one < better * seconds_.back() ? 0 : counts_.size() - 1;
+  wait_ = best_ == 0 ? first_wait : std::clamp(2.0 * wait_, first_wait, longest_wait);
+  since_ = 0.0;
+  go_to(best_);
+}
+
+void ThreadChooser::took(double seconds, double withheld) {
   uses_[present_].steps += 1;
   uses_[present_].seconds += seconds;
   total_ += seconds;
@@ -63,12 +83,17 @@ void ThreadChooser::took(double seconds) {
     lost_ = std::max(lost_ + seconds - seconds_[0], 0.0);
     if (seconds > hopeless * seconds_[0] && (trying_ || ++long_ == 2)) return give_up(false);
   }
+  if (comparing_) lost_ = std::max(lost_ + seconds - seconds_.back(), 0.0);
   window_[in_window_++] = seconds;
+  const bool as_asked = asked_ && present_ > 0 && !trying_;
+  if (as_asked && withheld > 0.0 && since_ >= wait_ && may_lose()) return doubt(withheld);
   if (in_window_ < block) return;
   const double now = usual();
   in_window_ = 0;
   long_ = 0;
+  if (comparing_) return compared(now);
   if (trying_) return measured(now);
+  if (as_asked) return;
   if (present_ > 0 && (now > slower * seconds_[present_] || since_ >= longest_wait)) return give_up(true);
   seconds_[present_] += follow * (now - seconds_[present_]);
   // With fewer threads than there could be: a trial of more.

@@ -19,16 +19,23 @@ namespace barchan {
 /// times as long as with one thread ends its trial at once, or a second one among nine: one alone may be a search.
 /// Gains count because steps differ: one in six that takes longer, as those with an exchange of wind and grains do, is
 /// no loss of the team.
+///
+/// A number that the user asked for (`Begin::all`) is used from the first step on, and on a machine that gives the team
+/// its cores no step has another one. Where the machine withholds them, one thread is measured. The run goes on with
+/// one thread where that is faster by a tenth, and tries the team again after half a second, and after twice that when
+/// the trial failed, to twenty seconds.
 class ThreadChooser {
  public:
+  enum class Begin { one, all };
   /// `most` < 1 counts as 1.
-  explicit ThreadChooser(int most);
+  explicit ThreadChooser(int most, Begin begin = Begin::one);
 
   /// For the next step.
   int threads() const { return counts_[present_]; }
   int most() const { return counts_.back(); }
-  /// The step took so long (s, wall time).
-  void took(double seconds);
+  /// The step took so long (s, wall time). `withheld`: where the machine gives cores that the team wants to others, the
+  /// mean of its steps lately (s); else 0.
+  void took(double seconds, double withheld = 0.0);
 
   /// What was used: steps and wall time by number of threads; how often the number changed.
   struct Use {
@@ -54,12 +61,17 @@ class ThreadChooser {
   void give_up(bool at_once);
   bool may_lose() const { return lost_ < share * total_ + allowance; }
   double usual() const;
+  /// Measures one thread beside a team that was asked for, whose steps take so long (s).
+  void doubt(double team);
+  void compared(double one);
 
   std::vector<int> counts_;      // 1, 2, 4, ..., most
   std::vector<double> seconds_;  // a step, as measured last, by choice; 0: not yet
   std::vector<Use> uses_;
   std::size_t present_ = 0, best_ = 0;
-  bool trying_ = true;  // a measurement is going on
+  bool asked_;              // for all of them
+  bool trying_ = true;      // a measurement is going on
+  bool comparing_ = false;  // it is of one thread, because a team that was asked for is in doubt
   std::array<double, block> window_{};
   std::size_t in_window_ = 0;
   int long_ = 0;  // steps of the block that took `hopeless` times as long as with one thread

@@ -1,4 +1,5 @@
-// The threads of a run: as many as the user said, or as many as pay at the moment.
+// The threads of a run: as many as the user said, as long as the machine gives them cores, or as many as pay at the
+// moment.
 #pragma once
 
 #include <omp.h>
@@ -9,39 +10,41 @@
 #include <vector>
 
 #include "base/thread_chooser.hpp"
+#include "base/withheld_cores.hpp"
 
 namespace barchan {
 
 class Team {
  public:
-  /// `chosen`: from step to step, among 1 and `most`; else always `most`.
-  Team(int most, bool chosen) : most_(most), chooser_(chosen ? most : 1), chosen_(chosen && most > 1) {}
+  /// `chosen`: from step to step, among 1 and `most`; else `most`, and one where the machine withholds their cores.
+  Team(int most, bool chosen)
+      : most_(most), asked_(!chosen), chooser_(most, chosen ? ThreadChooser::Begin::one : ThreadChooser::Begin::all) {}
 
   /// Calls `step` with the number of threads of the moment and remembers how long it took.
   template <class F>
   void step(F&& step) {
-    if (chosen_) omp_set_num_threads(chooser_.threads());
+    const bool several = chooser_.most() > 1;
+    if (several) omp_set_num_threads(chooser_.threads());
     const auto begin = std::chrono::steady_clock::now();
     step();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (chosen_) return chooser_.took(seconds);
-    alone_.steps += 1;
-    alone_.seconds += seconds;
+    chooser_.took(seconds, several && asked_ ? withheld_.after_step(chooser_.threads(), seconds) : 0.0);
   }
 
   int most() const { return most_; }
   /// What was used, by number of threads, and how often the number changed.
   std::vector<ThreadChooser::Use> uses() const {
-    if (chosen_) return chooser_.uses();
-    return {{most_, alone_.steps, alone_.seconds}};
+    std::vector<ThreadChooser::Use> uses = chooser_.uses();
+    if (asked_) std::erase_if(uses, [&](const auto& use) { return use.threads != most_ && use.steps == 0; });
+    return uses;
   }
-  long switches() const { return chosen_ ? chooser_.switches() : 0; }
+  long switches() const { return chooser_.switches(); }
 
  private:
   int most_;
+  bool asked_;
   ThreadChooser chooser_;
-  bool chosen_;
-  ThreadChooser::Use alone_{};  // where nothing is chosen
+  WithheldCores withheld_;
 };
 
 /// A team for work before the steps of a run: as many threads as pay, of those that so many particles may be worth;

@@ -56,6 +56,8 @@ inline double limited_omega(double omega, double shear) {
 /// Sums of the pairs of a particle a of the fluid with others of it: what its own neighbourhood is, and the fluxes of k
 /// and l as the pairs have them. Without the kernel's constant factor.
 ///   M = sum V F r (x) r,   C = sum V F w r,   L = sum V F w G_ab s_ab,   T = sum V F G_ab s_ab r,    s: k, l
+/// of L for k the positive terms alone (on one side of zero are the pairs with more k, on the other those with less),
+/// and sum V F w, sum V F w nu_ab for the mean of the pairs' k/omega.
 struct KOmegaPairs : PairLaw<Needs::slope, Quantity::velocity, Quantity::pressure, Quantity::volume> {
   double viscosity;  // m2/s
 
@@ -68,7 +70,7 @@ struct KOmegaPairs : PairLaw<Needs::slope, Quantity::velocity, Quantity::pressur
   struct Sums {
     std::array<T, Dim*(Dim + 1) / 2> moment;
     std::array<T, Dim> weighted, flux_k, flux_l;
-    T laplace_k, laplace_l;
+    T laplace_k, laplace_l, positive_k, weight, eddy;
   };
 
   template <int Dim, class T>
@@ -88,6 +90,9 @@ struct KOmegaPairs : PairLaw<Needs::slope, Quantity::velocity, Quantity::pressur
       for (std::size_t e = 0; e <= d; ++e, ++m) s.moment[m] = fma(g, ab.r[e], s.moment[m]);
     }
     s.laplace_k = fma(wvf, dk, s.laplace_k);
+    s.positive_k += simd::max(wvf * dk, T(0.0));
+    s.weight += wvf;
+    s.eddy = fma(wvf, eddy, s.eddy);
     s.laplace_l = fma(wvf, dl, s.laplace_l);
   }
 
@@ -132,6 +137,24 @@ struct KOmegaBorder : PairLaw<Needs::slope, Quantity::volume> {
     }
   }
 };
+
+/// What diffusion makes of k (m2/s3), of the corrected operator `made` and of the parts of its plain sum, of pairs with
+/// more k and of pairs with less. The plain sum obeys the maximum principle: a particle loses k to those with less
+/// only. The corrected one does not. Where few particles see it, next to a wall, it takes k of a particle that has the
+/// least already, until nothing is left in a few steps; without eddies such a particle has no friction either.
+inline double diffused(double made, double one_part, double other_part) {
+  return std::max(made, std::min(one_part, 0.0) + std::min(other_part, 0.0));
+}
+
+/// What shifting carries in of k (m2/s3), `carried`: of a particle that is shifted through a spacing at most all of it.
+inline double carried_at_most(double carried, double k, double shift_speed, double spacing) {
+  return std::max(carried, -k * shift_speed / spacing);
+}
+
+/// The k/omega (m2/s) by which the flux of the pairs becomes a gradient: the particle's own, as in a logarithmic layer,
+/// where that of the pairs is at most 2.5 times as large. Where the particle has hardly any eddies the flux is that of
+/// its neighbours' eddies, and divided by its own it is no gradient: then a quarter of the mean of the pairs.
+inline double eddy_of_flux(double own, double of_pairs) { return std::max(own, 0.25 * of_pairs); }
 
 /// What a step of the two equations starts from, of one particle.
 struct KOmegaPlace {

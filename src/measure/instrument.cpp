@@ -134,6 +134,10 @@ class Maker {
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)
       if (e.wind_by_height && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
+    if (i.air >= 0) {
+      const ColumnKeys& wind = scene_.phases[static_cast<std::size_t>(i.air)].column();
+      if (wind.held) i.held_wind = wind.log_profile;
+    }
     const double height = i.high[1] - i.low[1];
     const double slices = s.count > 0 ? s.count : std::max(std::round(height / i.diameter), 1.0);
     for (double k = 0.5; k < slices; ++k) {

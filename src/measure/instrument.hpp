@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,10 +61,11 @@ struct Instrument {
   double bed = 0;             // m over the ground, where the wind's layers have the stress that reaches the bed
 
   // saltation: slices of the domain's height
-  double diameter = 0, flight = 0;  // m, mean; what is higher over the bed is in flight
-  bool hops = false;                // a model counts the hops of its grains (models/grains/hops.hpp)
-  double area = 0;                  // m2, of the ground (2D: of a metre of depth)
-  int air = -1;                     // number of the phase of air without particles around the grains; -1: none
+  double diameter = 0, flight = 0;      // m, mean; what is higher over the bed is in flight
+  bool hops = false;                    // a model counts the hops of its grains (models/grains/hops.hpp)
+  double area = 0;                      // m2, of the ground (2D: of a metre of depth)
+  int air = -1;                         // number of the phase of air without particles around the grains; -1: none
+  std::optional<LogProfile> held_wind;  // of that air, where its logarithmic profile is held: the speed at any height
 
   /// Numbers that a sample of a row has: velocity (or shear stress) by component, pressure; slices have the distance
   /// from the row's place before them.

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "measure/decay.hpp"
 #include "measure/measurements.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "output/whole_file.hpp"
+#include "scene/log_wind.hpp"
 
 namespace barchan {
 
@@ -17,8 +19,11 @@ namespace {
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 enum Quantity : std::size_t { concentration, flux, stress, wind, wind_stress };
 
-double speed_at(const AirProfile& air, double y) {
+/// The speed that a grain at this height meets: of a logarithmic profile that is held the profile's own, of other air
+/// that of its cell.
+double speed_at(const AirProfile& air, const std::optional<LogProfile>& held, double y) {
   if (!(y > air.face.front())) return 0.0;
+  if (held) return log_wind(*held, y - air.face.front());
   const auto above = static_cast<std::size_t>(std::upper_bound(air.face.begin(), air.face.end(), y) - air.face.begin());
   return air.speed[std::min(above, air.cells()) - 1];
 }
@@ -49,7 +54,7 @@ void Measurements::take_layers(std::size_t k, const State& state) {
     const double* sum = sums_.data() + 3 * row;
     Sample sample{sum[concentration], sum[flux], sum[stress]};
     if (air) {
-      sample[wind] = speed_at(*air, i.rows[row][1]);
+      sample[wind] = speed_at(*air, i.held_wind, i.rows[row][1]);
       sample[wind_stress] = air_stress(*air, i.rows[row][1]);
     }
     average(k, row).add({sample.data(), i.quantities()});

@@ -17,11 +17,11 @@ double friction_velocity_of(double stress, double density) {
   return std::copysign(std::sqrt(std::abs(stress) / density), stress);
 }
 
-/// The friction velocity of the logarithmic profile with which a fill of this phase begins; 0: none has one.
+/// The largest |u*| of the logarithmic profiles with which fills of this phase begin; 0: none has one.
 double of_profile(const Scene& scene, const Phase& fluid) {
   double u = 0.0;
   for (const Fill& fill : scene.fills)
-    if (fill.phase == fluid.name && fill.log_profile) u = std::max(u, fill.log_profile->friction_velocity);
+    if (fill.phase == fluid.name && fill.log_profile) u = std::max(u, std::abs(fill.log_profile->friction_velocity));
   return u;
 }
 
@@ -31,14 +31,15 @@ constexpr double most_pull = 2.0;  // times what a scene says
 
 void WindowMean::add(double length, double now, double dt, double value) {
   const auto present = static_cast<long>(std::floor((now - 0.5 * dt) / length));
-  if (present != window) {
-    last = sum;
-    last_time = time;
-    sum = time = 0.0;
-    window = present;
-  }
-  sum += value * dt;
-  time += dt;
+  if (present != window) begin();
+  window = present;
+  add(dt, value);
+}
+
+void WindowMean::begin() {
+  last = sum;
+  last_time = time;
+  sum = time = 0.0;
 }
 
 double warning_interval(const Scene& scene) { return scene.time.end / 10.0; }
@@ -58,7 +59,6 @@ Drive::Drive(const Scene& scene, const Phase& fluid)
       area_(ground_area(scene)),
       gravity_(scene.domain.gravity[0]),
       walls_(wall_pull(scene, fluid)),
-      row_(row_interval(scene)),
       tenth_(warning_interval(scene)) {
   const double u = of_profile(scene, fluid);
   said_ = std::max(density_ * u * u, std::abs(walls_));
@@ -76,8 +76,13 @@ double Drive::missing(double time, double mass) const {
 
 void Drive::remember(const State& state, double held) {
   if (state.steps == 0) return;  // nothing has moved yet
-  in_row_.add(row_, state.time, state.dt, held);
+  in_row_.add(state.dt, held);
   in_tenth_.add(tenth_, state.time, state.dt, held);
+}
+
+/// Without a step since the row before, the mean of that row stays.
+void Drive::begin_row() {
+  if (in_row_.time > 0.0) in_row_.begin();
 }
 
 double Drive::pull(double mass, double given, double held) const {
@@ -87,8 +92,7 @@ double Drive::pull(double mass, double given, double held) const {
 void Drive::history(HistoryRow& row, const PhaseParticles& p, double given, double held) const {
   const auto count = static_cast<double>(ranks::total(p.size()));
   const double mass = p.mass() * count;
-  const double mean = in_row_.time > 0.0 ? in_row_.sum / in_row_.time : held;
-  add_pull(row, name_, pull(mass, count > 0.0 ? given / count : 0.0, mean), density_);
+  add_pull(row, name_, pull(mass, count > 0.0 ? given / count : 0.0, in_row_.mean(held)), density_);
 }
 
 void Drive::report(double mass, Warnings& warnings) const {

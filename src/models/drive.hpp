@@ -12,16 +12,27 @@
 
 namespace barchan {
 
-/// The mean of a number over windows of time that follow each other from t = 0, weighted by the steps. A plain struct:
-/// it is archived as it is.
+/// The mean of a number over windows of time that follow each other, weighted by the steps. A plain struct: it is
+/// archived as it is.
 struct WindowMean {
-  long window = -1;              // the present one
+  long window = -1;              // the present one, where windows have a length
   double sum = 0.0, time = 0.0;  // value times s, s
-  double last = 0.0;             // the mean of the window before
+  double last = 0.0;             // value times s, of the window before
   double last_time = 0.0;        // s, that it had; 0: there was none
 
-  /// Takes the value of a step that ends at `now` (s) in windows of `length` (s).
+  /// Takes the value of a step of `dt` s.
+  void add(double dt, double value) {
+    sum += value * dt;
+    time += dt;
+  }
+  /// Takes the value of a step that ends at `now` (s) in windows of `length` (s) from t = 0.
   void add(double length, double now, double dt, double value);
+  /// Begins the next window.
+  void begin();
+  /// Of the present window; of the one before where the present one has no step; `otherwise` where neither has one.
+  double mean(double otherwise) const {
+    return time > 0.0 ? sum / time : last_time > 0.0 ? last / last_time : otherwise;
+  }
   bool any() const { return time > 0.0 || last_time > 0.0; }
   /// Of the present window, or of the one before where the present one has had less than half of `length`.
   double recent(double length) const { return time < 0.5 * length && last_time > 0.0 ? last / last_time : sum / time; }
@@ -45,8 +56,11 @@ class Drive {
   double missing(double time, double mass) const;
   /// Remembers what the hold gave in a step (m/s2).
   void remember(const State& state, double held);
-  /// NAME_pull [Pa] and NAME_equivalent_friction_velocity [m/s]. `given`: the sum over the particles of what
-  /// [[forcing]] entries without a hold give along x (m/s2); `held`: what the hold gave in the last step (m/s2).
+  /// A row of history.csv was written.
+  void begin_row();
+  /// NAME_pull [Pa] and NAME_equivalent_friction_velocity [m/s], with the mean of the hold since the row before.
+  /// `given`: the sum over the particles of what [[forcing]] entries without a hold give along x (m/s2); `held`: what
+  /// the hold gave in the last step (m/s2), for the row of the start.
   void history(HistoryRow& row, const PhaseParticles& p, double given, double held) const;
   /// The force on the ground (Pa).
   double pull(double mass, double given, double held) const;
@@ -60,7 +74,7 @@ class Drive {
   double said_ = 0.0;                        // Pa, rho u*^2 of the profile of the start, or of the walls
   bool holds_speed_ = false;
   std::optional<Formula> held_;   // m/s, u* of a force that is held
-  double row_, tenth_;            // s, windows
+  double tenth_;                  // s, a window
   WindowMean in_row_, in_tenth_;  // m/s2, of the hold
 };
 

@@ -360,7 +360,7 @@ class PhysicsChecker {
         report_.touched("motion"))
       return true;
     const auto moves = [](const Fill& f) {
-      return !is_zero(f.velocity) || (f.log_profile && f.log_profile->friction_velocity > 0.0);
+      return !is_zero(f.velocity) || (f.log_profile && f.log_profile->friction_velocity != 0.0);
     };
     const auto drives = [](const Motion& m) {
       return !is_zero(m.velocity) || (m.angular_velocity && !is_zero(m.angular_velocity->about));

@@ -12,4 +12,10 @@ inline double log_wind(const LogProfile& log, double height) {
   return height > log.roughness ? log.friction_velocity / log.kappa * std::log(height / log.roughness) : 0.0;
 }
 
+/// The mean of log_wind() from the ground up to a height (m): (u*/kappa) (ln(y/y0) - 1 + y0/y).
+inline double mean_log_wind(const LogProfile& log, double height) {
+  if (!(height > log.roughness)) return 0.0;
+  return log.friction_velocity / log.kappa * (std::log(height / log.roughness) - 1.0 + log.roughness / height);
+}
+
 }  // namespace barchan

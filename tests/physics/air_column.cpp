@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "measure/measurements.hpp"
 #include "physics/drive.hpp"
 #include "physics/small_scenes.hpp"
 
@@ -189,6 +190,65 @@ TEST_F(AirColumnScene, MomentumIsClosed) {
     report("momentum of air and grains, error", worst, 1e-10);
     EXPECT_LT(worst, 1e-10);
     EXPECT_GT(column_of(*run, "momentum_x"), 1e-3 * scale) << "the grains have got some of it";
+  }
+}
+
+/// A wind along -x, and grains in it, are the mirror image of one along x: of a held profile, and of air that the
+/// grains slow down.
+TEST_F(AirColumnScene, AWindAlongMinusXIsTheMirrorImage) {
+  const std::string held = "held = true\nlog-profile = { friction-velocity = UU, roughness = 1e-5 }";
+  for (const std::string& wind :
+       {held, std::string("friction-velocity = UU"), std::string("friction-velocity = \"UU*(1+9*t)\""),
+        std::string("friction-velocity = UU\naveraging = 0.01")}) {
+    std::vector<std::unique_ptr<Simulation>> runs;
+    for (const char* const u : {"0.4", "-0.4"}) {
+      std::string text = cloud(wind);
+      text.replace(text.find("UU"), 2, u);
+      runs.push_back(small::simulation(text));
+      for (int k = 0; k < 200; ++k) runs.back()->step(1.0);
+    }
+    const PhaseParticles &a = runs[0]->phases()[0], &b = runs[1]->phases()[0];
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      EXPECT_EQ(a.column(Field::velocity, 0)[k], -b.column(Field::velocity, 0)[k]) << wind;
+      EXPECT_EQ(a.column(Field::velocity, 1)[k], b.column(Field::velocity, 1)[k]) << wind;
+    }
+    EXPECT_GT(std::abs(a.column(Field::velocity, 0)[a.size() - 1]), 1e-3);
+    const AirProfile &air = runs[0]->state().air[0], &mirrored = runs[1]->state().air[0];
+    for (std::size_t k = 0; k < air.cells(); ++k) {
+      EXPECT_EQ(air.speed[k], -mirrored.speed[k]) << wind;
+      EXPECT_EQ(air.stress[k + 1], -mirrored.stress[k + 1]) << wind;
+    }
+    EXPECT_EQ(runs[0]->plan().phases[1].wind, runs[1]->plan().phases[1].wind);
+  }
+}
+
+/// What instruments tell of a logarithmic wind that is held: u*/kappa ln(y/y0) at each height, rho u*|u*| everywhere,
+/// and of its momentum the integral. It loses nothing to the grains.
+TEST_F(AirColumnScene, AHeldLogarithmicWindIsMeasuredByHeight) {
+  for (const double u : {0.4, -0.3}) {
+    char wind[96];
+    std::snprintf(wind, sizeof wind, "held = true\nlog-profile = { friction-velocity = %g, roughness = 2e-5 }", u);
+    std::string text = cloud(wind);
+    text.insert(text.find("[time]"), "[[saltation]]\nname = \"s\"\nphase = \"sand\"\n");
+    const auto run = small::simulation(text);
+    for (int k = 0; k < 30; ++k) run->step(1.0);
+    Measurements measurements(run->plan().instruments, run->plan().bounds, {2650.0, 1.225});
+    measurements.sample(run->state());
+    const Table table = measurements.table(0);
+    const auto field = [&](const char* name) {
+      for (const FrameField& f : table.fields)
+        if (f.name == name) return f.values;
+      ADD_FAILURE() << name;
+      return std::vector<double>(table.places.size(), 0.0);
+    };
+    const std::vector<double> speed = field("air_speed"), stress = field("air_stress");
+    for (std::size_t row = 0; row < table.places.size(); ++row) {
+      EXPECT_NEAR(speed[row], u / 0.4 * std::log(table.places[row][1] / 2e-5), 1e-12) << row;
+      EXPECT_NEAR(stress[row], 1.225 * u * std::abs(u), 1e-12) << row;
+    }
+    EXPECT_NEAR(column_of(*run, "s_bed_friction_velocity"), u, 1e-12);
+    const double integral = u / 0.4 * (0.02 * std::log(0.02 / 2e-5) - 0.02 + 2e-5);
+    EXPECT_NEAR(column_of(*run, "air_momentum_x"), 1.225 * 0.25 * integral, 1e-9);
   }
 }
 

@@ -1,5 +1,7 @@
 // Turbulent air over rough ground: the logarithmic layer stays what it is, and a wrong one becomes it.
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "physics/drive.hpp"
@@ -168,6 +170,36 @@ TEST(TwoEquations, AreRefusedWhereTheyCannotBe) {
   dune.replace(dune.find("mixing-length"), 13, "k-omega");
   EXPECT_NE(refusal(dune).find("knows no grains, bodies or walls that move, and \"sand\" is such a phase"),
             std::string::npos);
+}
+
+/// Particles that have hardly any turbulence get it back from their neighbours: k of none falls further, and none is
+/// thrown about. Fluxes that were divided by the eddies of such a particle alone took what it had left, in a few steps.
+TEST(TwoEquations, NoParticleLosesItsTurbulenceForGood) {
+  const auto run =
+      small::simulation(layer_under("lid", "kind = \"wall\"\nshear-stress = [0.05, 0]\n", "{ sides = [\"top\"] }",
+                                    "{ log-profile = { friction-velocity = 0.2, roughness = 1e-4 } }"),
+                        {"fill.2.perturb=0.2", "fill.2.seed=3"});
+  PhaseParticles& air = run->phases()[0];
+  const double usual = 0.2 * 0.2 / 0.3, low = 1e-4 * usual;  // m2/s2
+  for (int k = 0; k < 50; ++k) run->step(1.0);
+  for (std::size_t k = 0; k < air.size(); k += 3) air.column(Field::turbulent_kinetic_energy)[k] = low;
+  double least = usual, fastest = 0.0;
+  for (int k = 0; k < 400; ++k) {
+    run->step(1.0);
+    const double *energy = std::as_const(air).column(Field::turbulent_kinetic_energy),
+                 *rising = std::as_const(air).column(Field::velocity, 1);
+    least = std::min(least, *std::min_element(energy, energy + air.size()));
+    for (std::size_t p = 0; p < air.size(); ++p) fastest = std::max(fastest, std::abs(rising[p]));
+  }
+  report("least k over that of the start", least / low, 0.9);
+  EXPECT_GT(least, 0.9 * low);
+  const double* energy = std::as_const(air).column(Field::turbulent_kinetic_energy);
+  const double now = *std::min_element(energy, energy + air.size());
+  report("least k over u*^2/0.3, 400 steps later", now / usual, 0.2);
+  EXPECT_GT(now, 0.2 * usual);
+  EXPECT_LT(*std::max_element(energy, energy + air.size()), 2.0 * usual);
+  report("fastest across the wind, m/s", fastest, 0.2);
+  EXPECT_LT(fastest, 0.2);
 }
 
 }  // namespace

@@ -120,6 +120,24 @@ TEST(HeldStress, FollowsAFormula) {
   EXPECT_FALSE(has_column(*wind(slips, in_bulk, {"forcing=[]"}), "air_pull [Pa]"));
 }
 
+// Rows may come after any number of steps: each has the mean of the hold over all of them.
+TEST(HeldStress, ARowHasAllStepsSinceTheRowBefore) {
+  const auto run = wind(pulls, "hold = \"bulk-speed\"", {"phases.floor.slip=no-slip"});
+  const double mass = 2.0;  // kg/m2 of ground
+  for (const int steps : {7, 1, 4, 12}) {
+    double impulse = 0.0, time = 0.0;
+    for (int k = 0; k < steps; ++k) {
+      run->step(1.0);
+      impulse += run->last_step() * column(*run, "air_held_acceleration_x [m/s2]");
+      time += run->last_step();
+    }
+    const double expected = 0.2 + mass * impulse / time;
+    EXPECT_NEAR(column(*run, "air_pull [Pa]"), expected, 1e-12 * std::abs(expected)) << steps;
+    run->begin_row();
+    EXPECT_NEAR(column(*run, "air_pull [Pa]"), expected, 1e-12 * std::abs(expected)) << "no step since";
+  }
+}
+
 // What holds the speed alternates from step to step: the column is its mean since the last row, and goes on with the
 // same bits after a restart.
 TEST(HeldStress, MeansGoOnAfterARestart) {

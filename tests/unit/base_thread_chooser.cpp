@@ -119,5 +119,52 @@ TEST(ThreadChooser, KeepsOneThreadWhereMoreGainNothing) {
   EXPECT_LT(in_teams, 200);
 }
 
+// A number that was asked for: every step of a machine that gives its cores has it, also where one thread is as fast.
+TEST(ThreadChooser, KeepsATeamThatWasAskedFor) {
+  for (const double gain : {0.5, 1.0, 1.4}) {
+    ThreadChooser chooser(3, ThreadChooser::Begin::all);
+    Steps alone(5e-3);
+    run(chooser, 10000, [&](int threads, double) { return alone() * (threads > 1 ? gain : 1.0); });
+    EXPECT_EQ(chooser.switches(), 0);
+    EXPECT_EQ(chooser.uses().back().steps, 10000);
+    EXPECT_EQ(chooser.uses().back().threads, 3);
+  }
+}
+
+// Where the machine withholds its cores one thread goes on; the team comes back when it has them again.
+TEST(ThreadChooser, ATeamThatWasAskedForGivesWayToOthers) {
+  ThreadChooser chooser(2, ThreadChooser::Begin::all);
+  const double alone = 4e-4;
+  double now = 0.0, busy_steps = 0.0;
+  int withheld = 0;
+  const auto step = [&](bool busy) {
+    const bool team = chooser.threads() == 2;
+    const double seconds = !team ? alone : busy ? 0.03 : 0.55 * alone;
+    withheld = team && busy ? withheld + 1 : 0;
+    chooser.took(seconds, withheld >= 3 ? 0.03 : 0.0);
+    now += seconds;
+    busy_steps += busy ? 1.0 : 0.0;
+  };
+  while (busy_steps < 1500) step(true);
+  EXPECT_LT(now, 1.5 * 1500 * alone);
+  while (busy_steps < 50000) step(true);
+  EXPECT_LT(now, 1.1 * 50000 * alone);
+  while (now < 80.0) step(false);
+  EXPECT_EQ(chooser.threads(), 2);
+}
+
+// A team that is faster than one thread although others take a part of its cores stays.
+TEST(ThreadChooser, ATeamThatGainsOnABusyMachineStays) {
+  ThreadChooser chooser(2, ThreadChooser::Begin::all);
+  run(chooser, 20000, [&](int threads, double) { return threads == 2 ? 6e-3 : 1e-2; });
+  EXPECT_EQ(chooser.switches(), 0);
+  ThreadChooser doubted(2, ThreadChooser::Begin::all);
+  for (int k = 0; k < 20000; ++k) {
+    const bool team = doubted.threads() == 2;
+    doubted.took(team ? 6e-3 : 1e-2, team ? 6e-3 : 0.0);
+  }
+  EXPECT_GT(static_cast<double>(doubted.uses().back().steps), 0.98 * 20000);
+}
+
 }  // namespace
 }  // namespace barchan

@@ -61,5 +61,39 @@ TEST(KOmega, TheStressIsLimited) {
   EXPECT_NEAR(k / limited_omega(1.0, shear) * shear, 0.3 / 0.875 * k, 1e-12);
 }
 
+/// A particle loses k by diffusion to those with less only, whatever the corrected operator says.
+TEST(KOmega, DiffusionTakesNothingOfTheLeast) {
+  EXPECT_EQ(diffused(-3.0, 5.0, 0.0), 0.0) << "all others have more";
+  EXPECT_EQ(diffused(-3.0, 0.0, 5.0), 0.0) << "in either part";
+  EXPECT_EQ(diffused(-3.0, 5.0, -1.0), -1.0);
+  EXPECT_EQ(diffused(-3.0, 5.0, -4.0), -3.0) << "the corrected operator";
+  EXPECT_EQ(diffused(2.0, 5.0, -1.0), 2.0);
+}
+
+/// A shift through a spacing carries away at most what is there.
+TEST(KOmega, ShiftsCarryAwayNoMoreThanThereIs) {
+  EXPECT_EQ(carried_at_most(-100.0, 0.5, 0.02, 1e-3), -10.0);
+  EXPECT_EQ(carried_at_most(-1.0, 0.5, 0.02, 1e-3), -1.0);
+  EXPECT_EQ(carried_at_most(100.0, 0.5, 0.02, 1e-3), 100.0);
+}
+
+/// In a logarithmic layer, from a quarter of a spacing over the ground on, the gradient of a flux is that of the
+/// particle's own eddies: G grows as the distance, and the pairs' mean is at most 2.5 times it.
+TEST(KOmega, FluxesAreDividedByOwnEddies) {
+  for (const double d : {0.25, 0.5, 1.0, 3.0}) {
+    double sum = 0.0, weights = 0.0;
+    for (int row = 0; row <= 2; ++row) {
+      const double weight = row == 0   ? 1.0
+                            : row == 1 ? 2.0
+                                       : 0.5,
+                   pair = pair_viscosity(std::sqrt(d), std::sqrt(d + row));
+      sum += weight * pair;
+      weights += weight;
+    }
+    EXPECT_EQ(eddy_of_flux(d, sum / weights), d) << d;
+  }
+  EXPECT_EQ(eddy_of_flux(1e-30, 4.0), 1.0);
+}
+
 }  // namespace
 }  // namespace barchan

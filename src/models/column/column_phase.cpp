@@ -67,6 +67,11 @@ void ColumnPhase::attach(Workspace& w) {
     AirProfile& p = profile();
     for (std::size_t k = 0; k < p.cells(); ++k)
       p.speed[k] = log_wind(*keys_.log_profile, 0.5 * (p.face[k] + p.face[k + 1]) - p.face.front());
+    if (keys_.held) {  // one cell: the mean over the height, and the stress of the logarithmic layer, rho u*|u*|
+      const double u = keys_.log_profile->friction_velocity;
+      p.speed.front() = mean_log_wind(*keys_.log_profile, p.face.back() - p.face.front());
+      std::fill(p.stress.begin(), p.stress.end(), density_ * u * std::abs(u));
+    }
   } else if (keys_.speed) {
     std::fill(profile().speed.begin(), profile().speed.end(), *keys_.speed);
   } else {
@@ -357,25 +362,29 @@ void ColumnPhase::archive(Archive& a) {
   if (a.loads()) air_->integrate_speed();
 }
 
-/// The air's momentum is counted at the same moment as that of the grains: less what they have got since the last
-/// exchange.
-void ColumnPhase::history(HistoryRow& row) const {
-  const std::string impulse = scene_.phases[number_].name + "_boundary_impulse_x [kg m/s]";
+/// Of the air, counted at the same moment as that of the grains: less what they have got since the last exchange. A
+/// wind that is held loses nothing to them.
+double ColumnPhase::momentum() const {
   const AirProfile& air = profile();
-  if (!keys_.held) add_pull(row, scene_.phases[number_].name, top_stress(w_->state.time), density_);
-  if (keys_.averaging) return row.add(impulse, area_ * air.boundary);
-  double momentum = air_->momentum();
-  for (const double given : air.given) momentum += given;
-  momentum *= area_;
+  double sum = air_->momentum();
+  if (keys_.held) return area_ * sum;
+  for (const double given : air.given) sum += given;
+  sum *= area_;
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
     const double* drag = p.column(Field::drag_acceleration, 0);
     const ranks::Alone alone(p.is_whole());
     const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
-    momentum -= time * reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
+    sum -= time * reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }
-  row.add(scene_.phases[number_].name + "_momentum_x [kg m/s]", momentum);
-  row.add(impulse, area_ * air.boundary);
+  return sum;
+}
+
+void ColumnPhase::history(HistoryRow& row) const {
+  const std::string& name = scene_.phases[number_].name;
+  if (!keys_.held) add_pull(row, name, top_stress(w_->state.time), density_);
+  if (!keys_.averaging) row.add(name + "_momentum_x [kg m/s]", momentum());
+  row.add(name + "_boundary_impulse_x [kg m/s]", area_ * profile().boundary);
 }
 
 }  // namespace barchan

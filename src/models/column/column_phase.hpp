@@ -58,6 +58,7 @@ class ColumnPhase : public Model {
   void find_voidage();
   double wind(double y, double radius) const;
   double top_stress(double time) const;
+  double momentum() const;
   double impulse_time(const Feeling& grains) const;
   double time_ahead(const Feeling& grains) const;
 

@@ -42,9 +42,9 @@ void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std:
   constexpr int moments = 64;
   double& wind = layout.phases[number].wind;
   for (int k = 0; k <= moments; ++k)
-    wind = std::max(wind, most_over_friction_velocity * friction_velocity({}, scene.time.end * k / moments));
+    wind = std::max(wind, most_over_friction_velocity * std::abs(friction_velocity({}, scene.time.end * k / moments)));
   if (keys.speed) wind = std::max(wind, std::abs(*keys.speed));
-  if (keys.log_profile) wind = std::max(wind, log_wind(*keys.log_profile, scene.domain.size[1]));
+  if (keys.log_profile) wind = std::max(wind, std::abs(log_wind(*keys.log_profile, scene.domain.size[1])));
 }
 
 void describe_grains_in_column(const Scene&, const Interaction&, const Layout&, PlanEntry& e) {

@@ -104,6 +104,18 @@ BARCHAN_SIMD_INLINE EddySums<Dim> sum_entries(const FourOf& at, std::span<const 
   return s;
 }
 
+/// The gradient of the pairs' flux, T/mu, is divided by this. Where the logarithmic layer begins T/mu is up to
+/// eight times the gradient of the differences, and right. It is wrong where the viscosity of the particle is far below
+/// that of its neighbours, which makes the flux: then T/mu lowers the viscosity of the particle further, nu_t = k/(2.9
+/// |T|/mu), and makes k without end. So it is at most `most` times the gradient of the differences, |S|.
+template <int Dim>
+BARCHAN_SIMD_INLINE Four above_differences(const typename EddyFluid<Dim>::template Stress<Four>& stress, Four root) {
+  constexpr double most = 10.0;
+  const Four mu = simd::max(root * root, Four(1e-30));
+  return simd::max(simd::sqrt(stress.phi2) / simd::max(Four(most) * mu * simd::sqrt(stress.shear2), Four(1e-30)),
+                   Four(1.0));
+}
+
 /// nu_t of the next step; where there is none yet, from the strain alone. Of a fluid whose turbulence has equations of
 /// its own (two_equations.hpp): |S|.
 template <int Dim>
@@ -113,7 +125,8 @@ BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
   if (p.model == Turbulence::none) return;
   if (columns.shear) {
     const Four root = load_four(columns.root, at.first, at.count);
-    store_four(simd::sqrt(stress.phi2) / simd::max(root * root, Four(1e-30)), columns.shear, at.first, at.count);
+    const Four shear = simd::sqrt(stress.phi2) / simd::max(root * root, Four(1e-30));
+    store_four(shear / above_differences<Dim>(stress, root), columns.shear, at.first, at.count);
     return;
   }
   const Four length = p.mixing_length(load_four(columns.distance, at.first, at.count));
@@ -128,7 +141,7 @@ BARCHAN_SIMD_INLINE void renew_viscosity(const EddyColumns<Dim>& columns,
 /// as the logarithm and walls continue it as free slip: there the differences show less than half of its slope.
 template <int Dim>
 void carry_by_flux(Rates<Dim, Four>& r, const typename EddyFluid<Dim>::template Stress<Four>& stress, Four root) {
-  const Four per_viscosity = Four(1.0) / simd::max(root * root, Four(1e-30));
+  const Four per_viscosity = Four(1.0) / simd::max(root * root, Four(1e-30)) / above_differences<Dim>(stress, root);
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e < Dim; ++e)
       r.acceleration[d] += r.shift[e] * (stress.t[d][e] * per_viscosity - stress.gradient[d][e]);

@@ -231,6 +231,10 @@ void FluidPhase::history(HistoryRow& row) const {
     drive_->history(row, *particles_, forces_.sum(*particles_, w_->state.time, w_->state.dt)[0], hold_.acceleration[0]);
 }
 
+void FluidPhase::begin_row() {
+  if (drive_) drive_->begin_row();
+}
+
 void FluidPhase::report(Warnings& warnings) const {
   if (drive_) drive_->report(particles_->mass() * static_cast<double>(ranks::total(particles_->size())), warnings);
 }

@@ -51,6 +51,7 @@ class FluidPhase : public Model {
   const StepLimit* moving_limit() override;
   int phase() const override { return static_cast<int>(number_); }
   void history(HistoryRow& row) const override;
+  void begin_row() override;
   void report(Warnings& warnings) const override;
   void archive(Archive& a) override;
 

@@ -99,17 +99,18 @@ void add_scaled(const Sums<Dim>& raw, double scale, Sums<Dim>& s) {
 /// The operators of the sums. A particle with too few neighbours to invert anything keeps what it has.
 template <int Dim>
 void finish(const Sums<Dim>& s, const std::array<double, Dim*(Dim + 1) / 2>& a, std::size_t i, const Columns<Dim>& c,
-            KOmegaPlace& p) {
+            double spacing, KOmegaPlace& p) {
   constexpr double least = Dim == 2 ? 0.15 : 0.075;
   if (!((Dim == 2 ? 1.0 : -1.0) * determinant(s.moment) > least)) return;
   const auto inverse = inverse_symmetric(s.moment);
   double trace = trace_of<Dim, double>(s.moment), skewed = 0.0;
   for (std::size_t d = 0; d < Dim; ++d)
     for (std::size_t e = 0; e < Dim; ++e) skewed += a[moment_index(d, e)] * s.moment[moment_index(d, e)];
-  const double laplace = -2.0 * Dim / std::min(trace + skewed, 0.5 * trace), eddy = p.k / p.omega;
+  const double laplace = -2.0 * Dim / std::min(trace + skewed, 0.5 * trace),
+               eddy = eddy_of_flux(p.k / p.omega, s.weight != 0.0 ? s.eddy / s.weight : 0.0);
   const double tiny = 1e-30, per_k = 1.0 / (p.viscosity + Wilcox2006::sigma_k * eddy + tiny),
                per_l = 1.0 / (p.viscosity + Wilcox2006::sigma_omega * eddy + tiny);
-  double rest_k = s.laplace_k, rest_l = s.laplace_l;
+  double rest_k = s.laplace_k, rest_l = s.laplace_l, carried_k = 0.0, shift2 = 0.0;
   for (std::size_t d = 0; d < Dim; ++d) {
     double k = 0.0, l = 0.0;  // fluxes
     for (std::size_t e = 0; e < Dim; ++e) {
@@ -122,10 +123,12 @@ void finish(const Sums<Dim>& s, const std::array<double, Dim*(Dim + 1) / 2>& a, 
     p.square_l += grad_l * grad_l;
     p.square_k_l += grad_k * grad_l;
     if (!c.shift[d]) continue;
-    p.diffusion_k += c.shift[d][i] * grad_k;
+    carried_k += c.shift[d][i] * grad_k;
+    shift2 += c.shift[d][i] * c.shift[d][i];
     p.diffusion_l += c.shift[d][i] * grad_l;
   }
-  p.diffusion_k += laplace * rest_k;
+  p.diffusion_k = carried_at_most(carried_k, p.k, std::sqrt(shift2), spacing) +
+                  diffused(laplace * rest_k, laplace * s.positive_k, laplace * (s.laplace_k - s.positive_k));
   p.diffusion_l += laplace * rest_l;
 }
 
@@ -166,7 +169,7 @@ void step(PhaseParticles& fluid, const RecordArray& own, std::span<const KOmegaN
     const auto a = c.anisotropy(i);
     KOmegaPlace p{c.k[i], c.omega[i], c.shear[i], q.viscosity, 0.0, 0.0, 0.0, 0.0};
     const auto s = sum_entries<Dim>(i, records + i * MotionRecord<Dim>::size, a, neighbours, kernels, q, p.k);
-    finish<Dim>(s, a, i, c, p);
+    finish<Dim>(s, a, i, c, q.spacing, p);
     double k = p.k, omega = p.omega;
     step_k_omega(p, q.step, k, omega);
     if (c.distance[i] < q.spacing)

@@ -1,6 +1,7 @@
 #include "models/grains/grain_flux.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/reproducible_sum.hpp"
 #include "models/grains/saltation_layer.hpp"
@@ -51,7 +52,7 @@ void GrainFlux::history(HistoryRow& row) const {
 void GrainFlux::report(Warnings& warnings) const {
   const double u = wind_.friction_velocity(w_->state.time);
   if (!mean_.any() || u < weakest || u > strongest) return;
-  const double mean = mean_.recent(tenth_), law = creyssels_flux(u);
+  const double mean = std::abs(mean_.recent(tenth_)), law = creyssels_flux(u);
   const std::string& name = scene_.phases[grains_].name;
   if (mean > most_flux * law)
     warnings.add("flux of " + name,
