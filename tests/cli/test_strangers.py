@@ -82,7 +82,12 @@ ODD = [None, True, 0, -1, .5, 1e308, 10 ** 30, float("nan"), float("inf"), "", "
 
 
 def damaged(content, chance):
-    """The bytes of a file with one damage of many kinds."""
+    """The bytes of a file with one damage of many kinds; some damages change nothing, and then the last byte is missing."""
+    bad = changed(content, chance)
+    return bad if bad != content else content[:-1]
+
+
+def changed(content, chance):
     at, kind = chance.randrange(len(content)), chance.randrange(7)
     if kind == 0:
         return content[:at]
