@@ -31,6 +31,14 @@ def below(folder, file):
     return pathlib.Path(file)
 
 
+def is_file(path):
+    """Whether there is a file of this name, which may be no name that a file can have."""
+    try:
+        return pathlib.Path(path).is_file()
+    except (OSError, ValueError):  # too long; a zero in it
+        return False
+
+
 def opened(path):
     """A regular file that is open to be read as bytes: no pipe, on which one waits for ever, no device and no folder. Throws Unreadable."""
     try:

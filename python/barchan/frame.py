@@ -27,7 +27,7 @@ class Frame:
     def __init__(self, path, time=None, phase=None):
         """`time`: that of the list of the series, if it is given, else the frame's own; `phase`: only the particles of the phase with this name."""
         self.path = pathlib.Path(path)
-        if not self.path.is_file():
+        if not files.is_file(self.path):
             raise Unreadable(f"{path}: there is no such frame")
         listed = pieces(self.path)
         parts = [_Particles(file, self.path) for file in listed or [self.path]]
@@ -120,7 +120,7 @@ class _Particles:
     """What stands in one file: `x`, `arrays`, and what it says about all of them. `frame`: the file of the frame, for messages."""
 
     def __init__(self, path, frame):
-        if not path.is_file():
+        if not files.is_file(path):
             raise Unreadable(f"{frame}: its piece {path} is not there" if path != frame else f"{path}: there is no such frame")
         self._document = vtk_xml.Document(path, PARTICLES)
         count, points = self._document.count("NumberOfPoints"), self._document.sections.get("Points", [])

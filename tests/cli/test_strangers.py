@@ -82,7 +82,12 @@ ODD = [None, True, 0, -1, .5, 1e308, 10 ** 30, float("nan"), float("inf"), "", "
 
 
 def damaged(content, chance):
-    """The bytes of a file with one damage of many kinds."""
+    """The bytes of a file with one damage of many kinds; some damages change nothing, and then the last byte is missing."""
+    bad = changed(content, chance)
+    return bad if bad != content else content[:-1]
+
+
+def changed(content, chance):
     at, kind = chance.randrange(len(content)), chance.randrange(7)
     if kind == 0:
         return content[:at]
@@ -205,11 +210,12 @@ class Damage(Case):
         """A page is made of all that is left."""
         few = max(DAMAGES // 20, 1)
         for seed, name in enumerate(("run.json", "history.csv", "water.pvd", "water_000001.vtp", "profile_across.csv", "grid_all.vti")):
-            folder, whole = self.copy(), (self.top / "vtp" / name).read_bytes()
+            folder, whole, first = self.copy(), (self.top / "vtp" / name).read_bytes(), []
 
             def one(content):
                 (folder / name).write_bytes(content)
-                self.page(folder, drawn=True)
+                self.page(folder, drawn=not first)
+                first.append(content)
             self.try_damages(whole, one, few, seed)
             shutil.rmtree(folder)
 
@@ -285,8 +291,9 @@ class Values(Case):
                 (self.folder / "run.json").write_text(json.dumps(run))
                 g = gather.gather(self.folder, with_plan=False)
                 text = page.make(g)
-                self.assertEqual(Scripts(text).found, [], (path, odd))
                 self.assertNotIn("could not be made", text, (path, odd))
+                if str(odd).startswith("<"):
+                    self.assertEqual(Scripts(text).found, [], path)
                 tried += 1
         self.assertGreater(tried, 1000)
 

@@ -178,7 +178,7 @@ def read_scene(g, named=None):
     if not said:
         return
     places = [pathlib.Path(said)] + [above / said for above in g.folder.absolute().parents] + [g.folder / pathlib.PurePath(said).name]
-    there = [place for place in dict.fromkeys(places) if is_file(place)]
+    there = [place for place in dict.fromkeys(places) if files.is_file(place)]
     for place in there:
         if belongs(g, place):
             try:
@@ -190,13 +190,6 @@ def read_scene(g, named=None):
         g.remarks.append(f"the scene's file {said} is no longer there: {lost}")
     elif g.scene_text is None:
         g.remarks.append(f"{said} is no scene in the folder of the run, nor has it the checksum that run.json states (it was changed, or it is another file): {lost}")
-
-
-def is_file(place):
-    try:
-        return place.is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def belongs(g, place):
