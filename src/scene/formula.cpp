@@ -51,7 +51,9 @@ std::optional<FormulaFault> first_fault;
 
 void note_fault(FormulaFault fault) {
   const std::lock_guard lock(fault_mutex);
-  if (!first_fault) first_fault = std::move(fault);
+  if (first_fault) return;
+  while (fault.formula.ends_with(' ')) fault.formula.pop_back();  // muParser adds one
+  first_fault = std::move(fault);
 }
 
 }  // namespace

@@ -11,9 +11,10 @@ namespace barchan {
 
 class VelocityProfile {
  public:
-  /// A table with names of columns in its first line, separated by commas: y, and velocity_mean_x or velocity_x; of y
-  /// and z where they are there; a unit in brackets may follow a name. Other columns are passed over. Throws SceneError
-  /// (`what` is said first) where a line is not whole, a number is not finite, or heights do not grow.
+  /// A table with names of columns in its first line, separated by commas, semicolons or tabs: y, and velocity_mean_x
+  /// or velocity_x; of y and z where they are there. The unit that a name is followed by, as in "y [mm]", counts; else
+  /// they are m and m/s. Other columns are passed over. Throws SceneError (`what` is said first) where a line is not
+  /// whole, a number is not finite, a unit is not known, or heights do not grow.
   VelocityProfile(std::string_view text, const std::string& what);
 
   /// m/s at a height (m): linear between two rows; below the first and above the last row that row's.
