@@ -44,12 +44,10 @@ SolidSurface SolidSurface::of_facets(const std::vector<Facet>& facets, int dimen
 std::optional<SolidSurface> SolidSurface::of(const Shape& shape, const Scene& scene, double spacing, double reach) {
   const bool flat = scene.dimensions == 2;
   const auto box = [&](const Vec3& low, const Vec3& high) {
-    if (!flat) return SolidSurface(ContactSurface::box(low, high), low, high);
-    const PolygonShape corners{{{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}},
-                               {1.0, 0.0, {}}};
-    SolidSurface s = of_facets(facets_of(corners), 2, false, reach);
-    s.convex_ = true;
-    return s;
+    Vec3 lowest = low, highest = high;
+    if (flat) lowest[2] = -endless;
+    if (flat) highest[2] = endless;
+    return SolidSurface(ContactSurface::box(lowest, highest), lowest, highest);
   };
   if (const auto* b = std::get_if<BoxShape>(&shape)) return box(b->min, b->max);
   if (const auto* cube = std::get_if<CubeShape>(&shape)) {
@@ -180,12 +178,20 @@ bool SolidSurfaces::covered(const Vec3& foot, double radius, std::size_t except,
 std::size_t SolidSurfaces::touch(const Vec3& x, double radius, double reach, std::span<const std::uint16_t> surfaces,
                                  std::span<Contact> found, std::size_t count) const {
   const double same = agreement * radius;
+  const std::size_t known = count;
+  const bool alone = !(period_[0] > 0.0 || period_[1] > 0.0 || period_[2] > 0.0);  // without images
+  const auto touched_by = [&](std::uint16_t k) {
+    for (std::size_t q = known; q < count; ++q)
+      if (found[q].surface == k) return true;
+    return false;
+  };
   for (; count < found.size(); ++count) {
     Contact best{{}, reach, 0, {}};
     bool any = false;
     for (const std::uint16_t k : surfaces) {
       const Surface& of = surfaces_[k];
       const Solid& solid = solids_[of.solid];
+      if (alone && !of.surface.may_cover() && touched_by(k)) continue;  // a convex solid has one contact
       each_image(of, x, reach, [&](const Vec3& at) {
         Gap gap{best.distance, {}};
         of.surface.nearest(
