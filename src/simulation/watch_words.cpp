@@ -251,8 +251,7 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
     return seen > 0 ? static_cast<double>(near) / static_cast<double>(seen) : 0.0;
   };
   constexpr std::int64_t least_sample = 128, thinning = 64, close_sample = 4096;
-  const std::int64_t stride =
-      std::max<std::int64_t>(1, all ? n / close_sample : std::min(thinning, n / least_sample));
+  const std::int64_t stride = std::max<std::int64_t>(1, all ? n / close_sample : std::min(thinning, n / least_sample));
   if (stride > 1 && share(looks_ / 2 % stride, stride) < 0.3 * WatchBounds::paired) return;
   const double paired = share(0, 1);
   if (paired <= WatchBounds::paired) return;

@@ -126,7 +126,7 @@ class Spheres(Folder):
 
     def test_sizes_that_differ_much(self):
         """Cells of several levels; a large grain falls into small ones of two chunks."""
-        text = heap(2, 0.006).replace("{ mean = 0.9e-3, spread = 0.1 }", "{ mean = 0.55e-3, spread = 0.8 }").replace(
+        text = heap(2, 0.003).replace("{ mean = 0.9e-3, spread = 0.1 }", "{ mean = 0.65e-3, spread = 0.5 }").replace(
             "[interactions]", '[phases.boulder]\nkind = "grains"\ndensity = 2650\ndiameter = 1.5e-2\nfriction = 0.5\nstiffness = 200\n'
             '[interactions]\nsand-boulder = { law = "linear" }') + (
             '[[fill]]\nphase = "boulder"\nshape = { points = [[0.03, 0.0435]] }\nvelocity = [0.5, -1]\n')
@@ -134,8 +134,8 @@ class Spheres(Folder):
 
     def test_a_narrow_period(self):
         """Two spheres touch on both sides of a periodic axis, and cross it."""
-        text = heap(3, 0.006).replace("[0.016, 0.03, 0.010]", "[0.1, 0.03, 0.0015]").replace(
-            "[0.015, 0.016, 0.010]", "[0.1, 0.016, 0.0015]").replace("spacing = 1e-3\nrest", "spacing = 1.5e-3\nrest").replace(
+        text = heap(3, 0.002).replace("[0.016, 0.03, 0.010]", "[0.15, 0.03, 0.0015]").replace(
+            "[0.015, 0.016, 0.010]", "[0.15, 0.016, 0.0015]").replace("spacing = 1e-3", "spacing = 1.5e-3").replace(
             "mean = 0.9e-3", "mean = 1.2e-3")
         self.compare(text, (2, 1), (3, 2))
 
