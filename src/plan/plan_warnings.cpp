@@ -218,7 +218,9 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
                   thin->wet[0] && thin->wet[1] ? "the fluid on one side presses the fluid on the other"
                                                : "a fluid that comes to both sides acts on itself through the wall",
                   needed, thin->rows * spacing * e.spacing / needed);
-    if (thin->wet[0] && thin->wet[1]) throw SceneError(located(scene, "interactions." + e.name) + text);
+    // Fluid that touches such a wall has fluid of the other side in its kernel.
+    const bool open = thin->rows * spacing < e.radius - 0.5 * e.spacing * (1.0 + 1e-9);
+    if (open && thin->wet[0] && thin->wet[1]) throw SceneError(located(scene, "interactions." + e.name) + text);
     plan.warnings.push_back("interactions." + e.name + text);
   }
 }
