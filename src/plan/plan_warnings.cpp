@@ -170,9 +170,10 @@ void warn_of_missed_mass(const Scene& scene, Plan& plan) {
     bool known = true, boxes = true;
     for (std::size_t f = 0; f < scene.fills.size() && known; ++f) {
       const Fill& fill = scene.fills[f];
-      // What settled or lies at random holds less than its shape.
+      // What settled or lies at random holds less than its shape; a formula holds its particles, whatever it bounds.
       known = std::none_of(plan.phases.begin(), plan.phases.end(),
-                           [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; });
+                           [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; }) &&
+              (fill.phase == p.name || !std::holds_alternative<FormulaShape>(fill.shape));
       if (fill.phase != p.name || !known) continue;
       const auto held = content_of_fill(scene, f, {}, rough_sampling);
       known = held.has_value();
