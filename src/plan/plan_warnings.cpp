@@ -161,22 +161,28 @@ std::string spacings_that_fit(const std::vector<double>& lengths, double dx) {
 
 /// A fluid and an elastic body have the mass of their rows, which need not be that of their shapes.
 void warn_of_missed_mass(const Scene& scene, Plan& plan) {
-  constexpr double share = 1e-3;
+  constexpr double of_shapes = 1e-3;
+  constexpr double of_what_is_left = 1e-2;  // by other shapes, whose particles keep their distance
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
+    double share = of_shapes;
     if (!(p.flows || p.deforms) || p.count == 0 || !flow_ends(scene, scene.phases[k]).empty()) continue;
     double content = 0.0;
     std::vector<double> lengths;
     bool known = true, boxes = true;
     for (std::size_t f = 0; f < scene.fills.size() && known; ++f) {
       const Fill& fill = scene.fills[f];
-      // What settled or lies at random holds less than its shape.
+      // What settled or lies at random holds less than its shape; a formula holds its particles, whatever it bounds.
       known = std::none_of(plan.phases.begin(), plan.phases.end(),
-                           [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; });
+                           [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; }) &&
+              (fill.phase == p.name || !std::holds_alternative<FormulaShape>(fill.shape));
       if (fill.phase != p.name || !known) continue;
       const auto held = content_of_fill(scene, f, {}, rough_sampling);
       known = held.has_value();
       if (known) content += held->content;
+      if (fill.leave_out == LeaveOut::earlier_fills || std::holds_alternative<TheRestShape>(fill.shape))
+        for (std::size_t other = 0; other < f; ++other)
+          if (!std::holds_alternative<SidesShape>(scene.fills[other].shape)) share = of_what_is_left;
       const std::vector<double> own = lengths_of_rows(scene, fill);
       lengths.insert(lengths.end(), own.begin(), own.end());
       boxes = boxes && !own.empty();
@@ -206,6 +212,10 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
     if (!e.extends || plan.phases[e.other].moves || plan.phases[e.other].count == 0) continue;
     const auto thin = thin_wall(scene, blocks, e.other, e.fluid, e.radius);
     if (!thin) continue;
+    // Fluid that touches such a wall has what is beyond it in its kernel.
+    const bool open = thin->rows * plan.phases[e.other].spacing < e.radius - 0.5 * e.spacing * (1.0 + 1e-9);
+    const bool wet = thin->wet[0] && thin->wet[1];
+    if (!open && !wet && !plan.phases[e.other].travels) continue;  // it may be the wall of a vessel
     const double spacing = plan.phases[e.other].spacing, needed = 2.0 * e.radius - e.spacing;
     char text[500];
     std::snprintf(text, sizeof text,
@@ -215,10 +225,10 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
                   plan.phases[e.other].name.c_str(), thin->rows, spacing, thin->at[0], thin->at[1],
                   plan.dimensions == 3 ? ", " : "", plan.dimensions == 3 ? brief(thin->at[2]).c_str() : "",
                   plan.phases[e.fluid].name.c_str(),
-                  thin->wet[0] && thin->wet[1] ? "the fluid on one side presses the fluid on the other"
-                                               : "a fluid that comes to both sides acts on itself through the wall",
+                  wet ? "the fluid on one side presses the fluid on the other"
+                      : "a fluid that comes to both sides acts on itself through the wall",
                   needed, thin->rows * spacing * e.spacing / needed);
-    if (thin->wet[0] && thin->wet[1]) throw SceneError(located(scene, "interactions." + e.name) + text);
+    if (open && wet) throw SceneError(located(scene, "interactions." + e.name) + text);
     plan.warnings.push_back("interactions." + e.name + text);
   }
 }

@@ -294,8 +294,8 @@ void tighten(ShapeRegion& region, const Scene& scene, const Fill& fill, const st
     if (bounded && (d < 2 || std::holds_alternative<BoxShape>(fill.shape) || facet_dimensions(fill.shape) == 3 ||
                     std::holds_alternative<SphereShape>(fill.shape)))
       continue;
-    region.lower[d] = std::max(region.lower[d], low);
-    region.upper[d] = std::min(region.upper[d], high);
+    region.lower[d] = low;  // some packings keep half a spacing from the sides
+    region.upper[d] = high;
     if (bounded || places.empty()) continue;
     double least = 1e300, most = -1e300;
     for (const Vec3& x : places) {

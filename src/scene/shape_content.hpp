@@ -9,12 +9,12 @@
 
 namespace barchan {
 
-/// How much work the integral over a shape without a formula may be. Its error is some 1e-3 divided by the square root
-/// of a tenth of the particles, and falls with both numbers.
+/// How much work an integral over a shape may be. With the fine one mass and inertia of bodies of one to 40 spacings
+/// were within 5e-4.
 struct Sampling {
   double nodes, samples;
 };
-inline constexpr Sampling fine_sampling{1e6, 1e6}, rough_sampling{1e5, 1e5};
+inline constexpr Sampling fine_sampling{3e5, 2e5}, rough_sampling{1e5, 5e4};
 
 /// Of the k-th fill's shape; on periodic axes no more than once around. Exact of box, disc, sphere, ring, polygon,
 /// surface and cube. Integrated on cells and points of a low-discrepancy sequence (Roberts 2018) where the cells are

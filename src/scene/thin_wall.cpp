@@ -10,20 +10,22 @@
 namespace barchan {
 namespace {
 
-/// Free places about a wall particle: those of a lattice of the wall's spacing on it, in the ball of the radius.
+/// Free places about a wall particle: those of a lattice of the wall's spacing on it, in a ball that is wide enough for
+/// the ways round edges.
 class FreePlaces {
  public:
   FreePlaces(const Scene& scene, const Places& taken, double spacing, double radius)
       : scene_(scene), taken_(taken), spacing_(spacing), reach_(radius / spacing), solid_(scene.dimensions == 3) {
-    const int n = static_cast<int>(std::ceil(reach_));
+    const double way = std::sqrt(2.0) * reach_ + 1.0;  // round an edge
+    const int n = static_cast<int>(std::ceil(way));
     for (int k = solid_ ? -n : 0; k <= (solid_ ? n : 0); ++k)
       for (int j = -n; j <= n; ++j)
         for (int i = -n; i <= n; ++i)
-          if (i * i + j * j + k * k < reach_ * reach_ * (1.0 - 1e-9)) steps_.push_back({i, j, k});
+          if (i * i + j * j + k * k < way * way) steps_.push_back({i, j, k});
     groups_.resize(steps_.size());
   }
 
-  /// The groups of free places that are joined.
+  /// The groups of joined free places that begin within the radius.
   struct Group {
     double distance;  // spacings, of its nearest place
     Vec3 nearest;     // m
@@ -33,13 +35,14 @@ class FreePlaces {
     if (!has_two_sides(x)) return found;
     for (std::size_t s = 0; s < steps_.size(); ++s) groups_[s] = is_free(at(x, steps_[s])) ? free : none;
     for (std::size_t s = 0; s < steps_.size(); ++s)
-      if (groups_[s] == free) found.push_back(gather(x, s, static_cast<int>(found.size())));
+      if (groups_[s] == free)
+        if (const Group group = gather(x, s); group.distance < reach_ * (1.0 - 1e-9)) found.push_back(group);
     return found;
   }
 
  private:
   using Step = std::array<int, 3>;
-  static constexpr int none = -2, free = -1;
+  static constexpr int none = 0, free = 1, gathered = 2;
 
   Vec3 at(const Vec3& x, const Step& s) const {
     return x + spacing_ * Vec3{static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
@@ -70,10 +73,10 @@ class FreePlaces {
     return false;
   }
   /// All that is joined to a step, diagonals too.
-  Group gather(const Vec3& x, std::size_t first, int number) {
+  Group gather(const Vec3& x, std::size_t first) {
     Group group{1e300, x};
     std::vector<std::size_t> open{first};
-    groups_[first] = number;
+    groups_[first] = gathered;
     while (!open.empty()) {
       const Step from = steps_[open.back()];
       open.pop_back();
@@ -84,7 +87,7 @@ class FreePlaces {
         const bool near =
             std::abs(to[0] - from[0]) <= 1 && std::abs(to[1] - from[1]) <= 1 && std::abs(to[2] - from[2]) <= 1;
         if (groups_[s] != free || !near) continue;
-        groups_[s] = number;
+        groups_[s] = gathered;
         open.push_back(s);
       }
     }

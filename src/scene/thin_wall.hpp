@@ -19,7 +19,7 @@ struct ThinWall {
 
 /// The particles of a wall stand for a fluid on one side of it. One that has free space of two sides within the kernel
 /// radius (m) of its entry with the fluid gets its pressure and velocity from both. Two places about such a particle
-/// are of one side if a way of free places within the radius joins them, as round an edge or a thin rod.
+/// are of one side if a short way of free places joins them, as round an edge or a thin rod.
 /// Layers outside the domain and beds have one side.
 std::optional<ThinWall> thin_wall(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t wall,
                                   std::size_t fluid, double radius);
