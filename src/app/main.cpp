@@ -88,7 +88,9 @@ int dispatch(int argc, char** argv) {
   const char* const of_scene = "scene file (.toml), or the name of a scene that comes along (barchan list)";
   c_run->add_option("scene", run.scene, of_scene)->type_name("SCENE")->required();
   c_run->add_option("--out", run.out, "output folder (default out/NAME)")->type_name("DIR");
-  c_run->add_option("--threads", run.threads, "number of threads (default: as many as pay, measured as it goes)")
+  c_run
+      ->add_option("--threads", run.threads,
+                   "number of threads, one while others hold the cores (default: as many as pay)")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   c_run->add_option("--restart", run.restart, "go on from a checkpoint, or from the latest one")
