@@ -13,6 +13,15 @@
 // what lies between the two is weight, and only what is beyond accelerates:
 //   p_ab = rho_a g.r + 2 rho_a/(rho_a + rho_b) J,   J = (p_a - p_b) clamped out of [rho_a g.r, rho_b g.r]
 // Fluids at rest stay at rest to the bit, on any arrangement of particles; the interface is known to a spacing.
+//
+// Velocity is continuous too, and so is the shear stress mu grad v. The interface cuts the pair at the distances d
+// that the particles have from it (models/fluid/interface_distance.hpp): theta = d_a/(d_a + d_b) of it lies in the
+// fluid of a. A velocity that is linear in each fluid has there the stress of
+//   mu_ab v_ab,   mu_ab = mu_a mu_b/(theta mu_b + (1 - theta) mu_a)
+// (theta = 1/2: the harmonic mean of Cleary & Monaghan 1999). mu_ab is the same for a and b: what a gives, b gets. The
+// viscous sum has it, and the flux of momentum that is taken off it has it in place of mu_a grad v, both in units of
+// mu_a:
+//   L_v = sum V F w mu_ab/mu_a v_ab,   K = sum V F (mu_ab/mu_a - 1) v_ab (x) r,   flux = (U + K) M^-1
 #pragma once
 
 #include "laws/consistent_fluid.hpp"
@@ -22,28 +31,53 @@ namespace barchan {
 template <int Dim>
 struct JoinedFluids {
   static constexpr bool needs_distance = true;
+  static constexpr bool needs_root = true;  // the neighbour's distance to the interface
   static constexpr bool corrected = true;
   static constexpr double middling = 0.01;
 
   template <class T>
-  using Sums = typename ConsistentFluid<Dim>::template Sums<T>;
+  struct Sums : ConsistentFluid<Dim>::template Sums<T> {
+    std::array<T, Dim * Dim> kink;  // K, row: component of v, column: of r
+
+    BARCHAN_SIMD_INLINE void take(const Sums& s, double scale, double, double, const std::array<double, 3>& weight) {
+      ConsistentFluid<Dim>::template Sums<T>::take(s, scale, 0.0, 0.0, weight);
+      const T k = simd::broadcast<T>(scale);
+      for (std::size_t m = 0; m < Dim * Dim; ++m) kink[m] = fma(k, s.kink[m], kink[m]);
+    }
+  };
 
   template <class T>
   struct Own : ConsistentFluid<Dim>::template Own<T> {
     std::array<T, Dim> weight;  // rho_a g, Pa/m
     T ratio, share;             // rho_b/rho_a, 2 rho_a/(rho_a + rho_b)
+    T rubbing, distance;        // mu_b/mu_a; d_a, m
   };
 
   template <class T>
   static BARCHAN_SIMD_INLINE void add(const Own<T>& a, const std::array<T, Dim>& r, T r2, T f, const T* v_b, T p_b,
-                                      T volume_b, Sums<T>& s) {
+                                      T volume_b, T distance_b, Sums<T>& s) {
     T own = a.weight[0] * r[0];
     for (std::size_t d = 1; d < Dim; ++d) own = fma(a.weight[d], r[d], own);
     const T theirs = a.ratio * own, dp = a.p - p_b;
     const T weight = simd::max(simd::min(own, theirs), simd::min(simd::max(own, theirs), dp));
-    const T half = simd::broadcast<T>(0.5);
+    const T half = simd::broadcast<T>(0.5), one = simd::broadcast<T>(1.0);
     const T jump = fma(simd::broadcast<T>(middling), weight - half * (own + theirs), dp - weight);
-    ConsistentFluid<Dim>::add_difference(a, r, r2, f, v_b, fma(a.share, jump, own), volume_b, s);
+    const T theta = a.distance / (a.distance + distance_b);
+    const T mu = a.rubbing / fma(a.rubbing, theta, one - theta), more = mu - one;
+    ConsistentFluid<Dim>::add_rubbing(
+        a, r, r2, f, v_b, fma(a.share, jump, own), volume_b,
+        s, [&](std::size_t d, T dv, T wvf, const std::array<T, Dim>& g) __attribute__((always_inline)) {
+          s.viscous[d] = fma(wvf, mu * dv, s.viscous[d]);
+          for (std::size_t e = 0; e < Dim; ++e) s.kink[d * Dim + e] = fma(more * dv, g[e], s.kink[d * Dim + e]);
+        });
+  }
+
+  /// What the sums of pairs within one fluid, or with a solid, are here.
+  template <class T>
+  static BARCHAN_SIMD_INLINE Sums<T> without_kink(const typename ConsistentFluid<Dim>::template Sums<T>& raw) {
+    Sums<T> s{raw, {}};
+    for (auto& k : s.kink) k = simd::broadcast<T>(0.0);
+    return s;
   }
 };
 

@@ -112,7 +112,18 @@ template <class Law, int Dim> void stressed() {
 }
 template void stressed<barchan::NeoHookean, 2>(); template void stressed<barchan::NeoHookean, 3>();
 template void stressed<barchan::SaintVenantKirchhoff, 2>(); template void stressed<barchan::SaintVenantKirchhoff, 3>();""",
-    "joined_fluids": FLUID + "FLUID(JoinedFluids)",
+    "interface_side": PAIRS + "PAIRS(InterfaceSide)",
+    "joined_fluids": """
+template <int Dim> void one_pair() {
+  using Law = barchan::JoinedFluids<Dim>;
+  typename Law::template Own<double> a{};
+  typename Law::template Sums<double> s{}, all{};
+  const std::array<double, Dim> r{}, v{};
+  Law::add(a, r, 1.0, 1.0, v.data(), 1.0, 1.0, 1.0, s);
+  all.take(s, 1.0, 1.0, 1.0, {});
+  all.take(Law::template without_kink<double>(s), 1.0, 1.0, 1.0, {});
+}
+template void one_pair<2>(); template void one_pair<3>();""",
     "kept_drag": """
 template <std::size_t Dim> void kept() {
   const std::array<double, Dim> v{};

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/kernel.hpp"
+#include "laws/joined_fluids.hpp"
+#include "models/fluid/interface_distance.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {
@@ -224,12 +226,35 @@ Cast light_over_heavy(int dimensions, double surface, Uniform& random,
   return Cast(b, std::move(two), {{0, 0, 3.0}, {0, 1, 2.6}, {1, 1, 3.0}, {1, 0, 2.6}}, 0.1, padding);
 }
 
+/// The distances of both fluids' particles from the plane y = `surface`, in their records (2D) and as arrays.
+struct Distances {
+  std::array<std::vector<double>, 2> plain;
+  std::array<EddyRecords, 2> records;
+  Distances(Cast& cast, double surface, std::vector<CompactRecords>* compact = nullptr) {
+    for (std::size_t p = 0; p < 2; ++p) {
+      const PhaseParticles& fluid = cast.phases[p];
+      const CellGrid& grid = cast.neighbours.grid(p);
+      records[p].resize(fluid.size(), grid.images());
+      for (std::size_t k = 0; k < fluid.size(); ++k) {
+        plain[p].push_back(std::max(std::abs(position(fluid, k)[1] - surface), 0.01));
+        records[p].root[k] = plain[p][k];
+      }
+      records[p].fill_images(fluid.size(), grid);
+      if (fluid.dimensions() != 2) continue;
+      const std::size_t all = fluid.size() + grid.images();
+      if (compact) records[p].give_roots((*compact)[p], all);
+      records[p].give_roots(cast.motion[p], all);
+    }
+  }
+};
+
 // Two fluids joined by an entry: random fields, so that pressure differences lie on both sides of what is weight.
 TEST(JoinedFluids, EqualTheNaiveSums) {
   for (const int dimensions : {2, 3}) {
     for (const bool mixed : {false, true}) {
       Uniform random(15);
-      Cast cast = light_over_heavy(dimensions, dimensions == 2 ? 5.0 : 4.0, random,
+      const double surface = dimensions == 2 ? 5.0 : 4.0;
+      Cast cast = light_over_heavy(dimensions, surface, random,
                                    mixed ? simd::width_in_use<float>() : simd::width_in_use<double>());
       for (auto& p : cast.phases) {
         randomise(p, Field::velocity, -2, 2, random);
@@ -244,14 +269,19 @@ TEST(JoinedFluids, EqualTheNaiveSums) {
         dimensions == 2 ? compact[p].copy<2>(cast.motion[p], n + images)
                         : compact[p].copy<3>(cast.motion[p], n + images);
       }
+      const Distances distances(cast, surface, &compact);
       FluidParameters q = parameters(dimensions);
       q.reference_density = 1.2;
+      q.distances = &distances.records[0];
       const auto spline = KernelKind::wendland_c2;
       const std::vector<FluidNeighbour> neighbours{
           {&cast.list(0), &cast.motion[0], spline, 3.0, 0.7, true, &compact[0]},
-          {&cast.list(1), &cast.motion[1], spline, 2.6, 1.3, false, &compact[1], 1200.0}};
+          {&cast.list(1), &cast.motion[1], spline, 2.6, 1.3, false, &compact[1], 1200.0, 9.0, &distances.records[1]}};
       const auto expected =
-          naive::consistent_rates(cast, 0, {{0, spline, 3.0, 0.7, true}, {1, spline, 2.6, 1.3, false, 1200.0}}, q);
+          naive::consistent_rates(cast, 0,
+                                  {{0, spline, 3.0, 0.7, true},
+                                   {1, spline, 2.6, 1.3, false, 1200.0, 9.0, &distances.plain[0], &distances.plain[1]}},
+                                  q);
       auto& fluid = cast.phases[0];
       if (mixed) fluid_rates(fluid, compact[0], neighbours, q, FluidScheme::consistent);
       else fluid_rates(fluid, cast.motion[0], neighbours, q, FluidScheme::consistent);
@@ -265,35 +295,129 @@ TEST(JoinedFluids, EqualTheNaiveSums) {
 }
 
 // At rest, whatever the arrangement: the weight of the heavy fluid accelerates neither. Of the pull towards the middle
-// between two particles, a hundredth of the weights' difference, a fraction is left.
-TEST(JoinedFluids, StayAtRest) {
+// between two particles, a hundredth of the weights' difference, a fraction is left. And where the distances are those
+// of a plane, a shear stress that is the same in both fluids accelerates neither: the velocity is linear in each.
+TEST(JoinedFluids, StayAtRestAndBearOneShearStress) {
+  constexpr double g = 9.81, surface = 5.0, stress = 3.0;
+  const std::array<double, 2> viscosity{0.02, 5.0};
   for (const std::size_t who : {0u, 1u}) {
     Uniform random(16);
-    Cast cast = light_over_heavy(2, 5.0, random);
-    const double g = 9.81, surface = 5.0;
-    for (auto& p : cast.phases)
-      for (std::size_t k = 0; k < p.size(); ++k)
-        p.column(Field::pressure)[k] = p.mass() * g * (surface - position(p, k)[1]);
+    Cast cast = light_over_heavy(2, surface, random);
+    for (std::size_t phase = 0; phase < 2; ++phase) {
+      PhaseParticles& p = cast.phases[phase];
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        const double y = position(p, k)[1] - surface;
+        p.column(Field::pressure)[k] = -p.mass() * g * y;
+        p.column(Field::velocity, 0)[k] = stress / viscosity[phase] * y;
+      }
+    }
     cast.pack();
+    const Distances distances(cast, surface);
     FluidParameters q = bare();
     q.reference_density = cast.phases[who].mass();
     q.gravity = {0, -g, 0};
+    q.distances = &distances.records[who];
     const auto wendland = KernelKind::wendland_c2;
     const std::size_t own = who == 0 ? 0 : 2;
-    const std::vector<FluidNeighbour> neighbours{
-        {&cast.list(own), &cast.motion[who], wendland, 3.0, 0, true},
-        {&cast.list(own + 1), &cast.motion[1 - who], wendland, 2.6, 0, false, nullptr, cast.phases[1 - who].mass()}};
+    std::vector<FluidNeighbour> neighbours{
+        {&cast.list(own), &cast.motion[who], wendland, 3.0, viscosity[who], true},
+        {&cast.list(own + 1), &cast.motion[1 - who], wendland, 2.6, 0, false, nullptr, cast.phases[1 - who].mass(),
+         viscosity[1 - who], &distances.records[1 - who]}};
     auto& fluid = cast.phases[who];
+    fluid_rates(fluid, cast.motion[who], neighbours, q, FluidScheme::consistent);
+    std::array<std::vector<double>, 2> rubbed;
+    for (std::size_t d = 0; d < 2; ++d) {
+      const double* a = fluid.column(Field::acceleration, static_cast<int>(d));
+      rubbed[d].assign(a, a + fluid.size());
+    }
+    for (int c = 0; c < 2; ++c) std::fill_n(fluid.column(Field::anisotropy, c), fluid.size(), 0.0);
+    neighbours[0].viscosity = neighbours[1].beyond = 0.0;
     fluid_rates(fluid, cast.motion[who], neighbours, q, FluidScheme::consistent);
     int near = 0;
     for (std::size_t k = 0; k < fluid.size(); ++k) {
       const double y = position(fluid, k)[1];
       if (y < 3.6 || y > 6.4) continue;
       ++near;
-      EXPECT_LT(std::hypot(fluid.column(Field::acceleration, 0)[k], fluid.column(Field::acceleration, 1)[k]),
-                0.005 * g);
+      for (std::size_t d = 0; d < 2; ++d)
+        EXPECT_NEAR(rubbed[d][k], fluid.column(Field::acceleration, static_cast<int>(d))[k], 1e-11 * stress);
+      EXPECT_LT(std::hypot(rubbed[0][k], rubbed[1][k]), 0.005 * g);
     }
     EXPECT_GT(near, 5);
+  }
+}
+
+// What a gives b gets, whatever their viscosities and distances: m_a f_ab = -m_b f_ba.
+TEST(JoinedFluids, RubAsOneOnTheOther) {
+  using Law = JoinedFluids<2>;
+  const std::array<double, 2> mu{3.0, 0.004}, distance{0.3, 1.1}, r{0.7, -1.2}, back{-0.7, 1.2};
+  const std::array<std::array<double, 2>, 2> v{{{1.0, 2.0}, {-0.5, 0.25}}};
+  std::array<std::array<double, 2>, 2> force;
+  for (std::size_t a : {0u, 1u}) {
+    const std::size_t b = 1 - a;
+    Law::Own<double> own{};
+    own.v = v[a];
+    own.distance = distance[a];
+    own.ratio = own.share = 1.0;
+    own.rubbing = mu[b] / mu[a];
+    Law::Sums<double> s{};
+    Law::add(own, a == 0 ? r : back, 1.93, -0.4, v[b].data(), 0.0, 1.0, distance[b], s);
+    for (std::size_t d = 0; d < 2; ++d) force[a][d] = mu[a] * s.viscous[d];
+  }
+  for (std::size_t d = 0; d < 2; ++d) EXPECT_NEAR(force[0][d], -force[1][d], 1e-14 * std::abs(force[0][d]));
+}
+
+/// Rows of two fluids on both sides of y = 0, strained by `strain` across it, so many of each; coordinates moved by at
+/// most `perturb` spacings.
+Cast rows_beside_an_interface(int dimensions, double strain, double perturb, Uniform& random) {
+  const double wide = dimensions == 2 ? 12.0 / (1.0 + strain) : 7.0 / std::sqrt(1.0 + strain);
+  const int along = dimensions == 2 ? 12 : 7;
+  const Bounds b = box(dimensions, {wide, 12.0 * (1.0 + strain), wide}, {true, false, dimensions == 3},
+                       {0, -6.0 * (1.0 + strain), 0});
+  std::vector<PhaseParticles> two;
+  for (const int side : {1, -1}) {
+    std::vector<Vec3> places;
+    for (int j = 0; j < 5; ++j)
+      for (int i = 0; i < along; ++i)
+        for (int k = 0; k < (dimensions == 3 ? along : 1); ++k)
+          places.push_back({wide / along * (i + 0.5 + random(-perturb, perturb)),
+                            side * (1.0 + strain) * (j + 0.5 + random(-perturb, perturb)),
+                            dimensions == 3 ? wide / along * (k + 0.5 + random(-perturb, perturb)) : 0.0});
+    two.push_back(phase(dimensions, places, 1.0, {}, side == 1 ? 0 : 1000));
+  }
+  return Cast(b, std::move(two), {{0, 0, 2.6}, {0, 1, 2.6}, {1, 1, 2.6}, {1, 0, 2.6}});
+}
+
+/// The largest and the mean square error of the first row's distances.
+std::array<double, 2> distance_errors(int dimensions, double strain, double perturb) {
+  Uniform random(17);
+  Cast cast = rows_beside_an_interface(dimensions, strain, perturb, random);
+  const auto wendland = KernelKind::wendland_c2;
+  const InterfaceDistance distance({wendland, 2.6, 1.0}, {wendland, 2.6, 1.0}, dimensions);
+  const std::vector<PairEntry<InterfaceSide>> entries{{&cast.list(0), &cast.motion[0], wendland, 2.6, {{}, 1.0}},
+                                                      {&cast.list(1), &cast.motion[1], wendland, 2.6, {{}, 0.0}}};
+  const PhaseParticles& p = cast.phases[0];
+  AlignedVector<double> found(p.size());
+  find_interface(p.size(), dimensions, cast.motion[0], entries, distance, found);
+  std::array<double, 2> error{};
+  int count = 0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double y = position(p, k)[1];
+    if (y > 0.95 * (1.0 + strain)) continue;
+    ++count;
+    error[0] = std::max(error[0], std::abs(found[k] - y));
+    error[1] += (found[k] - y) * (found[k] - y);
+  }
+  EXPECT_GE(count, 12);
+  return {error[0], std::sqrt(error[1] / count)};
+}
+
+// The first row of a lattice is half a spacing from the interface, to rounding of the table, and about as exactly where
+// the fluids are strained; of disturbed particles the distance is known to a fraction of what they are moved by.
+TEST(InterfaceDistance, OfRows) {
+  for (const int dimensions : {2, 3}) {
+    EXPECT_LT(distance_errors(dimensions, 0.0, 0.0)[0], 1e-3);
+    for (const double strain : {-0.1, 0.1}) EXPECT_LT(distance_errors(dimensions, strain, 0.0)[0], 0.02);
+    EXPECT_LT(distance_errors(dimensions, 0.0, 0.2)[1], 0.08);
   }
 }
 

@@ -18,6 +18,8 @@ struct Entry {
   double radius, viscosity;
   bool diffuse;
   double joined = 0;  // density of another fluid across an interface (src/laws/joined_fluids.hpp), 0: none
+  double beyond = 0;  // its viscosity
+  const std::vector<double>*distances = nullptr, *theirs = nullptr;  // of both fluids' particles to the interface
 };
 
 struct Rates {
@@ -165,20 +167,21 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
   for (std::size_t k = 0; k < p.size(); ++k) {
     const double rho = p.column(Field::density)[k], p_a = p.column(Field::pressure)[k];
     const Vec3 v_a = sets::vector(p, Field::velocity, k);
-    Matrix A = anisotropy(p, k), M{}, U{};
+    Matrix A = anisotropy(p, k), M{}, U{}, flux{};
     Vec3 B{}, P{}, C{}, L_v{};
     double L_p = 0.0;
     for_neighbours(cast, a, k, entries,
                    [&](const Entry& e, const PhaseParticles& b, std::size_t j, const Vec3& r, double f) {
                      const double vf = volume(b, j) * f;
-                     double p_ab = p_a - b.column(Field::pressure)[j], friction = 1.0;
+                     double p_ab = p_a - b.column(Field::pressure)[j], rubbing = 1.0;
                      if (e.joined > 0) {
                        const double own = rho * dot(q.gravity, r), theirs = own * e.joined / q.reference_density;
                        const double low = std::min(own, theirs), high = std::max(own, theirs);
                        const double beyond = p_ab > high ? p_ab - high : p_ab < low ? p_ab - low : 0.0;
                        const double jump = beyond + 0.01 * (p_ab - beyond - 0.5 * (own + theirs));
                        p_ab = own + 2.0 * q.reference_density / (q.reference_density + e.joined) * jump;
-                       friction = e.viscosity / entries.front().viscosity;
+                       const double d_a = (*e.distances)[k], theta = d_a / (d_a + (*e.theirs)[j]);
+                       rubbing = e.beyond / (theta * e.beyond + (1 - theta) * entries.front().viscosity);
                      }
                      const Vec3 v_ab = v_a - sets::vector(b, Field::velocity, j);
                      double w = 1.0;
@@ -189,8 +192,9 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
                      }
                      B = B + vf * r;
                      P = P + vf * p_ab * r;
-                     C = C + friction * vf * w * r;
-                     L_v = L_v + friction * vf * w * v_ab;
+                     C = C + vf * w * r;
+                     L_v = L_v + rubbing * vf * w * v_ab;
+                     for (std::size_t d = 0; d < dim; ++d) flux[d] = flux[d] + rubbing * vf * v_ab[d] * r;
                      L_p += vf * p_ab;
                    });
     keep_shift(out, p, k, B, q);
@@ -231,7 +235,7 @@ inline Rates consistent_rates(const sets::Cast& cast, std::size_t a, const std::
     const Vec3 pushed = 2.0 * (p_a - q.void_pressure) * B - P;
     Vec3 dv = q.gravity + q.acceleration - 1.0 / rho * (inner * grad_p + outer * pushed);
     for (std::size_t d = 0; d < dim; ++d) {
-      const double laplacian = -2.0 * n * (L_v[d] - dot(grad_v[d], C)) / weighted;
+      const double laplacian = -2.0 * n * (L_v[d] - dot(solve(M, flux[d], dim), C)) / weighted;
       dv[d] += entries.front().viscosity / rho * laplacian + dot(grad_v[d], du);
       for (std::size_t e = 0; e < dim; ++e) squared += grad_v[d][e] * grad_v[e][d];
     }

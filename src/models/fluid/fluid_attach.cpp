@@ -140,17 +140,35 @@ PressureLaw pressure_law(const Scene& scene, const Layout& layout, std::size_t f
           keys.background_pressure * density * c * c};
 }
 
+namespace {
+
+/// Its own and the artificial one (Pa s).
+double viscosity_of(const Scene& scene, const Layout& layout, std::size_t fluid) {
+  const FluidKeys& keys = scene.phases[fluid].fluid();
+  const PlanPhase& p = layout.phases[fluid];
+  const double artificial =
+      keys.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (layout.dimensions + 2));
+  return scene.phases[fluid].density * (keys.viscosity + artificial);
+}
+
+}  // namespace
+
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b) {
-  const auto of = [&](std::size_t k) {
-    const FluidKeys& keys = scene.phases[k].fluid();
-    const PlanPhase& p = layout.phases[k];
-    const double artificial =
-        keys.artificial_viscosity * p.smoothing_length * p.sound_speed / (2.0 * (layout.dimensions + 2));
-    return scene.phases[k].density * (keys.viscosity + artificial);
-  };
   const bool a_fluid = layout.phases[a].flows, b_fluid = layout.phases[b].flows;
-  if (a_fluid && b_fluid) return a == b ? of(a) : 2.0 * of(a) * of(b) / std::max(of(a) + of(b), 1e-300);
-  return of(a_fluid ? a : b);
+  if (!a_fluid || !b_fluid || a == b) return viscosity_of(scene, layout, a_fluid ? a : b);
+  const double mu_a = viscosity_of(scene, layout, a), mu_b = viscosity_of(scene, layout, b);
+  return 2.0 * mu_a * mu_b / std::max(mu_a + mu_b, 1e-300);
+}
+
+bool has_interface(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  const auto laminar = [&](std::size_t k) {
+    return layout.phases[k].flows && !layout.phases[k].eddies &&
+           scene.phases[k].fluid().scheme == FluidScheme::consistent;
+  };
+  if (e.a == e.b || !e.continues_fluid || !laminar(e.a) || !laminar(e.b)) return false;
+  const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-12 * std::max(a, b); };
+  return differ(scene.phases[e.a].density, scene.phases[e.b].density) ||
+         differ(viscosity_of(scene, layout, e.a), viscosity_of(scene, layout, e.b));
 }
 
 double wall_rub(const Scene& scene, const Layout& layout, std::size_t solid) {
@@ -298,15 +316,14 @@ void FluidPhase::bind_entries() {
     const std::size_t other = e.partner(number_);
     const bool solid = e.extends;
     if (keys_.energy && !solid) w_->need(other, Record::motion);
-    FluidNeighbour n{
-        &w_->list(e.direction(number_)),
-        &w_->records(other, solid ? Record::extended : Record::motion),
-        e.kernel,
-        e.radius,
-        pair_viscosity(scene_, layout_, number_, other),
-        solid || other == number_,
-        w_->compact(other),
-        !solid && other != number_ && keys_.scheme == FluidScheme::consistent ? scene_.phases[other].density : 0};
+    FluidNeighbour n{&w_->list(e.direction(number_)),
+                     &w_->records(other, solid ? Record::extended : Record::motion),
+                     e.kernel,
+                     e.radius,
+                     pair_viscosity(scene_, layout_, number_, other),
+                     solid || other == number_,
+                     w_->compact(other)};
+    if (has_interface(scene_, layout_, e)) bind_interface(e, n);
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);
@@ -317,6 +334,32 @@ void FluidPhase::bind_entries() {
   for (const auto& e : layout_.entries)
     if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves && !layout_.phases[e.other].travels)
       close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
+}
+
+/// The entry with another fluid; the particles of both need the motion records for their distances to the interface.
+void FluidPhase::bind_interface(const PlanEntry& e, FluidNeighbour& n) {
+  const std::size_t other = e.partner(number_);
+  for (const std::size_t k : {number_, other}) {
+    w_->need(k, Record::motion);
+    w_->need(k, Record::eddies);
+  }
+  n.joined = scene_.phases[other].density;
+  n.beyond = viscosity_of(scene_, layout_, other);
+  n.distances = &w_->eddies(other);
+  parameters_.distances = &w_->eddies(number_);
+  if (sides_of_interface_.empty())
+    for (const auto& own : layout_.entries)
+      if (own.a == number_ && own.b == number_) {
+        sides_of_interface_.push_back({&w_->list(own.direction(number_)),
+                                       &w_->records(number_, Record::motion),
+                                       own.kernel,
+                                       own.radius,
+                                       {{}, 1.0}});
+        interface_distance_ = {{own.kernel, own.radius, plan_.spacing},
+                               {e.kernel, e.radius, layout_.phases[other].spacing},
+                               layout_.dimensions};
+      }
+  sides_of_interface_.push_back({n.list, &w_->records(other, Record::motion), e.kernel, e.radius, {{}, 0.0}});
 }
 
 /// The fluid is whole until a void is found.

@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "laws/consistent_fluid.hpp"
+#include "laws/joined_fluids.hpp"
 #include "laws/plain_fluid.hpp"
 #include "models/fluid/fluid_rates.hpp"
 #include "models/fluid/fluid_stress.hpp"
@@ -376,6 +377,26 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename ConsistentFluid<Dim>::te
         std::array<V, Dim> friction = s.viscous;
         for (std::size_t d = 0; d < Dim; ++d)
           for (std::size_t e = 0; e < Dim; ++e) friction[d] -= grad_v[d][e] * s.weighted[e];
+        return friction;
+      },
+      parts);
+}
+
+/// Next to an interface with another fluid: the flux of momentum has the kink of the velocity there.
+template <int Dim, Beside beside, class V, class Parts>
+BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename JoinedFluids<Dim>::template Sums<V>& s, double mu, V rho,
+                                         const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
+                                         Place<Dim, V>& place, Parts& parts) {
+  return finish_consistent<Dim, beside, V>(
+      s, mu, rho, q, anisotropy, place,
+      [&](const auto& inverse, const auto& grad_v) __attribute__((always_inline)) {
+        std::array<V, Dim> friction = s.viscous;
+        for (std::size_t d = 0; d < Dim; ++d)
+          for (std::size_t e = 0; e < Dim; ++e) {
+            V flux = grad_v[d][e];
+            for (std::size_t f = 0; f < Dim; ++f) flux = simd::fma(s.kink[d * Dim + f], inverse[f * Dim + e], flux);
+            friction[d] -= flux * s.weighted[e];
+          }
         return friction;
       },
       parts);

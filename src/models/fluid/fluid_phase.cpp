@@ -58,6 +58,14 @@ void FluidPhase::schedule(Schedule& s) {
     }
     s.add({stage::eddies, plan_.name, touches, [this] { find_eddies(); }});
   }
+  const bool meets = std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+    return e.has(number_) && has_interface(scene_, layout_, e);
+  });
+  if (meets) {
+    Touches touches = beside(own({position}, {}), {position}, {Record::motion});
+    touches.front().records.writes = {Record::eddies, Record::motion, Record::compact};
+    s.add({stage::eddies, plan_.name, touches, [this] { find_interface(); }});
+  }
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
   if (keys_.scheme == FluidScheme::consistent) writes = writes | FieldSet{anisotropy};
   if (plan_.eddies) {
@@ -143,6 +151,17 @@ void FluidPhase::find_eddies() {
       e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
     e.wall_velocity = ranks::of_first(here, e.wall_velocity);
   }
+}
+
+/// How far its particles are from the interface with another fluid, before the rates of both.
+void FluidPhase::find_interface() {
+  EddyRecords& records = w_->eddies_to_write(number_);
+  const std::size_t n = particles_->size();
+  barchan::find_interface(n, layout_.dimensions, w_->records(number_, Record::motion), sides_of_interface_,
+                          interface_distance_, records.root);
+  if (layout_.dimensions != 2) return;
+  if (CompactRecords* compact = w_->compact_to_write(number_)) records.give_roots(*compact, n);
+  else records.give_roots(w_->to_write(number_, Record::motion), n);
 }
 
 void FluidPhase::rate() {

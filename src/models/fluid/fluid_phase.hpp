@@ -14,6 +14,7 @@
 #include "models/fluid/energy.hpp"
 #include "models/fluid/energy_books.hpp"
 #include "models/fluid/held_boxes.hpp"
+#include "models/fluid/interface_distance.hpp"
 #include "models/fluid/moving_boxes.hpp"
 #include "models/fluid/relief.hpp"
 #include "models/fluid/surface.hpp"
@@ -57,6 +58,7 @@ class FluidPhase : public Model {
  private:
   void kick_and_drift();
   void find_eddies();
+  void find_interface();
   void rate();
   void find_surface();
   void hold();
@@ -64,6 +66,7 @@ class FluidPhase : public Model {
   void schedule_books(Schedule& s);
   void bind_entries();
   void look_for_voids();
+  void bind_interface(const PlanEntry& e, FluidNeighbour& n);
   void bind_eddies();
   void bind_k_omega();
   void step_k_omega();
@@ -100,6 +103,9 @@ class FluidPhase : public Model {
   std::vector<HeldBox> boxes_;
   std::vector<MovingBox> moving_boxes_;  // the same of walls that move
 
+  std::vector<PairEntry<InterfaceSide>> sides_of_interface_;  // empty: it meets no other fluid
+  InterfaceDistance interface_distance_;
+
   // with eddies
   std::vector<EddyNeighbour> eddy_neighbours_;
   EddyParameters eddies_;
@@ -114,6 +120,10 @@ class FluidPhase : public Model {
 /// The viscosity of a pair of particles of two phases, at least one of which is a fluid (Pa s): the fluid's own, with
 /// the artificial one; of two fluids the harmonic mean.
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
+
+/// Whether an entry of two fluids of the consistent scheme has an interface: their densities or viscosities differ.
+/// Phases of one fluid that have spacings of their own have none.
+bool has_interface(const Scene& scene, const Layout& layout, const PlanEntry& e);
 
 /// The share of no slip that a solid keeps (ExtensionRule::rub). A heavy free surface has friction that no fluid has
 /// (least_viscosity, fluid_surface.hpp). It acts within the fluid alone: along a wall the fluid rubs with its own

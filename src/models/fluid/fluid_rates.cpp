@@ -15,16 +15,20 @@ namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
-/// The first particle of pairs across an interface; rho: its density, so that it carries its own weight exactly.
+/// The first particle of pairs across an interface; rho: its density, so that it carries its own weight exactly; mu:
+/// the viscosity of its fluid (Pa s); distance (m): to the interface.
 template <int Dim, class T>
 BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_own(
     const typename ConsistentFluid<Dim>::template Own<LanesOf<T>>& own, const FluidNeighbour& e,
-    const FluidParameters& q, double rho) {
+    const FluidParameters& q, double rho, double mu, double distance) {
   using V = LanesOf<T>;
-  typename JoinedFluids<Dim>::template Own<V> joined{own, {}, {}, {}};
+  constexpr double most = 1e6;  // mu_b/mu_a of a fluid a without friction
+  typename JoinedFluids<Dim>::template Own<V> joined{own, {}, {}, {}, {}, {}};
   for (std::size_t d = 0; d < Dim; ++d) joined.weight[d] = simd::broadcast<V>(rho * q.gravity[d]);
   joined.ratio = simd::broadcast<V>(e.joined / q.reference_density);
   joined.share = simd::broadcast<V>(2.0 * q.reference_density / (q.reference_density + e.joined));
+  joined.rubbing = simd::broadcast<V>(e.beyond < most * mu ? e.beyond / mu : e.beyond > 0.0 ? most : 1.0);
+  joined.distance = simd::broadcast<V>(distance);
   return joined;
 }
 
@@ -60,26 +64,29 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       if constexpr (L::corrected) columns.weigh(own, k);
       return own;
     };
-    typename L::template Sums<Four> s{}, raw;
+    using Total = std::conditional_t<Joined, JoinedFluids<Dim>, L>;
+    typename Total::template Sums<Four> s{};
+    typename L::template Sums<Four> raw;
+    [[maybe_unused]] typename JoinedFluids<Dim>::template Sums<Four> crossing;
     Four company(0.0);
     for (std::size_t c = 0; c < neighbours.size(); ++c) {
       const auto& e = neighbours[c];
       if constexpr (Joined) {
         if (e.joined > 0) {
           const auto across = [&](std::size_t k) __attribute__((always_inline)) {
-            return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k]);
+            return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k], mu, q.distances->root[k]);
           };
-          if (!sum_rows<Dim, JoinedFluids, T>(at, e, kernels[c], unit, across, raw)) continue;
-          for (std::size_t d = 0; d < Dim; ++d) {  // the Laplacian's own factor is this phase's viscosity
-            raw.viscous[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
-            raw.weighted[d] *= Four(mu > 0 ? e.viscosity / mu : 0.0);
-          }
-          s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+          const Roots distances{e.distances->root.data(), 0.0};
+          if (sum_rows<Dim, JoinedFluids, T>(at, e, kernels[c], unit, across, crossing, distances))
+            s.take(crossing, kernels[c].slope_factor(), 0.0, 0.0, weight);
           continue;
         }
       }
-      if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw))
-        s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+      if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw)) {
+        if constexpr (Joined)
+          s.take(JoinedFluids<Dim>::template without_kink<Four>(raw), kernels[c].slope_factor(), 0.0, 0.0, weight);
+        else s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
+      }
       if constexpr (L::corrected && beside == Beside::ends)
         if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);  // the fluid's own entry is the first
     }

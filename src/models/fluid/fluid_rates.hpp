@@ -23,6 +23,8 @@ struct FluidNeighbour {
   bool diffuse;                             // density diffusion acts across this entry
   const CompactRecords* compact = nullptr;  // the same records for mixed precision, null in double
   double joined = 0;                        // kg/m3: density at rest of another fluid, consistent scheme; 0: no fluid
+  double beyond = 0;                        // Pa s: viscosity of that fluid
+  const EddyRecords* distances = nullptr;   // of that fluid's particles to the interface (3D; 2D: in their records)
 };
 
 /// Particles of a fluid that may stand beside a void, collected by the pass over its rates in any order.
@@ -72,6 +74,7 @@ struct FluidParameters {
   double lattice_moment;             // -tr M/Dim on a lattice at rest, 1
   bool ends;                         // a void or a free surface is near some particle, or solids move in the fluid
   LooseParticles* loose;             // where particles that may stand beside a void are noted; null: nobody asks
+  const EddyRecords* distances = nullptr;  // of its particles to the interface with another fluid
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.
