@@ -4,7 +4,8 @@
 // A motion record holds position, velocity and two scalars:
 //   2D  x y u v p V s -      3D  x y z u v w p V
 // p is the pressure [Pa] (its meaning is the pass's own), V the volume [m^dimensions]; V = 0 marks the dummy; s, of a
-// turbulent fluid, is the square root of the dynamic viscosity [sqrt(Pa s)].
+// turbulent fluid, is the square root of the dynamic viscosity [sqrt(Pa s)]; of a laminar one that meets another fluid,
+// the distance to the interface [m].
 // A stress record holds position, velocity, stress/density^2 and volume:
 //   2D  x y u v sxx syy sxy V     3D  x y z u v w sxx syy szz sxy syz sxz V - - -
 // A carried record holds of a particle of a solid its position, its own velocity at the end of the step, the part of it
@@ -253,7 +254,7 @@ class CompactRecords {
 
 /// What pair loops load of a neighbour beside its motion record; order as there.
 struct EddyRecords {
-  AlignedVector<double> root;   // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]
+  AlignedVector<double> root;   // sqrt of the dynamic viscosity, eddies included [sqrt(Pa s)]; or what s is (above)
   AlignedVector<double> touch;  // Pa s, of pairs with grains next to the particle
   RecordLabel label;
   static constexpr std::size_t of_a_particle = 2 * sizeof(double);  // bytes

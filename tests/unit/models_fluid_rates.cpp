@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/kernel.hpp"
+#include "laws/joined_fluids.hpp"
+#include "models/fluid/interface_distance.hpp"
 #include "unit/naive_fluid.hpp"
 
 namespace barchan {
