@@ -79,7 +79,7 @@ const std::vector<Case>& broken_on_the_way() {
        {},
        {"particle 0 of phase \"a\"", "in the same place", "1 of phase \"b\"", "raise phases.a.young"}},
       {"TornBody",
-       &squares_of,
+       &two_squares,
        {"fill.0.velocity=['8000*(x-0.01)', 0]"},
        {"phase \"a\"", "escaped through the lower side of x"}},
   };

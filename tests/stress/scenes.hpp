@@ -93,8 +93,8 @@ end = 1
 every = 0.005
 )toml";
 
-/// Two elastic squares that meet.
-inline const std::string squares = R"toml(
+/// Two elastic two_squares that meet.
+inline const std::string two_squares = R"toml(
 spacing = 1e-3
 [domain]
 size = [0.04, 0.03]

@@ -48,7 +48,7 @@ TEST(Formula, RemembersTheFirstValueThatItMayNotHave) {
   EXPECT_EQ(Formula(Expression{"-x", 0.0}).not_negative({2, 0, 0}, 3.0), -2.0);
   EXPECT_TRUE(std::isinf(value("1/(x - 2)", {2, 0, 0})));
   ASSERT_TRUE(formula_fault());
-  EXPECT_EQ(formula_fault()->formula, "-x ");
+  EXPECT_EQ(formula_fault()->formula, "-x");
   EXPECT_EQ(formula_fault()->value, -2.0);
   EXPECT_EQ(formula_fault()->t, 3.0);
   EXPECT_STREQ(formula_fault()->expected, "0 or more");
