@@ -198,8 +198,9 @@ int run_to_the_end(Course& course, From from, int retreats) {
       begin_again(run, course);
     }
   } catch (const BreakdownError&) { throw; } catch (const OutputError& e) {
-    run->fail(std::string("output failed: ") + e.what());
-    throw;
+    const std::string folder = run->fault_of_folder(), why = folder.empty() ? e.what() : folder;
+    run->fail("output failed: " + why);
+    throw OutputError(why);
   } catch (const std::exception& e) {
     run->fail(std::string("failed: ") + e.what());
     throw;

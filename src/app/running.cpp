@@ -357,10 +357,14 @@ void Run::write_row() {
   simulation_.begin_row();
 }
 
+std::string Run::fault_of_folder() const {
+  if (!course_.lock || course_.lock->is_there()) return "";
+  return "the folder '" + directory_.string() +
+         "' was removed or replaced while the run went on; nothing is written into another one";
+}
+
 void Run::check_folder() const {
-  if (course_.lock && !course_.lock->is_there())
-    throw OutputError("the folder '" + directory_.string() +
-                      "' was removed or replaced while the run went on; nothing is written into another one");
+  if (const std::string fault = fault_of_folder(); !fault.empty()) throw OutputError(fault);
 }
 
 void Run::check_files() {

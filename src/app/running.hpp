@@ -70,6 +70,8 @@ class Run {
   /// For a run that ends for another reason: run.json says so if anything can be written. On several ranks its numbers
   /// are those of the beginning, but for steps and time.
   void fail(const std::string& reason);
+  /// Empty: the folder is still the one of the beginning.
+  std::string fault_of_folder() const;
 
  private:
   OutputClock& clock() { return simulation_.outputs(); }

@@ -348,10 +348,15 @@ void warn_of_another_up(const Scene& scene, Plan& plan) {
                             "turn the scene so that gravity is along y, as in [0, -9.81, 0]");
 }
 
-/// Grains that enter faster or more densely than in any wind: a flux in g, or a speed in mm/s.
+/// Grains that enter faster or more densely than in any wind: a flux in g, or a speed in mm/s. A liquid carries dense
+/// layers along its bed.
 void warn_of_influxes(const Scene& scene, Plan& plan) {
-  constexpr double dense = 0.05;     // of the volume at the lowest place; saltation has some 1e-3 there
   constexpr double fastest = 100.0;  // m/s
+  constexpr double liquid = 100.0;   // kg/m3
+  bool is_wind = true;
+  for (std::size_t k = 0; k < scene.phases.size(); ++k)
+    is_wind = is_wind && !(plan.phases[k].flows && scene.phases[k].density > liquid);
+  const double dense = is_wind ? 0.05 : 0.4;  // of the volume at the lowest place; saltation has some 1e-3 there
   for (std::size_t k = 0; k < scene.influxes.size(); ++k) {
     const Influx& influx = scene.influxes[k];
     const std::string key = "influx." + std::to_string(k);
@@ -365,7 +370,8 @@ void warn_of_influxes(const Scene& scene, Plan& plan) {
       plan.warnings.push_back(key + ".flux: " + brief(influx.flux) + " kg/m/s at " + brief(*influx.speed) +
                               " m/s fills " + brief(100.0 * share) +
                               " % of the space at the height where most grains enter: they collide there, and those "
-                              "without room enter later or never; sand in a wind has a flux of 0.01 to 0.1 kg/m/s");
+                              "without room enter later or never" +
+                              (is_wind ? "; sand in a wind has a flux of 0.01 to 0.1 kg/m/s" : ""));
     if (*influx.speed > fastest)
       plan.warnings.push_back(
           key + ".speed: at " + brief(*influx.speed) +

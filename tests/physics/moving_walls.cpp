@@ -202,7 +202,7 @@ TEST(Gate, HoldsTheWaterWhateverItsSpacing) {
   EXPECT_NEAR(least / (0.5 * 9810 * 0.3 * 0.3 * 0.012), 1.0, 0.05) << "it still carries the weight of the water";
 }
 
-/// A belt of spheres along a periodic axis, with one grain on it.
+/// A belt along a periodic axis, with one grain on it.
 const std::string belt = R"toml(
 spacing = 1e-3
 [domain]
@@ -226,7 +226,7 @@ phase = "belt"
 shape = { box = { min = [0, 0], max = [0.02, 0.001] } }
 [[fill]]
 phase = "sand"
-shape = { points = [[0.00501, 0.00136]] }
+shape = { points = [[0.00501, 0.0015]] }
 [[motion]]
 phase = "belt"
 velocity = ["0.1*min(1, t/0.1)", 0]

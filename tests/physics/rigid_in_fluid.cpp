@@ -23,16 +23,18 @@ double value(const Simulation& s, const std::string& column) {
   return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
 }
 
-/// Momentum of all that moves, and mass times speed.
+/// Momentum of all that moves, the bodies with the mass of their shapes; and mass times speed.
 std::pair<Vec3, double> momentum(Simulation& run) {
   Vec3 sum{};
   double size = 0.0;
+  for (int d = 0; d < run.phases().front().dimensions(); ++d)
+    sum[static_cast<std::size_t>(d)] = value(run, std::string("momentum_") + "xyz"[d]);
   for (const PhaseParticles& p : run.phases())
     for (std::size_t k = 0; k < p.size(); ++k) {
-      Vec3 v{};
-      for (int d = 0; d < p.dimensions(); ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d)[k];
-      sum = sum + p.mass() * v;
-      size += p.mass() * norm(v);
+      double square = 0.0;
+      for (int d = 0; d < p.dimensions(); ++d)
+        square += p.column(Field::velocity, d)[k] * p.column(Field::velocity, d)[k];
+      size += p.mass() * std::sqrt(square);
     }
   return {sum, size};
 }

@@ -52,9 +52,7 @@ Momenta momenta(const Simulation& run, const PhaseParticles& spheres, int dimens
       v[d] = value(run, "block" + what + "_" + "xyz"[d] + " ");
     return v;
   };
-  double mass = 0.0;
-  for (const PhaseParticles& p : run.phases())
-    if (p.name() == "block") mass = p.mass() * static_cast<double>(p.size());
+  const double mass = run.state().bodies.front().mass;  // of its shape
   const Vec3 x = of_body(""), v = of_body("_velocity");
   Vec3 own{0, 0, dimensions == 2 ? value(run, "block_angular_momentum ") : 0.0};
   if (dimensions == 3) own = of_body("_angular_momentum");

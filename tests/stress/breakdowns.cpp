@@ -52,7 +52,7 @@ const std::vector<Case>& broken_on_the_way() {
        {"particle ", "phase \"fluid\"", "is faster", "with an acceleration of 1e+14 m/s2"}},
       {"ForceNotFinite",
        &vortices,
-       {"forcing.0.acceleration=['sqrt(0.05-t)', 0]"},
+       {"forcing.0.acceleration=['x <= 0 ? 1 : sqrt(0.05-t)', 0]"},
        {"particle 0 of phase \"fluid\"", "forcing.0.acceleration: the formula"}},
       {"DensityRatio",
        &two_fluids,
