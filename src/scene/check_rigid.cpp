@@ -140,7 +140,7 @@ void check_rigid(const Scene& scene, const Report& report) {
     if (touch_by_surfaces(*a, *b)) check_surfaces(scene, pair, report);
   }
   for (const Phase& phase : scene.phases)
-    if (known(phase) && rigid(phase) && !report.touched("interactions")) check_stiffness(scene, phase, report);
+    if (known(phase) && rigid(phase) && !report.misread("interactions")) check_stiffness(scene, phase, report);
 }
 
 }  // namespace barchan
