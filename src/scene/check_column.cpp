@@ -95,14 +95,15 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
     report(dotted + ".held", std::string("a wind that feels the grains is their mean along ") +
                                  (scene.dimensions == 2 ? "x" : "x and z") + "; expected domain.periodic = [" +
                                  (scene.dimensions == 2 ? "\"x\"" : "\"x\", \"z\"") + "], or held = true");
-  if (report.touched("interactions")) return;
+  if (report.misread("interactions")) return;
   bool felt = false;
   for (const Interaction& pair : scene.interactions) {
     if (pair.a != column.name && pair.b != column.name) continue;
     const std::string entry = "interactions." + pair.a + "-" + pair.b;
     const Phase* other = find_phase(scene, pair.a == column.name ? pair.b : pair.a);
-    if (!other || report.touched(entry)) continue;
+    if (!other) continue;
     felt = true;
+    if (report.touched(entry)) continue;
     if (other->kind() != PhaseKind::grains) {
       report(entry, "a column of air acts on grains only, and \"" + other->name + "\" is of kind " +
                         other->kind_word() + "; expected no such entry");

@@ -31,10 +31,10 @@ void check_fluid(const Scene& scene, const Section& section, const Report& repor
   if (!phase) return report(at, unknown_phase(section.phase, scene));
   if (phase->kind() != PhaseKind::fluid)
     return report(at, "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
-  if (!report.touched("phases") && phase->fluid().energy)
+  if (!report.misread("phases") && phase->fluid().energy)
     report(at, "what enters \"" + phase->name + "\" has no internal energy that the scene says; expected no phases." +
                    phase->name + ".energy");
-  if (!report.touched("phases") && phase->fluid().enclosed.value_or(false))
+  if (!report.misread("phases") && phase->fluid().enclosed.value_or(false))
     report(at, "\"" + phase->name + "\" flows through a side and is no closed content; expected no phases." +
                    phase->name + ".enclosed");
   for (std::size_t k = 0; k < scene.forcings.size(); ++k)
@@ -84,7 +84,7 @@ double layer_of(const Scene& scene, const Phase& fluid, Side side) {
 
 /// Beside the layer of one phase of a fluid the other phase needs its own: neither has a surface there.
 void check_joined_layers(const Scene& scene, const std::vector<Section>& sections, const Report& report) {
-  if (report.touched("phases") || report.touched("interactions")) return;
+  if (report.misread("phases") || report.misread("interactions")) return;
   for (std::size_t k = 0; k < sections.size(); ++k)
     for (std::size_t j = 0; j < k; ++j) {
       const Section &one = sections[j], &other = sections[k];
@@ -107,7 +107,7 @@ void check_joined_layers(const Scene& scene, const std::vector<Section>& section
 void check_fluctuations(const Scene& scene, std::size_t number, const Report& report) {
   const std::string at = "inflow." + std::to_string(number) + ".fluctuations";
   const Inflow& inflow = scene.inflows[number];
-  if (!inflow.fluctuations || report.touched("inflow") || report.touched("phases") || report.touched("dimensions"))
+  if (!inflow.fluctuations || report.touched("inflow") || report.misread("phases") || report.touched("dimensions"))
     return;
   const Phase* fluid = find_phase(scene, inflow.phase);
   if (!fluid || fluid->kind() != PhaseKind::fluid) return;

@@ -120,17 +120,17 @@ class Checker {
     const bool fitted = !w.top && std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
       return fill.phase == wall->name && fill.packing == Packing::fitted;
     });
-    if (!fitted && !stands_on_side(*wall, w) && !report_.touched("fill"))
+    if (!fitted && !stands_on_side(*wall, w) && !report_.misread("fill"))
       return wrong("has no fill on this side; expected shape = { sides = [\"" + std::string(w.top ? "top" : "bottom") +
                    "\"] } in one of its fills" + (w.top ? "" : ", or a bed with packing = \"fitted\"") +
                    " (of other walls the surface is not known)");
     const bool joined = std::any_of(scene_.interactions.begin(), scene_.interactions.end(), [&](const Interaction& i) {
       return (i.a == w.phase && i.b == w.wall) || (i.a == w.wall && i.b == w.phase);
     });
-    if (!joined && fluid && !report_.touched("interactions"))
+    if (!joined && fluid && !report_.misread("interactions"))
       wrong("does not interact with \"" + w.phase + "\"; expected an entry " + w.phase + "-" + w.wall +
             " in [interactions]");
-    else if (fluid && fluid->kind() == PhaseKind::fluid && !report_.touched("phases"))
+    else if (fluid && fluid->kind() == PhaseKind::fluid && !report_.misread("phases"))
       rubs(*fluid, *wall, fitted, wrong);
   }
 

@@ -22,7 +22,7 @@ class PhysicsChecker {
   PhysicsChecker(const Scene& scene, const Report& report)
       : scene_(scene),
         report_(report),
-        pairs_known_(!report.touched("interactions")),
+        pairs_known_(!report.misread("interactions")),
         sound_speed_known_(some_speed_is_known()) {}
 
   void fluid(const Phase& fluid) {
@@ -356,7 +356,7 @@ class PhysicsChecker {
 
   /// What plan.cpp chooses a sound speed from, as far as the document says it. What is in doubt counts as known.
   bool some_speed_is_known() const {
-    if (report_.touched("time") || report_.touched("domain") || report_.touched("fill") || report_.touched("phases") ||
+    if (report_.touched("time") || report_.touched("domain") || report_.misread("fill") || report_.misread("phases") ||
         report_.touched("motion"))
       return true;
     const auto moves = [](const Fill& f) {

@@ -166,7 +166,7 @@ void check_rigid(const Scene& scene, const Report& report) {
     if (const Phase* phase = find_phase(scene, scene.fills[k].phase); phase && known(*phase) && rigid(*phase))
       check_inertia(scene, k, report);
   for (const Phase& phase : scene.phases)
-    if (known(phase) && rigid(phase) && !report.touched("interactions")) check_stiffness(scene, phase, report);
+    if (known(phase) && rigid(phase) && !report.misread("interactions")) check_stiffness(scene, phase, report);
 }
 
 }  // namespace barchan

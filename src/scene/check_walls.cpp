@@ -72,7 +72,7 @@ void check_keys(const Scene& scene, const Phase& wall, const Report& report) {
       if (report.has(dotted + key) && !report.touched(dotted + key)) report(dotted + key, why);
   };
   if (!meets(scene, wall, PhaseKind::fluid)) {
-    if (!report.touched("interactions"))
+    if (!report.misread("interactions"))
       refuse({".law", ".slip", ".velocity", ".roughness", ".shear-stress"},
              "only a fluid feels it, and no fluid feels this wall; expected an entry of a fluid with \"" + wall.name +
                  "\" in [interactions], or no such key");
@@ -172,11 +172,11 @@ void check_walls(const Scene& scene, const Report& report) {
   for (const Phase& wall : scene.phases) {
     if (wall.kind() != PhaseKind::wall || report.touched("phases." + wall.name + ".kind")) continue;
     check_keys(scene, wall, report);
-    if (!report.touched("fill") && !report.touched("interactions")) {
+    if (!report.misread("fill") && !report.misread("interactions")) {
       check_sizes(scene, wall, report);
       check_openings(scene, wall, report);
     }
-    if (report.has("phases." + wall.name + ".velocity") && !report.touched("fill") && !report.touched("domain"))
+    if (report.has("phases." + wall.name + ".velocity") && !report.misread("fill") && !report.touched("domain"))
       check_velocity(scene, wall, report);
   }
 }

@@ -19,6 +19,8 @@ class Report {
 
   void operator()(const std::string& dotted, const std::string& what) const;
   bool touched(const std::string& dotted) const { return problems_.touch(dotted); }
+  /// Whether reading found a problem in this section, so that its values may be missing.
+  bool misread(const std::string& dotted) const { return problems_.misread(dotted); }
   bool has(const std::string& dotted) const;  ///< the document has this key
   bool is_section(const std::string& dotted) const;
 

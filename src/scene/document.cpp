@@ -33,11 +33,18 @@ void Problems::add(const toml::source_region& source, const std::string& dotted,
   list_.push_back({shortened(place, 1000), from_override, line, column, shortened(dotted), shortened(what, 4000)});
 }
 
+bool Problems::touches(const Problem& problem, const std::string& dotted) {
+  return problem.dotted.starts_with(dotted) &&
+         (problem.dotted.size() == dotted.size() || problem.dotted[dotted.size()] == '.');
+}
+
 bool Problems::touch(const std::string& dotted) const {
-  return std::any_of(list_.begin(), list_.end(), [&](const Problem& problem) {
-    return problem.dotted.starts_with(dotted) &&
-           (problem.dotted.size() == dotted.size() || problem.dotted[dotted.size()] == '.');
-  });
+  return std::any_of(list_.begin(), list_.end(), [&](const Problem& problem) { return touches(problem, dotted); });
+}
+
+bool Problems::misread(const std::string& dotted) const {
+  return std::any_of(list_.begin(), list_.begin() + static_cast<std::ptrdiff_t>(read_),
+                     [&](const Problem& problem) { return touches(problem, dotted); });
 }
 
 void Problems::throw_if_any() const {

@@ -19,6 +19,11 @@ class Problems {
   /// True when a problem was found with this key or with something inside it: later checks then keep silent.
   bool touch(const std::string& dotted) const;
 
+  /// The document has been read: what is found from here on are contradictions between values that were understood.
+  void end_of_reading() { read_ = list_.size(); }
+  /// As touch(), of the problems of reading alone: values of this section may be missing.
+  bool misread(const std::string& dotted) const;
+
   bool empty() const { return list_.empty(); }
   void throw_if_any() const;  ///< throws SceneError
   [[noreturn]] void fail(const toml::source_region& source, const std::string& dotted, const std::string& what);
@@ -30,8 +35,11 @@ class Problems {
     unsigned line, column;
     std::string dotted, what;
   };
+  static bool touches(const Problem& problem, const std::string& dotted);
+
   std::string file_;
   std::vector<Problem> list_;
+  std::size_t read_ = 0;  // of these
 };
 
 /// Parses the text and carries out the overrides. Throws SceneError for malformed TOML; problems with overrides are

@@ -104,8 +104,8 @@ class SphereBodies {
                  std::array<double, 6>* loads, std::uint16_t* near);
   Vec3 arm_of(const Body& body, const Vec3& at) const;
   template <int Dim, class Law>
-  void meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, SolidTouch& touch, Tally& tally,
-            std::array<double, 6>& load);
+  void meet(const Law& law, const StepOfContacts& dt, const Present& s, const Meeting& m, SolidTouch& touch,
+            Tally& tally, std::array<double, 6>& load);
   void go_back(Body& body, double step);
   void kick(Body& body, double time);
   void see(Body& body);

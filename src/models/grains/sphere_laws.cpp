@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "models/grains/spheres.hpp"
-#include "scene/contact_words.hpp"
 #include "scene/ball_surfaces.hpp"
+#include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
