@@ -101,8 +101,11 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
     const double begin = thread_seconds(), time = simulation.time();
     int steps = 0;
     try {
-      for (; steps < batch && thread_seconds() - start < most_seconds && goes_on(); ++steps)
+      for (; steps < batch && thread_seconds() - start < most_seconds && goes_on(); ++steps) {
         simulation.step(scene.time.end - simulation.time());
+        if (on_ranks && simulation.steps() == 1 && goes_on())
+          on_ranks->begin();  // the first step has what starts a run
+      }
     } catch (const BreakdownError& error) { e.failure = error.what(); }
     if (!e.failure.empty() && steps == 0) break;
     if (on_ranks && simulation.steps() == settling && goes_on()) on_ranks->begin();

@@ -27,6 +27,8 @@ void RankMeasure::begin() {
   steps_ = simulation_.steps();
   handed_on_ = ranks::handed_on;
   seconds_ = simulation_.processor_seconds();
+  before_.assign(ranks_, {});
+  simulation_.count_traffic(before_);
   rank_of_id_.assign(phases, {});
   use_.assign(phases, {});
   for (std::size_t p = 0; p < phases; ++p) {
@@ -128,8 +130,8 @@ RankPlan RankMeasure::plan(double seconds, const MemoryOfOne& memory) const {
   std::vector<RankTraffic> models(ranks_);
   const bool contacts_are_shared = simulation_.count_traffic(models);
   for (std::size_t r = 0; r < ranks_; ++r) {
-    plan.ranks[r].messages += models[r].messages / steps;
-    plan.ranks[r].bytes += models[r].bytes / steps;
+    plan.ranks[r].messages += (models[r].messages - before_[r].messages) / steps;
+    plan.ranks[r].bytes += (models[r].bytes - before_[r].bytes) / steps;
   }
   for (RankPlan::Rank& rank : plan.ranks) rank.halo_share = rank.particles > 0.0 ? rank.ghosts / rank.particles : 0.0;
   add_seconds(plan, parts, shares_of_time(contacts_are_shared));

@@ -59,8 +59,9 @@ class RankMeasure {
   // As the counters of the simulation stood at begin().
   long searches_ = 0, steps_ = 0;
   ranks::HandedOn handed_on_;
-  std::vector<ImageUse> use_;    // by phase
-  std::vector<double> seconds_;  // by stage
+  std::vector<ImageUse> use_;        // by phase
+  std::vector<double> seconds_;      // by stage
+  std::vector<RankTraffic> before_;  // of the models, by rank
 };
 
 }  // namespace barchan

@@ -17,7 +17,7 @@ CASES = {
     "a periodic fluid": (PERIODIC.format(scheme="consistent", precision=""), 0.06, 0.01),
     "a channel in three dimensions": (channel("consistent", solid=True), 0.05, 0.01),
     "a free surface": (SOURCE / "scenes/verification/dam_break.toml", 0.03, 0.004, "spacing=5.715e-3"),
-    "water over spheres": (SOURCE / "scenes/water_over_sand.toml", 0.0016, 0.0001),
+    "water over spheres": (SOURCE / "scenes/water_over_sand.toml", 0.0006, 0.0001),
 }
 
 
