@@ -1,4 +1,4 @@
-// Where the files lie that come along with the program: scenes and ParaView states.
+// Where the shipped files of the program are: scenes and ParaView states.
 #pragma once
 
 #include <filesystem>

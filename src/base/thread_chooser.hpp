@@ -61,7 +61,7 @@ class ThreadChooser {
   void give_up(bool at_once);
   bool may_lose() const { return lost_ < share * total_ + allowance; }
   double usual() const;
-  /// Measures one thread beside a team that was asked for, whose steps take so long (s).
+  /// Compares one thread with the team that the user asked for; the length of a step of the team (s).
   void doubt(double team);
   void compared(double one);
 
