@@ -16,7 +16,8 @@ constexpr std::size_t kept_steps = 64;  // of an inflow's pressures: longer than
 }  // namespace
 
 FlowZone::FlowZone(const Scene& scene, const Layout& layout, std::size_t fluid, const FlowEnd& end)
-    : plan_(layout.phases[fluid]),
+    : scene_(scene),
+      plan_(layout.phases[fluid]),
       domain_(layout.domain),
       fluid_(fluid),
       end_(end),
@@ -27,6 +28,8 @@ FlowZone::FlowZone(const Scene& scene, const Layout& layout, std::size_t fluid, 
       dx_(plan_.spacing),
       reach_(dx_ * std::max((end.inflow ? seen : end_seen) - end.layer / plan_.spacing, 0.0)),
       pressure_(end.outflow ? end.outflow->pressure : Expression{}) {
+  whole_ = domain_.high[end.axis()] - domain_.low[end.axis()];
+  for (const FlowEnd& other : flow_ends(scene, scene.phases[fluid])) whole_ += other.layer;
   if (!end.inflow) return;
   velocity_.emplace(scene, end);
   if (end.inflow->fluctuations)
@@ -45,6 +48,7 @@ void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
     if (d > end_.length - (1.0 + 1e-6) * dx_ && d <= end_.length) outermost.push_back(x);
   }
   if (p.is_part()) ranks::join(outermost);
+  changes_ = changes_in_time() || starts_otherwise(p) ? 1.0 : 0.0;
   lanes_ = FlowLanes(std::move(outermost), end_.axis(), dx_, periods());
   lane_.assign(lanes_.size(), {});
   sums_.resize(lanes_.size());
@@ -94,20 +98,28 @@ void FlowZone::renew() {
   const double dt = w_->state.dt;
   sort_out();
   gather();
+  const double common_before = common_.velocity;
+  learn_common();
   const double share = started_ > 0.0 ? std::min(1.0, dt * c_ / (settling * dx_)) : 1.0;
-  const double length = domain_.high[end_.axis()] - domain_.low[end_.axis()];
-  const double mean_share = started_ > 0.0 ? std::min(1.0, dt * c_ / (memory_in_lengths * length)) : 1.0;
   if (end_.inflow) {
-    learn_inflow(mean_share);
+    if (changes_ > 0.0) turn_inflow();
+    learn_inflow(share_of(memory_in_lengths * (domain_.high[end_.axis()] - domain_.low[end_.axis()])));
     remember_pressures(dt);
     if (fluctuations_) fluctuations_->carry(lanes_, *velocity_, w_->state.time, started_ > 0.0 ? dt : 0.0);
   } else {
-    learn_outflow(share);
+    turn_outflow();
+    learn_outflow(share, common_.velocity - common_before);
   }
   learn_layer();
   started_ = 1.0;
   if (gone_ >= 0.5) remove_and_create();
   prescribe();
+}
+
+/// Of a mean whose memory is so many passages of a length (m) that this step's value has; 1 at the start.
+double FlowZone::share_of(double memory) const {
+  if (started_ == 0.0) return 1.0;
+  return std::min(1.0, w_->state.dt * c_ / memory);
 }
 
 /// Who is near the side or beyond it now, and who has passed it.
@@ -184,11 +196,14 @@ void FlowZone::learn_inflow(double mean_share) {
     const auto n = static_cast<double>(sum.count);
     const double depth = sum.depth.value() / n, level = sum.pressure.value() / n;
     const double spread = sum.depth2.value() / n - depth * depth;
+    const double pushed = rho_ * lane.push;  // Pa/m
     if (started_ > 0.0 && sum.count > 1 && spread > 0.1)
-      lane.slope += mean_share * (scale * (sum.sloped.value() / n - depth * level) / (spread * dx_) - lane.slope);
+      lane.slope +=
+          mean_share * (scale * (sum.sloped.value() / n - depth * level) / (spread * dx_) - pushed - lane.slope);
     lane.depth = depth * dx_;
-    lane.now = scale * level - lane.slope * lane.depth;
+    lane.now = scale * level - (lane.slope + pushed) * lane.depth + pushed * whole_;
     lane.pressure += mean_share * (lane.now - lane.pressure);
+    lane.velocity_now = outwards() * c_ * sum.velocity[end_.axis()].value() / n;
   }
 }
 
@@ -197,7 +212,12 @@ void FlowZone::remember_pressures(double dt) {
   if (!first) newest_ = (newest_ + 1) % static_cast<std::int64_t>(kept_steps);
   const auto row = static_cast<std::size_t>(newest_);
   past_times_[row] = dt;
-  for (std::size_t k = 0; k < lane_.size(); ++k) past_[row * lane_.size() + k] = lane_[k].now - lane_[k].pressure;
+  for (std::size_t k = 0; k < lane_.size(); ++k) {
+    double& sound = past_[row * lane_.size() + k];
+    sound = lane_[k].now - lane_[k].pressure;
+    if (changes_ == 0.0) continue;
+    sound = 0.5 * (sound + rho_ * c_ * (lane_[k].velocity_now - lane_[k].given));
+  }
 }
 
 /// p' of a lane some time ago (s).
@@ -215,10 +235,11 @@ double FlowZone::earlier(std::size_t lane, double ago) const {
   return value(row);
 }
 
-/// The velocity at the end of the layer.
-void FlowZone::learn_outflow(double share) {
+/// The velocity at the end of the layer; what all of the layer `gained` is there at once.
+void FlowZone::learn_outflow(double share, double gained) {
   for (std::size_t k = 0; k < lane_.size(); ++k) {
     const Gathered& sum = sums_[k];
+    lane_[k].velocity[end_.axis()] += started_ > 0.0 ? gained : 0.0;
     if (sum.count == 0) continue;
     for (std::size_t c = 0; c < 3; ++c) {
       const double mean = c_ * sum.velocity[c].value() / static_cast<double>(sum.count);
@@ -227,14 +248,14 @@ void FlowZone::learn_outflow(double share) {
   }
 }
 
-/// The mean pressures and velocities in the layer.
+/// The mean pressures and velocities in the layer, less what all of it has.
 void FlowZone::learn_layer() {
-  const double slow =
-      started_ > 0.0 ? std::min(1.0, w_->state.dt * c_ / (memory_in_layers * std::max(end_.layer, dx_))) : 1.0;
+  const double slow = share_of(memory_in_layers * std::max(end_.layer, dx_));
   for (std::size_t k = 0; k < means_.size(); ++k)
     if (const double n = layer_counts_[k]; n > 0) {
-      means_[k].pressure += slow * (rho_ * c_ * c_ * layer_sums_[k][0].value() / n - means_[k].pressure);
-      means_[k].velocity += slow * (c_ * layer_sums_[k][1].value() / n - means_[k].velocity);
+      const double common = common_.pressure + common_.slope * depth_of_cell(k);
+      means_[k].pressure += slow * (rho_ * c_ * c_ * layer_sums_[k][0].value() / n - common - means_[k].pressure);
+      means_[k].velocity += slow * (c_ * layer_sums_[k][1].value() / n - common_.velocity - means_[k].velocity);
     }
 }
 
@@ -256,8 +277,8 @@ bool FlowZone::has_room(const Vec3& x) const {
 double FlowZone::row_spacing(std::size_t lane, double d) const {
   Vec3 at = lanes_.place(lane);
   at[end_.axis()] = end_.at(d);
-  const double pressure = end_.inflow ? lane_[lane].pressure - lane_[lane].slope * (d - end_.layer)
-                                      : pressure_(at, w_->state.time) + law_.background;
+  const double pressure = end_.inflow ? mean_behind(lane_[lane], d - end_.layer)
+                                      : pressure_(at, w_->state.time) - lane_[lane].behind + law_.background;
   return dx_ * rho_ / law_.density(pressure);
 }
 
@@ -301,10 +322,11 @@ void FlowZone::set_pressure(PhaseParticles& p, std::size_t k, double pressure) {
 void FlowZone::prescribe_inflow(PhaseParticles& p, std::size_t k, const Vec3& x, std::size_t lane, double d) {
   const double behind = d - end_.layer, sound = earlier(lane, (behind + lane_[lane].depth) / c_);
   Vec3 v = (*velocity_)(x, w_->state.time);
+  v[end_.axis()] -= outwards() * lane_[lane].behind;
   if (fluctuations_) v = v + (*fluctuations_)(x, v);
-  v[end_.axis()] += (is_upper(end_.side) ? 1.0 : -1.0) * sound / (rho_ * c_);
+  v[end_.axis()] += outwards() * sound / (rho_ * c_);
   for (int c = 0; c < p.dimensions(); ++c) p.column(Field::velocity, c)[k] = v[static_cast<std::size_t>(c)];
-  set_pressure(p, k, lane_[lane].pressure - lane_[lane].slope * behind + sound);
+  set_pressure(p, k, mean_behind(lane_[lane], behind) + sound);
   if (p.has(Field::turbulent_kinetic_energy))  // none: a logarithmic layer enters (two_equations.hpp)
     p.column(Field::turbulent_kinetic_energy)[k] = 0.0;
 }
@@ -312,7 +334,7 @@ void FlowZone::prescribe_inflow(PhaseParticles& p, std::size_t k, const Vec3& x,
 void FlowZone::prescribe_outflow(PhaseParticles& p, std::size_t k, const Vec3& x, std::size_t lane) {
   for (int c = 0; c < p.dimensions(); ++c)
     p.column(Field::velocity, c)[k] = lane_[lane].velocity[static_cast<std::size_t>(c)];
-  set_pressure(p, k, pressure_(x, w_->state.time) + law_.background);
+  set_pressure(p, k, pressure_(x, w_->state.time) - lane_[lane].behind + law_.background);
 }
 
 void FlowZone::prescribe() {
@@ -349,7 +371,7 @@ void FlowZone::absorb() {
   double *rate = p.column(Field::density_rate), *push = p.column(Field::acceleration, axis);
   const double *rho = p.column(Field::density), *pressure = p.column(Field::pressure);
   const double* v = p.column(Field::velocity, axis);
-  const double outwards = is_upper(end_.side) ? 1.0 : -1.0, layer = end_.layer;
+  const double out = outwards(), layer = end_.layer;
   const double strongest = layer > 0.0 ? std::min(3.0 * absorbed * c_ / layer, 0.5 / w_->state.dt) : 0.0;
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
@@ -367,9 +389,9 @@ void FlowZone::absorb() {
     } else if (d > 0.0) {
       const double s = strongest * (d / layer) * (d / layer);
       const Mean& mean = means_[cell_of(lanes_.nearest(x), d)];
-      const double over = pressure[k] - mean.pressure;
+      const double over = pressure[k] - (common_.pressure + common_.slope * d) - mean.pressure;
       rate[k] -= s * over / (c_ * c_);
-      push[k] -= s * outwards * of_sound(over / (rho[k] * c_), outwards * (v[k] - mean.velocity));
+      push[k] -= s * out * of_sound(over / (rho[k] * c_), out * (v[k] - common_.velocity - mean.velocity));
     }
   }
 }
@@ -392,6 +414,9 @@ void FlowZone::archive(Archive& a) {
   a.number(name_ + ": left", left_);
   a.number(name_ + ": gone", gone_);
   a.number(name_ + ": started", started_);
+  a.number(name_ + ": late", late_);
+  a.number(name_ + ": changes", changes_);
+  a.number(name_ + ": common", common_);
   if (fluctuations_) fluctuations_->archive(a, name_);
 }
 

@@ -37,9 +37,11 @@ namespace barchan {
 
 class FlowZone : public Model {
  public:
-  static constexpr double absorbed = 6.0;              // A
-  static constexpr double memory_in_layers = 20.0;     // of <p> of an outflow, in L/c
-  static constexpr double memory_in_lengths = 10.0;    // of an inflow, in lengths of the domain over c
+  static constexpr double absorbed = 6.0;            // A
+  static constexpr double memory_in_layers = 20.0;   // of <p> of an outflow, in L/c
+  static constexpr double memory_in_lengths = 10.0;  // of an inflow, in lengths of the domain over c
+  static constexpr double unlike = 0.02;            // of c: an inflow that differs so much from the fluid at the start
+  static constexpr double squeezed = 0.03;           // of the density, at most, to change the speed of all
   static constexpr double seen = 3.0, end_seen = 2.0;  // spacings inside from which an inflow, an outflow learns
   static constexpr double settling = 10.0;             // dx/c, in which the end follows the layer's velocity
   static constexpr double room = 0.7;                  // spacings between a new particle and others
@@ -50,6 +52,7 @@ class FlowZone : public Model {
   void schedule(Schedule& s) override;
   /// NAME_SIDE_in, NAME_SIDE_out [kg] (kg/m in 2D): what passed the side so far.
   void history(HistoryRow& row) const override;
+  void report(Warnings& warnings) const override;
   void archive(Archive& a) override;
 
  private:
@@ -59,6 +62,9 @@ class FlowZone : public Model {
   struct Lane {
     std::array<double, 3> velocity{};    // m/s, of the end of an outflow
     double pressure = 0.0, slope = 0.0;  // Pa, mean at the side; Pa/m, its slope inwards
+    double given = 0.0, behind = 0.0;    // m/s outwards, or Pa: what the side has, and the scene's value less it
+    double push = 0.0;                   // m/s2, outwards: how an inflow changes
+    double velocity_now = 0.0;           // m/s, outwards, where `now` was measured
     double now = 0.0, depth = 0.0;       // Pa, at the side, less what sound changes on the way; m, from where
     double outermost = 0.0;              // m, of its last particle beyond the side
   };
@@ -71,15 +77,26 @@ class FlowZone : public Model {
     LaneSum pressure, depth, depth2, sloped;  // in rho c^2; in spacings
   };
 
+  bool changes_in_time() const;
+  bool starts_otherwise(const PhaseParticles& p) const;
+  double outwards() const { return is_upper(end_.side) ? 1.0 : -1.0; }
   void renew();
   void sort_out();
   void gather();
   void gather_ranks();
+  void turn(Lane& lane, double given, double most);
+  static void begin_with(Lane& lane, double given, double fluid);
+  void turn_inflow();
+  void turn_outflow();
   void learn_inflow(double mean_share);
-  void learn_outflow(double share);
+  void learn_outflow(double share, double gained);
   void learn_layer();
+  double depth_of_cell(std::size_t cell) const;
   Vec3 periods() const;
+  void learn_common();
+  double share_of(double memory) const;
   void remember_pressures(double dt);
+  double mean_behind(const Lane& lane, double behind) const;
   double row_spacing(std::size_t lane, double d) const;
   void remove_and_create();
   void make_at(const Vec3& x);
@@ -93,6 +110,7 @@ class FlowZone : public Model {
   std::size_t cell_of(std::size_t lane, double d) const;
   Vec3 place_of(const PhaseParticles& p, std::size_t k) const;
 
+  const Scene& scene_;
   const PlanPhase& plan_;
   const Bounds domain_;
   std::size_t fluid_;
@@ -100,6 +118,8 @@ class FlowZone : public Model {
   PressureLaw law_;
   std::string name_;                       // "air_left"
   double c_, rho_, dx_, reach_;            // m/s, kg/m3, m, m: how far inside it looks
+  double whole_ = 0.0;                     // m, along the flow: the domain and the layers at both ends
+  double changes_ = 0.0;                   // 1: the speed of all of the fluid changes
   std::optional<GivenVelocity> velocity_;  // of an inflow
   std::optional<EnteringFluctuations> fluctuations_;
   Formula pressure_;  // of an outflow
@@ -108,12 +128,16 @@ class FlowZone : public Model {
 
   FlowLanes lanes_;
   std::vector<Lane> lane_;
-  std::vector<Mean> means_;                // of the layer, by lane and spacing beyond the side
+  struct Common {
+    double pressure = 0.0, slope = 0.0, velocity = 0.0;  // Pa at the side, Pa/m outwards, m/s
+  } common_;                                             // of the whole layer now, in a flow that changes
+  std::vector<Mean> means_;                              // of the layer, by lane and spacing beyond the side
   std::vector<double> past_, past_times_;  // Pa, s: an inflow's pressures of earlier steps, a row of lanes each
   std::int64_t newest_ = 0;                // row of past_
   double entered_ = 0.0, left_ = 0.0;      // kg
   double gone_ = 0.0;                      // spacings that the fastest flow went since lanes were filled
   double started_ = 0.0;                   // 1: lanes have values
+  double late_ = 0.0;                      // s, in which the side was behind the scene
 
   std::vector<std::uint32_t> members_;  // places of those near or beyond
   std::vector<Gathered> sums_;
