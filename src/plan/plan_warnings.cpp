@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/errors.hpp"
+#include "models/fluid/flow_zone.hpp"
 #include "output/numbers.hpp"
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
@@ -233,6 +234,19 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
   }
 }
 
+/// Suction takes a fluid of plain sums apart, and a flow that slows down is under suction.
+void warn_of_suction(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    if (!plan.phases[k].flows || !flow_changes(scene, scene.phases[k])) continue;
+    const FluidKeys& fluid = scene.phases[k].fluid();
+    if (fluid.scheme == FluidScheme::plain && fluid.background_pressure == 0.0)
+      plan.warnings.push_back("phases." + plan.phases[k].name +
+                              ".scheme: a flow through sides that changes with time is under suction when it slows "
+                              "down, and the plain scheme comes apart (a tide kept 55 % of its particles); expected "
+                              "background-pressure = 0.05, or scheme = \"consistent\"");
+  }
+}
+
 /// The pressure of a fluid at rest pushes its free surface; plain sums have nothing that holds it.
 void warn_of_background_pressure(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
@@ -399,6 +413,7 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_what_does_not_meet(scene, plan);
   warn_of_lattices(plan);
   warn_of_background_pressure(scene, plan);
+  warn_of_suction(scene, plan);
   warn_of_thickness(scene, blocks, plan);
   warn_of_missed_mass(scene, plan);
   look_at_thin_walls(scene, blocks, plan);

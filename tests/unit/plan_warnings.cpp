@@ -111,6 +111,25 @@ TEST(PlanWarns, OfAPressureThatBlowsASurfaceAway) {
   EXPECT_FALSE(warns(box("density = 1000", plain), "background-pressure")) << "no free surface";
 }
 
+TEST(PlanWarns, OfSuctionInAPlainFluidThatChangesItsSpeed) {
+  const auto tide = [](const std::string& keys, const std::string& speed) {
+    const Scene scene = parse_scene(
+        "spacing = 0.05\n[domain]\nsize = [1, 0.5]\nperiodic = [\"y\"]\n[phases.air]\nkind = \"fluid\"\ndensity = 1\n" +
+            keys +
+            "\n[interactions]\nair-air = 3.0\n[[fill]]\nphase = \"air\"\nshape = \"the-rest\"\n[[inflow]]\nphase = "
+            "\"air\"\n"
+            "side = \"left\"\nvelocity = [" +
+            speed + ", 0]\n[[outflow]]\nphase = \"air\"\nside = \"right\"\n[time]\nend = 1\nlargest-speed = 1\n",
+        "s.toml");
+    return make_plan(scene, generate(scene));
+  };
+  const std::string key = "phases.air.scheme: a flow";
+  EXPECT_TRUE(warns(tide("scheme = \"plain\"", "\"sin(t)\""), key));
+  EXPECT_FALSE(warns(tide("scheme = \"plain\"\nbackground-pressure = 0.05", "\"sin(t)\""), key));
+  EXPECT_FALSE(warns(tide("scheme = \"plain\"", "1"), key));
+  EXPECT_FALSE(warns(tide("", "\"sin(t)\""), key));
+}
+
 TEST(PlanWarns, OfWallsThatHoldNobody) {
   const std::string sand = R"(spacing = 0.05
 [domain]

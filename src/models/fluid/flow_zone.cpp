@@ -48,7 +48,7 @@ void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
     if (d > end_.length - (1.0 + 1e-6) * dx_ && d <= end_.length) outermost.push_back(x);
   }
   if (p.is_part()) ranks::join(outermost);
-  changes_ = changes_in_time() || starts_otherwise(p) ? 1.0 : 0.0;
+  changes_ = flow_changes(scene_, scene_.phases[fluid_]) || starts_otherwise(p) ? 1.0 : 0.0;
   lanes_ = FlowLanes(std::move(outermost), end_.axis(), dx_, periods());
   lane_.assign(lanes_.size(), {});
   sums_.resize(lanes_.size());

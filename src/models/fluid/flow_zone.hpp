@@ -35,12 +35,15 @@
 
 namespace barchan {
 
+/// Whether what the scene gives to a fluid, at any of its open sides or by a forcing, is a formula of t.
+bool flow_changes(const Scene& scene, const Phase& fluid);
+
 class FlowZone : public Model {
  public:
   static constexpr double absorbed = 6.0;            // A
   static constexpr double memory_in_layers = 20.0;   // of <p> of an outflow, in L/c
   static constexpr double memory_in_lengths = 10.0;  // of an inflow, in lengths of the domain over c
-  static constexpr double unlike = 0.02;            // of c: an inflow that differs so much from the fluid at the start
+  static constexpr double unlike = 0.02;             // of c: an inflow that differs so much from the fluid at the start
   static constexpr double squeezed = 0.03;           // of the density, at most, to change the speed of all
   static constexpr double seen = 3.0, end_seen = 2.0;  // spacings inside from which an inflow, an outflow learns
   static constexpr double settling = 10.0;             // dx/c, in which the end follows the layer's velocity
@@ -77,7 +80,6 @@ class FlowZone : public Model {
     LaneSum pressure, depth, depth2, sloped;  // in rho c^2; in spacings
   };
 
-  bool changes_in_time() const;
   bool starts_otherwise(const PhaseParticles& p) const;
   double outwards() const { return is_upper(end_.side) ? 1.0 : -1.0; }
   void renew();

@@ -23,17 +23,17 @@ bool any_uses_time(const VectorExpression& v) { return std::any_of(v.begin(), v.
 
 }  // namespace
 
-/// Whether what the scene gives to the fluid, at any of its open sides or by a forcing, is a formula of t.
-bool FlowZone::changes_in_time() const {
-  const auto ends = flow_ends(scene_, scene_.phases[fluid_]);
-  return std::any_of(ends.begin(), ends.end(),
-                     [](const FlowEnd& end) {
-                       return end.inflow ? any_uses_time(end.inflow->velocity) : uses_time(end.outflow->pressure);
-                     }) ||
-         std::any_of(scene_.forcings.begin(), scene_.forcings.end(), [&](const Forcing& forcing) {
-           return forcing.phase == plan_.name &&
-                  (any_uses_time(forcing.acceleration) || any_uses_time(forcing.velocity) || uses_time(forcing.rate));
-         });
+bool flow_changes(const Scene& scene, const Phase& fluid) {
+  const auto ends = flow_ends(scene, fluid);
+  return !ends.empty() &&
+         (std::any_of(ends.begin(), ends.end(),
+                      [](const FlowEnd& end) {
+                        return end.inflow ? any_uses_time(end.inflow->velocity) : uses_time(end.outflow->pressure);
+                      }) ||
+          std::any_of(scene.forcings.begin(), scene.forcings.end(), [&](const Forcing& forcing) {
+            return forcing.phase == fluid.name &&
+                   (any_uses_time(forcing.acceleration) || any_uses_time(forcing.velocity) || uses_time(forcing.rate));
+          }));
 }
 
 /// Whether the fluid starts with another speed through one of its inflows than the scene gives there.
