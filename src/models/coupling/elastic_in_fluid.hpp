@@ -23,6 +23,8 @@ class ElasticInFluid : public Model {
   void begin(State& state, const std::vector<ParticleBlock>& blocks) override;
   void attach(Workspace& w) override;
   void schedule(Schedule& s) override;
+  /// What the body's own vibration leaves of its step when the fluid damps it, a step late.
+  void limits(std::vector<StepLimit>& limits) const override;
   void archive(Archive& a) override;
 
  private:
