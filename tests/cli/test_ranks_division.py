@@ -41,7 +41,7 @@ class Divisions(Folder):
         self.assertNotEqual(by_time["most_particles"], by_particles["most_particles"], "another division")
 
     def test_seconds_of_ranks_that_share_a_core(self):
-        """Some hundred waits a step, in many of which the system takes the core away: that is no time of waiting."""
+        """Four ranks on two cores: MPI gives the core away in its looks, and what others then compute is no processor time of waiting."""
         ended = self.start(4, BETWEEN, "shared")
         self.assertEqual(ended.returncode, 0, ended.stderr)
         run = json.loads((self.at / "shared" / "run.json").read_text())
