@@ -115,28 +115,29 @@ class Patience {
   template <class Done>
   void until(Done&& done) {
     const double begin = now();
-    while (!done()) {
-      const double seconds = now() - begin;
-      if (seconds < moment) continue;
-      add_short(seconds);
-      wait_long(done);
-      return;
-    }
+    const bool at_once = done();
     add_short(now() - begin);
+    if (at_once) return;
+    // MPI may give the core away in each look, so that the shortest wait may be no processor time.
+    const Waiting waiting(waits_);
+    while (now() - begin < moment)
+      if (done()) return;
+    wait_long(done);
   }
 
  private:
-  static constexpr double moment = 50e-6;  // s, of looking without a sleep
-  static constexpr long pause = 20'000;    // ns, of sleep
-  static constexpr double look = 20e-3;    // s, between two questions to the system
-  static constexpr double busy = 40.0;     // 1/s, how often a rank loses its core on a machine that others use
-  static constexpr double polite = 0.2;    // s, for which it is then taken to be so
+  static constexpr double moment = 50e-6;   // s, of looking without a sleep
+  static constexpr double one_look = 4e-6;  // s, of a look that keeps its core, at most
+  static constexpr long pause = 20'000;     // ns, of sleep
+  static constexpr double look = 20e-3;     // s, between two questions to the system
+  static constexpr double busy = 40.0;      // 1/s, how often a rank loses its core on a machine that others use
+  static constexpr double polite = 0.2;     // s, for which it is then taken to be so
   static constexpr int looks_a_clock = 64;
 
-  /// A time of some microseconds is processor time. A longer one may be one without a core, and counts as work.
+  /// Of one call. A longer time than that of a look may be one without a core, and counts as work.
   void add_short(double seconds) {
     waits_.seconds += seconds;
-    if (seconds < 2.0 * moment) waits_.processor_seconds += seconds;
+    if (seconds < one_look) waits_.processor_seconds += seconds;
   }
 
   static double now() {
@@ -145,7 +146,6 @@ class Patience {
 
   template <class Done>
   void wait_long(Done& done) {
-    const Waiting waiting(waits_);
     while (true) {
       if (is_polite()) {
         const timespec time{0, pause};

@@ -73,6 +73,33 @@ double part_of(const MemoryNeed& need, const std::string& name) {
   return 0.0;
 }
 
+/// What steps cost, at most ten at a time.
+struct Batches {
+  static constexpr int most = 10;
+  std::vector<int> steps;
+  std::vector<double> seconds, lengths;  // of a step: processor time, s, and simulated time, s
+
+  struct Cost {
+    double steps, seconds;
+  };
+  /// Of a run to the time `end`, s: the batches before `last` as they were, then the medians of those from it on.
+  Cost to(double end, std::size_t last) const {
+    Cost cost{0.0, 0.0};
+    for (std::size_t k = 0; k < last; ++k) {
+      cost.steps += steps[k];
+      cost.seconds += steps[k] * seconds[k];
+      end -= steps[k] * lengths[k];
+    }
+    const auto from = static_cast<std::ptrdiff_t>(last);
+    const double more = end / median({lengths.begin() + from, lengths.end()});
+    return {cost.steps + more, cost.seconds + more * median({seconds.begin() + from, seconds.end()})};
+  }
+};
+
+// A loose bed makes its contacts in some thousand steps, and they are most of what it costs from then on: while pairs
+// become more, so many times in 300 steps, steps are made for so many seconds.
+constexpr double growth = 1.02, more_seconds = 4.0;
+
 }  // namespace
 
 Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock> blocks, bool retreats, int ranks) {
@@ -90,43 +117,63 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
     simulation.measure_processor_time();
     on_ranks.emplace(simulation, ranks);
   }
-  constexpr int batch = 10;
-  constexpr long most_steps = 300;
   constexpr long settling = 10;  // steps: of ranks, what goes between them is counted after them
-  const double most_seconds = on_ranks ? 10.0 : 2.0;
+  Batches batches;
   const auto goes_on = [&] { return simulation.time() < scene.time.end * (1 - 1e-12); };
-  std::vector<double> seconds, lengths;  // of each batch: of processor time a step, and of simulated time a step
-  const double start = thread_seconds();
-  while (simulation.steps() < most_steps && thread_seconds() - start < most_seconds && goes_on()) {
-    const double begin = thread_seconds(), time = simulation.time();
-    int steps = 0;
-    try {
-      for (; steps < batch && thread_seconds() - start < most_seconds && goes_on(); ++steps) {
-        simulation.step(scene.time.end - simulation.time());
-        if (on_ranks && simulation.steps() == 1 && goes_on())
-          on_ranks->begin();  // the first step has what starts a run
-      }
-    } catch (const BreakdownError& error) { e.failure = error.what(); }
-    if (!e.failure.empty() && steps == 0) break;
-    if (on_ranks && simulation.steps() == settling && goes_on()) on_ranks->begin();
-    seconds.push_back((thread_seconds() - begin) / steps);
-    lengths.push_back((simulation.time() - time) / steps);
-    if (!e.failure.empty()) break;
-  }
-  omp_set_num_threads(e.threads);
+  const auto make = [&](long most_steps, double most_seconds) {
+    const double start = thread_seconds();
+    while (e.failure.empty() && simulation.steps() < most_steps && thread_seconds() - start < most_seconds &&
+           goes_on()) {
+      const double begin = thread_seconds(), time = simulation.time();
+      int steps = 0;
+      try {
+        for (; steps < Batches::most && thread_seconds() - start < most_seconds && goes_on(); ++steps) {
+          simulation.step(scene.time.end - simulation.time());
+          if (on_ranks && simulation.steps() == 1 && goes_on())
+            on_ranks->begin();  // the first step has what starts a run
+        }
+      } catch (const BreakdownError& error) { e.failure = error.what(); }
+      if (steps == 0) break;
+      if (on_ranks && simulation.steps() == settling && goes_on()) on_ranks->begin();
+      batches.steps.push_back(steps);
+      batches.seconds.push_back((thread_seconds() - begin) / steps);
+      batches.lengths.push_back((simulation.time() - time) / steps);
+    }
+  };
+  const auto pairs = [&] {
+    std::uint64_t all = 0;
+    for (const auto& entry : plan.entries) all += simulation.pairs(entry);
+    return all;
+  };
+  constexpr long first_steps = 300;
+  make(first_steps / 2, on_ranks ? 5.0 : 1.0);
+  std::uint64_t before_pairs = pairs();
+  make(first_steps, on_ranks ? 5.0 : 1.0);
   e.bytes = static_cast<double>(simulation.bytes());
-  for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
-  if (!lengths.empty()) e.steps = scene.time.end / median(lengths);
+  if (!batches.lengths.empty()) e.steps = scene.time.end / median(batches.lengths);
   e.memory = memory_of_a_run(simulation, before, retreats ? states_kept(e.steps) : 0.0);
   if (on_ranks)
-    e.ranks = on_ranks->plan(median(seconds), {part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
-                                               part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to"),
-                                               why_start_is_whole(scene)});
-  if (lengths.empty()) return e;
+    e.ranks =
+        on_ranks->plan(median(batches.seconds), {part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
+                                                 part_of(e.memory, "a frame"),
+                                                 part_of(e.memory, "states to go back to"), why_start_is_whole(scene)});
+  const std::size_t first_batches = batches.seconds.size();
+  const double end_of_more = thread_seconds() + more_seconds;
+  while (e.failure.empty() && goes_on() && thread_seconds() < end_of_more &&
+         static_cast<double>(pairs()) > growth * static_cast<double>(before_pairs)) {
+    before_pairs = pairs();
+    make(simulation.steps() + first_steps, end_of_more - thread_seconds());
+  }
+  for (const auto& entry : plan.entries) e.pairs.emplace_back(entry.name, simulation.pairs(entry));
+  omp_set_num_threads(e.threads);
+  if (batches.lengths.empty()) return e;
   e.measured = true;
-  e.processor_seconds = e.steps * median(seconds);
+  const auto [steps, processor_seconds] =
+      batches.to(scene.time.end, batches.seconds.size() > first_batches ? batches.seconds.size() * 3 / 4 : 0);
+  e.steps = steps;
+  e.processor_seconds = processor_seconds;
   e.seconds = e.processor_seconds / e.threads;
-  e.particle_steps_per_second = plan.particles() / median(seconds);
+  e.particle_steps_per_second = plan.particles() * e.steps / e.processor_seconds;
   return e;
 }
 

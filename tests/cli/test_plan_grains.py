@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""`plan` of grains: a loose bed is measured until its contacts are made, which are most of what its run costs.
+
+    test_plan_grains.py PROGRAM SOURCE_DIR
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+
+# Grains that stand apart and fall on each other within the first twentieth of the run.
+LOOSE = """
+dimensions = {dimensions}
+spacing = 1e-3
+[domain]
+size = {size}
+gravity = {gravity}
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = {{ mean = 1e-3, spread = 0.2 }}
+restitution = 0.5
+friction = 0.5
+stiffness = 1e3
+[phases.box]
+kind = "wall"
+[interactions]
+sand-sand = {{ law = "linear" }}
+sand-box = {{ law = "linear" }}
+[[fill]]
+phase = "box"
+shape = {{ sides = {sides} }}
+[[fill]]
+phase = "sand"
+shape = {{ box = {{ min = {zero}, max = {top} }} }}
+packing = "staggered"
+[time]
+end = {end}
+largest-speed = 0.5
+[output]
+every = 0
+"""
+
+
+class Loose(unittest.TestCase):
+    def planned(self, end):
+        scene = LOOSE.format(dimensions=2, size=[0.02, 0.03], gravity=[0, -9.81], sides='["bottom", "left", "right"]', zero=[0, 0], top=[0.02, 0.015], end=end)
+        with tempfile.TemporaryDirectory() as at:
+            file = pathlib.Path(at) / "loose.toml"
+            file.write_text(scene)
+            ended = subprocess.run([PROGRAM, "plan", file, "--json", "--threads", "1"], capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        plan = json.loads(ended.stdout)
+        return plan, plan["estimate"]
+
+    def test_contacts_are_made_before_the_cost_is_taken(self):
+        plan, estimate = self.planned(2)
+        grains, pairs = plan["phases"]["sand"]["particles"], plan["interactions"]["sand-sand"]["pairs"]
+        self.assertGreater(pairs, 2.5 * grains, "each grain touches three others and more, told from both sides")
+
+    def test_the_rest_is_scaled_up(self):
+        short, long = self.planned(1)[1], self.planned(4)[1]
+        self.assertAlmostEqual(long["steps"] / short["steps"], 4, delta=0.1)
+        self.assertGreater(long["processor_seconds"], 1.5 * short["processor_seconds"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
