@@ -116,8 +116,8 @@ class PhysicsChecker {
     if (own.sleep && norm(scene_.domain.gravity) == 0.0)
       tell(dotted + ".sleep", "nothing holds grains in place without weight; expected gravity, or no such key");
     without("contact-speed", "stiffness, young or largest-overlap, which spheres have");
-    if (own.restitution < 0.1 && !report_.touched(dotted + ".restitution"))
-      tell(dotted + ".restitution", "the dashpot of spheres cannot take that much; expected at least 0.1");
+    if (own.restitution < 0.05 && !report_.touched(dotted + ".restitution"))
+      tell(dotted + ".restitution", "the dashpot of spheres cannot take that much; expected at least 0.05");
   }
 
   void contact(const Interaction& pair, const Phase& a, const Phase& b, const std::string& dotted) {

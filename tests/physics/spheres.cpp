@@ -439,7 +439,8 @@ largest-speed = 0.1
 
 class SpheresAtRest : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 INSTANTIATE_TEST_SUITE_P(Laws, SpheresAtRest,
-                         ::testing::Combine(::testing::Values("linear", "hertz"), ::testing::Values("0.1", "0.5")));
+                         ::testing::Combine(::testing::Values("linear", "hertz"),
+                                            ::testing::Values("0.05", "0.1", "0.5")));
 
 // The dashpots of a stack at rest carry nothing: each overlap is what its load gives by the law, and the lost energy
 // stays what it is. With velocities that had their contact's own force alone it fell for ever.

@@ -84,15 +84,16 @@ const char* name_of(const LinearSpring&) { return "linear "; }
 const char* name_of(const HertzSpring&) { return "Hertz "; }
 
 TEST(SphereContactSteps, KeepTheWrittenRestitution) {
-  for (const double e : {0.3, 0.5, 0.7, 0.9, 1.0})
+  for (const double e : {0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0})
     for (const auto& [a, b] : {std::pair{1e-5, 1e-5}, {1e-5, 3e-5}, {1e-5, 1e300}})
       for (const double speed : {1.0, 0.1})
         both(e, 0.0, [&, m_a = a, m_b = b](const auto& law) {
           // Of Hertz a slow contact lasts longer; of the linear law as long.
           const After after = meet(law, m_a, m_b, speed, 0.0, 12.0);
           const auto [least, most] = std::minmax_element(after.speed, after.speed + phases);
-          EXPECT_NEAR(*least / speed, e, 5e-3 * e) << name_of(law.normal) << e << ' ' << m_b;
-          EXPECT_NEAR(*most / speed, e, 5e-3 * e) << name_of(law.normal) << e << ' ' << m_b;
+          const double bound = std::max(3e-3 * e, 1.5e-3);
+          EXPECT_NEAR(*least / speed, e, bound) << name_of(law.normal) << e << ' ' << m_b;
+          EXPECT_NEAR(*most / speed, e, bound) << name_of(law.normal) << e << ' ' << m_b;
           const double reduced = m_a * m_b / (m_a + m_b), energy = 0.5 * reduced * speed * speed;
           for (const double lost : after.lost)
             EXPECT_NEAR(lost / energy, 1.0 - e * e, 1.1e-2) << name_of(law.normal) << e;
@@ -179,9 +180,9 @@ Pressed press(const L& law, double weight, int steps) {
 // more. With the speed that has the contact's own force alone the overlap was 1.1 (e = 0.3) to 1.25 times that.
 TEST(SphereContactSteps, CarryAWeightAtTheirStiffness) {
   constexpr double weight = 1e-4;
-  for (const double e : {0.1, 0.3, 0.5, 0.7, 0.9})
+  for (const double e : {0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99})
     both(e, 0.3, [&](const auto& law) {
-      const Pressed p = press(law, weight, 8000);
+      const Pressed p = press(law, weight, e > 0.95 ? 200000 : 8000);
       const std::string name = name_of(law.normal) + std::to_string(e);
       const double power = std::string(name_of(law.normal)) == "Hertz " ? 1.5 : 1.0,
                    overlap = power == 1.0 ? weight / law.normal.stiffness_at(1e-3, 0.0)
@@ -191,7 +192,7 @@ TEST(SphereContactSteps, CarryAWeightAtTheirStiffness) {
       EXPECT_NEAR(p.push, weight, 1e-6 * weight) << name;
       EXPECT_NEAR(p.stored, stored, 1e-3 * stored) << name;
       EXPECT_NEAR(p.lost, p.lost_before, 1e-9 * stored) << name;
-      EXPECT_NEAR(p.lost + p.stored, weight * overlap, 6e-2 * weight * overlap)
+      EXPECT_NEAR(p.lost + p.stored, weight * overlap, (e < 0.1 ? 8e-2 : 6e-2) * weight * overlap)
           << name << ": the work of the weight; what it does is observed some steps late";
     });
 }
