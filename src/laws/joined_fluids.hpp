@@ -8,11 +8,17 @@
 // particles a thousand times as heavy as a this is what a moving wall does; of particles a thousand times lighter, a
 // free surface.
 //
-// Weight first: where between a and b the interface lies, nobody knows, and rho_b g dx misplaced by a tenth is a
-// hundred times the weight of a. At rest p_a - p_b lies between rho_a g.r and rho_b g.r, wherever the interface is; so
-// what lies between the two is weight, and only what is beyond accelerates:
-//   p_ab = rho_a g.r + 2 rho_a/(rho_a + rho_b) J,   J = (p_a - p_b) clamped out of [rho_a g.r, rho_b g.r]
-// Fluids at rest stay at rest to the bit, on any arrangement of particles; the interface is known to a spacing.
+// Weight first. The interface is a plane near a, and b has the distance d_b from it (laws/interface_plane.hpp). At rest
+//   p_a - p_b = W_ab = rho_a g.r + (rho_a - rho_b) g.n d_b,   n: the plane's normal, from a to b
+// and only what is beyond W_ab accelerates:
+//   p_ab = rho_a g.r + 2 rho_a/(rho_a + rho_b) J,   J = p_a - p_b - W_ab
+// The place of the interface has an error: where particles are in disorder, its noise would throw a light fluid about,
+// for a tenth of a spacing misplaced is a tenth of g. The noise is known, from what the distances about a are astray
+// of a smooth interface. A difference of pressure within so much of W_ab, `deviations` of them, counts as weight:
+//   J = (p_a - p_b) clamped out of [W_ab - delta, W_ab + delta],   delta = deviations |(rho_a - rho_b) g.n| spread
+// On rows, moved by a smooth wave or not, delta is a hundredth of the interface's displacement. Within delta the
+// pressure is drawn to W_ab, or it would drift there. Where no plane is found (a drop of a few particles) W_ab lies
+// halfway between rho_a g.r and rho_b g.r, and all between the two is weight.
 //
 // Velocity is continuous too, and so is the shear stress mu grad v. The interface cuts the pair at the distances d
 // that the particles have from it (models/fluid/interface_distance.hpp): theta = d_a/(d_a + d_b) of it lies in the
@@ -33,7 +39,7 @@ struct JoinedFluids {
   static constexpr bool needs_distance = true;
   static constexpr bool needs_root = true;  // the neighbour's distance to the interface
   static constexpr bool corrected = true;
-  static constexpr double middling = 0.01;
+  static constexpr double deviations = 3.0, middling = 0.01;
 
   template <class T>
   struct Sums : ConsistentFluid<Dim>::template Sums<T> {
@@ -49,8 +55,11 @@ struct JoinedFluids {
   template <class T>
   struct Own : ConsistentFluid<Dim>::template Own<T> {
     std::array<T, Dim> weight;  // rho_a g, Pa/m
-    T ratio, share;             // rho_b/rho_a, 2 rho_a/(rho_a + rho_b)
-    T rubbing, distance;        // mu_b/mu_a; d_a, m
+    T share;                    // 2 rho_a/(rho_a + rho_b)
+    T lift, tolerance;          // (rho_a - rho_b) g.n, Pa/m; delta, Pa
+    T halfway;                  // without a plane (rho_b/rho_a - 1)/2, else 0
+    T rubbing;                  // mu_b/mu_a
+    T distance, nearest;        // d_a, and the least distance in the friction, m
   };
 
   template <class T>
@@ -58,11 +67,12 @@ struct JoinedFluids {
                                       T volume_b, T distance_b, Sums<T>& s) {
     T own = a.weight[0] * r[0];
     for (std::size_t d = 1; d < Dim; ++d) own = fma(a.weight[d], r[d], own);
-    const T theirs = a.ratio * own, dp = a.p - p_b;
-    const T weight = simd::max(simd::min(own, theirs), simd::min(simd::max(own, theirs), dp));
-    const T half = simd::broadcast<T>(0.5), one = simd::broadcast<T>(1.0);
-    const T jump = fma(simd::broadcast<T>(middling), weight - half * (own + theirs), dp - weight);
-    const T theta = a.distance / (a.distance + distance_b);
+    const T dp = a.p - p_b, one = simd::broadcast<T>(1.0), between = a.halfway * own;
+    const T middle = fma(a.lift, distance_b, own + between);
+    const T delta = a.tolerance + simd::max(between, simd::broadcast<T>(0.0) - between);
+    const T weight = simd::max(middle - delta, simd::min(middle + delta, dp));
+    const T jump = fma(simd::broadcast<T>(middling), weight - middle, dp - weight);
+    const T theta = a.distance / (a.distance + simd::max(distance_b, a.nearest));
     const T mu = a.rubbing / fma(a.rubbing, theta, one - theta), more = mu - one;
     ConsistentFluid<Dim>::add_rubbing(
         a, r, r2, f, v_b, fma(a.share, jump, own), volume_b,

@@ -346,20 +346,28 @@ void FluidPhase::bind_interface(const PlanEntry& e, FluidNeighbour& n) {
   n.joined = scene_.phases[other].density;
   n.beyond = viscosity_of(scene_, layout_, other);
   n.distances = &w_->eddies(other);
+  n.nearest = InterfaceDistance::nearest * std::min(plan_.spacing, layout_.phases[other].spacing);
   parameters_.distances = &w_->eddies(number_);
+  parameters_.planes = &planes_;
+  std::array<double, 3> down{};
+  if (const double g = norm(scene_.domain.gravity); g > 0.0)
+    for (std::size_t d = 0; d < 3; ++d) down[d] = scene_.domain.gravity[d] / g;
+  const auto join = [&](const PlanEntry& entry, std::size_t k, double own) {
+    const PairList* list = &w_->list(entry.direction(number_));
+    const RecordArray* records = &w_->records(k, Record::motion);
+    sides_of_interface_.push_back({list, records, entry.kernel, entry.radius, {{}, own}});
+    interface_planes_.push_back({list, records, entry.kernel, entry.radius, {{}, 2.0 * own - 1.0, e.radius, down}});
+    distances_of_.push_back(&w_->eddies(k));
+  };
   if (sides_of_interface_.empty())
     for (const auto& own : layout_.entries)
       if (own.a == number_ && own.b == number_) {
-        sides_of_interface_.push_back({&w_->list(own.direction(number_)),
-                                       &w_->records(number_, Record::motion),
-                                       own.kernel,
-                                       own.radius,
-                                       {{}, 1.0}});
+        join(own, number_, 1.0);
         interface_distance_ = {{own.kernel, own.radius, plan_.spacing},
                                {e.kernel, e.radius, layout_.phases[other].spacing},
                                layout_.dimensions};
       }
-  sides_of_interface_.push_back({n.list, &w_->records(other, Record::motion), e.kernel, e.radius, {{}, 0.0}});
+  join(e, other, 0.0);
 }
 
 /// The fluid is whole until a void is found.

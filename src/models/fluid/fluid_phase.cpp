@@ -63,8 +63,11 @@ void FluidPhase::schedule(Schedule& s) {
   });
   if (meets) {
     Touches touches = beside(own({position}, {}), {position}, {Record::motion});
-    touches.front().records.writes = {Record::eddies, Record::motion, Record::compact};
+    touches.front().records.writes = {Record::eddies};
     s.add({stage::eddies, plan_.name, touches, [this] { find_interface(); }});
+    Touches fitted = beside(own({position}, {}), {position}, {Record::motion, Record::eddies});
+    fitted.front().records.writes = {Record::eddies, Record::motion, Record::compact};
+    s.add({stage::extend_walls, plan_.name, fitted, [this] { fit_interface(); }});
   }
   FieldSet reads{position, velocity, density, pressure, energy}, writes{acceleration, density_rate, shift_velocity};
   if (keys_.scheme == FluidScheme::consistent) writes = writes | FieldSet{anisotropy};
@@ -158,7 +161,17 @@ void FluidPhase::find_interface() {
   EddyRecords& records = w_->eddies_to_write(number_);
   const std::size_t n = particles_->size();
   barchan::find_interface(n, layout_.dimensions, w_->records(number_, Record::motion), sides_of_interface_,
-                          interface_distance_, records.root);
+                          interface_distance_, records.touch);
+}
+
+/// The planes about its particles, when the distances of all fluids are there.
+void FluidPhase::fit_interface() {
+  EddyRecords& records = w_->eddies_to_write(number_);
+  const std::size_t n = particles_->size();
+  for (std::size_t k = 0; k < interface_planes_.size(); ++k)
+    interface_planes_[k].beside = distances_of_[k]->touch.data();
+  barchan::fit_interface(n, layout_.dimensions, w_->records(number_, Record::motion), interface_planes_, records.touch,
+                         records.root, planes_);
   if (layout_.dimensions != 2) return;
   if (CompactRecords* compact = w_->compact_to_write(number_)) records.give_roots(*compact, n);
   else records.give_roots(w_->to_write(number_, Record::motion), n);

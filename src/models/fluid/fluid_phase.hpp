@@ -60,6 +60,7 @@ class FluidPhase : public Model {
   void kick_and_drift();
   void find_eddies();
   void find_interface();
+  void fit_interface();
   void rate();
   void find_surface();
   void hold();
@@ -106,6 +107,9 @@ class FluidPhase : public Model {
 
   std::vector<PairEntry<InterfaceSide>> sides_of_interface_;  // empty: it meets no other fluid
   InterfaceDistance interface_distance_;
+  std::vector<PairEntry<InterfacePlane>> interface_planes_;  // the same pairs
+  std::vector<const EddyRecords*> distances_of_;             // of their second phases
+  InterfacePlanes planes_;
 
   // with eddies
   std::vector<EddyNeighbour> eddy_neighbours_;

@@ -10,25 +10,35 @@
 #include "laws/joined_fluids.hpp"
 #include "laws/plain_fluid.hpp"
 #include "models/fluid/fluid_rows.hpp"
+#include "models/fluid/interface_distance.hpp"
 
 namespace barchan::BARCHAN_TARGET {
 
 namespace {
 
-/// The first particle of pairs across an interface; rho: its density, so that it carries its own weight exactly; mu:
-/// the viscosity of its fluid (Pa s); distance (m): to the interface.
+/// Particle k as the first one of pairs across an interface; rho: its density, so that it carries its own weight
+/// exactly; mu: the viscosity of its fluid (Pa s).
 template <int Dim, class T>
 BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_own(
     const typename ConsistentFluid<Dim>::template Own<LanesOf<T>>& own, const FluidNeighbour& e,
-    const FluidParameters& q, double rho, double mu, double distance) {
+    const FluidParameters& q, double rho, double mu, std::size_t k) {
   using V = LanesOf<T>;
   constexpr double most = 1e6;  // mu_b/mu_a of a fluid a without friction
-  typename JoinedFluids<Dim>::template Own<V> joined{own, {}, {}, {}, {}, {}};
-  for (std::size_t d = 0; d < Dim; ++d) joined.weight[d] = simd::broadcast<V>(rho * q.gravity[d]);
-  joined.ratio = simd::broadcast<V>(e.joined / q.reference_density);
+  typename JoinedFluids<Dim>::template Own<V> joined{own, {}, {}, {}, {}, {}, {}, {}, {}};
+  const double* normal = &q.planes->normal[Dim * k];
+  double lift = 0.0, planar = 0.0;
+  for (std::size_t d = 0; d < Dim; ++d) {
+    joined.weight[d] = simd::broadcast<V>(rho * q.gravity[d]);
+    lift += (rho - e.joined) * q.gravity[d] * normal[d];
+    planar += normal[d] * normal[d];
+  }
+  joined.lift = simd::broadcast<V>(lift);
+  joined.tolerance = simd::broadcast<V>(JoinedFluids<Dim>::deviations * std::abs(lift) * q.planes->spread[k]);
+  joined.halfway = simd::broadcast<V>(planar > 0.0 ? 0.0 : 0.5 * (e.joined / q.reference_density - 1.0));
   joined.share = simd::broadcast<V>(2.0 * q.reference_density / (q.reference_density + e.joined));
   joined.rubbing = simd::broadcast<V>(e.beyond < most * mu ? e.beyond / mu : e.beyond > 0.0 ? most : 1.0);
-  joined.distance = simd::broadcast<V>(distance);
+  joined.distance = simd::broadcast<V>(std::max(q.distances->root[k], e.nearest));
+  joined.nearest = simd::broadcast<V>(e.nearest);
   return joined;
 }
 
@@ -74,7 +84,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       if constexpr (Joined) {
         if (e.joined > 0) {
           const auto across = [&](std::size_t k) __attribute__((always_inline)) {
-            return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k], mu, q.distances->root[k]);
+            return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k], mu, k);
           };
           const Roots distances{e.distances->root.data(), 0.0};
           if (sum_rows<Dim, JoinedFluids, T>(at, e, kernels[c], unit, across, crossing, distances))

@@ -25,7 +25,10 @@ struct FluidNeighbour {
   double joined = 0;                        // kg/m3: density at rest of another fluid, consistent scheme; 0: no fluid
   double beyond = 0;                        // Pa s: viscosity of that fluid
   const EddyRecords* distances = nullptr;   // of that fluid's particles to the interface (3D; 2D: in their records)
+  double nearest = 0;                       // m, of friction across that interface the least distance of a particle
 };
+
+struct InterfacePlanes;
 
 /// Particles of a fluid that may stand beside a void, collected by the pass over its rates in any order.
 struct LooseParticles {
@@ -74,7 +77,8 @@ struct FluidParameters {
   double lattice_moment;             // -tr M/Dim on a lattice at rest, 1
   bool ends;                         // a void or a free surface is near some particle, or solids move in the fluid
   LooseParticles* loose;             // where particles that may stand beside a void are noted; null: nobody asks
-  const EddyRecords* distances = nullptr;  // of its particles to the interface with another fluid
+  const EddyRecords* distances = nullptr;   // of its particles to the interface with another fluid
+  const InterfacePlanes* planes = nullptr;  // of that interface
 };
 
 /// Below this wholeness (laws' chi, fluid_finish.hpp) a particle belongs to the free surface.

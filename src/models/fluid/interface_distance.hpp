@@ -12,6 +12,7 @@
 
 #include "engine/pair_entry.hpp"
 #include "engine/records.hpp"
+#include "laws/interface_plane.hpp"
 #include "laws/interface_side.hpp"
 
 namespace barchan {
@@ -36,6 +37,21 @@ class InterfaceDistance {
   double step_ = 0.0;           // of the share
   std::vector<double> values_;  // m, from a share of 0 to 1
 };
+
+/// Where the interface is near each particle of a fluid, of the fits of laws/interface_plane.hpp.
+struct InterfacePlanes {
+  AlignedVector<double> normal;  // into the other fluid, x y (z) of each particle; zero: no plane was found
+  AlignedVector<double> spread;  // m, of the distances about the plane (root of their mean square)
+};
+
+BARCHAN_PER_INSTRUCTION_SET(
+    fit_interface,
+    /// Fits the plane of each of the n particles. own: their motion records; entries: of the fluid with itself and with
+    /// others, which bring the distances (m) of their particles; raw: the distances of the fluid's own particles; out:
+    /// the distances (m) from the planes, below zero beyond.
+    void fit_interface(std::size_t n, int dimensions, const RecordArray& own,
+                       std::span<const PairEntry<InterfacePlane>> entries, const AlignedVector<double>& raw,
+                       AlignedVector<double>& out, InterfacePlanes& planes);)
 
 BARCHAN_PER_INSTRUCTION_SET(find_interface,
                             /// Writes the distance (m) of each of the n particles. own: their motion records; entries:
