@@ -35,42 +35,61 @@ Ventilation::Ventilation(Workspace& w, std::size_t wall, std::span<const Extensi
 }
 
 template <int Dim, class Surface>
-bool Ventilation::air_enters(const PhaseParticles& wall, const double* record, const Fluid& fluid,
-                             const Surface& surface, std::size_t k) const {
+void Ventilation::let_go_at(const PhaseParticles& wall, double* record, const Fluid& fluid, const Surface& surface,
+                            std::size_t k) const {
   constexpr std::size_t dim = Dim;
   using R = MotionRecord<Dim>;
   using Vector = std::array<double, dim>;
   const ExtensionSource& source = *fluid.source;
-  Vector at, mean{};
-  for (std::size_t d = 0; d < dim; ++d) at[d] = wall.column(Field::position, static_cast<int>(d))[k];
+  const double depth = wall.column(Field::wall_depth)[k];
+  Vector at;
+  ExtendedState<dim> state{};
+  double across = 0.0;  // g.n
+  for (std::size_t d = 0; d < dim; ++d) {
+    const int axis = static_cast<int>(d);
+    at[d] = wall.column(Field::position, axis)[k];
+    state.wall[d] = wall.column(Field::velocity, axis)[k];
+    state.normal[d] = wall.column(Field::wall_normal, axis)[k];
+    across += w_.scene.domain.gravity[d] * state.normal[d];
+  }
   bool near = false;
-  double weights = 0.0;
+  double pressure = 0.0, nearest = source.radius * source.radius;
   with_kernel<double>(source.kernel, source.radius, Dim, [&](const auto& kernel) {
     const auto all = [](std::size_t) { return true; };
     surface.each(source.list->row(k), at, source.radius * source.radius, all, [&](std::size_t b, const Vector& r) {
       const double* other = (*source.records)[b];
-      double square = 0.0;
+      double square = 0.0, way = depth, gap = 0.0;
       for (std::size_t d = 0; d < dim; ++d) {
         square += r[d] * r[d];
+        way += r[d] * state.normal[d];
+        gap += (r[d] + depth * state.normal[d]) * (r[d] + depth * state.normal[d]);
         near = near || surface.normal(b, d) != 0.0;
       }
       const double weight = kernel.value(std::sqrt(square)) * other[R::volume];
-      weights += weight;
-      for (std::size_t d = 0; d < dim; ++d) mean[d] += weight * other[R::velocity + d];
+      state.weight += weight;
+      pressure += weight * (other[R::pressure] + source.density * across * way);
+      for (std::size_t d = 0; d < dim; ++d) state.mean[d] += weight * other[R::velocity + d];
+      nearest = std::min(nearest, gap);
     });
   });
-  if (!near || !(weights > 0.0)) return false;
-  double square = 0.0, out = 0.0, across = 0.0;  // u.u, u.n, g.n
+  if (!near || !(state.weight > 0.0) || !(pressure < 0.0)) return;
+  double square = 0.0, out = 0.0;  // u.u, u.n
+  Vector v;
   for (std::size_t d = 0; d < dim; ++d) {
-    const int axis = static_cast<int>(d);
-    const double u = mean[d] / weights - wall.column(Field::velocity, axis)[k],
-                 normal = wall.column(Field::wall_normal, axis)[k];
+    state.mean[d] /= state.weight;
+    v[d] = record[R::velocity + d];
+    const double u = state.mean[d] - state.wall[d];
     square += u * u;
-    out += u * normal;
-    across += w_.scene.domain.gravity[d] * normal;
+    out += u * state.normal[d];
   }
-  const double suction = -record[R::pressure] - source.density * across * wall.column(Field::wall_depth)[k];
-  return out > leaving_sine * std::sqrt(square) || (out >= 0.0 && suction > 0.5 * source.density * square);
+  const bool leaves = out > leaving_sine * std::sqrt(square),
+             fast = 0.5 * source.density * square >= -pressure / state.weight;
+  if (!leaves && (fast || out < 0.0)) return;
+  state.let_go(record[R::pressure], v);
+  for (std::size_t d = 0; d < dim; ++d) record[R::velocity + d] = v[d];
+  const double gap = std::sqrt(nearest) / w_.layout.phases[fluid.phase].spacing;
+  if (leaves && fast) record[R::volume] = 0.0;
+  else if (depth > 0.0) record[R::volume] *= 1.0 - smooth_share((gap - gap_from) / (gap_to - gap_from));
 }
 
 template <int Dim>
@@ -81,8 +100,7 @@ void Ventilation::let_go_in(const PhaseParticles& wall, RecordArray& records, co
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (!(records[k][R::pressure] < 0.0)) continue;
-    if (air_enters<Dim>(wall, records[k], fluid, surface, k)) records[k][R::volume] = 0.0;
+    if (records[k][R::pressure] < 0.0) let_go_at<Dim>(wall, records[k], fluid, surface, k);
   }
 }
 

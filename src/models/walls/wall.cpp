@@ -13,6 +13,10 @@ namespace barchan {
 
 namespace {
 
+/// Of a spacing: nearer to the outline of a wall than this, a fluid's particle counts as this far from it. Boxes hold
+/// particles at the outline itself, where the line through the wall's velocity has no slope; sides hold them here.
+constexpr double held_off = 0.02;
+
 /// The largest size (m/s) of the velocity that a wall says, at 17 times of the run.
 double largest_in_time(const Scene& scene, const VectorExpression& velocity) {
   const Formula u(velocity[0]), v(velocity[1]), w(velocity[2]);
@@ -83,7 +87,10 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   rule_.accelerates = plan_.travels;
   rule_.rub = wall_rub(scene, layout, number);
   for (const auto& e : layout.entries)
-    if (plan_.travels && e.extends && e.other == number && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
+    if (e.extends && e.other == number && layout.phases[e.fluid].free_surface) {
+      rule_.lets_go = plan_.travels;
+      rule_.least_phi = held_off * plan_.spacing;
+    }
 }
 
 namespace {
