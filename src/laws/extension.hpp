@@ -100,12 +100,14 @@ struct ExtendedState {
   std::array<double, Dim> sloped;        // sum W phi_a (v_a - v_wall)
   std::array<double, Dim> wall, normal;  // v_wall; n, zero where the depth is unknown
   double depth;                          // phi_w; 0: unknown
+  double least_phi = 0.0;                // m; a root mean square of phi_a below it counts as this one
 
   /// Velocity of the wall's particle that makes the fluid stick to it.
   std::array<double, Dim> no_slip() const {
     std::array<double, Dim> v;
+    const double square = std::max(depth2, weight * least_phi * least_phi);
     for (std::size_t d = 0; d < Dim; ++d)
-      v[d] = depth > 0.0 && depth2 > 0.0 ? wall[d] - depth * sloped[d] / depth2 : 2.0 * wall[d] - mean[d];
+      v[d] = depth > 0.0 && square > 0.0 ? wall[d] - depth * sloped[d] / square : 2.0 * wall[d] - mean[d];
     return v;
   }
   /// Of a grain; alone: sum W of the fluid about a grain alone in it, 0 where no form drag acts.

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
-#include "models/bodies/contact_surface.hpp"
 #include "models/walls/wall_normals.hpp"
 
 namespace barchan {
@@ -32,59 +30,23 @@ void DrivenWall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   if (reach_ > 0.0) find_faces(p, places);
 }
 
-/// Whether a place is on a side of the domain: what ends there does not end where a fluid is.
-bool DrivenWall::on_a_side(const Vec3& x) const {
-  const Bounds& bounds = layout_.bounds;
-  const double margin = 0.5 * layout_.phases[phase_].spacing;
-  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
-    if (x[d] < bounds.low[d] + margin || x[d] > bounds.high[d] - margin) return true;
-  return false;
-}
-
-/// Of a particle that is nearest to a face on a side of the domain: the face within a spacing that meets it. The
-/// particles in the edge between the two lie as deep under both, and round-off must not decide.
-std::optional<DrivenWall::Face> DrivenWall::face_next_to(const ContactSurface& surface, const Vec3& x,
-                                                         const Vec3& side) const {
-  const double spacing = layout_.phases[phase_].spacing;
-  const auto gap = surface.gap(x - spacing * side);
-  if (!gap || !(gap->distance < 0.0)) return std::nullopt;
-  const Vec3 foot = x - spacing * side - gap->distance * gap->normal;
-  const double depth = dot(foot - x, gap->normal);
-  if (!(depth > 0.0 && depth <= spacing) || on_a_side(foot)) return std::nullopt;
-  return Face{gap->normal, depth};
-}
-
-/// From the outline of the wall's fill, if it has one and no other fill goes on where it ends. Where that says nothing,
-/// the normal is that of the wall's own particles, and the depth is unknown.
+/// Where the outline of the wall's fill says nothing, the normal is that of the wall's own particles, and the depth is
+/// unknown.
 void DrivenWall::find_faces(PhaseParticles& p, const std::vector<Vec3>& places) {
-  face_ = p.add_own<Face>("face", Kept::state);
-  const double spacing = layout_.phases[phase_].spacing;
-  const auto own = [&](const Fill& fill) { return fill.phase == layout_.phases[phase_].name; };
-  const auto fill = std::find_if(scene_.fills.begin(), scene_.fills.end(), own);
-  std::vector<ContactSurface> surfaces;
-  if (std::count_if(scene_.fills.begin(), scene_.fills.end(), own) == 1)
-    surfaces = surfaces_of(fill->shape, scene_, spacing);
-  for (ContactSurface& surface : surfaces) surface.prepare(reach_ + spacing, spacing);
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  std::vector<WallFace> faces = outline_faces(scene_, layout_, phase_, places, reach_);
   for (std::size_t k = 0; k < places.size(); ++k) {
-    Face face{};
-    for (const ContactSurface& surface : surfaces) {
-      const auto gap = surface.gap(places[k]);
-      if (!gap || !(gap->distance < 0.0) || -gap->distance > reach_) continue;
-      if (face.depth > 0.0 && -gap->distance > face.depth) continue;
-      if (!on_a_side(places[k] - gap->distance * gap->normal)) face = {gap->normal, -gap->distance};
-      else if (const auto next = face_next_to(surface, places[k], gap->normal)) face = *next;
-    }
-    p.column(Field::wall_depth)[k] = face.depth;
-    for (int d = 0; d < layout_.dimensions; ++d)
-      p.column(Field::wall_normal, d)[k] = face.normal[static_cast<std::size_t>(d)];
+    p.column(Field::wall_depth)[k] = faces[k].depth;
+    for (std::size_t d = 0; d < dimensions; ++d)
+      p.column(Field::wall_normal, static_cast<int>(d))[k] = faces[k].normal[d];
   }
   const WallPart alone{&p, 1.0};
-  find_wall_normals(p, {&alone, 1}, layout_.bounds, spacing);
+  find_wall_normals(p, {&alone, 1}, layout_.bounds, layout_.phases[phase_].spacing);
+  face_ = p.add_own<WallFace>("face", Kept::state);
   for (std::size_t k = 0; k < places.size(); ++k) {
-    Face& face = p.own(face_)[k];
-    face = {{}, p.column(Field::wall_depth)[k]};
-    for (int d = 0; d < layout_.dimensions; ++d)
-      face.normal[static_cast<std::size_t>(d)] = p.column(Field::wall_normal, d)[k];
+    WallFace& face = p.own(face_)[k];
+    face.depth = faces[k].depth;
+    for (std::size_t d = 0; d < dimensions; ++d) face.normal[d] = p.column(Field::wall_normal, static_cast<int>(d))[k];
   }
 }
 
@@ -164,7 +126,7 @@ void DrivenWall::tell_fluids() {
     a[c] = p.column(Field::surface_acceleration, d);
   }
   const Vec3* const arm = p.own(arm_);
-  const Face* const face = p.own(face_);
+  const WallFace* const face = p.own(face_);
   const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {

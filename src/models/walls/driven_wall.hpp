@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "models/bodies/contact_surface.hpp"
+#include "models/walls/wall_faces.hpp"
 #include "models/walls/wall_motion.hpp"
 #include "models/workspace.hpp"
 
@@ -22,14 +22,7 @@ class DrivenWall : public Model {
   void archive(Archive& a) override;
 
  private:
-  /// Where its surface is nearest to a particle: the normal at the start, and how deep the particle is (m), 0: unknown.
-  struct Face {
-    Vec3 normal;
-    double depth;
-  };
   void find_faces(PhaseParticles& p, const std::vector<Vec3>& places);
-  bool on_a_side(const Vec3& x) const;
-  std::optional<Face> face_next_to(const ContactSurface& surface, const Vec3& x, const Vec3& side) const;
   void go();
   void tell();
   void tell_fluids();
@@ -38,10 +31,10 @@ class DrivenWall : public Model {
   const Layout& layout_;
   std::size_t number_, phase_ = 0;
   std::optional<WallMotion> motion_;
-  OwnColumn<Vec3> arm_;   // m, at the start, from the place about which it turns
-  OwnColumn<Face> face_;  // of walls that a fluid feels
-  double reach_ = 0.0;    // m, of the fluids' kernels
-  double softly_ = 0.0;   // s, in which a fluid can follow a jump of the velocity
+  OwnColumn<Vec3> arm_;       // m, at the start, from the place about which it turns
+  OwnColumn<WallFace> face_;  // of walls that a fluid feels
+  double reach_ = 0.0;        // m, of the fluids' kernels
+  double softly_ = 0.0;       // s, in which a fluid can follow a jump of the velocity
   Workspace* w_ = nullptr;
 };
 

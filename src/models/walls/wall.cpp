@@ -5,12 +5,17 @@
 
 #include "kernels/kernel.hpp"
 #include "models/fluid/fluid_phase.hpp"
+#include "models/walls/wall_faces.hpp"
 #include "models/walls/wall_normals.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
 
 namespace {
+
+/// Of a spacing: nearer to the outline of a wall than this, a fluid's particle counts as this far from it. Boxes hold
+/// particles at the outline itself, where the line through the wall's velocity has no slope; sides hold them here.
+constexpr double held_off = 0.02;
 
 /// The largest size (m/s) of the velocity that a wall says, at 17 times of the run.
 double largest_in_time(const Scene& scene, const VectorExpression& velocity) {
@@ -82,7 +87,10 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   rule_.accelerates = plan_.travels;
   rule_.rub = wall_rub(scene, layout, number);
   for (const auto& e : layout.entries)
-    if (plan_.travels && e.extends && e.other == number && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
+    if (e.extends && e.other == number && layout.phases[e.fluid].free_surface) {
+      rule_.lets_go = plan_.travels;
+      rule_.least_phi = held_off * plan_.spacing;
+    }
 }
 
 namespace {
@@ -110,13 +118,23 @@ Vec3 out_of_walled_sides(const Scene& scene, const Bounds& bounds, const Vec3& x
 
 }  // namespace
 
+/// Of a wall that a free surface may meet, whose edges water leaves: those of the outline. Else none.
+std::vector<WallFace> Wall::faces_in_the_domain(const std::vector<Vec3>& places) const {
+  if (!is_ventilated(layout_, number_)) return {};
+  double reach = 0.0;
+  for (const auto& e : layout_.entries)
+    if (e.extends && e.other == number_) reach = std::max(reach, e.radius);
+  return outline_faces(scene_, layout_, number_, places, reach);
+}
+
 /// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
-/// particle outside the domain. Of a wall that travels DrivenWall knows them.
+/// particle outside the domain; from the outline inside it. Of a wall that travels DrivenWall knows them.
 void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   if (plan_.travels) return;
   PhaseParticles& wall = state.phases[number_];
   const ParticleBlock& block = blocks[number_];
   const Bounds& bounds = layout_.bounds;
+  const std::vector<WallFace> faces = faces_in_the_domain(block.position);
   for (std::size_t k = 0; k < wall.size(); ++k) {
     if (k < block.depth.size() && block.depth[k] > 0.0) {
       wall.column(Field::wall_depth)[k] = block.depth[k];
@@ -128,10 +146,14 @@ void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
     for (int d = 0; d < wall.dimensions(); ++d) x[static_cast<std::size_t>(d)] = wall.column(Field::position, d)[k];
     const Vec3 out = out_of_walled_sides(scene_, bounds, x);
     const double depth = norm(out);
-    wall.column(Field::wall_depth)[k] = depth;
-    if (depth > 0)
-      for (int d = 0; d < wall.dimensions(); ++d)
-        wall.column(Field::wall_normal, d)[k] = -out[static_cast<std::size_t>(d)] / depth;
+    WallFace face{{}, depth};
+    if (depth > 0.0)
+      for (std::size_t d = 0; d < 3; ++d) face.normal[d] = -out[d] / depth;
+    else if (!faces.empty()) face = faces[k];
+    wall.column(Field::wall_depth)[k] = face.depth;
+    if (!(face.depth > 0.0)) continue;
+    for (int d = 0; d < wall.dimensions(); ++d)
+      wall.column(Field::wall_normal, d)[k] = face.normal[static_cast<std::size_t>(d)];
   }
   if (block.bend.empty()) return;
   bend_.first = wall.id().empty() ? 0 : wall.id()[0];
@@ -153,6 +175,7 @@ void Wall::attach(Workspace& w) {
   if (!extended_) return;
   sources_ = extension_sources(w, number_);
   contact_.emplace(w, number_, sources_, rule_);
+  ventilation_.emplace(w, number_, sources_);
   const auto fluids = fluids_at(layout_, number_);
   if (fluids.size() != 1 || !calmed(scene_, layout_, fluids[0])) return;
   if (Forces forces(scene_, scene_.phases[fluids[0]].name); forces.any()) forces_.emplace(std::move(forces));
@@ -166,6 +189,7 @@ void Wall::schedule(Schedule& s) {
   if (!extended_) return;
   Touches touches = extension_touches(layout_, number_, reads);
   add_contact_touches(scene_, layout_, number_, touches);
+  add_ventilation_touches(layout_, number_, touches);
   s.add({stage::extend_walls, plan_.name, touches, [this] { extend(); }});
 }
 
@@ -203,6 +227,7 @@ void Wall::extend() {
   RecordArray& records = w_->to_write(number_, Record::extended);
   if (forces_) force();
   extend_into_solid(wall, records, sources_, scene_.domain.gravity, rule_, bend_, forced_);
+  ventilation_->let_go(wall, records);
   contact_->end(wall, forced_, records);
   share_extended(*w_, number_);
 }
@@ -251,14 +276,14 @@ void share_extended(Workspace& w, std::size_t solid) {
 /// A wall is faced away from itself and from those that the same fluids feel: grains that are fixed are nothing to air.
 void face_walls(const Layout& layout, State& state) {
   std::vector<std::size_t> walls;
-  bool slips = false;
+  bool needed = false;
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     const PlanPhase& p = layout.phases[k];
     if (p.moves || p.travels || !state.phases[k].has(Field::wall_normal)) continue;
     walls.push_back(k);
-    slips = slips || p.friction != Friction::smooth;
+    needed = needed || p.friction != Friction::smooth || is_ventilated(layout, k);
   }
-  if (!slips) return;
+  if (!needed) return;
   for (const std::size_t wall : walls) {
     const auto fluids = fluids_at(layout, wall);
     std::vector<WallPart> parts;

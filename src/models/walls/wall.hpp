@@ -8,6 +8,8 @@
 
 #include "models/forces.hpp"
 #include "models/walls/contact_line.hpp"
+#include "models/walls/ventilation.hpp"
+#include "models/walls/wall_faces.hpp"
 #include "models/walls/walls.hpp"
 #include "models/workspace.hpp"
 
@@ -32,6 +34,7 @@ class Wall : public Model {
   int phase() const override { return static_cast<int>(number_); }
 
  private:
+  std::vector<WallFace> faces_in_the_domain(const std::vector<Vec3>& places) const;
   void slide();
   void extend();
   void force();
@@ -47,13 +50,14 @@ class Wall : public Model {
   std::vector<ExtensionSource> sources_;
   SurfaceBend bend_;
   ExtensionRule rule_;
-  std::optional<ContactLine> contact_;  // of a wall that a fluid is extended into
+  std::optional<Ventilation> ventilation_;  // of the same
+  std::optional<ContactLine> contact_;      // of a wall that a fluid is extended into
   std::optional<Forces> forces_;  // of the only fluid that is extended into it, if that is calm and heavy (calmed())
   std::vector<double> forced_;    // m/s2, of forces_ across the wall, by particle and component
 };
 
-/// Normals of the walls inside the domain, where some wall's surface must know which way it faces: once all walls have
-/// begun.
+/// Normals of the walls inside the domain, where some wall's surface must know which way it faces (it slips, or a free
+/// surface meets it): once all walls have begun.
 void face_walls(const Layout& layout, State& state);
 
 /// What a solid sees of the fluids that are extended into it.

@@ -39,7 +39,8 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
   };
   const auto finish = [&](std::size_t k, const typename Law::template Sums<Dim, Lanes>& s, bool) {
     double* record = own[k];
-    ExtendedState<Dim> state{simd::sum(s.weight), simd::sum(s.depth2), {}, {}, {}, {}, depth ? depth[k] : 0.0};
+    ExtendedState<Dim> state{simd::sum(s.weight),    simd::sum(s.depth2), {}, {}, {}, {},
+                             depth ? depth[k] : 0.0, rule.least_phi};
     for (std::size_t d = 0; d < Dim; ++d) {
       state.wall[d] = velocity[d][k];
       if (depth) state.normal[d] = normal[d][k];

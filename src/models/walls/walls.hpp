@@ -38,6 +38,7 @@ struct ExtensionRule {
   bool own_velocity = false;  // its particles keep their own velocity: grains
   bool lets_go = false;       // it does not pull: where the fluid has no pressure, it may leave
   bool one_sided = false;     // fluid behind its surface is another one: bodies that may be thin
+  double least_phi = 0.0;     // m; see ExtendedState
   double rub = 1.0;           // share of no slip that is left along a surface whose normal is known (wall_rub)
 };
 
