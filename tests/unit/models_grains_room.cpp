@@ -13,7 +13,8 @@
 namespace barchan::sphere_room_test {
 namespace {
 
-/// A small sphere of 0.01 m and a large one of 0.5 m in a domain of 1 m with periodic left and right sides.
+/// A small sphere of 0.01 m and a large one of 0.5 m over a bed of small ones, in a domain of 1 m with periodic left
+/// and right sides.
 std::string two_sizes(const Vec3& small, const Vec3& large, bool large_first) {
   const auto fill = [](const std::string& phase, const Vec3& x) {
     return "[[fill]]\nphase = \"" + phase + "\"\nshape = { points = [[" + std::to_string(x[0]) + ", " +
@@ -41,6 +42,9 @@ large-large = { law = "linear" }
 [time]
 end = 0.001
 largest-speed = 1
+[[fill]]
+phase = "small"
+shape = { box = { min = [0, 0], max = [1, 0.2] } }
 )toml" + (large_first ? b + a : a + b);
 }
 
@@ -57,7 +61,7 @@ bool is_refused(const std::string& text) {
 }
 
 TEST(StartOfSpheres, RefusesOverlapsOfUnequalSizesOnAllSides) {
-  for (const Vec3& large : {Vec3{0.5, 0.5, 0.0}, Vec3{0.1, 0.45, 0.0}})
+  for (const Vec3& large : {Vec3{0.5, 0.5, 0.0}, Vec3{0.1, 0.5, 0.0}})
     for (const bool large_first : {true, false})
       for (int k = 0; k < 12; ++k)
         for (const double overlap : {0.2, -0.2}) {
