@@ -1,6 +1,7 @@
 // Which places are taken: a grid of cells over periodic space. Internal to src/scene.
 #pragma once
 
+#include <cstddef>
 #include <unordered_map>
 #include <vector>
 
@@ -21,6 +22,8 @@ class PeriodicSpace {
 };
 
 /// Particles that can be asked for neighbours. Distances count in the mean of the spacings of the two.
+/// Particles of unequal spacings are in grids of their own, each half as wide as the one before it: a search compares
+/// a particle with those that its distance can reach, not with all small ones that a large one would cover.
 class Places {
  public:
   /// `widest`: the largest spacing (m) of any particle.
@@ -32,6 +35,8 @@ class Places {
   int owner_near(const Vec3& x, double spacing, double distance, int except = -1) const;
   /// The same; `except`: by owner, who does not count.
   int owner_near(const Vec3& x, double spacing, double distance, const std::vector<bool>& except) const;
+  /// How many particles all searches so far were compared with.
+  std::size_t compared() const { return compared_; }
 
  private:
   using Cell = std::array<long, 3>;
@@ -43,14 +48,22 @@ class Places {
     double spacing;
     int owner;
   };
-  Cell cell_of(const Vec3& x) const;
+  struct Level {  // particles of spacings of more than half of `widest`
+    double widest = 0.0;
+    std::array<double, 3> width{};
+    std::array<long, 3> cells{};  // along periodic axes; 0: unlimited
+    std::unordered_map<Cell, std::vector<Point>, Hash> grid;
+  };
+  Level level_of(double widest) const;
+  Cell cell_of(const Level& level, const Vec3& x) const;
+  template <class Look>
+  void each_cell_near(const Level& level, const Vec3& x, double steps, const Look& look) const;
   template <class Except>
   int nearest_owner(const Vec3& x, double spacing, double distance, const Except& except) const;
 
   PeriodicSpace space_;
-  std::array<double, 3> width_{};
-  std::array<long, 3> cells_{};  // along periodic axes; 0: unlimited
-  std::unordered_map<Cell, std::vector<Point>, Hash> grid_;
+  std::vector<Level> levels_;  // from wide to narrow; some may be empty
+  mutable std::size_t compared_ = 0;
 };
 
 }  // namespace barchan

@@ -132,7 +132,8 @@ Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
     return grain;
   }
   grain.radius = 0.5 * size_.mean * random.uniform(1.0 - size_.spread, 1.0 + size_.spread);
-  // Heights are exponentially distributed between the ground and the top, where the centre has room.
+  // Heights are exponentially distributed between the ground and the top, where
+  // the centre has room.
   const double low = ground_ + grain.radius, room = std::max(top_ - grain.radius - low, 0.0), h = *influx_.decay_height;
   grain.height = low - h * std::log(1.0 - random.uniform(0.0, 1.0) * -std::expm1(-room / h));
   const double speed = std::max(*influx_.speed + influx_.speed_spread * normal(random), slowest * *influx_.speed);
@@ -185,14 +186,16 @@ void GrainSource::schedule(Schedule& s) {
          [this] { enter(); }});
 }
 
-/// Whether a sphere at a place would overlap no other one, those of walls on other ranks too, no wall and no body.
-bool GrainSource::has_room(const Vec3& x, double radius) const {
+/// Whether a sphere at a place would overlap no other one, those of walls on
+/// other ranks too, no wall and no body.
+bool GrainSource::has_room(const Vec3& x, double radius) {
   constexpr double rounding = 1e-9;
   const bool outside = room_->nearest(x).gap < radius * (1.0 - rounding);
   return !ranks::any(is_taken(x, radius)) && !outside;
 }
 
-/// m, a place along the side where a sphere has room between the sides of the domain.
+/// m, a place along the side where a sphere has room between the sides of the
+/// domain.
 double GrainSource::across(double share, double radius) const {
   const std::size_t axis = axis_ == 0 ? 2 : 0;
   const double low = layout_.domain.low[axis] + (room_->has_side(axis, false) ? radius : 0.0),
@@ -200,7 +203,8 @@ double GrainSource::across(double share, double radius) const {
   return low + share * std::max(high - low, 0.0);
 }
 
-/// Whether a particle of a wall is no sphere, but stands for a side of the domain.
+/// Whether a particle of a wall is no sphere, but stands for a side of the
+/// domain.
 bool GrainSource::is_behind_side(const std::array<const double*, 3>& at, std::size_t k) const {
   for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
     if (!layout_.domain.periodic[d] && !(at[d][k] >= layout_.domain.low[d] && at[d][k] <= layout_.domain.high[d]))
@@ -208,32 +212,62 @@ bool GrainSource::is_behind_side(const std::array<const double*, 3>& at, std::si
   return false;
 }
 
-/// Whether some sphere of this rank overlaps one at a place.
-bool GrainSource::is_taken(const Vec3& x, double radius) const {
+/// Gathers the spheres of this rank that one may overlap which ends within
+/// `reach` (m) of the side, on either side of it.
+void GrainSource::gather(double reach) {
+  constexpr double rounding = 1.0 + 1e-6;
+  gathered_ = reach;
+  at_side_.resize(layout_.phases.size());
   for (std::size_t q = 0; q < layout_.phases.size(); ++q) {
     const PlanPhase& other = layout_.phases[q];
     if (!other.sphere_records && by_particles_[q] == 0) continue;
     const PhaseParticles& p = w_->particles(q);
-    std::array<const double*, 3> at{};
-    for (int d = 0; d < layout_.dimensions; ++d) at[static_cast<std::size_t>(d)] = p.column(Field::position, d);
+    const double* at = p.column(Field::position, static_cast<int>(axis_));
     const double* radii = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      double squared = 0.0;
-      for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
-        double apart = at[d][k] - x[d];
-        const double period = layout_.domain.high[d] - layout_.domain.low[d];
-        if (layout_.domain.periodic[d]) apart -= period * std::round(apart / period);
-        squared += apart * apart;
-      }
-      if (!other.moves && is_behind_side(at, k)) continue;
-      const double touching = radius + (radii ? radii[k] : 0.5 * other.largest_size);
-      if (squared < touching * touching) return true;
-    }
+    AtSide& there = at_side_[q];
+    there.spheres.clear();
+    there.looked_at = p.size();
+    for (std::size_t k = 0; k < p.size(); ++k)
+      if (std::abs(at[k] - side_) < rounding * (reach + (radii ? radii[k] : 0.5 * other.largest_size)))
+        there.spheres.push_back(static_cast<std::uint32_t>(k));
+  }
+}
+
+/// Whether a sphere overlaps one at a place.
+bool GrainSource::overlaps(std::size_t phase, std::size_t k, const Vec3& x, double radius) const {
+  const PlanPhase& other = layout_.phases[phase];
+  const PhaseParticles& p = w_->particles(phase);
+  std::array<const double*, 3> at{};
+  double squared = 0.0;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    at[d] = p.column(Field::position, static_cast<int>(d));
+    double apart = at[d][k] - x[d];
+    const double period = layout_.domain.high[d] - layout_.domain.low[d];
+    if (layout_.domain.periodic[d]) apart -= period * std::round(apart / period);
+    squared += apart * apart;
+  }
+  if (!other.moves && is_behind_side(at, k)) return false;
+  const double touching = radius + (p.has(Field::radius) ? p.column(Field::radius)[k] : 0.5 * other.largest_size);
+  return squared < touching * touching;
+}
+
+/// Whether some sphere of this rank overlaps one at a place.
+bool GrainSource::is_taken(const Vec3& x, double radius) {
+  const double reach = std::abs(x[axis_] - side_) + radius;
+  if (!(reach <= gathered_)) gather(2.0 * reach);
+  for (std::size_t q = 0; q < at_side_.size(); ++q) {
+    const AtSide& there = at_side_[q];
+    for (const std::uint32_t k : there.spheres)
+      if (overlaps(q, k, x, radius)) return true;
+    if (q != phase_) continue;
+    for (std::size_t k = there.looked_at; k < w_->particles(q).size(); ++k)
+      if (overlaps(q, k, x, radius)) return true;
   }
   return false;
 }
 
-/// Puts a grain where it is `age` (s) after it passed the side; false: its place is taken.
+/// Puts a grain where it is `age` (s) after it passed the side; false: its
+/// place is taken.
 bool GrainSource::place(const Arrivals::Grain& grain, double age) {
   Vec3 x{};
   x[axis_] = side_ + age * grain.velocity[axis_];
@@ -267,6 +301,7 @@ bool GrainSource::place(const Arrivals::Grain& grain, double age) {
 
 void GrainSource::enter() {
   const double now = w_->state.time;
+  gathered_ = 0.0;
   room_->move(w_->state, w_->wall_motions);
   while (next_ <= now) {
     waiting_.push_back({drawn_, next_, next_});
@@ -297,7 +332,8 @@ void GrainSource::report(Warnings& warnings) const {
   warnings.add("no room " + name_, brief(static_cast<double>(given_up_)) + " of " + brief(static_cast<double>(drawn_)) +
                                        " grains of \"" + influx_.phase + "\" found no room to enter through " +
                                        word_of(side_of(influx_.side)) +
-                                       ": others are in their places, and the flux is so much less; raise influx.above "
+                                       ": others are in their places, and the flux is so much less; raise "
+                                       "influx.above "
                                        "over the bed that stands at the side, or lower influx.flux");
 }
 

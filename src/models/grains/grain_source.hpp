@@ -6,6 +6,7 @@
 // drawn as they pass a place (Rasmussen & Sorensen 2008, J. Geophys. Res. 113, F02S12: number densities and fluxes).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,9 +74,11 @@ class GrainSource : public Model {
   };
   void enter();
   bool place(const Arrivals::Grain& grain, double age);
-  bool has_room(const Vec3& x, double radius) const;
+  bool has_room(const Vec3& x, double radius);
   double across(double share, double radius) const;
-  bool is_taken(const Vec3& x, double radius) const;
+  bool is_taken(const Vec3& x, double radius);
+  bool overlaps(std::size_t phase, std::size_t k, const Vec3& x, double radius) const;
+  void gather(double reach);
   bool is_behind_side(const std::array<const double*, 3>& at, std::size_t k) const;
 
   const Scene& scene_;
@@ -93,6 +96,13 @@ class GrainSource : public Model {
   Workspace* w_ = nullptr;
   std::optional<SphereRoom> room_;
   std::vector<char> by_particles_;  // by phase: a wall whose particles are spheres
+  // Spheres that one within `gathered_` (m) of the side may overlap, gathered once a step, when the first grain asks.
+  struct AtSide {
+    std::vector<std::uint32_t> spheres;
+    std::size_t looked_at = 0;  // of the phase; those after them have entered since
+  };
+  double gathered_ = 0.0;
+  std::vector<AtSide> at_side_;  // by phase
 };
 
 }  // namespace barchan

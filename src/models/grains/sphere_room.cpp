@@ -98,6 +98,69 @@ struct Placed {
   std::uint32_t phase, fill, number;  // number: in its phase
 };
 
+/// Cells as wide as the largest of their spheres, for the search of those that a sphere may overlap.
+class StartGrid {
+ public:
+  /// `widest`: the largest diameter (m).
+  StartGrid(const Layout& layout, double widest)
+      : bounds_(layout.bounds), widest_(widest), width_{widest, widest, widest} {
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double size = bounds_.high[d] - bounds_.low[d];
+      if (d < static_cast<std::size_t>(layout.dimensions) && widest > 0.0)
+        count_[d] = static_cast<long>(std::clamp(std::floor(size / widest), 1.0, 1e6));
+      if (bounds_.periodic[d]) width_[d] = size / static_cast<double>(count_[d]);
+    }
+  }
+  void add(const Vec3& x, std::uint32_t number) {
+    cells_.emplace_back(join(cell_of(x, 0), cell_of(x, 1), cell_of(x, 2)), number);
+  }
+  /// After the last add() and before each_near().
+  void sort() { std::sort(cells_.begin(), cells_.end()); }
+
+  /// Calls f with the number of each sphere in a cell that the sphere a may reach.
+  template <class F>
+  void each_near(const Placed& a, const F& f) const {
+    if (cells_.empty()) return;
+    const double reach = (a.radius + 0.5 * widest_) / widest_;
+    std::array<std::vector<long>, 3> along;
+    double all = 1.0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const long n = count_[d], c = cell_of(a.x, d);
+      const long steps = static_cast<long>(std::clamp(std::ceil(reach), 1.0, static_cast<double>(n)));
+      const long first = std::max(c - steps, bounds_.periodic[d] ? c - std::max(n / 2, 1l) : 0l);
+      const long last = std::min(c + steps, bounds_.periodic[d] ? first + n - 1 : n - 1);
+      for (long at = first; at <= last; ++at) along[d].push_back((at % n + n) % n);
+      all *= static_cast<double>(along[d].size());
+    }
+    if (all > static_cast<double>(cells_.size()) && reach > 1.0) {
+      for (const auto& [cell, number] : cells_) f(number);
+      return;
+    }
+    for (const long k : along[2])
+      for (const long j : along[1])
+        for (const long i : along[0]) {
+          const long cell = join(i, j, k);
+          for (auto b = std::lower_bound(cells_.begin(), cells_.end(), std::pair{cell, 0u});
+               b != cells_.end() && b->first == cell; ++b)
+            f(b->second);
+        }
+  }
+
+ private:
+  long cell_of(const Vec3& x, std::size_t d) const {
+    if (count_[d] == 1) return 0;
+    const long c = static_cast<long>(std::floor((x[d] - bounds_.low[d]) / width_[d]));
+    return bounds_.periodic[d] ? (c % count_[d] + count_[d]) % count_[d] : std::clamp(c, 0l, count_[d] - 1);
+  }
+  long join(long i, long j, long k) const { return (k * count_[1] + j) * count_[0] + i; }
+
+  decltype(Layout::bounds) bounds_;
+  double widest_;  // m
+  std::array<double, 3> width_;
+  std::array<long, 3> count_{1, 1, 1};
+  std::vector<std::pair<long, std::uint32_t>> cells_;
+};
+
 class StartChecker {
  public:
   StartChecker(const Scene& scene, const Layout& layout, const std::vector<std::uint32_t>& laws,
@@ -121,46 +184,25 @@ class StartChecker {
     }
   }
 
-  /// Spheres in spheres, by cells as wide as the largest of them.
-  void pairs() {
+  /// Spheres in spheres. Those of unequal sizes are in grids of their own, each half as wide as the one before it.
+  void pairs() const {
     double widest = 0.0;
     for (const Placed& a : all_) widest = std::max(widest, 2.0 * a.radius);
-    std::array<double, 3> width{widest, widest, widest};
-    for (std::size_t d = 0; d < 3; ++d) {
-      const double size = layout_.bounds.high[d] - layout_.bounds.low[d];
-      if (d < static_cast<std::size_t>(layout_.dimensions) && widest > 0.0)
-        count_[d] = static_cast<long>(std::clamp(std::floor(size / widest), 1.0, 1e6));
-      if (layout_.bounds.periodic[d]) width[d] = size / static_cast<double>(count_[d]);
+    std::vector<StartGrid> grids{{layout_, widest}};
+    constexpr std::size_t most_grids = 30;
+    for (std::uint32_t a = 0; a < all_.size(); ++a) {
+      std::size_t m = 0;
+      for (double half = 0.5 * widest; 2.0 * all_[a].radius <= half && m + 1 < most_grids; half *= 0.5)
+        if (++m == grids.size()) grids.emplace_back(layout_, half);
+      grids[m].add(all_[a].x, a);
     }
-    std::vector<std::pair<long, std::uint32_t>> cells;
-    const auto cell_of = [&](const Vec3& x, std::size_t d) {
-      if (count_[d] == 1) return 0l;
-      const long c = static_cast<long>(std::floor((x[d] - layout_.bounds.low[d]) / width[d]));
-      return layout_.bounds.periodic[d] ? (c % count_[d] + count_[d]) % count_[d] : std::clamp(c, 0l, count_[d] - 1);
-    };
-    const auto join = [&](long i, long j, long k) { return (k * count_[1] + j) * count_[0] + i; };
-    for (std::uint32_t a = 0; a < all_.size(); ++a)
-      cells.emplace_back(join(cell_of(all_[a].x, 0), cell_of(all_[a].x, 1), cell_of(all_[a].x, 2)), a);
-    std::sort(cells.begin(), cells.end());
+    for (StartGrid& grid : grids) grid.sort();
     for (std::uint32_t a = 0; a < all_.size(); ++a) {
       if (!layout_.phases[all_[a].phase].own_steps) continue;
-      std::array<std::vector<long>, 3> along;
-      for (std::size_t d = 0; d < 3; ++d) {
-        const long c = cell_of(all_[a].x, d);
-        for (long step = -1; step <= 1; ++step) {
-          const long n = count_[d], next = layout_.bounds.periodic[d] ? (c + step + n) % n : c + step;
-          if (next >= 0 && next < n && std::find(along[d].begin(), along[d].end(), next) == along[d].end())
-            along[d].push_back(next);
-        }
-      }
-      for (const long k : along[2])
-        for (const long j : along[1])
-          for (const long i : along[0]) {
-            const long cell = join(i, j, k);
-            for (auto b = std::lower_bound(cells.begin(), cells.end(), std::pair{cell, 0u});
-                 b != cells.end() && b->first == cell; ++b)
-              if (b->second < a || !layout_.phases[all_[b->second].phase].own_steps) pair(all_[a], all_[b->second]);
-          }
+      for (const StartGrid& grid : grids)
+        grid.each_near(all_[a], [&](std::uint32_t b) {
+          if (b < a || !layout_.phases[all_[b].phase].own_steps) pair(all_[a], all_[b]);
+        });
     }
   }
 
@@ -235,7 +277,6 @@ class StartChecker {
   const Layout& layout_;
   const std::vector<std::uint32_t>& laws_;
   std::vector<Placed> all_;
-  std::array<long, 3> count_{1, 1, 1};
 };
 
 }  // namespace
