@@ -357,7 +357,7 @@ TEST(JoinedFluids, RubAsOneOnTheOther) {
     Law::Own<double> own{};
     own.v = v[a];
     own.distance = distance[a];
-    own.ratio = own.share = 1.0;
+    own.share = 1.0;
     own.rubbing = mu[b] / mu[a];
     Law::Sums<double> s{};
     Law::add(own, a == 0 ? r : back, 1.93, -0.4, v[b].data(), 0.0, 1.0, distance[b], s);
