@@ -100,7 +100,8 @@ SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
   try {
     frame = read_frame(path);
   } catch (const OutputError& e) {
-    refuse(std::string("cannot be read: ") + e.what() + "; expected a .vtp of Barchan");
+    throw SceneError(located(scene, "fill." + std::to_string(fill) + ".shape.file") + ": " + e.what() +
+                     "; expected a .vtp of Barchan");
   }
   const auto name = std::find(frame.phase_names.begin(), frame.phase_names.end(), f.phase);
   if (name == frame.phase_names.end()) refuse("has no phase \"" + f.phase + "\"; expected a frame of a run with it");

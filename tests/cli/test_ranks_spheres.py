@@ -139,6 +139,32 @@ class Spheres(Folder):
             "mean = 0.9e-3", "mean = 1.2e-3")
         self.compare(text, (2, 1), (3, 2))
 
+    def between_walls(self, dimensions):
+        """A heap on a step, a wall of two shapes whose tops lie in one plane; a lid of another wall comes down on it."""
+        flat = dimensions == 2
+        boxes = [("step", "[0.02, 0]", "[0.04, 0.0009]"), ("step", "[0.04, 0]", "[0.06, 0.0009]"), ("lid", "[0.02, 0.0352]", "[0.06, 0.04]")] if flat else [
+            ("step", "[0.004, 0, 0.002]", "[0.008, 0.0009, 0.008]"), ("step", "[0.008, 0, 0.002]", "[0.012, 0.0009, 0.008]"),
+            ("lid", "[0.002, 0.0162, 0.002]", "[0.014, 0.02, 0.008]")]
+        walls = "".join(f'[phases.{name}]\nkind = "wall"\n' for name in ("step", "lid"))
+        fills = "".join(f'[[fill]]\nphase = "{name}"\nshape = {{ box = {{ min = {low}, max = {high} }} }}\n' for name, low, high in boxes)
+        return heap(dimensions, 0.004).replace("[interactions]", walls + '[interactions]\nsand-step = { law = "linear" }\nsand-lid = { law = "linear" }') + (
+            fills + f'[[motion]]\nphase = "lid"\nvelocity = {"[0.2, -0.5]" if flat else "[0.2, -0.5, 0.1]"}\n')
+
+    def test_walls_by_their_shapes(self):
+        for dimensions in (2, 3):
+            with self.subTest(dimensions):
+                self.compare(self.between_walls(dimensions), (2, 1), (3, 2))
+                self.assertGreater(max(self.column("one", "contacts")), 500)
+
+    def test_a_restart_between_walls(self):
+        text = self.between_walls(3)
+        self.run_on(0, text, "one")
+        for before, after in ((2, 0), (0, 3)):
+            out = f"{before}-{after}"
+            self.run_on(before, text, out, "--set", "time.end=0.002")
+            self.run_on(after, text, out, "--restart", "latest")
+            self.same("one", out)
+
     def test_water_over_them(self):
         self.scene("water_over_sand.toml", ((2, 1), (3, 1)), ("time.end=0.0006", "output.every=0.0003", "output.history-every=0.0002"))
 

@@ -307,7 +307,7 @@ TEST_F(BedOfAFile, IsRefusedWhereTheSceneCannotHaveIt) {
   refused("the diameters of the phase", {"phases.sand.diameter={ mean = 1e-3, spread = 0.01 }"});
   refused("the diameters of the phase", {"phases.sand.diameter=1e-3"});
   refused("outside the domain", {"domain.size=[0.02, 0.03]", "domain.periodic=[]"});
-  refused("cannot be read", {"fill.1.shape={ file = \"nowhere.vtp\" }"});
+  refused("shape.file: cannot read '", {"fill.1.shape={ file = \"nowhere.vtp\" }"});
   refused("the file says where the grains are", {"fill.1.packing=random"});
   refused("the file says where the grains are", {"fill.1.perturb=0.1"});
   refused("only spheres are read from a file", {"fill.1.phase=floor"});
@@ -360,7 +360,7 @@ TEST_F(BedOfAFile, IsRefusedWhereGrainsOverlap) {
 TEST_F(BedOfAFile, IsRefusedWhenDamaged) {
   const auto size = std::filesystem::file_size(file_);
   std::filesystem::resize_file(file_, size - size / 3);
-  refused("cannot be read");
+  refused("shape.file: cannot read '");
 }
 
 TEST_F(BedOfAFile, IsAnotherSceneToACheckpointWhenItChanges) {

@@ -60,8 +60,8 @@ void expect_straight(const std::string& what, Fall&& run, double time) {
     for (int d = 0; d < balls.dimensions(); d += 2)
       sideways = std::max(sideways, std::abs(balls.column(Field::velocity, d)[k]));
   }
-  report(what + ": restitution/0.8, error", off, 0.003);
-  EXPECT_LT(off, 0.003) << what;
+  report(what + ": restitution/0.8, error", off, 0.001);
+  EXPECT_LT(off, 0.001) << what;
   report(what + ": sideways, m/s", sideways, 1e-6);
   EXPECT_LT(sideways, 1e-6) << what;
 }
@@ -79,9 +79,26 @@ std::string grid(double radius, double gap, int side, double apart) {
   return points;
 }
 
-/// A block under y = 0.01 whose upper face has 2 n^2 triangles, as a binary .stl.
-std::string block_of_triangles(int n) {
+/// A closed surface as a binary .stl of its own name.
+std::string file_of_triangles(const std::vector<Facet>& all) {
   const auto file = std::filesystem::temp_directory_path() / ("sphere_walls_" + std::to_string(getpid()) + ".stl");
+  std::ofstream out(file, std::ios::binary);
+  const std::string head(80, ' ');
+  out.write(head.data(), 80);
+  const auto count = static_cast<std::uint32_t>(all.size());
+  out.write(reinterpret_cast<const char*>(&count), 4);
+  for (const Facet& facet : all) {
+    float numbers[12] = {};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t d = 0; d < 3; ++d) numbers[3 + 3 * c + d] = static_cast<float>(facet[c][d]);
+    out.write(reinterpret_cast<const char*>(numbers), sizeof numbers);
+    out.write("\0\0", 2);
+  }
+  return file.string();
+}
+
+/// A block under y = 0.01 whose upper face has 2 n^2 triangles.
+std::string block_of_triangles(int n) {
   std::vector<Facet> all;
   const auto quad = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     all.push_back({a, b, c});
@@ -99,19 +116,7 @@ std::string block_of_triangles(int n) {
     quad({low, bottom, x(i)}, {low, bottom, x(i + 1)}, {low, top, x(i + 1)}, {low, top, x(i)});
     quad({high, bottom, x(i)}, {high, top, x(i)}, {high, top, x(i + 1)}, {high, bottom, x(i + 1)});
   }
-  std::ofstream out(file, std::ios::binary);
-  const std::string head(80, ' ');
-  out.write(head.data(), 80);
-  const auto count = static_cast<std::uint32_t>(all.size());
-  out.write(reinterpret_cast<const char*>(&count), 4);
-  for (const Facet& facet : all) {
-    float numbers[12] = {};
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t d = 0; d < 3; ++d) numbers[3 + 3 * c + d] = static_cast<float>(facet[c][d]);
-    out.write(reinterpret_cast<const char*>(numbers), sizeof numbers);
-    out.write("\0\0", 2);
-  }
-  return file.string();
+  return file_of_triangles(all);
 }
 
 const std::string box3 = "{ box = { min = [0, 0.004, 0], max = [0.02, 0.01, 0.02] } }",
@@ -119,15 +124,52 @@ const std::string box3 = "{ box = { min = [0, 0.004, 0], max = [0.02, 0.01, 0.02
 
 // Spheres finer than the wall's particles, coarser ones and middle ones: none passes, and each comes back straight.
 TEST(SphereWalls, AreSmoothInThreeDimensions) {
-  for (const double diameter : {2e-4, 5e-4, 1e-3}) {
-    const std::string places = grid(0.5 * diameter, 1e-5, 8, 1.1e-3), size = " of " + std::to_string(diameter);
-    expect_straight("box" + size, Fall(falls(3, "wall", {box3}, places, diameter)), 1.5e-4 + 0.4 * diameter);
-    expect_straight("polygon" + size, Fall(falls(3, "wall", {prism}, places, diameter)), 1.5e-4 + 0.4 * diameter);
+  const std::string file = block_of_triangles(1), surface = "{ surface = \"" + file + "\" }";
+  for (const auto& [diameter, apart] :
+       {std::pair{2e-4, 1.1e-3}, {5e-4, 1.1e-3}, {1e-3, 1.1e-3}, {1.2e-3, 1.3e-3}, {2e-3, 2.1e-3}})
+    for (const std::string spacing : {"0.0011", "0.003"}) {
+      const int side = apart > 2e-3 ? 5 : 8;  // wider ones reach the rim of the surface
+      const std::string places = grid(0.5 * diameter, 1e-5, side, apart);
+      for (const auto& [name, shape] : {std::pair{"box", box3}, {"polygon", prism}, {"surface", surface}}) {
+        std::string text = falls(3, "wall", {shape}, places, diameter);
+        text.replace(text.find("[interactions]"), 0, "spacing = " + spacing + "\n");
+        expect_straight(std::string(name) + " of " + spacing + ", grains of " + std::to_string(diameter), Fall(text),
+                        1.5e-4 + 0.4 * diameter);
+      }
+    }
+  std::filesystem::remove(file);
+}
+
+// Of another phase next to it: a wall and a body, or two walls, whose faces lie in one plane.
+TEST(SphereWalls, HaveNoSeamsWithOthers) {
+  for (const std::string kind : {"wall", "rigid"}) {
+    std::string text = falls(2, kind, {"{ box = { min = [0, 0], max = [0.04, 0.004] } }"},
+                             "[0.04, 0.00505], [0.0373, 0.00505], [0.0424, 0.00505], [0.045, 0.00505]");
+    text.replace(text.find("[interactions]\n"), 15,
+                 "[phases.post]\nkind = \"wall\"\n[interactions]\nball-post = { law = \"linear\" }\n");
+    text.replace(text.find("[[fill]]"), 0,
+                 "[[fill]]\nphase = \"post\"\nshape = { box = { min = [0.04, 0], max = [0.08, 0.004] } }\n");
+    expect_straight(kind + " next to a wall", Fall(text), 1.2e-3);
   }
 }
 
+// A ridge and a tip that point up, of a prism and of a pyramid of triangles: a ball that falls on them comes straight
+// back. The tip of the file is 2e-10 m off, by the rounding of its numbers.
+TEST(SphereWalls, EdgesAndCornersAreTouchedByTheirPlaces) {
+  const std::string roof = "{ polygon = [[0.005, 0.004], [0.015, 0.004], [0.01, 0.01]] }";
+  expect_straight("ridge", Fall(falls(3, "wall", {roof}, "[0.01, 0.01051, 0.006], [0.01, 0.01051, 0.01003]", 1e-3)),
+                  6e-4);
+  const Vec3 tip{0.01, 0.01, 0.01}, a{0.004, 0.004, 0.004}, b{0.016, 0.004, 0.004}, c{0.016, 0.004, 0.016},
+      d{0.004, 0.004, 0.016};
+  const std::string file =
+      file_of_triangles({{a, b, c}, {a, c, d}, {a, tip, b}, {b, tip, c}, {c, tip, d}, {d, tip, a}});
+  expect_straight("tip", Fall(falls(3, "wall", {"{ surface = \"" + file + "\" }"}, "[0.01, 0.01051, 0.01]", 1e-3)),
+                  6e-4);
+  std::filesystem::remove(file);
+}
+
 TEST(SphereWalls, OfTriangles) {
-  for (const int n : {1, 35}) {
+  for (const int n : {1, 49}) {
     const std::string file = block_of_triangles(n), shape = "{ surface = \"" + file + "\" }",
                       what = "triangles, " + std::to_string(4 * n * n + 8 * n);
     expect_straight(what, Fall(falls(3, "wall", {shape}, grid(5e-4, 1e-5, 7, 1.2e-3), 1e-3)), 6e-4);

@@ -473,6 +473,52 @@ TEST_P(SpheresAtRest, OverlapByTheirLoad) {
   EXPECT_NEAR(stored, sum, 1e-3 * sum);
 }
 
+// Nor do those of a bed that came to rest with spheres of unequal sizes, friction and rolling friction.
+TEST(BedAtRest, LosesNoEnergy) {
+  const std::string text = R"toml(
+spacing = 1e-3
+[domain]
+size = [0.03, 0.03]
+periodic = ["x"]
+gravity = [0, -9.81]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = { mean = 1e-3, spread = 0.15 }
+restitution = 0.5
+friction = 0.5
+rolling-friction = 0.1
+stiffness = 2000
+[phases.floor]
+kind = "wall"
+diameter = 1e-3
+[interactions]
+sand-sand = { law = "linear" }
+sand-floor = { law = "linear" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom"] }
+[[fill]]
+phase = "sand"
+shape = { bed = 0.01 }
+packing = "settled"
+[time]
+end = 0.6
+largest-speed = 0.5
+)toml";
+  const auto run = small::simulation(text, {});
+  const auto until = [&](double end) {
+    while (run->time() < end - 1e-9) run->step(end - run->time());
+  };
+  until(0.1);
+  const double before = value(*run, "contacts_lost_energy [J]"), stored = value(*run, "contacts_stored_energy [J]");
+  EXPECT_GT(stored, 1e-7);
+  until(0.2);
+  const double share = std::abs(value(*run, "contacts_lost_energy [J]") - before) / (0.1 * stored);
+  report("lost energy of a bed at rest, of the stored, 1/s", share, 1e-9);
+  EXPECT_LT(share, 1e-9);
+}
+
 // A run that begins with an overlap has its force from the start: all of the stored energy becomes motion.
 TEST(SpheresAtRest, LetGoWithTheForceOfTheStart) {
   const double overlap = 1e-5;

@@ -83,7 +83,8 @@ void Arrivals::read_patterns(const Scene& scene, std::size_t influx) {
   try {
     frame = read_frame(path_of_file(scene, influx_.file));
   } catch (const OutputError& e) {
-    refuse(std::string("cannot be read: ") + e.what() + "; expected a .vtp of Barchan");
+    throw SceneError(located(scene, "influx." + std::to_string(influx) + ".file") + ": " + e.what() +
+                     "; expected a .vtp of Barchan");
   }
   const auto name = std::find(frame.phase_names.begin(), frame.phase_names.end(), influx_.phase);
   if (name == frame.phase_names.end())
