@@ -112,6 +112,15 @@ template <class Law, int Dim> void stressed() {
 }
 template void stressed<barchan::NeoHookean, 2>(); template void stressed<barchan::NeoHookean, 3>();
 template void stressed<barchan::SaintVenantKirchhoff, 2>(); template void stressed<barchan::SaintVenantKirchhoff, 3>();""",
+    "interface_plane": """
+template <int Dim> void one_pair() {
+  using Law = barchan::InterfacePlane;
+  typename Law::template Sums<Dim, double> s{};
+  const barchan::Particle<Dim, double, Law::Reads> a{}, b{};
+  const barchan::Pair<Dim, double> ab{};
+  Law{}.add(a, b, ab, s);
+}
+template void one_pair<2>(); template void one_pair<3>();""",
     "interface_side": PAIRS + "PAIRS(InterfaceSide)",
     "joined_fluids": """
 template <int Dim> void one_pair() {

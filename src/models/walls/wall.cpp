@@ -118,9 +118,13 @@ Vec3 out_of_walled_sides(const Scene& scene, const Bounds& bounds, const Vec3& x
 
 }  // namespace
 
-/// Of a wall that a free surface may meet, whose edges water leaves: those of the outline. Else none.
+/// Of a box that a free surface may meet, whose edges water leaves: those of the outline. Else none: between slanted
+/// faces the smoothed normals hold; with those of the outline a dam over a ridge broke up.
 std::vector<WallFace> Wall::faces_in_the_domain(const std::vector<Vec3>& places) const {
-  if (!is_ventilated(layout_, number_)) return {};
+  const bool boxes = std::all_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
+    return fill.phase != plan_.name || std::holds_alternative<BoxShape>(fill.shape);
+  });
+  if (!boxes || !is_ventilated(layout_, number_)) return {};
   double reach = 0.0;
   for (const auto& e : layout_.entries)
     if (e.extends && e.other == number_) reach = std::max(reach, e.radius);
