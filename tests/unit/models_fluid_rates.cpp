@@ -226,15 +226,19 @@ Cast light_over_heavy(int dimensions, double surface, Uniform& random,
   return Cast(b, std::move(two), {{0, 0, 3.0}, {0, 1, 2.6}, {1, 1, 3.0}, {1, 0, 2.6}}, 0.1, padding);
 }
 
-/// The distances of both fluids' particles from the plane y = `surface`, in their records (2D) and as arrays.
+/// The distances of both fluids' particles from the plane y = `surface`, in their records (2D) and as arrays. No plane
+/// is found: all between the weights of the two fluids is weight.
 struct Distances {
   std::array<std::vector<double>, 2> plain;
   std::array<EddyRecords, 2> records;
+  std::array<InterfacePlanes, 2> planes;
   Distances(Cast& cast, double surface, std::vector<CompactRecords>* compact = nullptr) {
     for (std::size_t p = 0; p < 2; ++p) {
       const PhaseParticles& fluid = cast.phases[p];
       const CellGrid& grid = cast.neighbours.grid(p);
       records[p].resize(fluid.size(), grid.images());
+      planes[p].normal.assign(fluid.size() * static_cast<std::size_t>(fluid.dimensions()), 0.0);
+      planes[p].spread.assign(fluid.size(), 0.0);
       for (std::size_t k = 0; k < fluid.size(); ++k) {
         plain[p].push_back(std::max(std::abs(position(fluid, k)[1] - surface), 0.01));
         records[p].root[k] = plain[p][k];
@@ -273,6 +277,7 @@ TEST(JoinedFluids, EqualTheNaiveSums) {
       FluidParameters q = parameters(dimensions);
       q.reference_density = 1.2;
       q.distances = &distances.records[0];
+      q.planes = &distances.planes[0];
       const auto spline = KernelKind::wendland_c2;
       const std::vector<FluidNeighbour> neighbours{
           {&cast.list(0), &cast.motion[0], spline, 3.0, 0.7, true, &compact[0]},
@@ -317,6 +322,7 @@ TEST(JoinedFluids, StayAtRestAndBearOneShearStress) {
     q.reference_density = cast.phases[who].mass();
     q.gravity = {0, -g, 0};
     q.distances = &distances.records[who];
+    q.planes = &distances.planes[who];
     const auto wendland = KernelKind::wendland_c2;
     const std::size_t own = who == 0 ? 0 : 2;
     std::vector<FluidNeighbour> neighbours{
