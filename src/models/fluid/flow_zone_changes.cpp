@@ -100,6 +100,7 @@ void FlowZone::turn_outflow() {
     if (std::abs(given - fluid) > most) {
       begin_with(lane, given, fluid);
       changes_ = 1.0;
+      learn_common();  // else the next step would take all of the layer's velocity for a gain
     }
   }
 }
