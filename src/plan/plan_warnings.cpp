@@ -207,31 +207,38 @@ void warn_of_missed_mass(const Scene& scene, Plan& plan) {
   }
 }
 
-/// A fluid that is on both sides of a wall, or may come there.
+/// A fluid that is on both sides of a wall, or may come there, must not reach through it. Where it is on one side only
+/// the kernel may lack a row: the last has next to no weight.
 void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
+  std::string refused;
   for (const PlanEntry& e : plan.entries) {
-    if (!e.extends || plan.phases[e.other].moves || plan.phases[e.other].count == 0) continue;
+    const PlanPhase& wall = plan.phases[e.other];
+    if (!e.extends || wall.moves || wall.count == 0) continue;
     const auto thin = thin_wall(scene, blocks, e.other, e.fluid, e.radius);
     if (!thin) continue;
-    // Fluid that touches such a wall has what is beyond it in its kernel.
-    const bool open = thin->rows * plan.phases[e.other].spacing < e.radius - 0.5 * e.spacing * (1.0 + 1e-9);
-    const bool wet = thin->wet[0] && thin->wet[1];
-    if (!open && !wet && !plan.phases[e.other].travels) continue;  // it may be the wall of a vessel
-    const double spacing = plan.phases[e.other].spacing, needed = 2.0 * e.radius - e.spacing;
+    const bool wet = thin->wet[0] && thin->wet[1], both = wet || wall.travels;
+    const double missing = e.radius / wall.spacing * (1.0 - 1e-9) - thin->rows;  // rows, where nothing is behind
+    if (!both && missing <= 0.5) continue;                                       // it may be the wall of a vessel
+    const double needed = both ? 2.0 * e.radius - e.spacing : e.radius - 0.5 * e.spacing;
     char text[500];
     std::snprintf(text, sizeof text,
-                  ": the wall \"%s\" is %.2g rows of %.4g m thick at (%.4g, %.4g%s%s) m, and the kernel of \"%s\" "
-                  "reaches through it: %s; expected a wall of %.4g m, twice the kernel radius less a spacing, which "
-                  "this one is with a spacing of %.3g m",
-                  plan.phases[e.other].name.c_str(), thin->rows, spacing, thin->at[0], thin->at[1],
+                  ": the wall \"%s\" is %.2g rows of %.4g m thick at (%.4g, %.4g%s%s) m, and the kernel "
+                  "of \"%s\" reaches through it: %s; expected a wall of %.4g m, %s, which this one is with a spacing "
+                  "of %.3g m",
+                  wall.name.c_str(), thin->rows, wall.spacing, thin->at[0], thin->at[1],
                   plan.dimensions == 3 ? ", " : "", plan.dimensions == 3 ? brief(thin->at[2]).c_str() : "",
                   plan.phases[e.fluid].name.c_str(),
-                  wet ? "the fluid on one side presses the fluid on the other"
-                      : "a fluid that comes to both sides acts on itself through the wall",
-                  needed, thin->rows * spacing * e.spacing / needed);
-    if (open && wet) throw SceneError(located(scene, "interactions." + e.name) + text);
-    plan.warnings.push_back("interactions." + e.name + text);
+                  wet             ? "the fluid on one side presses the fluid on the other"
+                  : wall.travels  ? "a fluid that comes to both sides of a wall that moves acts on itself through it"
+                  : missing > 1.5 ? "the fluid would fall through it"
+                                  : "the fluid misses a part of it",
+                  needed, both ? "twice the kernel radius less a spacing" : "the kernel radius less half a spacing",
+                  thin->rows * wall.spacing * e.spacing / needed);
+    if (both || missing > 1.5)
+      refused += (refused.empty() ? "" : "\n") + located(scene, "interactions." + e.name) + text;
+    else plan.warnings.push_back("interactions." + e.name + text);
   }
+  if (!refused.empty()) throw SceneError(refused);
 }
 
 /// Suction takes a fluid of plain sums apart, and a flow that slows down is under suction.

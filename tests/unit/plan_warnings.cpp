@@ -190,30 +190,35 @@ TEST(PlanWarns, OfRowsThatMissTheMassOfTheirShape) {
 }
 
 /// Two pools with a wall of some rows between them; with `right`, water on both sides.
-Plan pools(int rows, bool right) {
+Plan pools(int rows, bool right, const std::string& more = "") {
   const std::string edge = std::to_string(0.5 + 0.05 * rows);
   std::string walls = "[[fill]]\nphase = \"gate\"\nshape = { box = { min = [0.5, 0], max = [" + edge +
                       ", 1] } }\n[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [0.5, 0.8] } }\n";
   if (right) walls += "[[fill]]\nphase = \"water\"\nshape = { box = { min = [" + edge + ", 0], max = [1, 0.8] } }\n";
   return box("[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [1, 1] } }\n",
-             walls + "[phases.gate]\nkind = \"wall\"\n[interactions.water-gate]\nradius = 2.6\n");
+             walls + "[phases.gate]\nkind = \"wall\"\n[interactions.water-gate]\nradius = 2.6\n" + more);
 }
 
-TEST(PlanWarns, OfWallsThroughWhichAFluidSeesItself) {
-  for (const int rows : {1, 2}) {
-    const Plan dry = pools(rows, false);
-    EXPECT_TRUE(warns(dry, "the wall \"gate\" is " + std::to_string(rows) + " rows of 0.05 m thick")) << rows;
-    EXPECT_TRUE(warns(dry, "expected a wall of 0.21 m")) << rows;
-  }
+TEST(PlanWarns, OfWallsThatAFluidReachesThrough) {
+  EXPECT_TRUE(warns(pools(2, false), "the wall \"gate\" is 2 rows of 0.05 m thick"));
+  EXPECT_TRUE(warns(pools(2, false), "the fluid misses a part of it; expected a wall of 0.105 m"));
   EXPECT_FALSE(warns(pools(3, false), "rows of 0.05 m thick")) << "the wall of a vessel";
-  EXPECT_TRUE(warns(pools(3, true), "presses the fluid on the other"));
-  for (const int rows : {1, 2}) try {
-      pools(rows, true);
-      ADD_FAILURE() << rows << " rows between two pools";
-    } catch (const SceneError& e) {
-      EXPECT_NE(std::string(e.what()).find("presses the fluid on the other"), std::string::npos) << e.what();
-    }
-  for (const int rows : {4, 5}) EXPECT_FALSE(warns(pools(rows, true), "rows of 0.05 m thick")) << rows;
+  const std::string rises = "[[motion]]\nphase = \"gate\"\nvelocity = [0, 1]\n";
+  const auto refused = [](int rows, bool right, const std::string& more, const std::string& words) {
+    try {
+      pools(rows, right, more);
+      ADD_FAILURE() << rows << " rows" << more;
+    } catch (const SceneError& e) { EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what(); }
+  };
+  refused(1, false, "", "the fluid would fall through it");
+  for (const int rows : {1, 2, 3}) {
+    refused(rows, true, "", "presses the fluid on the other; expected a wall of 0.21 m");
+    refused(rows, false, rises, "comes to both sides of a wall that moves acts on itself");
+  }
+  for (const int rows : {4, 5}) {
+    EXPECT_FALSE(warns(pools(rows, true), "rows of 0.05 m thick")) << rows;
+    EXPECT_FALSE(warns(pools(rows, false, rises), "rows of 0.05 m thick")) << rows;
+  }
 }
 
 TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {

@@ -16,15 +16,16 @@ bool on_a_side(const Bounds& bounds, const Vec3& x, double spacing) {
   return false;
 }
 
-/// Of a particle that is nearest to a face on a side of the domain: the face within a spacing that meets it; depth zero
-/// if there is none. The particles in the edge between the two lie as deep under both, and round-off must not decide.
+/// Of a particle that is nearest to a face on a side of the domain, `below` under it: the face that meets it and is
+/// within a spacing or as near; depth zero if there is none. The particles in the edge between the two lie as deep
+/// under both, and round-off must not decide.
 WallFace face_next_to(const ContactSurface& surface, const Bounds& bounds, const Vec3& x, const Vec3& side,
-                      double spacing) {
+                      double below, double spacing) {
   const auto gap = surface.gap(x - spacing * side);
   if (!gap || !(gap->distance < 0.0)) return {};
   const Vec3 foot = x - spacing * side - gap->distance * gap->normal;
-  const double depth = dot(foot - x, gap->normal);
-  if (!(depth > 0.0 && depth <= spacing) || on_a_side(bounds, foot, spacing)) return {};
+  const double depth = dot(foot - x, gap->normal), most = std::max(spacing, below) * (1.0 + 1e-9);
+  if (!(depth > 0.0 && depth <= most) || on_a_side(bounds, foot, spacing)) return {};
   return {gap->normal, depth};
 }
 
@@ -47,7 +48,8 @@ std::vector<WallFace> outline_faces(const Scene& scene, const Layout& layout, st
       if (face.depth > 0.0 && -gap->distance > face.depth) continue;
       if (!on_a_side(layout.bounds, places[k] - gap->distance * gap->normal, spacing))
         face = {gap->normal, -gap->distance};
-      else if (const WallFace next = face_next_to(surface, layout.bounds, places[k], gap->normal, spacing);
+      else if (const WallFace next =
+                   face_next_to(surface, layout.bounds, places[k], gap->normal, -gap->distance, spacing);
                next.depth > 0.0)
         face = next;
     }
