@@ -230,11 +230,11 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
                   plan.phases[e.fluid].name.c_str(),
                   wet             ? "the fluid on one side presses the fluid on the other"
                   : wall.travels  ? "a fluid that comes to both sides of a wall that moves acts on itself through it"
-                  : missing > 1.5 ? "the fluid would fall through it"
+                  : missing > 1.25 ? "the fluid would fall through it"
                                   : "the fluid misses a part of it",
                   needed, both ? "twice the kernel radius less a spacing" : "the kernel radius less half a spacing",
                   thin->rows * wall.spacing * e.spacing / needed);
-    if (both || missing > 1.5)
+    if (both || missing > 1.25)
       refused += (refused.empty() ? "" : "\n") + located(scene, "interactions." + e.name) + text;
     else plan.warnings.push_back("interactions." + e.name + text);
   }
