@@ -228,10 +228,10 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
                   wall.name.c_str(), thin->rows, wall.spacing, thin->at[0], thin->at[1],
                   plan.dimensions == 3 ? ", " : "", plan.dimensions == 3 ? brief(thin->at[2]).c_str() : "",
                   plan.phases[e.fluid].name.c_str(),
-                  wet             ? "the fluid on one side presses the fluid on the other"
-                  : wall.travels  ? "a fluid that comes to both sides of a wall that moves acts on itself through it"
+                  wet              ? "the fluid on one side presses the fluid on the other"
+                  : wall.travels   ? "a fluid that comes to both sides of a wall that moves acts on itself through it"
                   : missing > 1.25 ? "the fluid would fall through it"
-                                  : "the fluid misses a part of it",
+                                   : "the fluid misses a part of it",
                   needed, both ? "twice the kernel radius less a spacing" : "the kernel radius less half a spacing",
                   thin->rows * wall.spacing * e.spacing / needed);
     if (both || missing > 1.25)
