@@ -182,6 +182,10 @@ class Damager:
             if file.suffix in (".vtp", ".vtk"):  # meshio reads no .vtp, and of .vtk no polygons
                 points, faces = self.by_vtk(file)
             else:
+                if file.suffix == ".obj":  # meshio reads no points with a weight or a colour
+                    plain = self.top / "plain.obj"
+                    plain.write_bytes(re.sub(rb"(?m)^(v(?:[ \t]+\S+){3})[ \t].*$", rb"\1", file.read_bytes()))
+                    file = plain
                 mesh = meshio.read(file)
                 points = mesh.points
                 faces = [row for block in mesh.cells if block.type in ("triangle", "quad", "polygon") for row in block.data]
