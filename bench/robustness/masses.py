@@ -27,21 +27,17 @@ TRIANGLE = [(0.513, 0.471), (1.537, 0.613), (0.871, 1.493)]
 ELL = [(0.513, 0.471), (1.517, 0.471), (1.517, 0.877), (0.913, 0.877), (0.913, 1.469), (0.513, 1.469)]
 SCENE = """dimensions = {dimensions}
 spacing = {spacing!r}
-[domain]
-size = [{size}]
+domain.size = [{size}]
+interactions.a-a = {entry}
+time = {{ end = 1e-9, largest-speed = 1 }}
 [phases.a]
 kind = "{kind}"
 density = 1000
 {keys}
-[interactions]
-a-a = {entry}
 [[fill]]
 phase = "a"
 shape = {{ {shape} }}
 {motion}
-[time]
-end = 1e-9
-largest-speed = 1
 """
 
 
@@ -57,10 +53,14 @@ def content(corners):
     return area, at, numpy.array([xx - area * at[0]**2, yy - area * at[1]**2, xy - area * at[0] * at[1]])
 
 
+def turning(angle):
+    return numpy.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+
+
 def brick(sides=(1.0, 0.7, 0.53), angle=0.5):
     """Corners and triangles of a brick that is turned about z, and its content."""
     unit = numpy.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)]) - 0.5
-    turn = numpy.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+    turn = turning(angle)
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     text = "".join("v {!r} {!r} {!r}\n".format(*map(float, p)) for p in unit * sides @ turn.T + [1, 1, 0.55]) + "".join(
         f"f {f[0] + 1} {f[i] + 1} {f[i + 1] + 1}\n" for f in faces for i in (1, 2))
@@ -70,33 +70,28 @@ def brick(sides=(1.0, 0.7, 0.53), angle=0.5):
 
 def shapes(folder):
     """Of each: name, dimensions, text, and what it holds: volume, centre, matrix of second moments."""
-    def plane(name, text, area, at, second, solid=False):
-        matrix, length = numpy.zeros((3, 3)), DEPTH if solid else 1.0
-        matrix[:2, :2] = [[second[0], second[2]], [second[2], second[1]]]
-        matrix *= length
+    def plane(name, text, corners, solid=False):
+        (area, at, second), matrix, length = content(corners), numpy.zeros((3, 3)), DEPTH if solid else 1.0
+        matrix[:2, :2] = numpy.array([[second[0], second[2]], [second[2], second[1]]]) * length
         matrix[2, 2] = area * DEPTH**3 / 12 if solid else 0
         return name, 3 if solid else 2, text, (area * length, numpy.array([*at, DEPTH / 2 if solid else 0]), matrix)
 
-    def round_one(a, b=None):
-        b = b or a
-        return math.pi * a * b, (1.0, 1.0), numpy.array([a * a, b * b, 0]) * math.pi * a * b / 4
-
-    ring = [numpy.array(of_one) for of_one in ([round_one(0.5)[0], *round_one(0.5)[2]], [round_one(0.23)[0], *round_one(0.23)[2]])]
+    angles = numpy.linspace(0, 2 * math.pi, 50001)
+    round_one = lambda a, b: numpy.array([1 + a * numpy.cos(angles), 1 + b * numpy.sin(angles)]).T
+    polygon = lambda corners: "polygon = [" + ", ".join(f"[{x!r}, {y!r}]" for x, y in numpy.array(corners).tolist()) + "]"
     box = [(0.513, 0.471), (1.513, 0.471), (1.513, 1.008), (0.513, 1.008)]
-    angle, about = 0.4, numpy.array([1.0, 1.0])
-    turned = [tuple(about + numpy.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]) @ p) for p in ((-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3))]
-    text = lambda corners: "polygon = [" + ", ".join(f"[{x!r}, {y!r}]" for x, y in numpy.array(corners).tolist()) + "]"
-    file, of_brick = brick()
-    (folder / "brick.obj").write_text(file)
-    ball = 4 / 3 * math.pi * 0.125
-    return [plane("box", "box = { min = [0.513, 0.471], max = [1.513, 1.008] }", *content(box)), plane("disc", "disc = { centre = [1, 1], radius = 0.5 }", *round_one(0.5)),
-            plane("triangle", text(TRIANGLE), *content(TRIANGLE)), plane("L", text(ELL), *content(ELL)),
-            plane("ring", "ring = { centre = [1, 1], inner = 0.23, outer = 0.5 }", (ring[0] - ring[1])[0], (1, 1), (ring[0] - ring[1])[1:]),
-            plane("ellipse by formula", 'formula = "1 - ((x - 1)/0.5)^2 - ((y - 1)/0.33)^2"', *round_one(0.5, 0.33)), plane("turned box", text(turned), *content(turned)),
-            ("box 3D", 3, "box = { min = [0.513, 0.471, 0.3], max = [1.513, 1.171, 0.83] }",
-             (0.371, numpy.array([1.013, 0.821, 0.565]), numpy.diag(numpy.square((1.0, 0.7, 0.53))) * 0.371 / 12)),
-            ("ball", 3, "sphere = { centre = [1, 1, 0.55], radius = 0.5 }", (ball, numpy.array([1, 1, 0.55]), numpy.eye(3) * ball * 0.05)),
-            plane("cylinder", "disc = { centre = [1, 1, 0], radius = 0.5 }", *round_one(0.5), solid=True), plane("L prism", text(ELL), *content(ELL), solid=True),
+    turned = numpy.array([(-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3)]) @ turning(0.4)[:2, :2].T + 1
+    text, of_brick = brick()
+    (folder / "brick.obj").write_text(text)
+    ball, middle, sides = 4 / 3 * math.pi * 0.125, numpy.array([1, 1, 0.55]), numpy.array([1.0, 0.7, 0.53])
+    return [plane("box", "box = { min = [0.513, 0.471], max = [1.513, 1.008] }", box),
+            plane("disc", "disc = { centre = [1, 1], radius = 0.5 }", round_one(0.5, 0.5)),
+            plane("triangle", polygon(TRIANGLE), TRIANGLE), plane("L", polygon(ELL), ELL), plane("turned box", polygon(turned), turned),
+            plane("ring", "ring = { centre = [1, 1], inner = 0.23, outer = 0.5 }", numpy.vstack([round_one(0.5, 0.5), round_one(0.23, 0.23)[::-1]])),
+            plane("ellipse by formula", 'formula = "1 - ((x - 1)/0.5)^2 - ((y - 1)/0.33)^2"', round_one(0.5, 0.33)),
+            ("box 3D", 3, "box = { min = [0.513, 0.471, 0.3], max = [1.513, 1.171, 0.83] }", (0.371, numpy.array([1.013, 0.821, 0.565]), numpy.diag(sides**2) * 0.371 / 12)),
+            ("ball", 3, "sphere = { centre = [1, 1, 0.55], radius = 0.5 }", (ball, middle, numpy.eye(3) * ball * 0.05)),
+            plane("cylinder", "disc = { centre = [1, 1, 0], radius = 0.5 }", round_one(0.5, 0.5), solid=True), plane("L prism", polygon(ELL), ELL, solid=True),
             ("brick by file", 3, f'surface = "{folder}/brick.obj"', of_brick)]
 
 
