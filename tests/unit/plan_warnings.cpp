@@ -386,6 +386,44 @@ TEST(PlanWarns, OfWallsWithoutAnOutline) {
   EXPECT_FALSE(warns(plan("{ box = { min = [0, 0, 0], max = [0.2, 0.05, 0.2] } }"), "feel the lattice"));
 }
 
+TEST(PlanWarns, OfPrismsThatMoveAmongGrains) {
+  const auto plan = [](const std::string& shape, const std::string& keys = "") {
+    const Scene scene = parse_scene(R"(dimensions = 3
+spacing = 0.002
+[domain]
+size = [0.05, 0.05, 0.02]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = 0.001
+stiffness = 500
+[phases.drum]
+kind = "wall"
+)" + keys + R"([interactions]
+sand-sand = { law = "linear" }
+sand-drum = { law = "linear" }
+[[fill]]
+phase = "drum"
+shape = { )" + shape + R"( }
+[[motion]]
+phase = "drum"
+angular-velocity = [0, 0, 1.5]
+[[fill]]
+phase = "sand"
+shape = { points = [[0.025, 0.045, 0.01]] }
+[time]
+end = 0.01
+largest-speed = 1
+)",
+                                    "drum.toml");
+    return make_plan(scene, generate(scene));
+  };
+  const std::string ring = "ring = { centre = [0.025, 0.025, 0], inner = 0.012, outer = 0.017 }";
+  EXPECT_TRUE(warns(plan(ring), "fill.0.shape: in 3D a disc, a ring or a polygon that moves is rows of spheres"));
+  EXPECT_FALSE(warns(plan(ring, "diameter = 0.002\n"), "rows of spheres")) << "the scene asks for spheres";
+  EXPECT_FALSE(warns(plan("box = { min = [0.01, 0.01, 0.004], max = [0.03, 0.03, 0.016] }"), "rows of spheres"));
+}
+
 /// The written restitution is that of two particles.
 TEST(PlanTells, WhatBodiesOfManyParticlesKeep) {
   const auto told = [](const std::string& contact) {
