@@ -6,7 +6,8 @@
 // A step takes the mean of delta^(3/2) while the contact sets in, as laws/contact_onset.hpp does of delta, and far from
 // the onset what the same weights make of it, delta^(3/2) + a^2/(16 sqrt(delta)); spring and dashpot are those for
 // which the discrete oscillator has the decay and the frequency of the continuous one (laws/linear_spring.hpp), with
-// the tangent stiffness 3/2 F/delta and a force of others as there. Without a dashpot the force is Hertz's at x_n.
+// the tangent stiffness 3/2 F/delta and a force of others as there. Without a dashpot the force is the plain one at
+// x_n.
 #pragma once
 
 #include <cmath>
@@ -127,9 +128,9 @@ struct HertzSpring {
     const V drag = n.dashpot * inverse_mass;
     n.dashpot = n.dashpot * fnma(drag * drag, dt.whole * dt.whole * V(1.0 / 12.0), V(1.0));
     const V push = d.beside(elastic, n.dashpot, approach, fma(n.dashpot * inverse_mass, dt.half, V(1.0)));
-    const V ending = select(x > V(0.0), ramp(push, V(1.5) * here * before), V(0.0)), plain = here * overlap;
-    n.force = select(d.loses(), select(approach > V(0.0), push, ending), plain);
-    n.elastic = select(d.loses(), n.elastic + more, plain);
+    const V ending = select(x > V(0.0), ramp(push, V(1.5) * here * before), V(0.0));
+    n.force = select(d.loses(), select(approach > V(0.0), push, ending), n.elastic);
+    n.elastic = select(d.loses(), n.elastic + more, n.elastic);
     n.load = n.force;
     n.stored = V(stored_share) * n.elastic * simd::max(x, V(0.0));
     return n;
