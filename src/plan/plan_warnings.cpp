@@ -8,9 +8,11 @@
 #include "models/fluid/flow_zone.hpp"
 #include "output/numbers.hpp"
 #include "plan/plan.hpp"
+#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
 #include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
+#include "scene/outline.hpp"
 #include "scene/shape_content.hpp"
 #include "scene/thin_wall.hpp"
 
@@ -84,6 +86,27 @@ void warn_of_lattices(Plan& plan) {
             "shape with one: sides, box, cube, polygon, surface of lines, in 2D also disc, ring, in 3D sphere");
 }
 
+/// Spheres touch a wall that moves by its shape where that has ends; a prism goes through all of z and has none.
+void warn_of_prisms_that_move(const Scene& scene, Plan& plan) {
+  for (std::size_t w = 0; w < plan.phases.size() && plan.dimensions == 3; ++w) {
+    const Phase& wall = scene.phases[w];
+    if (!plan.phases[w].travels || wall.diameter()) continue;
+    for (std::size_t f = 0; f < scene.fills.size(); ++f) {
+      const Shape& shape = scene.fills[f].shape;
+      const bool prism = std::holds_alternative<DiscShape>(shape) || std::holds_alternative<RingShape>(shape) ||
+                         facet_dimensions(shape) == 2;
+      if (scene.fills[f].phase != wall.name || !prism || touched_by_surface(scene, wall, shape)) continue;
+      for (std::size_t k = 0; k < plan.phases.size(); ++k)
+        if (plan.phases[k].own_steps && entry_between(scene, scene.phases[k], wall))
+          plan.warnings.push_back("fill." + std::to_string(f) +
+                                  ".shape: in 3D a disc, a ring or a polygon that moves " +
+                                  "is rows of spheres of one spacing to the grains of \"" + plan.phases[k].name +
+                                  "\": a rough wall, through which smaller grains may pass; a closed surface of a " +
+                                  "file is touched by its shape");
+    }
+  }
+}
+
 /// A bar in a box is as thick as its rows of particles, and bends as those do. docs/impacts.md has the cantilever.
 void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
   constexpr double share = 0.01;  // of the thickness: 3 % of what bends
@@ -103,8 +126,8 @@ void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blo
       if (std::abs(rows * dx / said - 1.0) > share) {
         std::snprintf(
             text, sizeof text,
-            "fill.%zu.shape.box: along %c the box is %.4g m and the body %.0f rows of %.4g m, %.4g m (%+.1f %%): its "
-            "mass and what bends it are of the rows; a spacing of %.6g m fits",
+            "fill.%zu.shape.box: along %c the box is %.4g m and the body %.0f rows of %.4g m, %.4g m (%+.1f %%): "
+            "what bends it is of the rows; a spacing of %.6g m fits",
             static_cast<std::size_t>(fill - scene.fills.begin()), "xyz"[d], said, rows, dx, rows * dx,
             100.0 * (rows * dx / said - 1.0), said / rows);
         plan.warnings.emplace_back(text);
@@ -160,10 +183,29 @@ std::string spacings_that_fit(const std::vector<double>& lengths, double dx) {
   return text;
 }
 
+/// Places (m) of a fill in a formula: nothing else bounds the formula but the domain. Empty for other shapes, and where
+/// ranks share the particles out.
+std::vector<Vec3> places_in_formula(const Fill& fill, std::size_t number, const ParticleBlock& block) {
+  if (!std::holds_alternative<FormulaShape>(fill.shape) || block.piece) return {};
+  for (std::size_t k = 0; k < block.parts.size(); ++k) {
+    if (block.parts[k].fill != number) continue;
+    const std::size_t end = k + 1 < block.parts.size() ? block.parts[k + 1].first : block.position.size();
+    return {block.position.begin() + static_cast<std::ptrdiff_t>(block.parts[k].first),
+            block.position.begin() + static_cast<std::ptrdiff_t>(end)};
+  }
+  return {};
+}
+
 /// A fluid and an elastic body have the mass of their rows, which need not be that of their shapes.
-void warn_of_missed_mass(const Scene& scene, Plan& plan) {
+void warn_of_missed_mass(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
   constexpr double of_shapes = 1e-3;
   constexpr double of_what_is_left = 1e-2;  // by other shapes, whose particles keep their distance
+  // What settled or lies at random holds less than its shape; a formula holds its particles, whatever it bounds.
+  const auto has_outline = [&](const Fill& fill) {
+    return !std::holds_alternative<FormulaShape>(fill.shape) &&
+           std::none_of(plan.phases.begin(), plan.phases.end(),
+                        [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; });
+  };
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
     double share = of_shapes;
@@ -173,27 +215,21 @@ void warn_of_missed_mass(const Scene& scene, Plan& plan) {
     bool known = true, boxes = true;
     for (std::size_t f = 0; f < scene.fills.size() && known; ++f) {
       const Fill& fill = scene.fills[f];
-      // What settled or lies at random holds less than its shape; a formula holds its particles, whatever it bounds.
-      known = std::none_of(plan.phases.begin(), plan.phases.end(),
-                           [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; }) &&
-              (fill.phase == p.name || !std::holds_alternative<FormulaShape>(fill.shape));
-      if (fill.phase != p.name || !known) continue;
-      const auto held = content_of_fill(scene, f, {}, rough_sampling);
+      if (fill.phase != p.name) continue;
+      const bool is_cut = fill.leave_out == LeaveOut::earlier_fills || std::holds_alternative<TheRestShape>(fill.shape);
+      for (std::size_t other = 0; is_cut && other < f; ++other) {
+        known = known && (scene.fills[other].phase == p.name || has_outline(scene.fills[other]));
+        if (!std::holds_alternative<SidesShape>(scene.fills[other].shape)) share = of_what_is_left;
+      }
+      const auto held =
+          known ? content_of_fill(scene, f, places_in_formula(fill, f, blocks[k]), rough_sampling) : std::nullopt;
       known = held.has_value();
       if (known) content += held->content;
-      if (fill.leave_out == LeaveOut::earlier_fills || std::holds_alternative<TheRestShape>(fill.shape))
-        for (std::size_t other = 0; other < f; ++other)
-          if (!std::holds_alternative<SidesShape>(scene.fills[other].shape)) share = of_what_is_left;
       const std::vector<double> own = lengths_of_rows(scene, fill);
       lengths.insert(lengths.end(), own.begin(), own.end());
       boxes = boxes && !own.empty();
     }
-    const bool told = std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
-      const std::string start = "fill." + std::to_string(&fill - scene.fills.data()) + ".shape.box: along";
-      return fill.phase == p.name && std::any_of(plan.warnings.begin(), plan.warnings.end(),
-                                                 [&](const std::string& other) { return other.starts_with(start); });
-    });
-    if (told || !known || !(content > 0.0)) continue;
+    if (!known || !(content > 0.0)) continue;
     const double rows = static_cast<double>(p.count) * std::pow(p.spacing, plan.dimensions);
     if (std::abs(rows / content - 1.0) <= share) continue;
     const std::string fitting = boxes ? spacings_that_fit(lengths, p.spacing) : "";
@@ -419,10 +455,11 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_loose_bodies(scene, plan);
   warn_of_what_does_not_meet(scene, plan);
   warn_of_lattices(plan);
+  warn_of_prisms_that_move(scene, plan);
   warn_of_background_pressure(scene, plan);
   warn_of_suction(scene, plan);
   warn_of_thickness(scene, blocks, plan);
-  warn_of_missed_mass(scene, plan);
+  warn_of_missed_mass(scene, blocks, plan);
   look_at_thin_walls(scene, blocks, plan);
   warn_of_held_speed_over_grains(scene, plan);
   warn_of_strong_winds(plan);

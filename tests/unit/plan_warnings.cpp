@@ -187,6 +187,34 @@ TEST(PlanWarns, OfRowsThatMissTheMassOfTheirShape) {
   EXPECT_TRUE(warns(box("max = [1, 1]", "max = [0.975, 1]"), "a spacing of 0.025 m fits"));
   EXPECT_TRUE(warns(box("box = { min = [0, 0], max = [1, 1] }", "disc = { centre = [0.5, 0.5], radius = 0.13 }"),
                     "packing = \"relaxed\" misses less"));
+  const std::string spheres =
+      "[phases.sand]\nkind = \"grains\"\ndensity = 2650\ndiameter = 0.05\nstiffness = "
+      "1e4\n[interactions.sand-sand]\nlaw = "
+      "\"linear\"\n[[fill]]\nphase = \"sand\"\nshape = { points = [[0.5, 0.95]] }\n";
+  EXPECT_TRUE(warns(box("[time]\n", spheres + "[time]\n", "0.83"), "the mass of its 340 particles"))
+      << "grains above it";
+}
+
+TEST(PlanWarns, OfTheMassOfASmallShapeInALargeDomain) {
+  const Scene scene = parse_scene(R"(spacing = 0.13
+[domain]
+size = [400, 400]
+[phases.water]
+kind = "fluid"
+density = 1000
+sound-speed = 10
+[interactions]
+water-water = 2.1
+[[fill]]
+phase = "water"
+shape = { formula = "0.25 - (x - 131.3)^2 - (y - 230.1)^2" }
+[time]
+end = 1
+largest-speed = 1
+)",
+                                  "small.toml");
+  const Plan plan = make_plan(scene, generate(scene));
+  EXPECT_TRUE(warns(plan, "phases.water: the mass of its"));
 }
 
 /// Two pools with a wall of some rows between them; with `right`, water on both sides.
@@ -308,10 +336,13 @@ end = 1
 }
 
 TEST(PlanWarns, OfABarThatIsNotWholeRowsThick) {
-  ASSERT_EQ(bar("0.1").size(), 1U);
+  ASSERT_EQ(bar("0.1").size(), 2U);
   EXPECT_NE(bar("0.1").front().find("along y the box is 0.02 m and the body 12 rows of 0.0016 m, 0.0192 m (-4.0 %)"),
             std::string::npos)
       << bar("0.1").front();
+  EXPECT_NE(bar("0.1").back().find("phases.bar: the mass of its 1200 particles of 0.0016 m is -4.00 % off"),
+            std::string::npos)
+      << bar("0.1").back();
   EXPECT_TRUE(bar("0.0992").empty()) << bar("0.0992").front() << ": twelve rows";
 }
 
@@ -358,6 +389,44 @@ TEST(PlanWarns, OfWallsWithoutAnOutline) {
   EXPECT_TRUE(warns(plan("{ formula = \"0.05 + 0.1*x - y\" }"), "bodies feel the lattice of its particles"));
   EXPECT_FALSE(warns(plan("{ polygon = [[0, 0], [0.2, 0], [0.2, 0.07], [0, 0.05]] }"), "feel the lattice"));
   EXPECT_FALSE(warns(plan("{ box = { min = [0, 0, 0], max = [0.2, 0.05, 0.2] } }"), "feel the lattice"));
+}
+
+TEST(PlanWarns, OfPrismsThatMoveAmongGrains) {
+  const auto plan = [](const std::string& shape, const std::string& keys = "") {
+    const Scene scene = parse_scene(R"(dimensions = 3
+spacing = 0.002
+[domain]
+size = [0.05, 0.05, 0.02]
+[phases.sand]
+kind = "grains"
+density = 2650
+diameter = 0.001
+stiffness = 500
+[phases.drum]
+kind = "wall"
+)" + keys + R"([interactions]
+sand-sand = { law = "linear" }
+sand-drum = { law = "linear" }
+[[fill]]
+phase = "drum"
+shape = { )" + shape + R"( }
+[[motion]]
+phase = "drum"
+angular-velocity = [0, 0, 1.5]
+[[fill]]
+phase = "sand"
+shape = { points = [[0.025, 0.045, 0.01]] }
+[time]
+end = 0.01
+largest-speed = 1
+)",
+                                    "drum.toml");
+    return make_plan(scene, generate(scene));
+  };
+  const std::string ring = "ring = { centre = [0.025, 0.025, 0], inner = 0.012, outer = 0.017 }";
+  EXPECT_TRUE(warns(plan(ring), "fill.0.shape: in 3D a disc, a ring or a polygon that moves is rows of spheres"));
+  EXPECT_FALSE(warns(plan(ring, "diameter = 0.002\n"), "rows of spheres")) << "the scene asks for spheres";
+  EXPECT_FALSE(warns(plan("box = { min = [0.01, 0.01, 0.004], max = [0.03, 0.03, 0.016] }"), "rows of spheres"));
 }
 
 /// The written restitution is that of two particles.
