@@ -6,7 +6,7 @@
 // A step takes the mean of delta^(3/2) while the contact sets in, as laws/contact_onset.hpp does of delta, and far from
 // the onset what the same weights make of it, delta^(3/2) + a^2/(16 sqrt(delta)); spring and dashpot are those for
 // which the discrete oscillator has the decay and the frequency of the continuous one (laws/linear_spring.hpp), with
-// the tangent stiffness 3/2 F/delta and a force of others as there. Without a dashpot the force is the plain one at
+// the tangent stiffness 3/2 F/delta and a force of others as there. Without a dashpot the force follows from
 // x_n.
 #pragma once
 

@@ -6,9 +6,9 @@
 // for which the discrete oscillator has the decay and the frequency of the continuous one: with T^2 = K dt^2/m*,
 // D = c/sqrt(m* K): K (1 - T^2 (1 + D^2)/12), c (1 - T^2 D^2/12), to order T^4. That takes the mean of the force for
 // an acceleration -F/m*; under a force B of others it is (B - F)/m*, and the spring has T^2 (1 + D^2)/12 B more: at
-// rest F = B = K delta. The same ramp rounds the end of the clipped force. Without a dashpot the force is the plain one
-// at x_n, so that the steps stay those of a mechanical system: where many touch at once, a force that knows velocities
-// gains energy (1 % in 10^4 steps of a dense gas).
+// rest F = B = K delta. The same ramp rounds the end of the clipped force. Without a dashpot the force follows
+// from x_n alone, so that the steps stay those of a mechanical system: where many touch at once, a force that knows
+// velocities gains energy (1 % in 10^4 steps of a dense gas).
 #pragma once
 
 #include <cmath>
