@@ -31,6 +31,9 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks);
 /// Fills Plan::warnings; the last work of make_plan.
 void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan);
 
+/// Adds warnings of fluids and elastic bodies whose rows of particles miss the mass of their shapes by more than 1e-3.
+void warn_of_missed_mass(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan);
+
 /// Adds warnings of what lies outside the ranges of the stability atlas (docs/stability.md).
 void warn_outside_stable_ranges(const Scene& scene, Plan& plan);
 
