@@ -84,6 +84,22 @@ TEST(Plan, AirAloneIsOnlyAFluid) {
     EXPECT_FALSE(p.has(f)) << info(f).name;
 }
 
+TEST(Plan, FieldsForFramesThatNoPhaseHasAreRefusedAllAtOnce) {
+  Scene s = scene(air, "air-air = 3.0\n", {"air"});
+  s.output.fields = {"smoothing_length", "shift_velocity", "id"};
+  EXPECT_NO_THROW(plan_of(s));
+  s.output.fields = {"shift_velocity", "velocity_gradient", "radius"};
+  try {
+    plan_of(s);
+    ADD_FAILURE() << "zeros in every frame";
+  } catch (const SceneError& e) {
+    const std::string text = e.what();
+    EXPECT_NE(text.find("no phase of this scene has \"velocity_gradient\""), std::string::npos) << text;
+    EXPECT_NE(text.find("no phase of this scene has \"radius\""), std::string::npos) << text;
+    EXPECT_EQ(text.find("\"shift_velocity\""), std::string::npos) << text;
+  }
+}
+
 TEST(Plan, ModelsThatAreOffHaveNoFields) {
   const auto fields = [](const std::string& more) {
     return plan_of(scene(air + more, "air-air = 3.0\n", {"air"})).phases[0].fields;
