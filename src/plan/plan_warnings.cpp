@@ -12,7 +12,6 @@
 #include "scene/couplings.hpp"
 #include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
-#include "scene/outline.hpp"
 #include "scene/thin_wall.hpp"
 
 namespace barchan {
@@ -85,25 +84,20 @@ void warn_of_lattices(Plan& plan) {
             "shape with one: sides, box, cube, polygon, surface of lines, in 2D also disc, ring, in 3D sphere");
 }
 
-/// Spheres touch a wall that moves by its shape where that has ends; a prism goes through all of z and has none.
+/// Spheres touch a wall that moves by its shape where that has ends.
 void warn_of_prisms_that_move(const Scene& scene, Plan& plan) {
-  for (std::size_t w = 0; w < plan.phases.size() && plan.dimensions == 3; ++w) {
-    const Phase& wall = scene.phases[w];
-    if (!plan.phases[w].travels || wall.diameter()) continue;
+  for (std::size_t w = 0; w < plan.phases.size(); ++w)
     for (std::size_t f = 0; f < scene.fills.size(); ++f) {
-      const Shape& shape = scene.fills[f].shape;
-      const bool prism = std::holds_alternative<DiscShape>(shape) || std::holds_alternative<RingShape>(shape) ||
-                         facet_dimensions(shape) == 2;
-      if (scene.fills[f].phase != wall.name || !prism || touched_by_surface(scene, wall, shape)) continue;
+      if (scene.fills[f].phase != plan.phases[w].name) continue;
+      if (!moves_as_rows(scene, scene.phases[w], scene.fills[f].shape)) continue;
       for (std::size_t k = 0; k < plan.phases.size(); ++k)
-        if (plan.phases[k].own_steps && entry_between(scene, scene.phases[k], wall))
+        if (plan.phases[k].own_steps && entry_between(scene, scene.phases[k], scene.phases[w]))
           plan.warnings.push_back("fill." + std::to_string(f) +
                                   ".shape: in 3D a disc, a ring or a polygon that moves " +
                                   "is rows of spheres of one spacing to the grains of \"" + plan.phases[k].name +
                                   "\": a rough wall, through which smaller grains may pass; a closed surface of a " +
                                   "file is touched by its shape");
     }
-  }
 }
 
 /// A bar in a box is as thick as its rows of particles, and bends as those do. docs/impacts.md has the cantilever.

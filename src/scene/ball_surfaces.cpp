@@ -61,11 +61,18 @@ bool NoRoom::at(const Vec3& x) const {
   return false;
 }
 
+static bool is_prism(const Shape& shape) {
+  return std::holds_alternative<DiscShape>(shape) || std::holds_alternative<RingShape>(shape) ||
+         facet_dimensions(shape) == 2;
+}
+
+bool moves_as_rows(const Scene& scene, const Phase& wall, const Shape& shape) {
+  return wall.if_wall() && !wall.diameter() && scene.dimensions == 3 && is_prism(shape) && motion_of(scene, wall);
+}
+
 bool touched_by_surface(const Scene& scene, const Phase& wall, const Shape& shape) {
   if (!wall.if_wall() || wall.diameter()) return false;
-  const bool prism = std::holds_alternative<DiscShape>(shape) || std::holds_alternative<RingShape>(shape) ||
-                     facet_dimensions(shape) == 2;
-  if (prism) return scene.dimensions == 2 || !motion_of(scene, wall);
+  if (is_prism(shape)) return !moves_as_rows(scene, wall, shape);
   return std::holds_alternative<BoxShape>(shape) || std::holds_alternative<CubeShape>(shape) ||
          std::holds_alternative<SphereShape>(shape) || facet_dimensions(shape) == 3;
 }

@@ -12,6 +12,8 @@ namespace barchan {
 /// where its surface lies. Else they touch its particles, as spheres. In 3D a shape that goes through all of z has no
 /// ends, and is particles where a [[motion]] carries it.
 bool touched_by_surface(const Scene& scene, const Phase& wall, const Shape& shape);
+/// Whether the shape goes through all of z and a [[motion]] carries the wall, which has no `diameter`.
+bool moves_as_rows(const Scene& scene, const Phase& wall, const Shape& shape);
 
 /// Where spheres of a phase have no place: sides of the domain that hold them, walls that they touch by surfaces, and
 /// rigid bodies, at the start.
