@@ -11,6 +11,11 @@ void describe_coupling(const Scene& scene, const Interaction& pair, const Layout
   describe_extension(scene, pair, e);
 }
 
+/// In a gap of about a spacing a single fluid particle may be all that a solid particle meets, and as near to the plane
+/// of its surface as round-off: the line of no slip through it is as steep as this share of a spacing allows. Rows of a
+/// fluid stand half a spacing off and more.
+static constexpr double nearest = 0.25;
+
 SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t solid, bool by_borders)
     : scene_(scene),
       layout_(layout),
@@ -21,6 +26,7 @@ SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t
   if (separate_) return;
   rule_.rub = wall_rub(scene, layout, solid);
   rule_.one_sided = ends_at_border(scene, scene.phases[solid]);
+  rule_.least_phi = nearest * layout.phases[solid].spacing;
   for (const PlanEntry& e : layout.entries)
     if (e.extends && e.other == solid && e.corrected && layout.phases[e.fluid].free_surface) rule_.lets_go = true;
 }

@@ -17,6 +17,16 @@ namespace {
 /// particles at the outline itself, where the line through the wall's velocity has no slope; sides hold them here.
 constexpr double held_off = 0.02;
 
+/// The same beside bodies that move: they press particles to the outline, one alone in a gap (SolidInFluid).
+constexpr double held_off_by_bodies = 0.25;
+
+/// Whether a fluid touches bodies that move.
+bool carries_bodies(const Layout& layout, std::size_t fluid) {
+  return std::any_of(layout.entries.begin(), layout.entries.end(), [&](const PlanEntry& e) {
+    return e.extends && e.fluid == fluid && layout.phases[e.other].moves && !layout.phases[e.other].separate;
+  });
+}
+
 /// The largest size (m/s) of the velocity that a wall says, at 17 times of the run.
 double largest_in_time(const Scene& scene, const VectorExpression& velocity) {
   const Formula u(velocity[0]), v(velocity[1]), w(velocity[2]);
@@ -89,7 +99,7 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   for (const auto& e : layout.entries)
     if (e.extends && e.other == number && layout.phases[e.fluid].free_surface) {
       rule_.lets_go = plan_.travels;
-      rule_.least_phi = held_off * plan_.spacing;
+      rule_.least_phi = (carries_bodies(layout, e.fluid) ? held_off_by_bodies : held_off) * plan_.spacing;
     }
 }
 
