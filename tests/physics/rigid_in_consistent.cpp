@@ -214,5 +214,60 @@ TEST(RigidInConsistentFluid, KeepsMomentumToTheOrderOfTheScheme) {
   EXPECT_GT(worst, 0.0);
 }
 
+// Under a disc that comes to the floor a particle of water may be all that meets the disc's own particles, at the
+// height of the plane of its surface: the line of no slip through it had a pole there, and its density ran away.
+TEST(RigidInConsistentFluid, ADiscThatSinksToTheFloorSqueezesTheWaterOut) {
+  const std::string pool = R"(dimensions = 2
+spacing = 0.01
+[domain]
+size = [0.36, 0.5]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-3
+enclosed = false
+[phases.tank]
+kind = "wall"
+[phases.disc]
+kind = "rigid"
+density = 2650
+largest-overlap = 0.2
+[interactions]
+water-water = {}
+water-tank = {}
+water-disc = {}
+disc-tank = {}
+[[fill]]
+phase = "tank"
+shape = { sides = ["bottom", "left", "right"] }
+[[fill]]
+phase = "disc"
+shape = { disc = { centre = [0.18, HEIGHT], radius = 0.06 } }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0, 0], max = [0.36, 0.3] } }
+pressure = "hydrostatic"
+leave-out = "earlier-fills"
+[time]
+end = 0.4
+)";
+  for (const char* height : {"0.1", "0.15"}) {
+    std::string text = pool;
+    text.replace(text.find("HEIGHT"), 6, height);
+    const Scene scene = parse_scene(text, "pool.toml");
+    const auto blocks = generate(scene);
+    Simulation run(scene, make_plan(scene, blocks), blocks);
+    double most = 0.0;
+    for (double time = 5e-4; time < 0.4001; time += 5e-4) {
+      go(run, time);
+      most = std::max(most, value(run, "largest_density_error"));
+    }
+    report(std::string("density under a disc from ") + height + " m, largest error", most, 0.1);
+    EXPECT_LT(most, 0.1) << "before: 0.2, and at other heights the run ended";
+    EXPECT_NEAR(value(run, "disc_y"), 0.06, 0.008) << "the disc lies on the floor, or on a particle of water";
+  }
+}
+
 }  // namespace
 }  // namespace barchan
