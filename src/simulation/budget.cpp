@@ -146,7 +146,8 @@ void Budget::report(const State& state, Warnings& warnings, double held) const {
   const bool is_slow = start_.kinetic <= energy_at(slow * sound_speed_, start_.mass);
   if (!noiseless_ && fluids && is_slow) {
     // In per cent of so slow a motion it would be a large number, and say nothing of the motion.
-    const double gained = *growth * start_.kinetic, weight = start_.mass * norm(gravity_);
+    const Sums now = sums(state);
+    const double gained = now.mechanical() + held - start_.mechanical(), weight = start_.mass * norm(gravity_);
     return warnings.add(
         "energy",
         "the weight and the compression gained " + brief(gained) + " J" +

@@ -78,6 +78,12 @@ TEST(Budget, TellsOfEnergyFromNowhere) {
   EXPECT_TRUE(one_tells(c.warnings(), "the energy of the motion"));
 }
 
+TEST(Budget, TellsWhatAFluidThatRestedGained) {
+  Case c(with(wave, "velocity = [\"sin(2*pi*y)\", 0]\n", "velocity = [0, 0]\n"));
+  for (std::size_t i = 0; i < c.count(); ++i) c.column(Field::velocity)[i] = i % 2 == 0 ? 0.5 : -0.5;  // of 1000 kg
+  EXPECT_TRUE(one_tells(c.warnings(), "gained 125 J")) << c.warnings().front();
+}
+
 TEST(Budget, CountsWhatCompressionStores) {
   Case c(wave);
   // c^2 (rho/rho0 - 1)^2/2 = 100 * 1e-4/2 = 5e-3 J/kg, a fiftieth of the mean of u^2/2 = 0.25 J/kg.
