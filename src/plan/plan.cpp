@@ -180,21 +180,20 @@ void check_steps(const Scene& scene, Plan& plan) {
   if (steps > remarkable) plan.warnings.push_back("time.end: " + number + ", which will take long");
 }
 
-/// A field that no phase has would be zeros in every frame. What all frames have is told of all phases.
-void check_output_fields(const Scene& scene, const Plan& plan) {
+/// A field that no phase has is zeros in every frame. What all frames have, and the radius of spheres, are told without
+/// a field.
+void look_at_output_fields(const Scene& scene, Plan& plan) {
   using enum Field;
-  std::string missing;
   for (const std::string& name : scene.output.fields) {
     const auto field = find_field(name);
     if (!field || FieldSet{position, velocity, density, pressure, smoothing_length}.has(*field)) continue;
-    if (std::any_of(plan.phases.begin(), plan.phases.end(), [&](const PlanPhase& p) {
-          return std::find(p.fields.begin(), p.fields.end(), *field) != p.fields.end();
+    if (std::none_of(plan.phases.begin(), plan.phases.end(), [&](const PlanPhase& p) {
+          return (*field == radius && p.own_steps) ||
+                 std::find(p.fields.begin(), p.fields.end(), *field) != p.fields.end();
         }))
-      continue;
-    missing += (missing.empty() ? "" : "\n") + located(scene, "output.fields") + ": no phase of this scene has \"" +
-               name + "\" (" + std::string(info(*field).meaning) + "); expected fields that barchan plan lists";
+      plan.warnings.push_back("output.fields: no phase of this scene has \"" + name + "\" (" +
+                              std::string(info(*field).meaning) + "): it is zero in every frame");
   }
-  if (!missing.empty()) throw SceneError(missing);
 }
 
 }  // namespace
@@ -228,7 +227,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   if (plan.limits.empty() && plan.fixed_step == 0)
     throw SceneError(located(scene, "time.step") + ": missing: nothing limits the step; expected a number > 0 (s)");
   check_steps(scene, plan);
-  check_output_fields(scene, plan);
+  look_at_output_fields(scene, plan);
   add_warnings(scene, blocks, plan);
   return plan;
 }
