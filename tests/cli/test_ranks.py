@@ -239,7 +239,7 @@ SCENES = {
     "water under air": ("verification/two_phase_column", 0.006),
     "two spacings": ("verification/two_spacings", 0.06),
     "a wall that is pushed, its force": ("verification/piston", 0.02),
-    "a gate that is drawn out of water": ("dam_gate", 0.05, "spacing=0.015"),
+    "a gate that is drawn out of water": ("dam_gate", 0.05, "spacing=0.015", "fill.1.shape.box.max=[0.66, 0.45]"),
     "a wave maker": ("verification/wave_maker", 0.2, "constants.rows=10"),
     "a flow through open ends": ("verification/open_channel", 0.4),
     "a flow past a cylinder through open ends": ("verification/cylinder_open", 0.1),
