@@ -5,23 +5,22 @@
     /usr/bin/python3 bench/ledger.py --measure build/barchan --write  measures what is cheap anew before that (see MEASURES; under 90 minutes on two cores)
     /usr/bin/python3 bench/ledger.py --check                          says whether the page is what --write would make; exit status 1 if not
 
-bench/ledger_rows/ says which rows there are and where each comes from. bench/ledger_rows/measured.json holds for each file of results its checksum, the
+bench/ledger_rows/ says which rows there are and where each comes from. bench/ledger_rows/measured.csv holds for each file of results its checksum, the
 command that makes it, and the day on which the ledger found it changed.
 """
 
 import argparse
 import datetime
 import hashlib
-import json
 import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from barchan_bench import ROOT, run, table  # noqa: E402
+from barchan_bench import ROOT, run, store, table  # noqa: E402
 from ledger_rows import accuracy, bodies, sand, told  # noqa: E402
 
-PAGE, MEASURED = ROOT / "docs/ledger.md", HERE / "ledger_rows/measured.json"
+PAGE, MEASURED = ROOT / "docs/ledger.md", HERE / "ledger_rows/measured.csv"
 FIELDS = ("quantity", "case", "reference", "measured", "bias", "scatter", "bound", "met", "source", "file")
 LEAST = 100
 
@@ -48,7 +47,7 @@ def command_of(file):
 
 
 def days(rows, known, today):
-    """measured.json for these rows: a file whose checksum is new has the day `today`."""
+    """measured.csv for these rows: a file whose checksum is new has the day `today`."""
     found = {}
     for file in sorted({r["file"] for r in rows}):
         checksum = hashlib.sha256((HERE / file).read_bytes()).hexdigest()[:16]
@@ -145,7 +144,7 @@ def main():
     given = parser.parse_args()
     if given.measure:
         measure(given.measure, list(filter(None, given.only.split(","))))
-    rows, known = rows_now(), json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
+    rows, known = rows_now(), store.load(MEASURED, {})
     known = days(rows, known, str(datetime.date.today()))
     text = text_of(rows, known)
     if given.check:
@@ -154,7 +153,7 @@ def main():
         if len(rows) < LEAST:
             sys.exit(f"ledger: {len(rows)} rows, expected {LEAST} or more")
     elif given.write:
-        MEASURED.write_text(json.dumps(known, indent=1) + "\n")
+        store.keep(MEASURED, known)
         PAGE.write_text(text)
     if not given.check:
         print(f"{len(rows)} rows, {sum(verdict(r) == 'MISSED' for r in rows)} missed")

@@ -24,6 +24,10 @@ import pathlib
 import re
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
+sys.dont_write_bytecode = True
+from barchan_bench import store  # noqa: E402
+
 MARK = re.compile(r"<!--fig ([\w.-]+) ([^\s<>]+?)-->(.*?)<!--/fig-->")
 
 
@@ -44,7 +48,8 @@ def value_of(name, figure, root):
             raise Wrong(f"docs/figures.json: {name}: a value needs the command that measured it")
         return float(figure["value"])
     try:
-        data = json.loads((root / figure["file"]).read_text())
+        file = root / figure["file"]
+        data = store.load(file) if file.suffix == ".csv" else json.loads(file.read_text())
         if "path" in figure:
             over = at(data, figure["over"]) if "over" in figure else 1.0
             return at(data, figure["path"]) / over * figure.get("scale", 1.0)
@@ -84,12 +89,11 @@ def filled(page, text, figures, used):
 def measured_tables(root):
     """docs/performance.md as bench/throughput/measure.py would write it."""
     sys.path.insert(0, str(root / "bench/throughput"))
-    sys.dont_write_bytecode = True
     import measure
     page = (root / "docs/performance.md").read_text()
     before, _, rest = page.partition(measure.BEGIN)
     after = rest.partition(measure.END)[2]
-    tables = measure.page(json.loads((root / "bench/throughput/results.json").read_text()))
+    tables = measure.page(store.load(root / "bench/throughput/results.csv"))
     return f"{before}{measure.BEGIN}\n\n{tables}\n\n{measure.END}{after}"
 
 
@@ -115,7 +119,7 @@ def main():
             raise Wrong(f"docs/figures.json: no page shows {', '.join(sorted(unused))}")
         performance = root / "docs/performance.md"
         if (tables := measured_tables(root)) != performance.read_text():
-            faults.append("docs/performance.md: the tables are not those of bench/throughput/results.json")
+            faults.append("docs/performance.md: the tables are not those of bench/throughput/results.csv")
             if options.write:
                 performance.write_text(tables)
     except Wrong as error:

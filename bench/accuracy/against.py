@@ -7,7 +7,7 @@
 OTHER is a program that is built already, of another commit. Every run is made with both, other, this, other, this, ..., on one thread: at least
 once each, and up to --rounds times until it has taken six seconds. Printed are each figure then and now, their ratio, and the median of the ratios
 of the user CPU times of neighbouring runs (with the least and the largest). Ratios of times of neighbouring runs can be trusted on a busy machine,
-times cannot. With --write COMMIT the figures go to bench/accuracy/results/against-COMMIT.json, and the section of docs/accuracy.md is written again.
+times cannot. With --write COMMIT the figures go to bench/accuracy/results/against-COMMIT.csv, and the section of docs/accuracy.md is written again.
 
 Both programs read the same file: the scene with the defaults written out that have changed since 142972c (`scheme`, `kernel`, `layers`). One key
 differs: `enclosed`, which the program of today finds from the particles. An older one gets `enclosed = true` where its own scenes had it (ENCLOSED).
@@ -29,6 +29,7 @@ import cases_surface
 import cases_walls
 import harness
 import numpy
+from barchan_bench import store
 from harness import options, rows, runs
 from page import processor
 
@@ -215,6 +216,7 @@ class Turns:
         if key in self.made:
             return self.made[key]
         home, times = self.folder / f"{len(self.made)}", {"other": [], "this": []}
+        failed = []
         while not times["this"] or (len(times["this"]) < self.rounds and sum(times["this"]) < 6 and not failed):
             for side in times:
                 out = home / side if not times[side] else home / "again"
@@ -311,19 +313,18 @@ def line(figure):
 
 def keep(commit, figures):
     """The figures go to the results of this commit, each in the place of the one that it replaces."""
-    file = harness.RESULTS / f"against-{commit}.json"
+    file = harness.RESULTS / f"against-{commit}.csv"
     of = lambda f: (list(CASES).index(f["name"]), f["case"], f["scheme"], float(f["n"] or 0), f["what"])
-    known = {of(f): f for f in (json.loads(file.read_text())["figures"] if file.exists() else [])}
+    known = {of(f): f for f in store.load(file, {"figures": []})["figures"]}
     known.update((of(f), f) for f in figures)
-    file.write_text('{"commit": ' + json.dumps(commit) + ', "processor": ' + json.dumps(processor()) + ', "figures": [\n'
-                    + ",\n".join(json.dumps(known[k]) for k in sorted(known)) + "\n]}\n")
+    store.keep(file, {"commit": commit, "processor": processor(), "figures": [known[k] for k in sorted(known)]})
 
 
 def write_section():
     """The tables of all commits that have results, on docs/accuracy.md between its markers."""
     text = []
-    for file in sorted(harness.RESULTS.glob("against-*.json")):
-        result = json.loads(file.read_text())
+    for file in sorted(harness.RESULTS.glob("against-*.csv")):
+        result = store.load(file)
         text += [f"\n### Commit {result['commit']} and now\n", HEAD] + [line(f) for f in result["figures"]] + [f"\nMeasured on {result['processor']}."]
     page = harness.ROOT / "docs/accuracy.md"
     before, begin, rest = page.read_text().partition("<!-- against: begin -->\n")

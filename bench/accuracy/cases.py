@@ -7,7 +7,7 @@ Runs each case (all of them without a name; --list names them) on one thread wit
 number of spacings, what was measured, its bound, the user CPU seconds and the particle-steps a user CPU second. Exits with 1 when a
 figure misses its bound.
 
-With --write the figures go to bench/accuracy/results/CASE.json, and docs/accuracy.md and docs/gallery/accuracy.png are written
+With --write the figures go to bench/accuracy/results/CASE.csv, and docs/accuracy.md and docs/gallery/accuracy.png are written
 again from all that is there; `cases.py none --write` only does the latter. --runs DIR keeps the runs in DIR and takes those that
 are there already. A new case is one more line in CASES of the file that its topic has (cases_*.py).
 """
@@ -27,7 +27,7 @@ import cases_surface
 import cases_walls
 import cases_waves
 import cases_wind
-from barchan_bench.page import keep
+from barchan_bench.store import keep
 from barchan_bench.table import HEAD
 from harness import RESULTS, options, rows
 from page import processor, write_page
@@ -64,7 +64,7 @@ def main():
         CASES[name][0]()
         good = good and all(r["good"] for r in rows)
         if options.write:
-            keep(RESULTS / f"{name}.json", {"processor": processor(), "rows": rows})
+            keep(RESULTS / f"{name}.csv", {"processor": processor(), "rows": rows})
     if options.write:
         write_page(CASES)
     return 0 if good else 1

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 bench/accuracy/ground_stress.py BARCHAN [SPACING ...]
 
-Writes docs/gallery/ground_stress.png and bench/accuracy/results/ground_stress.json; prints a table.
+Writes docs/gallery/ground_stress.png and bench/accuracy/results/ground_stress.csv; prints a table.
 """
 import pathlib
 import sys
@@ -11,7 +11,7 @@ import tempfile
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))  # bench/
-from barchan_bench import ROOT, frame, page, run, table
+from barchan_bench import ROOT, frame, page, run, store, table
 from linear_hill import jackson_hunt, mixing_length, over_hill
 
 PERIOD, DEPTH, LENGTH, ROUGHNESS, STRESS = 10.0, 1.5, 1.0, 1e-3, 0.196  # of the scene; m, m, m, m, Pa
@@ -56,7 +56,7 @@ def main(program, spacings):
     axes.legend(loc="upper right", fontsize=8)
     figure.tight_layout()
     figure.savefig(ROOT / "docs/gallery/ground_stress.png", dpi=110)
-    page.keep(pathlib.Path(__file__).resolve().parent / "results/ground_stress.json", table.rows)
+    store.keep(pathlib.Path(__file__).resolve().parent / "results/ground_stress.csv", table.rows)
 
 
 if __name__ == "__main__":

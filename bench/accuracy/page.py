@@ -1,14 +1,13 @@
-"""docs/accuracy.md and its plot, from the results of bench/accuracy/results and from peers.json."""
+"""docs/accuracy.md and its plot, from the results of bench/accuracy/results and from peers.csv."""
 
-import json
 import pathlib
 
-from barchan_bench import ROOT
+from barchan_bench import ROOT, store
 from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, fill, processor, pyplot  # noqa: F401
 from barchan_bench.table import HEAD, line
 from harness import RESULTS
 
-PEERS = json.loads((pathlib.Path(__file__).resolve().parent / "peers.json").read_text())
+PEERS = store.load(pathlib.Path(__file__).resolve().parent / "peers.csv")
 OURS = ((BLUE, "o"), (SKY, "s"), (GREEN, "^"), (VERMILION, "D"), (BLACK, "v"), (PURPLE, "P"))  # a scheme's colour and marker
 THEIRS = {"LAMMPS": (ORANGE, ("X", "*")), "SPHinXsys": (PURPLE, ("<", ">")), "Barchan": (BLACK, ("h",))}
 
@@ -62,17 +61,17 @@ def write_page(cases):
     """docs/accuracy.md between its markers, and the plot, from all results that are there; cases without results are named at the end."""
     tables = []
     for name, (_, heading) in cases.items():
-        file = RESULTS / f"{name}.json"
+        file = RESULTS / f"{name}.csv"
         if not file.exists():
             continue
         tables.append(f"\n## {heading}\n\n`cases.py build/barchan {name}`\n")
-        result = json.loads(file.read_text())
+        result = store.load(file)
         tables.append(HEAD + "\n" + "\n".join(line(r) for r in result["rows"]) + f"\n\nMeasured on {result['processor']}.\n")
         if name == "cost":
             plot(result["rows"], result["processor"])
             tables.append("![run time against error](gallery/accuracy.png)\n")
             tables += peers()
-    left = [f"`{name}` ({heading})" for name, (_, heading) in cases.items() if not (RESULTS / f"{name}.json").exists()]
+    left = [f"`{name}` ({heading})" for name, (_, heading) in cases.items() if not (RESULTS / f"{name}.csv").exists()]
     if left:
         tables.append("\n## Without results here\n\nThe same command runs these cases too: " + "; ".join(left) + ".")
     fill(ROOT / "docs/accuracy.md", "figures", "\n".join(tables))

@@ -1,21 +1,9 @@
-"""Results that are kept as .json, and what stands between two marks of a page of docs/."""
+"""What stands between two marks of a page of docs/, and what pictures and results share."""
 
-import json
 import platform
 
 # Okabe & Ito 2008, colours that the colour-blind can tell apart
 BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION, PURPLE = "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7"
-
-
-def load(file, default=None):
-    """Results that are kept in a file; `default` if it is not there."""
-    return json.loads(file.read_text()) if file.exists() else default
-
-
-def keep(file, results):
-    """Writes results to their file, one value a line, so that a change shows in few lines."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(results, indent=1) + "\n")
 
 
 def marks(name):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Figures of three scenes: hopper_belt.toml, fence_tunnel.toml and water_over_sand.toml.
 
-    /usr/bin/python3 bench/grains/belt_fence_stream.py build/barchan [belt] [fence] [stream] --out /tmp/three    runs them, writes bench/grains/results/belt_fence_stream.json
+    /usr/bin/python3 bench/grains/belt_fence_stream.py build/barchan [belt] [fence] [stream] --out /tmp/three    runs them, writes bench/grains/results/belt_fence_stream.csv
     /usr/bin/python3 bench/grains/belt_fence_stream.py none belt --out out                                       measures a run that is there, in out/hopper_belt
 
 Each with what is known: the rate of a slot (Beverloo et al. 1961, for a slot Nedderman 1992), the height of a layer on a belt (mass that passes), the flow behind a fence,
@@ -17,10 +17,10 @@ import tomllib
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, run  # noqa: E402
+from barchan_bench import ROOT, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-RESULT = pathlib.Path(__file__).resolve().parent / "results/belt_fence_stream.json"
+RESULT = pathlib.Path(__file__).resolve().parent / "results/belt_fence_stream.csv"
 NAMES = {"belt": "hopper_belt", "fence": "fence_tunnel", "stream": "water_over_sand"}
 G = 9.81
 
@@ -180,14 +180,14 @@ def main():
     parser.add_argument("scenes", nargs="*", choices=[*NAMES, []])
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("/tmp/belt_fence_stream"))
     options = parser.parse_args()
-    results = json.loads(RESULT.read_text()) if RESULT.is_file() else {}
+    results = store.load(RESULT, {})
     for name in options.scenes or NAMES:
         folder = options.out / NAMES[name]
         if options.barchan != "none":
             run.scene(options.barchan, ROOT / f"scenes/{NAMES[name]}.toml", folder, threads=1, check=True)
         results[name] = {"belt": belt, "fence": fence, "stream": stream}[name](folder)
         print(name, json.dumps(results[name], indent=1))
-    RESULT.write_text(json.dumps(results, indent=1) + "\n")
+    store.keep(RESULT, results)
 
 
 if __name__ == "__main__":

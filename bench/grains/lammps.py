@@ -8,7 +8,7 @@ layer one grain thick, which both programs compute as spheres whose third coordi
 side by side until --grains are there: both programs start from the same places, radii and velocities (0.05 m/s in waves, so that
 contacts open and close and lists are searched anew) and take the same step. LAMMPS runs with each skin of SKINS; its best counts.
 The figure is grain-steps a second of user CPU time, steps only; the median of the rounds. A step here is one of the contacts'.
-With --write the figures go to bench/grains/results/lammps.json and into the table of docs/performance.md.
+With --write the figures go to bench/grains/results/lammps.csv and into the table of docs/performance.md.
 """
 
 import argparse
@@ -23,7 +23,7 @@ import tempfile
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import page, run  # noqa: E402
+from barchan_bench import run, store  # noqa: E402
 from barchan_bench.frame import Frame, write_particles  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -215,5 +215,5 @@ if __name__ == "__main__":
             print(f"{dim}D, {r['grains']} grains: Barchan {r['barchan'] / 1e6:.2f}, LAMMPS {r['lammps'] / 1e6:.2f} M grain-steps/s (skin {r['skin']} d), "
                   f"ratio {r['ratio']:.2f} ({min(r['ratios']):.2f} to {max(r['ratios']):.2f})", flush=True)
     if options.write:
-        page.keep(HERE / "results/lammps.json", results)
+        store.keep(HERE / "results/lammps.csv", results)
         write_page(results)

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 bench/impacts/bearing.py build/barchan [--threads N] [--of DIR] [--write]
 
---of DIR reads a run that is there instead of running the scene. With --write the figures go into bench/impacts/results/impacts.json, from which
+--of DIR reads a run that is there instead of running the scene. With --write the figures go into bench/impacts/results/impacts.csv, from which
 bench/impacts/cases.py makes docs/impacts.md.
 """
 
@@ -16,10 +16,10 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench import ROOT, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-RESULTS = ROOT / "bench/impacts/results/impacts.json"
+RESULTS = ROOT / "bench/impacts/results/impacts.csv"
 INNER, OUTER, BALL, DX = 1e-2, 1.78e-2, 3e-3, 3e-4  # m: the rings' surfaces, radius of the balls, spacing
 DENSITY = {"oil": 900, "inner": 7850, "balls": 1140, "inclusion": 2650}  # kg/m3
 
@@ -109,7 +109,7 @@ def main():
         found = measure(chosen.of or pathlib.Path(folder))
     print("\n".join(page(found)))
     if chosen.write:
-        pages.keep(RESULTS, {**pages.load(RESULTS, {}), "bearing": found})
+        store.keep(RESULTS, {**store.load(RESULTS, {}), "bearing": found})
 
 
 if __name__ == "__main__":

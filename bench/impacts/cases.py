@@ -4,8 +4,8 @@
     /usr/bin/python3 bench/impacts/cases.py build/barchan [--only CASE]... [--write]
     /usr/bin/python3 bench/impacts/cases.py none --only none --write     # the page from the results, runs nothing
 
-Cases: cantilever, csm3, restitution, paper, of bars.py bars, rows, of bounce.py rings, block, of hertz.py hertz, hertz_spheres, of eq13.py eq13, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.json. With
---write, docs/impacts.md (between its markers) and docs/gallery/impacts_*.png are made from them. One thread, about five minutes
+Cases: cantilever, csm3, restitution, paper, of bars.py bars, rows, of bounce.py rings, block, of hertz.py hertz, hertz_spheres, of eq13.py eq13, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.csv. What a case
+draws, docs/gallery/impacts_*.png, it draws when it is measured. With --write, docs/impacts.md (between its markers) is made from the results. One thread, about five minutes
 on a quiet core; csm3 takes most of them.
 """
 
@@ -24,9 +24,9 @@ import bounce
 import eq13
 import hertz
 import rigid
-from barchan_bench import ROOT, page as pages, run
+from barchan_bench import ROOT, page as pages, run, store
 
-RESULTS = ROOT / "bench/impacts/results/impacts.json"
+RESULTS = ROOT / "bench/impacts/results/impacts.csv"
 PAGE = ROOT / "docs/impacts.md"
 TIMOSHENKO, THIN = 0.25645, 0.25403  # s, period of the plate
 SPEED = 10.0  # m/s: of what hits
@@ -173,13 +173,14 @@ def page(results):
     return "\n".join(lines)
 
 
-def plots(results):
-    """Colours of Okabe & Ito (Color Universal Design, 2008), and a line style for each series."""
+def plot(name, result):
+    """docs/gallery/impacts_NAME.png of a case that was measured now, if it has one. Colours of Okabe & Ito (Color Universal Design, 2008), and a line style
+    for each series."""
     pyplot = pages.pyplot()
     blue, red = "#0072B2", "#D55E00"
     gallery = ROOT / "docs/gallery"
-    if "cantilever" in results:
-        t, y = next(r["history"] for r in results["cantilever"]["table"] if r["history"])
+    if name == "cantilever":
+        t, y = next(r["history"] for r in result["table"] if r["history"])
         figure, axes = pyplot.subplots(figsize=(7, 3.2), layout="constrained")
         axes.plot(t, np.array(y) * 1e3, color=blue, label="10 particles across")
         phase = np.linspace(0, max(t), 400)
@@ -187,8 +188,8 @@ def plots(results):
         axes.set(xlabel="time [s]", ylabel="tip [mm]")
         axes.legend(loc="lower center", bbox_to_anchor=(.5, 1.), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_cantilever.png", dpi=110)
-    if "bars" in results:
-        t, a, b = (np.array(x) for x in results["bars"]["history"])
+    if name == "bars":
+        t, a, b = (np.array(x) for x in result["history"])
         figure, axes = pyplot.subplots(figsize=(7, 3.2), layout="constrained")
         axes.plot(t * 1e6, a, color=blue, label="A")
         axes.plot(t * 1e6, b, "--", color=red, label="B")
@@ -197,9 +198,9 @@ def plots(results):
         axes.set(xlabel="time [us]", ylabel="mean speed [m/s]")
         axes.legend(loc="lower center", bbox_to_anchor=(.5, 1.), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_bars.png", dpi=110)
-    if "paper" in results:
+    if name == "paper":
         figure, all_axes = pyplot.subplots(2, 4, figsize=(11, 4.6), layout="constrained", sharey=True)
-        for axes, r in zip(all_axes.T.flat, results["paper"]["table"]):
+        for axes, r in zip(all_axes.T.flat, result["table"]):
             t, a, b = (np.array(x) for x in r["history"])
             axes.plot(t * 1e6, a, color=blue, label="A")
             axes.plot(t * 1e6, b, "--", color=red, label="B")
@@ -208,13 +209,8 @@ def plots(results):
             axes.set_ylabel("mean speed [m/s]")
         all_axes[0, 0].legend(loc="lower center", bbox_to_anchor=(.5, 1.06), ncol=2, frameon=False)
         figure.savefig(gallery / "impacts_paper.png", dpi=110)
-    if "hertz" in results:
-        hertz.plot(results, gallery, pyplot)
-
-
-def write(results):
-    pages.fill(PAGE, "measured", "\n" + page(results))
-    plots(results)
+    if name == "hertz":
+        hertz.plot(result, gallery, pyplot)
 
 
 def main():
@@ -223,14 +219,15 @@ def main():
     parser.add_argument("--only", action="append")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for name, case in CASES.items():
         if options.only is None or name in options.only:
             results[name] = case(options.program)
-            pages.keep(RESULTS, results)
+            plot(name, results[name])
+            store.keep(RESULTS, results, leave=("history",))
             print(name, "done")
     if options.write:
-        write(results)
+        pages.fill(PAGE, "measured", "\n" + page(results))
     else:
         print(page(results))
 

@@ -131,17 +131,17 @@ def page_of_discs(results):
              "| --- |" + " --- |" * 11]
     lines += [f"| {name_of(r)} | {r['load']:.0f} | {r['b'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in b']:.1f} | {r['width']:.3f} | {r['moment']:.3f} | "
               f"{r['farthest']:.3f} | {r['peak']:.3f} | {r['largest']:.3f} | {r['axis'][0]:.3f} to {r['axis'][1]:.3f} | {r['outer']:.2f} at least |"
-              for r in results["hertz"]["table"]]
+              for r in result["table"]]
     lines += ["", "![Pressure in the contact of two discs, and stress below it](gallery/impacts_hertz.png)", ""]
     return lines
 
 
-def plot(results, gallery, pyplot):
+def plot(result, gallery, pyplot):
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
     x, z = np.linspace(-1, 1, 201), np.linspace(0, 2, 101)
     left.plot(x, np.sqrt(1 - x**2), "--", color="black", label="Hertz")
     right.plot(1 / np.sqrt(1 + z**2), z, "--", color="black")
-    for r, colour, mark in zip(results["hertz"]["table"], ("#0072B2", "#D55E00", "#009E73"), ("o", "s", ".")):
+    for r, colour, mark in zip(result["table"], ("#0072B2", "#D55E00", "#009E73"), ("o", "s", ".")):
         left.plot(*r["profile"], mark, color=colour, markersize=4, label=f"{r['count']} a radius")
         right.plot(r["below"][1], r["below"][0], mark, color=colour, markersize=4)
     left.set(xlabel="x/b", ylabel="pressure of the contact over p_0")

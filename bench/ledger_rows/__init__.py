@@ -1,6 +1,6 @@
 """The rows of the bias ledger (bench/ledger.py): accuracy.py flows, bodies.py bodies and impacts, sand.py wind and sand. A row is a dictionary made by `row`."""
 
-import json
+from barchan_bench import store
 
 
 def row(quantity, case, reference, measured, source, file, bound=None, met=None, scatter=None, bias=None):
@@ -14,7 +14,7 @@ def row(quantity, case, reference, measured, source, file, bound=None, met=None,
 
 def load(bench, file):
     """Results in a file, from bench/."""
-    return json.loads((bench / file).read_text())
+    return store.load(bench / file)
 
 
 def within(value, most):

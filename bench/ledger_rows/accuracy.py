@@ -53,7 +53,7 @@ def rows(bench):
     """The rows of all files of SOURCES."""
     found = []
     for name, source in (SOURCES | LONG).items():
-        file = f"accuracy/results/{name}.json"
+        file = f"accuracy/results/{name}.csv"
         for r in load(bench, file)["rows"]:
             made = one(name, r, source, file)
             if made:
@@ -63,14 +63,14 @@ def rows(bench):
 
 def peers(bench):
     """L1 of Taylor-Green vortices beside other codes: measured on one machine, and published by PySPH."""
-    file = "accuracy/peers.json"
+    file = "accuracy/peers.csv"
     both = load(bench, file)
     ours = {n: error for s in both["measured"]["series"] if s["code"] == "Barchan" for n, error, _ in s["points"]}
     for s in both["measured"]["series"]:
         for n, error, _ in s["points"]:
             if s["code"] != "Barchan" and n in ours:
                 yield row("L1 of the speed at t = 1, beside another code's", f"Taylor-Green, Re 100, {n} a side; {s['code']}, {s['scheme']}", error, ours[n],
-                          f"{s['code']}, run beside Barchan on one machine in 2026 (bench/accuracy/peers.json)", file)
+                          f"{s['code']}, run beside Barchan on one machine in 2026 (bench/accuracy/peers.csv)", file)
     for name, errors in both["published"]["series"].items():
         for n, error in zip(both["published"]["sizes"], errors):
             if n in ours:

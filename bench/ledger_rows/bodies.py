@@ -1,8 +1,8 @@
-"""Rows of bodies and impacts: from bench/impacts/results/impacts.json. Bounds are those of tests/physics and of the page docs/impacts.md."""
+"""Rows of bodies and impacts: from bench/impacts/results/impacts.csv. Bounds are those of tests/physics and of the page docs/impacts.md."""
 
 from ledger_rows import load, row, within
 
-FILE = "impacts/results/impacts.json"
+FILE = "impacts/results/impacts.csv"
 GRAY = "Timoshenko's beam with shear and rotatory inertia; the plate of Gray, Monaghan & Swift 2001, Comput. Methods Appl. Mech. Engrg 190, 6641, section 6"
 TUREK = "Turek & Hron 2006, in Fluid-Structure Interaction (Springer), p. 371, CSM3"
 BARS = "exact: one-dimensional waves of c = sqrt((lambda + 2 mu)/rho)"

@@ -18,7 +18,7 @@ def half_range(values):
 
 
 def grains_in_air(bench):
-    file = "saltation/results/settling.json"
+    file = "saltation/results/settling.csv"
     r = load(bench, file)
     for t in r["terminal"]:
         if t["d"] in (.1, .25, 1.):
@@ -27,7 +27,7 @@ def grains_in_air(bench):
     for t in r["transient"]:
         yield row(f"speed after {t['t']:g} s, m/s", "0.25 mm from rest, drag schiller-naumann", t["reference"], t["measured"],
                   "integration with a fine step; drag of Schiller & Naumann 1933", file)
-    file = "saltation/results/hop.json"
+    file = "saltation/results/hop.csv"
     for t in load(bench, file)["hops"]:
         case = f"hop, u* = {t['u']:g} m/s, start {t['v']:g} m/s at {t['degrees']} degrees"
         for name, key in (("length, m", "length"), ("height, m", "apex"), ("time, s", "time"), ("speed at the end, m/s", "speed")):
@@ -36,7 +36,7 @@ def grains_in_air(bench):
 
 
 def splash(bench):
-    file = "saltation/results/splash.json"
+    file = "saltation/results/splash.csv"
     r = load(bench, file)
     rice = r["rice"]
     for bed in r["beds"]:
@@ -54,7 +54,7 @@ def splash(bench):
 
 
 def threshold(bench):
-    file = "saltation/results/threshold.json"
+    file = "saltation/results/threshold.csv"
     rows = load(bench, file)["rows"]
     for d in sorted({t["d"] for t in rows}):
         beds = [(t["low"] + t["high"]) / 2 for t in rows if t["d"] == d]
@@ -62,7 +62,7 @@ def threshold(bench):
         bound, met = within(100 * (mean(beds) / reference - 1), 25)
         yield row("fluid threshold u*, m/s", f"{d:g} mm, mean of {len(beds)} beds", reference, mean(beds), SHAO_LU, file, scatter=half_range(beds),
                   bound=bound, met=met)
-    file = "saltation/results/impact.json"
+    file = "saltation/results/impact.csv"
     runs = load(bench, file)["runs"]
     alive = {u: [t["flux"] > .1 for t in runs if t["u"] == u] for u in sorted({t["u"] for t in runs})}
     dies, goes = max(u for u, beds in alive.items() if not any(beds)), min(u for u, beds in alive.items() if all(beds))
@@ -73,7 +73,7 @@ def threshold(bench):
 
 
 def flux(bench):
-    file = "saltation/results/flux.json"
+    file = "saltation/results/flux.csv"
     runs = load(bench, file)["runs"]
     for u, most in ((.24, 35), (.40, 15), (.56, 15)):
         beds = [t for t in runs if t["u"] == u]
@@ -82,7 +82,7 @@ def flux(bench):
         scatter = max(half_range([t["flux"] for t in beds]), max(t["error"] for t in beds) / len(beds) ** .5)
         yield row("saturated flux, g/m/s", f"column, u* = {u:g} m/s, mean of {len(beds)} beds", beds[0]["creyssels"], measured, CREYSSELS, file,
                   scatter=scatter, bound=bound, met=met)
-    file = "saltation/results/resolved.json"
+    file = "saltation/results/resolved.csv"
     runs = load(bench, file)["runs"]
     for u in sorted({t["u"] for t in runs}):
         beds = [t for t in runs if t["u"] == u]
@@ -95,7 +95,7 @@ def flux(bench):
 
 
 def heaps(bench):
-    file = "saltation/results/heaps.json"
+    file = "saltation/results/heaps.csv"
     r = load(bench, file)
     angles = [t["angle"] for t in r["repose"]]
     yield row("angle of repose above the slot, degrees", f"hopper, {len(angles)} beds", "30 to 34", mean(angles), "dry sand: Carrigy 1970, Sedimentology 14, 147",
@@ -108,7 +108,7 @@ def heaps(bench):
 
 
 def storm(bench):
-    file = "saltation/results/storm.json"
+    file = "saltation/results/storm.csv"
     r = load(bench, file)
     yield row("momentum, rest over what is put in", "dune in air of held speed, 0.5 s", 0, r["share"], "conservation of momentum (exact)", file,
               bound="within 1 %", met=abs(r["share"]) <= .01)
@@ -117,7 +117,7 @@ def storm(bench):
 
 
 def paper(bench):
-    file = "paper/results/figures.json"
+    file = "paper/results/figures.csv"
     r = load(bench, file)
     for k in r["kernels"]:
         yield row("integral of the cubic kernel", f"h = {k['h']:g}", 1, k["area"], "Monaghan & Lattanzio 1985; Halik et al. 2015, figure 3", file)
@@ -128,7 +128,7 @@ def paper(bench):
 
 
 def tunnel(bench):
-    file = "saltation/results/tunnel.json"
+    file = "saltation/results/tunnel.csv"
     runs = load(bench, file)["runs"]
     case = f"dune.toml, a dune of 3 cm in a wind tunnel, {len(runs)} runs, means of the last of two seconds"
     first = runs[0]
@@ -150,7 +150,7 @@ def tunnel(bench):
 
 
 def belt_and_stream(bench):
-    file = "grains/results/belt_fence_stream.json"
+    file = "grains/results/belt_fence_stream.csv"
     r = load(bench, file)
     belt, stream, fence = r["belt"], r["stream"], r["fence"]
     yield row("rate through a slot, kg/m/s", "hopper_belt.toml, 14 diameters", belt["beverloo_kg_m_s"], belt["rate_kg_m_s"],
@@ -166,7 +166,7 @@ def belt_and_stream(bench):
 
 
 def peers(bench):
-    file = "grains/results/lammps.json"
+    file = "grains/results/lammps.csv"
     for r in load(bench, file):
         yield row("particle-steps a second over LAMMPS'", f"grains in {r['dimensions']}D, {r['grains']} grains", 1, r["ratio"],
                   "LAMMPS of Debian 12, granular pair style, same grains and step, one core", file, scatter=half_range(r["ratios"]))

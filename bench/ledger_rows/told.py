@@ -1,8 +1,8 @@
-"""Rows that are told by tests and pages: the figure is what the command printed when the page was written (tests.json). Nothing but a person measures them anew."""
+"""Rows that are told by tests and pages: the figure is what the command printed when the page was written (tests.csv). Nothing but a person measures them anew."""
 
 from ledger_rows import load, row
 
-FILE = "ledger_rows/tests.json"
+FILE = "ledger_rows/tests.csv"
 
 
 def rows(bench):

@@ -18,7 +18,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE.parent / "accuracy")]
 import cases_wind  # noqa: E402
 import harness  # noqa: E402
-from barchan_bench import ROOT, page as pages  # noqa: E402
+from barchan_bench import ROOT, page as pages, store  # noqa: E402
 
 plt = pages.pyplot()
 GALLERY, PAGE = ROOT / "docs/gallery", ROOT / "docs/paper.md"
@@ -217,14 +217,14 @@ def main():
         harness.options.runs = given.runs or scratch
         bed, _ = harness.run("paper/flat_bed", ["output.every=2e-4"], "sand")
         takeoff, tracks = flat_bed(bed)
-        result = {**pages.load(HERE / "results/figures.json", {}), "kernels": kernels(), "takeoff": takeoff, "tracks": tracks}
+        result = {**store.load(HERE / "results/figures.csv", {}), "kernels": kernels(), "takeoff": takeoff, "tracks": tracks}
         if given.only != "bed":
             early, _ = harness.run("paper/dune", ["time.end=2e-4", "output.every=2e-4"])
             frames, _ = harness.run("paper/dune", [])
             result["airflow"], result["sand"] = dune(frames, early[-1], cases_wind.Wind(harness.document("paper/dune")))
     print(lines(result))
     if given.write:
-        pages.keep(HERE / "results/figures.json", result)
+        store.keep(HERE / "results/figures.csv", result)
         pages.fill(PAGE, "measured", "\n" + lines(result))
 
 

@@ -5,7 +5,7 @@
 
 Every case runs on 2 and 3 ranks of one thread, with cells divided by the number of particles and by time. run.json tells how long each rank was busy in
 all steps (processor time without waiting, so ranks may share cores), and what the divisions took of the run. Both runs must write the same
-checkpoint. With --write the results go to bench/ranks/results/balance.json and the page.
+checkpoint. With --write the results go to bench/ranks/results/balance.csv and the page.
 """
 
 import argparse
@@ -14,9 +14,9 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/balance.json"
+RESULTS = ROOT / "bench/ranks/results/balance.csv"
 PAGE = ROOT / "docs/ranks.md"
 IMBALANCE, COST = 1.05, .02  # at most: the largest busy time over the mean; what divisions take of the run
 # name: scene, overrides
@@ -64,14 +64,14 @@ def main():
     parser.add_argument("--ranks", action="append", type=int)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for name in options.only or CASES:
         for ranks in options.ranks or (2, 3):
             results[f"{name}, {ranks}"] = measured(options.program.resolve(), name, ranks)
             print(text({name: results[f"{name}, {ranks}"]}).splitlines()[-1], flush=True)
     print(text(results))
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "balance", text(results))
 
 

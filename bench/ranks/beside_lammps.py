@@ -7,7 +7,7 @@ Fluids: periodic air, a disturbed lattice, the kernel radius 2.1 spacings, the s
 artificial viscosity, no shifts, no correction of gradients); Barchan has its consistent and its plain scheme, which compute more. Grains: the dense beds of
 bench/grains/lammps.py. LMP is an `lmp` with the packages SPH and GRANULAR; Debian's has no SPH, and is built for SSE2: build LAMMPS for the same processor.
 LAMMPS runs with several skins, the best one counts. A figure is particle-steps a second of the steps alone. With --write the results go to
-bench/ranks/results/beside_lammps.json and the page.
+bench/ranks/results/beside_lammps.csv and the page.
 """
 
 import argparse
@@ -20,10 +20,10 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE), str(HERE.parent / "grains")]
 import lammps as beds  # noqa: E402
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/beside_lammps.json"
+RESULTS = ROOT / "bench/ranks/results/beside_lammps.csv"
 PAGE = ROOT / "docs/ranks.md"
 BOUND = 1.5
 RADIUS = 2.1  # spacings
@@ -140,13 +140,13 @@ def main():
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     program, lmp = str(options.program.resolve()), str(options.lmp.resolve())
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for name in options.only or CASES:
         for ranks in options.ranks:
             results.setdefault(name, {})[str(ranks)] = (fluid if name in FLUIDS else bed)(program, lmp, name, ranks, options.rounds)
     print(text(results))
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "beside LAMMPS", text(results))
 
 

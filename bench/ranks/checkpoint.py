@@ -6,7 +6,7 @@
 Periodic air of the consistent scheme, across * across particles, by turns with PROGRAM and with an older one BEFORE. Two runs of the same few steps, one
 with a checkpoint after every step and one with a checkpoint at its end only: their difference in wall time is that of their checkpoints. Two runs of one
 step, one from the beginning and one from a checkpoint: a restart makes the start too, and the difference is the reading. Prints medians in seconds. With
---write the results go to bench/ranks/results/checkpoint.json and the page.
+--write the results go to bench/ranks/results/checkpoint.csv and the page.
 """
 
 import argparse
@@ -16,10 +16,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/checkpoint.json"
+RESULTS = ROOT / "bench/ranks/results/checkpoint.csv"
 PAGE = ROOT / "docs/ranks.md"
 
 
@@ -68,7 +68,7 @@ def main():
     result = {"particles": options.across**2, "ranks": options.ranks, "rounds": options.rounds, "of": medians, "processor": pages.processor()}
     print(text(result))
     if options.write:
-        pages.keep(RESULTS, result)
+        store.keep(RESULTS, result)
         pages.fill(PAGE, "checkpoint", text(result))
 
 

@@ -14,9 +14,9 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from every_scene import PAGE, ROOT, Scene, fewer_particles, files, pages, table  # noqa: E402
+from every_scene import PAGE, ROOT, Scene, fewer_particles, files, pages, store, table  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/every_retreat.json"
+RESULTS = ROOT / "bench/ranks/results/every_retreat.csv"
 RANKS = (2, 3)
 
 
@@ -68,7 +68,7 @@ def main():
         results[name] = measured(options.program.resolve(), name, options.safety, options.steps)
         print(name, results[name], flush=True)
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "every retreat", text(results))
     return any(o != "same" for r in results.values() for o in r["ways"].values())
 

@@ -18,9 +18,9 @@ import tempfile
 import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, page as pages, run, store, table  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/every_scene.json"
+RESULTS = ROOT / "bench/ranks/results/every_scene.csv"
 PAGE = ROOT / "docs/ranks.md"
 LAUNCH = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "--bind-to", "none", "-n"]
 WAYS = {"2 threads": (0, 2), "1 rank": (1, 1), "2 ranks": (2, 1), "3 ranks": (3, 1), "4 ranks": (4, 1), "7 ranks": (7, 1), "2 ranks of 2 threads": (2, 2)}
@@ -111,15 +111,15 @@ def main():
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     every = sorted(str(f.relative_to(ROOT / "scenes").with_suffix("")) for f in (ROOT / "scenes").rglob("*.toml"))
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     asked = [name for name in options.only if name != "none"] if options.only else [name for name in every if name not in results]
     for name in asked:
         results[name] = measured(options.program.resolve(), name, options.steps)
         print(name, says(results[name]), flush=True)
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
     results = {name: results[name] for name in every if name in results}
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "every scene", text(results))
     return any(o != SAME for r in results.values() for o in r["ways"].values())
 

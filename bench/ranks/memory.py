@@ -5,7 +5,7 @@
 
 Periodic air of the consistent scheme makes a few steps on several ranks, without states to go back to. run.json tells the most that the first rank and
 the others have held at any time. `barchan plan --ranks` says before what it will be; the largest case is too large to be planned in one process.
-With --write the results go to bench/ranks/results/memory.json and the page.
+With --write the results go to bench/ranks/results/memory.csv and the page.
 """
 
 import argparse
@@ -15,10 +15,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/memory.json"
+RESULTS = ROOT / "bench/ranks/results/memory.csv"
 PAGE = ROOT / "docs/ranks.md"
 STEPS = .15  # of a step of the sound over a spacing each: some five steps
 PLANNED = 2e6  # particles, at most, of a case that is planned in one process
@@ -60,14 +60,14 @@ def main():
     parser.add_argument("--only", action="append", choices=list(CASES))
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for name in options.only or CASES:
         results[name] = measured(options.program.resolve(), name)
         print(name, json.dumps(results[name]), flush=True)
     results = {name: results[name] for name in CASES if name in results}
     print(text(results))
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "memory", text(results))
 
 

@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/ranks/one_rank.py PROGRAM [--write]
 
 valgrind (callgrind) counts the instructions of the whole process, which noise does not change; it knows AVX2 and not AVX-512, so the program runs with
-BARCHAN_INSTRUCTIONS=avx2. Both runs must write the same bytes. With --write the results go to bench/ranks/results/one_rank.json and the page.
+BARCHAN_INSTRUCTIONS=avx2. Both runs must write the same bytes. With --write the results go to bench/ranks/results/one_rank.csv and the page.
 """
 
 import argparse
@@ -14,10 +14,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, page as pages, run, store, table  # noqa: E402
 from speed import GRAINS, air  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/one_rank.json"
+RESULTS = ROOT / "bench/ranks/results/one_rank.csv"
 PAGE = ROOT / "docs/ranks.md"
 # name: scene, overrides
 CASES = {
@@ -69,7 +69,7 @@ def main():
         print(name, results[name], flush=True)
     print(text(results))
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "one rank", text(results))
 
 

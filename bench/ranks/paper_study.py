@@ -9,7 +9,7 @@ with L = n^(1/3) spacings along an edge. A piece of the walk (today) is, on N ra
 a column; a block (what comes next) is a cube of n/N particles. Ghosts stand within h of it. Those beyond the periodic sides that a piece reaches itself are
 images of its own particles and cost no message.
 
-The page says which constants are assumed. With --write the results go to bench/ranks/results/paper_study.json, the page and docs/gallery/ranks_on_paper.png.
+The page says which constants are assumed. With --write the results go to bench/ranks/results/paper_study.csv, the page and docs/gallery/ranks_on_paper.png.
 """
 
 import argparse
@@ -20,10 +20,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/paper_study.json"
+RESULTS = ROOT / "bench/ranks/results/paper_study.csv"
 PAGE, PICTURE = ROOT / "docs/ranks.md", ROOT / "docs/gallery/ranks_on_paper.png"
 RANKS = [1, 4, 16, 64, 256, 1024, 4096]
 SIZES = [1e8, 1e10]
@@ -143,7 +143,7 @@ def main():
     results = {f"{n:.0e} {ranks} {way}": on(n, ranks, way, c) for n in SIZES for ranks in RANKS for way in NEIGHBOURS}
     print(text(results, c))
     if options.write:
-        pages.keep(RESULTS, {"constants": c, "results": results})
+        store.keep(RESULTS, {"constants": c, "results": results})
         pages.fill(PAGE, "on paper", text(results, c))
         draw(results, c)
 

@@ -7,7 +7,7 @@ Every case runs by turns: two ranks of one thread, one process of two threads; o
 scaling, one process with half of the particles. Every second round goes the other way round. Runs are so long that the frame of the start, which is written
 beside the first steps, is a small part of them. Particle-steps a second are those of run.json. Prints the median of the ratios of neighbouring runs, with
 their range. Of weak scaling, two processes with half of the particles run side by side besides: what the machine gives to two programs that do not know of
-each other. All runs of a case must write the same checkpoint. With --write the results go to bench/ranks/results/speed.json and the page.
+each other. All runs of a case must write the same checkpoint. With --write the results go to bench/ranks/results/speed.csv and the page.
 """
 
 import argparse
@@ -18,9 +18,9 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, checkpoints, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, page as pages, run, store, table  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/speed.json"
+RESULTS = ROOT / "bench/ranks/results/speed.csv"
 PAGE = ROOT / "docs/ranks.md"
 AIR = """dimensions = {dimensions}
 spacing = {spacing!r}
@@ -170,13 +170,13 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for name in options.only or CASES:
         results[name] = measured(options.program.resolve(), name, options.rounds) | {"rounds": options.rounds, "processor": pages.processor()}
     results = {name: results[name] for name in CASES if name in results}
     print(text(results))
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "speed", text(results))
 
 

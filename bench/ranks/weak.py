@@ -6,7 +6,7 @@
 Periodic air grows with the ranks, so that each has the same number of particles. More ranks than cores take turns: their times say nothing, so this counts
 what a rank has to do. From run.json of a run and of a shorter one, whose difference leaves the start out: messages and bytes that a rank sends in a step,
 ghosts a rank, and the particles of the largest rank over the mean. Beside them stands what `barchan plan --ranks` said before. The bound: its bytes and
-messages are within 10 %. The time of two ranks is in bench/ranks/speed.py. With --write the results go to bench/ranks/results/weak.json and the page.
+messages are within 10 %. The time of two ranks is in bench/ranks/speed.py. With --write the results go to bench/ranks/results/weak.csv and the page.
 """
 
 import argparse
@@ -16,10 +16,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, table  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
-RESULTS = ROOT / "bench/ranks/results/weak.json"
+RESULTS = ROOT / "bench/ranks/results/weak.csv"
 PAGE = ROOT / "docs/ranks.md"
 CASES = {"air 2D, 4e4 a rank": (2, 200), "air 3D, 2.7e4 a rank": (3, 30)}  # dimensions, particles along an edge of the part of a rank
 STEPS = 60, 20  # about, of a run and of the one that is taken off it
@@ -75,14 +75,14 @@ def main():
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     program = options.program.resolve()
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for name in options.only or CASES:
         for ranks in options.ranks:
             results.setdefault(name, {})[str(ranks)] = measured(program, name, ranks)
             print(name, ranks, results[name][str(ranks)], flush=True)
     print(text(results))
     if options.write:
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
         pages.fill(PAGE, "weak", text(results))
 
 

@@ -12,7 +12,7 @@ slide   a block, elastic and rigid, slides with friction 0.3 on each of them: it
 plates  a plate of steel, clamped and free, mixed and double precision, speed from 1e-6 to 1e-2 of the wave speed: change of its energy over 10 periods.
 turns   a free square and cube of every formulation turns ten times: change of its angular momentum and energy; a refusal is told.
 
-Prints a line a run and Markdown tables; --write puts them into bench/robustness/results/CASE.json. A run that ends with status 3 is named with its
+Prints a line a run and Markdown tables; --write puts them into bench/robustness/results/CASE.csv. A run that ends with status 3 is named with its
 message. Exits with 1 when a run breaks down without a word, or misses its bound and ends with status 0.
 """
 
@@ -26,7 +26,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, run  # noqa: E402
+from barchan_bench import ROOT, run, store  # noqa: E402
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 
@@ -41,7 +41,7 @@ def go(program, scene, sets, work, text=None):
         done = run.scene(program, path, folder + "/out", sets, check=False)
         rows = done.history().rows() if (done.out / "history.csv").exists() else []
         warned = " ".join(w if isinstance(w, str) else json.dumps(w) for w in (done.report or {}).get("warnings", []))
-        return done.status, done.stderr.strip().replace(folder + "/", ""), rows, warned
+        return done.status, done.stderr.strip().replace(folder + "/", "").replace(f"{ROOT}/", ""), rows, warned
 
 
 def cavity(options, work, pool):
@@ -320,9 +320,9 @@ def write(path, rows, wrong):
     """Cavities may be measured a few sides at a time: those of other sides stay."""
     if path.stem == "cavity" and path.exists():
         sides = {r["a side"] for r in rows}
-        rows = sorted([r for r in json.loads(path.read_text())["runs"] if r["a side"] not in sides] + rows, key=lambda r: (r["a side"], r["Re"], r["seed"]))
+        rows = sorted([r for r in store.load(path)["runs"] if r["a side"] not in sides] + rows, key=lambda r: (r["a side"], r["Re"], r["seed"]))
     path.parent.mkdir(exist_ok=True)
-    path.write_text(json.dumps({"runs": rows, "wrong": sum(map(wrong, rows))}, indent=1) + "\n")
+    store.keep(path, {"runs": rows, "wrong": sum(map(wrong, rows))})
 
 
 def main():
@@ -346,7 +346,7 @@ def main():
             print(f"\n{name}: {len(rows)} runs, {bad} wrong\n", flush=True)
             failed |= bad > 0
             if options.write:
-                write(RESULTS / f"{name}.json", rows, wrong)
+                write(RESULTS / f"{name}.csv", rows, wrong)
     return 1 if failed else 0
 
 

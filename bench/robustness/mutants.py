@@ -26,9 +26,12 @@ import sys
 import time
 import tomllib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import store  # noqa: E402
+
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 TABLE = SOURCE / "bench/robustness/mutants.toml"
-RESULTS = SOURCE / "bench/robustness/results/mutants.json"
+RESULTS = SOURCE / "bench/robustness/results/mutants.csv"
 HEADER = """// Which mutant this process is; 0: none.
 #pragma once
 #include <cstdlib>
@@ -282,7 +285,7 @@ def main():
     table = mutants()
     if unknown := set(options.names) - {m["name"] for m in table}:
         parser.error("no mutant " + ", ".join(sorted(unknown)))
-    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    results = store.load(RESULTS, {})
     results = {m["name"]: results[m["name"]] for m in table if m["name"] in results}
 
     options.work.mkdir(parents=True, exist_ok=True)
@@ -301,7 +304,7 @@ def main():
                 print(f"passes test_unit   {name}: {mutant['wrong']}", flush=True)
                 continue
             results[name] = end
-            RESULTS.write_text(json.dumps({m["name"]: results[m["name"]] for m in table if m["name"] in results}, indent=1) + "\n")
+            store.keep(RESULTS, {m["name"]: results[m["name"]] for m in table if m["name"] in results})
             killed = end["killed_by"]
             print(f"{'killed  ' if killed else 'SURVIVED'}           {name}: " +
                   (f"{killed}, {end['test']} ({end['how']}, {end['seconds']} s)" if killed else mutant["wrong"]), flush=True)

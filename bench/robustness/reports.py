@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/robustness/reports.py build/barchan --seconds 20 --out out/reports [SCENE ...] [--write]
 
 Each scene runs for at most --seconds of wall time on one thread, then SIGINT stops it, so that most pages are those of stopped runs. OUT keeps runs, pages and screenshots (NAME.png), for somebody who looks
-at them. With --write the results go to results/reports.json and docs/report.md. Exits with 1 when a page was not made, is too large, or is blank.
+at them. With --write the results go to results/reports.csv and docs/report.md. Exits with 1 when a page was not made, is too large, or is blank.
 """
 
 import argparse
@@ -16,7 +16,7 @@ import tempfile
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page, run, table  # noqa: E402
+from barchan_bench import ROOT, page, run, store, table  # noqa: E402
 
 MOST_MB, FEWEST_COLOURS = 10., 200
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
@@ -68,7 +68,7 @@ def main():
             f"{max(r['seconds'] for r in rows):.0f} s of processor time, half of them less than {sorted(r['seconds'] for r in rows)[len(rows) // 2]:.1f} s (`bench/robustness/reports.py`).")
     print(line)
     if options.write:
-        page.keep(pathlib.Path(__file__).parent / "results/reports.json", rows)
+        store.keep(pathlib.Path(__file__).parent / "results/reports.csv", rows)
         page.fill(ROOT / "docs/report.md", "reports", line)
     return 0 if good == len(rows) else 1
 

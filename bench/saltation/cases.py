@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Saltation against what is known: settling, hops, flux, profiles, thresholds, splash.
 
-    bench/saltation/cases.py settling hop            run these (no name: all), write results/NAME.json
+    bench/saltation/cases.py settling hop            run these (no name: all), write results/NAME.csv
     bench/saltation/cases.py --barchan build/barchan --out /tmp/saltation flux
 
-bench/saltation/page.py makes docs/saltation.md and its plots from results/*.json.
+bench/saltation/page.py makes docs/saltation.md from results/*.csv; the case flux draws docs/saltation.png.
 """
 import argparse
 import json
@@ -12,8 +12,11 @@ import math
 import pathlib
 import sys
 
+import numpy
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, frame, page, run  # noqa: E402
+from barchan_bench import ROOT, frame, run, statistics, store  # noqa: E402
+import page  # noqa: E402
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 
@@ -176,6 +179,25 @@ def flux_of(folder, u, creyssels, begin, end):
                         "grain_stress": pick("grain_stress", 1 / stress), "air_stress": pick("air_stress", 1 / stress)}}
 
 
+RANGES = ((5, 20), (20, 60), (60, 150), (4, 80))  # diameters over the bed
+
+
+def error_of(run):
+    """Standard error of the mean flux of one bed, g/m/s: of its blocks or of its autocorrelation, the larger."""
+    window = [q for t, q in zip(run["t"], run["q"]) if t >= run["from"]]
+    return max(run["error"], statistics.error_of_mean(window)[0])
+
+
+def decays_of(run):
+    """Heights over which the flux falls by a factor e, in diameters, by the range of the fit."""
+    height, flux = (numpy.array(run["profile"][key]) for key in ("height", "flux"))
+    found = {}
+    for low, high in RANGES:
+        fit = (height > low) & (height < high) & (flux > 0)
+        found[f"{low} to {high} d"] = -1 / numpy.polyfit(height[fit], numpy.log(flux[fit]), 1)[0]
+    return found
+
+
 def stress_of(run):
     """Stress of air and grains over rho u*^2 in layers of ten diameters from 2 d on, six of them: least, mean, largest."""
     p = run["profile"]
@@ -195,7 +217,7 @@ def flux(bench):
             if not (bench.out / name / "saltation_sand.json").exists():
                 bench.run("saltation", name, f"phases.air.friction-velocity={u}", f"fill.1.seed={seed}", f"time.end={end}", f"saltation.0.start={begin}")
             run = flux_of(bench.out / name, u, creyssels, begin, end)
-            runs.append(dict(run, seed=seed, stress=stress_of(run)))
+            runs.append(dict(run, seed=seed, error_of_mean=error_of(run), decays=decays_of(run), stress=stress_of(run)))
     return {"block": BLOCK, "runs": runs}
 
 
@@ -508,7 +530,9 @@ def main():
         if name not in CASES:
             sys.exit(f"no case {name}; expected {', '.join(CASES)}")
         result = CASES[name](bench)
-        page.keep(RESULTS / f"{name}.json", result)
+        if name == "flux":
+            page.plot(result)
+        store.keep(RESULTS / f"{name}.csv", result, leave=("t", "q", "profile"))
         print(json.dumps(result, indent=1))
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Grains in a rotating drum (scenes/rotating_drum.toml) at three speeds, from rolling to cataracting: the angle of the surface, and that no grain is lost.
 
-    /usr/bin/python3 bench/saltation/drum.py build/barchan --out /tmp/drum     runs what is not in --out, writes results/drum.json and docs/gallery/drum.png
+    /usr/bin/python3 bench/saltation/drum.py build/barchan --out /tmp/drum     runs what is not in --out, writes results/drum.csv and docs/gallery/drum.png
     /usr/bin/python3 bench/saltation/drum.py none --out /tmp/drum              measures runs that are there
 
 The surface: grains of all frames of a block of time are counted in coordinates along the surface and across it, s and n; the surface is where their number falls to half of that
@@ -18,10 +18,10 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page, run  # noqa: E402
+from barchan_bench import ROOT, page, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-SCENE, RESULT, PICTURE = ROOT / "scenes/rotating_drum.toml", ROOT / "bench/saltation/results/drum.json", ROOT / "docs/gallery/drum.png"
+SCENE, RESULT, PICTURE = ROOT / "scenes/rotating_drum.toml", ROOT / "bench/saltation/results/drum.csv", ROOT / "docs/gallery/drum.png"
 RADIUS, CENTRE, DIAMETER, DENSITY, GRAVITY = 0.030, 0.035, 1e-3, 2650, 9.81  # m, m (both coordinates), m, kg/m3, m/s2
 # Mellmann 2001 of Froude numbers: rolling 1e-4 to 1e-2, cascading 1e-3 to 1e-1, cataracting 1e-1 to 1. A speed is (regime, Froude number, turns, turns before the measurement).
 SPEEDS = (("rolling", 0.00688, 3, 0.6), ("cascading", 0.05, 6, 1.5), ("cataracting", 0.3, 20.2, 4))
@@ -163,7 +163,7 @@ def main():
             print(name, value if isinstance(value, str) or value is None else round(value, 5))
     good = all(r["lost"] == 0 and r["left_by_run"] == 0 and r["farthest_over_radius"] < 1 + 0.5 * DIAMETER / RADIUS for r in found)
     if not options.only:
-        RESULT.write_text(json.dumps(found, indent=1) + "\n")
+        store.keep(RESULT, found)
         draw(found, pictures)
     return 0 if good else 1
 

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Makes docs/saltation.md and docs/figures of it from results/*.json of cases.py."""
+"""Makes docs/saltation.md from results/*.csv of cases.py."""
 import math
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import barchan_bench.page  # noqa: E402
-from barchan_bench import statistics  # noqa: E402
+from barchan_bench import store  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCS = HERE.parents[1] / "docs"
@@ -16,7 +16,7 @@ LIMIT = ("Limit: use a column up to u* = 0.7 m/s. With u* from 0.24 to 0.67 m/s 
 
 
 def load(name):
-    return barchan_bench.page.load(HERE / "results" / f"{name}.json")
+    return store.load(HERE / "results" / f"{name}.csv")
 
 
 def percent(measured, reference):
@@ -120,7 +120,7 @@ def flux(r):
              "stress of air and grains over rho u*^2 in layers of 10 d, 2 to 62 d: least, mean, largest | averaged s |",
              "| --- " * 10 + "|"]
     for row in r["runs"]:
-        lines.append(f"| {row['u']} | {row['seed']} | {row['flux']:.2f} +- {error_of(row):.2f} | {row['creyssels']} | {percent(row['flux'], row['creyssels'])} | "
+        lines.append(f"| {row['u']} | {row['seed']} | {row['flux']:.2f} +- {row['error_of_mean']:.2f} | {row['creyssels']} | {percent(row['flux'], row['creyssels'])} | "
                      f"{row['flux_decay']:.1f} +- {row['flux_decay_error']:.1f} | {row['concentration_decay']:.1f} | {row['bed_u']:.3f} | "
                      + ", ".join(f"{s:.2f}" for s in row["stress"]) + f" | {row['from']} to {row['to']} |")
     of = {}
@@ -130,14 +130,7 @@ def flux(r):
     means = {u: mean(rows, "flux") for u, rows in of.items()}
     lines += ["", "Means of the two beds: " + ", ".join(f"{means[u]:.2f} +- {half_difference(rows):.2f} g/m/s at {u} ({percent(means[u], rows[0]['creyssels'])})" for u, rows in of.items()) + ". "
               + linear(means), "", *decays(of), "", LIMIT, "", "![Flux, profiles of flux, wind and stress](saltation.png)", ""]
-    plot(r)
     return lines
-
-
-def error_of(row):
-    """Standard error of the mean flux of one bed, g/m/s: of its blocks or of its autocorrelation, the larger."""
-    window = [q for t, q in zip(row["t"], row["q"]) if t >= row["from"]]
-    return max(row["error"], statistics.error_of_mean(window)[0])
 
 
 def half_difference(rows):
@@ -146,24 +139,15 @@ def half_difference(rows):
     return (max(fluxes) - min(fluxes)) / 2
 
 
-RANGES = ((5, 20), (20, 60), (60, 150), (4, 80))  # diameters over the bed
-
-
 def decays(of):
     """Heights over which the flux falls by a factor e, by the range of the fit."""
-    import numpy
     lines = ["What is measured about heights: Creyssels et al. 2009 found that the concentration of grains falls exponentially with height, over the same height at all winds. How large that height is we know "
              "from memory alone (some 40 d, 9.6 mm) and could not check; a decay of their flux is not known to us, so the decays of the flux below compare with nothing. Ours is neither: the concentration falls by a factor e over 20 to 31 d in the fit of the table, "
              "and in resolved air over 12 to 14 d from 5 to 30 d and over 29 to 46 d from 30 to 100 d (below). The flux is no single exponential either, and its decay depends on the range of the fit and on the bed:", "",
-             "| u* m/s | bed | " + " | ".join(f"{low} to {high} d" for low, high in RANGES) + " |", "| --- " * (2 + len(RANGES)) + "|"]
+             "| u* m/s | bed | " + " | ".join(next(iter(of.values()))[0]["decays"]) + " |", "| --- " * (2 + len(next(iter(of.values()))[0]["decays"])) + "|"]
     for u, rows in of.items():
         for row in rows:
-            height, flux = (numpy.array(row["profile"][key]) for key in ("height", "flux"))
-            found = []
-            for low, high in RANGES:
-                keep = (height > low) & (height < high) & (flux > 0)
-                found.append(-1 / numpy.polyfit(height[keep], numpy.log(flux[keep]), 1)[0])
-            lines.append(f"| {u} | {row['seed']} | " + " | ".join(f"{d:.1f} d" for d in found) + " |")
+            lines.append(f"| {u} | {row['seed']} | " + " | ".join(f"{d:.1f} d" for d in row["decays"].values()) + " |")
     return lines
 
 
@@ -179,6 +163,7 @@ def linear(means):
 
 
 def plot(r):
+    """docs/saltation.png, from what `flux` of cases.py measured."""
     figure, axes = barchan_bench.page.pyplot().subplots(2, 2, figsize=(10, 8))
     colours = ["#0072b2", "#d55e00", "#009e73"]
     for row, colour in zip((row for row in r["runs"] if row["seed"] == 1), colours):

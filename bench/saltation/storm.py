@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The dune in a storm (scenes/dune_box.toml): momentum along x of all that moves, erosion and deposition, winds.
 
-    /usr/bin/python3 bench/saltation/storm.py build/barchan --out /tmp/storm      runs the scene (some minutes), writes results/storm.json
+    /usr/bin/python3 bench/saltation/storm.py build/barchan --out /tmp/storm      runs the scene (some minutes), writes results/storm.csv
     /usr/bin/python3 bench/saltation/storm.py none --out /tmp/storm               measures a run that is there
 
 Momentum: what the held bulk speed and the stress of the lid put in, less what air and grains have more of at the end, less what the core (fixed spheres)
@@ -19,10 +19,10 @@ import tomllib
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page, run  # noqa: E402
+from barchan_bench import ROOT, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-RESULT = ROOT / "bench/saltation/results/storm.json"
+RESULT = ROOT / "bench/saltation/results/storm.csv"
 SCENE = ROOT / "scenes/dune_box.toml"
 
 WATCHED = 'force=[{ name = "core", phase = "core", by = "sand" }, { name = "lid", phase = "lid", by = "sand" }]'
@@ -124,7 +124,7 @@ def main():
         sets = [WATCHED, "output.every=2e-3", "output.history-every=1e-4", "output.walls=false"]
         run.scene(options.program, SCENE, options.out, sets, threads=options.threads, shown=True)
     result = measure(options.out)
-    page.keep(RESULT, result)
+    store.keep(RESULT, result)
     print(json.dumps(result, indent=1))
 
 

@@ -2,7 +2,7 @@
 """A dune in a wind tunnel (scenes/dune.toml): wind before, over and behind the dune, what drives it, and the flux of sand along x.
 
     /usr/bin/python3 bench/saltation/tunnel.py build/barchan --out /tmp/tunnel               runs the scene four times, two at once, each with other grains that enter (influx.0.seed);
-                                                                                             writes results/tunnel.json and docs/gallery/dune_tunnel.png
+                                                                                             writes results/tunnel.csv and docs/gallery/dune_tunnel.png
     /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --from 0.3 --to 0.6    measures the runs that are there between two times
 
 Means of the frames between two times (the last second, if none are given). Wind at a place: mean of the air's particles within 1 cm of it, by height over the ground. u*: slope of
@@ -13,7 +13,6 @@ Pressure on the dune: the sum of p dh/dx over the ground, p the mean of the firs
 """
 import argparse
 import concurrent.futures
-import json
 import math
 import pathlib
 import sys
@@ -22,10 +21,10 @@ import tomllib
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page, run  # noqa: E402
+from barchan_bench import ROOT, page, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-SCENE, RESULT, PICTURE = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunnel.json", ROOT / "docs/gallery/dune_tunnel.png"
+SCENE, RESULT, PICTURE = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunnel.csv", ROOT / "docs/gallery/dune_tunnel.png"
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
 
@@ -157,7 +156,7 @@ def measure(folder, begin, end):
         "pressure_on_the_dune_N_m": float(np.mean(means.pushes)), "pressure_on_the_dune_over_length_Pa": float(np.mean(means.pushes)) / ground.length,
         "ground_stress_Pa": float(history["air-sand_ground_stress"][chosen].mean()),
         "times_s": means.times, "frames": means.frames, "u_star_upstream": friction_velocity(*upstream),
-        "wind_upstream_over_entering": [[float(h), float(o)] for h, o in zip(upstream[0], off)], "largest_difference_above_one_spacing": float(np.abs(off[1:]).max()),
+        "largest_difference_above_one_spacing": float(np.abs(off[1:]).max()),
         "wind_near_the_focus": [float(upstream[0][0]), float(upstream[1][0]), float(meant[0])], "flux_g_m_s": flux.tolist(), "flux_error": error.tolist(), "part_m": PART,
         "flux_upstream": float(flux[before].mean()), "flux_upstream_error": float(means.flux[:, before].mean(1).std() / math.sqrt(means.frames)),
         "entered_g_m_s": float(1e3 * np.ptp(history["sand_left_in"][chosen]) / np.ptp(history["time"][chosen])), "flux_upstream_over_saturated": float(flux[before].mean() / SATURATED),
@@ -219,7 +218,7 @@ def main():
         measured = measure(folder, max(end - 1, 0) if options.begin is None else options.begin, end)
         runs.append(measured[2])
         shown = shown or measured
-    RESULT.write_text(json.dumps({"runs": runs}, indent=1) + "\n")
+    store.keep(RESULT, {"runs": runs})
     draw(*shown)
     for name in runs[0]:
         print(name, *(each[name] if isinstance(each[name], (list, tuple, dict, type(None))) else round(each[name], 4) for each in runs))

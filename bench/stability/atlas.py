@@ -26,7 +26,6 @@ import collections
 import concurrent.futures
 import dataclasses
 import itertools
-import json
 import math
 import pathlib
 import sys
@@ -36,11 +35,11 @@ import tomllib
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION, processor  # noqa: E402
 
-RESULTS = pathlib.Path(__file__).resolve().parent / "results" / "atlas.json"
+RESULTS = pathlib.Path(__file__).resolve().parent / "results" / "atlas.csv"
 PAGE, PICTURE, RANGES = ROOT / "docs/stability.md", ROOT / "docs/gallery/atlas.png", ROOT / "src/plan/stable_ranges.inc"
 WORDS = {"stable": GREEN, "told": SKY, "refused": BLUE, "stopped": ORANGE, "slow": "#999999", "SILENT": VERMILION}
 MARGIN = 1.5  # asked of a default: the nearest value that is not stable is at least this factor away
@@ -432,7 +431,7 @@ def draw(results):
 
 
 def write_all():
-    kept = json.loads(RESULTS.read_text())
+    kept = store.load(RESULTS)
     results, known = kept["families"], {f.name: f for f in families()}
     counts = collections.Counter(w for points in results.values() for p in points for w in p["words"])
     lines, missed = [], 0
@@ -481,7 +480,7 @@ def main():
     if options.program != "none":
         program = str(pathlib.Path(options.program).resolve())
         said = run.version(program)
-        kept = json.loads(RESULTS.read_text()) if RESULTS.exists() else {"families": {}}
+        kept = store.load(RESULTS, {"families": {}})
         kept.update(processor=processor(), instructions=said.partition("instruction set: ")[2].split(" (")[0])
         for family in families():
             if options.families and not any(family.name.startswith(f) for f in options.families):
@@ -494,11 +493,8 @@ def main():
             for direction in family.directions:
                 print("  " + margins(family, direction, points)[0], flush=True)
         if options.write:
-            RESULTS.parent.mkdir(exist_ok=True)
             kept["families"] = {f.name: kept["families"][f.name] for f in families() if f.name in kept["families"]}
-            RESULTS.write_text("{\"processor\": " + json.dumps(kept["processor"]) + ", \"instructions\": " + json.dumps(kept["instructions"]) +
-                               ", \"families\": {\n" + ",\n".join(json.dumps(n) + ": [\n " + ",\n ".join(json.dumps(p) for p in points) + "]"
-                                                                 for n, points in kept["families"].items()) + "}}\n")
+            store.keep(RESULTS, kept)
     if options.write:
         write_all()
     return 1 if silent else 0

@@ -29,7 +29,7 @@ import numpy
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parents[1] / "accuracy")]
 import cases_wind  # noqa: E402
 import ensemble_any as any_scene  # noqa: E402
-from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 from barchan_bench.table import head  # noqa: E402
 from barchan import sweep  # noqa: E402  (barchan_bench.frame knows where the package is)
@@ -155,8 +155,8 @@ def title(result):
 def write_page():
     """docs/stability.md between its markers, from all results that are there."""
     parts, rows = [], []
-    for file in sorted(RESULTS.glob("*.json")):
-        result = json.loads(file.read_text())
+    for file in sorted(RESULTS.glob("*.csv")):
+        result = store.load(file)
         if "runs" not in result:  # the atlas stands beside the ensembles
             continue
         if "step_factor" in result["runs"][0]:
@@ -188,7 +188,7 @@ def ensemble(path, program, options, folder):
     lines, good = verdict(result)
     print(f"{title(result)}: " + " ".join(lines), flush=True)
     if options.write:
-        pages.keep(RESULTS / f"{label(path)[:-5].replace('/', '-')}{variant}.json", result)
+        store.keep(RESULTS / f"{label(path)[:-5].replace('/', '-')}{variant}.csv", result)
     return good
 
 

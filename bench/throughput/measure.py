@@ -6,7 +6,7 @@
 
 BUILD holds bench/throughput and bench/limit_pairs (cmake --preset bench && ninja -C build-bench). Parts: steps, limit,
 threads, growth, bare. Runs are interleaved and medians taken over the rounds; results are kept part by part in
-bench/throughput/results.json. With --write, docs/performance.md (between its markers) and docs/gallery/performance.png are
+bench/throughput/results.csv. With --write, docs/performance.md (between its markers) and docs/gallery/performance.png are
 made from them.
 """
 
@@ -17,9 +17,9 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run  # noqa: E402
+from barchan_bench import ROOT, page as pages, run, store  # noqa: E402
 
-RESULTS = ROOT / "bench/throughput/results.json"
+RESULTS = ROOT / "bench/throughput/results.csv"
 PAGE = ROOT / "docs/performance.md"
 BEGIN, END = pages.marks("measured")
 CASES = {  # name: options of throughput
@@ -160,12 +160,12 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    results = pages.load(RESULTS, {})
+    results = store.load(RESULTS, {})
     for part in options.only or ["steps", "threads", "growth", "bare"]:
         if part == "none":
             continue
         results.update(measure(options.build.resolve(), part, options.rounds))
-        pages.keep(RESULTS, results)
+        store.keep(RESULTS, results)
     text = page(results)
     print(text)
     if options.write:

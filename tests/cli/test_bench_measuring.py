@@ -24,13 +24,13 @@ import cases_wind  # noqa: E402
 import ensemble  # noqa: E402
 import harness  # noqa: E402
 import square_patch_reference  # noqa: E402
-from barchan_bench import frame as frames, page, run, table  # noqa: E402
+from barchan_bench import frame as frames, page, run, store, table  # noqa: E402
 
 # What reads frames, series and tables, and what starts processes: modules, and functions of modules and objects. In bench/ one file starts processes and none reads.
 READERS = {"vtk", "vtkmodules", "paraview", "meshio", "xml", "csv", "pandas", "loadtxt", "genfromtxt", "fromfile", "memmap"}
 STARTERS = {"subprocess", "multiprocessing", "pty", "system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "create_subprocess_exec",
             "create_subprocess_shell", *(f"{verb}{end}" for verb in ("exec", "spawn") for end in ("l", "le", "lp", "lpe", "v", "ve", "vp", "vpe"))}
-HOMES = {"barchan_bench/run.py": STARTERS}  # frames, series and tables: the package of python/, through barchan_bench/frame.py
+HOMES = {"barchan_bench/run.py": STARTERS, "barchan_bench/store.py": {"csv"}}  # frames, series and tables: the package of python/, through barchan_bench/frame.py
 ELSEWHERE = {  # a file, what it may use besides, and why
     "robustness/meshes.py": ({"meshio", "vtkmodules"}, "writes and reads shapes, by other readers than the program's"),
     "robustness/mutants.py": ({"subprocess"}, "starts compilers and the programs of the tests"),
@@ -244,6 +244,27 @@ class Package(unittest.TestCase):
         self.assertEqual([r["good"] for r in table.rows], [True, False, True, False, False])
         self.assertEqual(["MISSED" in line for line in said.getvalue().splitlines()], [False, True, False, True, True])
         self.assertEqual(table.head("a", "b"), "| a | b |\n| --- | --- |")
+
+    def test_results_come_back_as_they_were_kept(self):
+        file = self.folder() / "results/case.csv"
+        flat = [{"what": "a, b", "value": 1.5, "word": "1.5", "n": 2}, {"what": "", "value": None, "good": True, "more": [1, [2.0, "x"]]}]
+        many = {"processor": "it's \"one\"", "rows": flat, "by": {"2 ranks": {"x": 1e-300, "ways": {}}, "3": {"x": -0.1, "ways": {"2": "[x]"}}},
+                "deep": {"facts": {"[a]": 1}, "lists": {"one": [{"k": 1}], "[[two]]": [{"k": {"j": 2}}]}}, "none": [], "empty": {}}
+        for results in (flat, many, {"a": {"x": 1}}, {"a": {"b": {"c": 2}}}):
+            store.keep(file, results)
+            self.assertEqual(store.load(file), results)
+        self.assertIsNone(store.load(file.with_name("other.csv")))
+        store.keep(file, {"runs": [{"u": 1, "t": [0] * 1000}]}, leave=("t",))
+        self.assertEqual(store.load(file), {"runs": [{"u": 1}]})
+
+    def test_no_history_and_no_path_of_this_machine_is_kept(self):
+        file = self.folder() / "case.csv"
+        for wrong in ({"t": [0.] * 51}, {"words": f"{ROOT}/scenes/dune.toml: wrong"}, {"a > b": 1}):
+            with self.assertRaises(ValueError):
+                store.keep(file, wrong)
+            self.assertFalse(file.exists())
+        places = ("/work/", "/home/", "/root/", "/tmp/", "/builds/")
+        self.assertEqual([str(f) for f in sorted((ROOT / "bench").rglob("*.csv")) if any(p in f.read_text() for p in places)], [])
 
     def test_between_its_marks_a_page_is_filled(self):
         file = self.folder() / "page.md"

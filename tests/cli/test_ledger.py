@@ -12,7 +12,7 @@ import numpy
 ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parents[2])
 sys.path.insert(0, str(ROOT / "bench"))
 import ledger  # noqa: E402
-from barchan_bench import statistics  # noqa: E402
+from barchan_bench import statistics, store  # noqa: E402
 
 
 def table_of(page):
@@ -26,7 +26,7 @@ class Ledger(unittest.TestCase):
 
     def test_the_page_is_what_the_stored_results_make(self):
         rows = ledger.rows_now()
-        known = ledger.json.loads(ledger.MEASURED.read_text())
+        known = store.load(ledger.MEASURED)
         self.assertEqual(ledger.days(rows, known, "another day"), known, "results changed: /usr/bin/python3 bench/ledger.py --write")
         self.assertEqual(ledger.text_of(rows, known), self.page, "run /usr/bin/python3 bench/ledger.py --write")
 
@@ -43,8 +43,8 @@ class Ledger(unittest.TestCase):
 
     def test_no_stored_miss_is_left_out(self):
         """Figures of bench/accuracy that miss their bound, counted apart from the ledger's own choice."""
-        missed = sum(not r["good"] for file in (ROOT / "bench/accuracy/results").glob("*.json") if file.stem in ledger.accuracy.SOURCES | ledger.accuracy.LONG
-                     for r in ledger.json.loads(file.read_text())["rows"])
+        missed = sum(not r["good"] for file in (ROOT / "bench/accuracy/results").glob("*.csv") if file.stem in ledger.accuracy.SOURCES | ledger.accuracy.LONG
+                     for r in store.load(file)["rows"])
         flows = [r for r in ledger.accuracy.rows(ROOT / "bench") if ledger.verdict(r) == "MISSED"]
         self.assertEqual(len(flows), missed)
 
