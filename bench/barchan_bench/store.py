@@ -81,12 +81,14 @@ def encode(results):
         columns = list(dict.fromkeys(key for _, row in rows for key in row))
         line([*first, *columns])
         for key, row in rows:
-            line([*map(to_cell, key), *(to_cell(row[c]) if c in row else "" for c in columns)])
+            line([*key, *(to_cell(row[c]) if c in row else "" for c in columns)])
 
     def by_key(value):
-        """Records that a table with a line each shows well: nothing in a cell has a table inside."""
-        return len(value) > 1 and all(isinstance(v, dict) and v and not any(is_records(c) or isinstance(c, dict) and any(isinstance(x, dict) for x in c.values())
-                                                                           for c in v.values()) for v in value.values())
+        """Records that a table with a line each shows well: they have words and numbers, and no cell has a table inside."""
+        def has_table(cell):
+            return is_records(cell) or isinstance(cell, dict) and any(isinstance(x, dict) for x in cell.values())
+        return len(value) > 1 and all(isinstance(v, dict) and v and not any(map(has_table, v.values())) and not all(isinstance(c, dict) for c in v.values())
+                                      for v in value.values())
 
     def write(value, place):
         if isinstance(value, list):
@@ -102,7 +104,7 @@ def encode(results):
             mark(f"[{JOIN.join(place)}]")
             for key, v in value.items():
                 if key not in inside:
-                    line([to_cell(key), to_cell(v)])
+                    line([key, to_cell(v)])
         for key, v in inside.items():
             write(v, (*place, key))
 
@@ -139,13 +141,13 @@ def decode(text):
             else:
                 found = at(where[:-1] if kind == "[*]" else where)
         elif kind == "[]":
-            found[from_cell(cells[0])] = from_cell(cells[1])
+            found[cells[0]] = from_cell(cells[1])
         elif not columns:
             columns = cells
         else:
-            row = {name: from_cell(cell) for name, cell in zip(columns, cells) if cell != ""}
+            row = {name: from_cell(cell) for name, cell in zip(columns, cells) if name and cell != ""}
             if kind == "[[]]":
                 found.append(row)
             else:
-                found[row.pop("")] = row
+                found[cells[0]] = row
     return results

@@ -5,12 +5,10 @@
 
 Periodic air grows with the ranks, so that each has the same number of particles. More ranks than cores take turns: their times say nothing, so this counts
 what a rank has to do. From run.json of a run and of a shorter one, whose difference leaves the start out: messages and bytes that a rank sends in a step,
-ghosts a rank, and the particles of the largest rank over the mean. Beside them stands what `barchan plan --ranks` said before. The bound: its bytes and
-messages are within 10 %. The time of two ranks is in bench/ranks/speed.py. With --write the results go to bench/ranks/results/weak.csv and the page.
+ghosts a rank, and the particles of the largest rank over the mean. The time of two ranks is in bench/ranks/speed.py. With --write the results go to bench/ranks/results/weak.csv and the page.
 """
 
 import argparse
-import json
 import pathlib
 import sys
 import tempfile
@@ -42,28 +40,20 @@ def measured(program, name, ranks):
         result = {"particles": sum(late["particles"].values()), "steps": steps, "pairs": sum(late["pairs"].values()) / ranks}
         if not of:
             return result
-        scene = run.scene_file(long, pathlib.Path(folder))
-        told = json.loads(run.command([program, "plan", scene, "--json", "--threads", "1", "--ranks", ranks, "--set", "output.history-every=1"], check=True).stdout)["ranks"]["of"]
     result |= {"largest": of["most_particles"] * ranks / result["particles"], "ghosts": of["ghosts"] / ranks}
     for what in ("messages", "bytes"):
         result[what] = (of[what] - early["ranks"][what]) / steps / ranks
-        result[f"planned {what}"] = sum(rank[what] for rank in told) / ranks / result[what]
-    result["planned ghosts"] = sum(rank["ghosts"] for rank in told) / of["ghosts"]
     return result
 
 
 def text(results):
     """The table of the page."""
-    lines = [table.head("case", "ranks", "particles, steps", "million pairs a rank", "largest rank over the mean", "ghosts a rank", "messages a step a rank", "MB a step a rank",
-                        "plan over run: ghosts, messages, bytes")]
+    lines = [table.head("case", "ranks", "particles, steps", "million pairs a rank", "largest rank over the mean", "ghosts a rank", "messages a step a rank", "MB a step a rank")]
     for name in CASES:
         for ranks, r in results.get(name, {}).items():
             shared = "messages" in r
-            planned = [r[f"planned {what}"] for what in ("ghosts", "messages", "bytes")] if shared else []
-            far = "" if all(abs(p - 1) <= .1 for p in planned) else ", **not met**"
             lines.append(table.row(name, ranks, f"{r['particles']}, {r['steps']}", f"{r['pairs'] / 1e6:.3f}", *(
-                [f"{r['largest']:.3f}", f"{r['ghosts']:.0f}", f"{r['messages']:.1f}", f"{r['bytes'] / 1e6:.3f}", ", ".join(f"{p:.3f}" for p in planned) + far] if shared
-                else ["", "0", "0", "0", ""])))
+                [f"{r['largest']:.3f}", f"{r['ghosts']:.0f}", f"{r['messages']:.1f}", f"{r['bytes'] / 1e6:.3f}"] if shared else ["", "0", "0", "0"])))
     return "\n".join(lines)
 
 

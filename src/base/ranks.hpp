@@ -253,12 +253,6 @@ int best(T& candidate, Better&& better) {
   return static_cast<int>(first);
 }
 
-/// What in_turn() has been asked to hand on so far, by one process too: sums, and their bytes.
-struct HandedOn {
-  std::int64_t sums = 0, bytes = 0;
-};
-inline HandedOn handed_on{};
-
 /// Bytes of a sum, or of several that stand side by side.
 struct Sums {
   void* data;
@@ -270,10 +264,6 @@ struct Sums {
 template <class Add>
 void in_turn(std::initializer_list<Sums> sums, Add&& add) {
   Communicator* const all = active();
-  for (const Sums& s : sums) {
-    ++handed_on.sums;
-    handed_on.bytes += static_cast<std::int64_t>(s.bytes);
-  }
   if (all && all->rank() > 0)
     for (const Sums& s : sums) all->receive(s.data, s.bytes, all->rank() - 1);
   add();

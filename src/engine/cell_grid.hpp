@@ -208,14 +208,6 @@ class CellGrid {
   /// The cell of each particle as sorted last, in their order. The grid is not shared.
   std::vector<std::uint32_t> cells_of_particles() const;
 
-  /// Counts what the run's tasks send to images: `width` bytes for each, from sources to images or `back`. A run of one
-  /// process counts what ranks would send.
-  void note_images(std::size_t width, bool back = false) const {
-    ++(back ? use_.returns : use_.fills);
-    (back ? use_.returned : use_.filled) += width;
-  }
-  const ImageUse& use() const { return use_; }
-
   std::size_t bytes() const;
   /// Of it, of what is of all cells of the domain, on every rank.
   std::size_t bytes_of_cells() const;
@@ -301,7 +293,6 @@ class CellGrid {
   std::array<AlignedVector<float>, 3> search_;
   std::unique_ptr<SharedCells> shared_;  // null: all cells are this process' own
   std::optional<SharedCells::Whole> whole_;
-  mutable ImageUse use_;
 };
 
 template <class Pack, class Place>

@@ -281,7 +281,6 @@ void CellGrid::bring_search_positions(const SharedCells::Question& question, std
 
 void CellGrid::take_places(const PhaseParticles& particles, std::array<std::vector<double>, 3>& ghosts) const {
   const auto axes = static_cast<std::size_t>(particles.dimensions());
-  note_images(axes * sizeof(double));
   if (!is_shared()) return;
   std::array<const double*, 3> x{};
   for (std::size_t d = 0; d < axes; ++d) {

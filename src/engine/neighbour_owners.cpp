@@ -115,9 +115,8 @@ std::vector<RankHalo> Neighbours::halo_of(std::size_t phase,
     grid.each_ghost_cell(own, rank, needed, [&](std::uint32_t, std::uint32_t source, std::int32_t owner) {
       all[r].ghosts += grid.count(source);
       if (owner == rank) return;
-      RankHalo::Sent& sent = all[static_cast<std::size_t>(owner)].to[rank];
-      sent.images += grid.count(source);
-      ++sent.cells;
+      if (const std::size_t count = grid.count(source); count > 0)
+        all[static_cast<std::size_t>(owner)].to[rank] += count;
     });
   }
   return all;

@@ -67,7 +67,6 @@ void PhaseRecords::fit(std::size_t particles, std::size_t images) {
 
 void PhaseRecords::fill_images(Record record, const PhaseParticles& particles, const CellGrid& grid) {
   if (label(record).images_of_now || !has(record)) return;
-  grid.note_images(bytes_of_an_image(record));
   switch (record) {
     case Record::compact:
       dimensions_ == 2 ? compact_->fill_images<2>(grid, positions<2>(particles))

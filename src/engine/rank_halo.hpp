@@ -7,13 +7,10 @@
 
 namespace barchan {
 
-/// What a rank has of a phase that is shared out, and what it sends of it to others.
+/// What a rank has of a phase that is shared out.
 struct RankHalo {
-  std::size_t particles = 0, ghosts = 0;  // ghosts: images of own particles beyond periodic sides among them
-  struct Sent {
-    std::size_t images = 0, cells = 0;  // that another rank has as ghosts; empty cells count
-  };
-  std::map<std::int32_t, Sent> to;  // by the other rank
+  std::size_t particles = 0, ghosts = 0;    // ghosts: images of own particles beyond periodic sides among them
+  std::map<std::int32_t, std::size_t> to;  // own particles that another rank has as ghosts, by that rank
 };
 
 /// Blocks whose displacements a rank tells another one, and those that it hears from it; both in ascending order.

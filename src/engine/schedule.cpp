@@ -22,8 +22,7 @@ Schedule::Schedule(std::span<const char* const> stages)
     : tasks_(stages.size()),
       repeat_of_(stages.size()),
       images_(stages.size()),
-      executed_(stages.size(), 0),
-      processor_seconds_(stages.size(), 0.0) {
+      executed_(stages.size(), 0) {
   for (const char* name : stages) seconds_.emplace_back(name, 0.0);
 }
 
@@ -77,7 +76,6 @@ void Schedule::run(std::size_t first, std::size_t last) {
   for (std::size_t stage = first; stage <= last; ++stage) {
     if (tasks_[stage].empty()) continue;
     const auto start = Clock::now();
-    const double processor = measures_processor_time_ ? thread_seconds() : 0.0;
     for (std::size_t k = 0; k < tasks_[stage].size(); ++k) {
       const Task& task = tasks_[stage][k];
       const Images& images = images_[stage][k];
@@ -85,7 +83,6 @@ void Schedule::run(std::size_t first, std::size_t last) {
       else execute(task, images);
     }
     ++executed_[stage];
-    if (measures_processor_time_) processor_seconds_[stage] += thread_seconds() - processor;
     seconds_[stage].second += since(start);
   }
 }

@@ -58,12 +58,9 @@ class Schedule {
   /// task that touches a field that it did not declare throws std::logic_error (state/access.hpp).
   void run(std::size_t first, std::size_t last);
 
-  /// From now on processor time is measured too: two calls of the kernel a stage, which small scenes would feel.
-  void measure_processor_time() { measures_processor_time_ = true; }
-  /// By stage: how often it was executed, wall time, and, if it is measured, processor time of the calling thread (s).
+  /// By stage: how often it was executed, and wall time (s).
   const std::vector<long>& executed() const { return executed_; }
   const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
-  const std::vector<double>& processor_seconds() const { return processor_seconds_; }
   /// The repeats in the order in which they were added.
   const std::vector<RepeatCount>& repeats() const { return repeats_; }
 
@@ -82,8 +79,6 @@ class Schedule {
   Halo* halo_ = nullptr;
   std::vector<long> executed_;
   std::vector<std::pair<std::string, double>> seconds_;
-  std::vector<double> processor_seconds_;
-  bool measures_processor_time_ = false;
 };
 
 }  // namespace barchan

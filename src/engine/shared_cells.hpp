@@ -22,12 +22,6 @@ struct Image {
   bool shifted() const { return shift[0] != 0 || shift[1] != 0 || shift[2] != 0; }
 };
 
-/// What tasks have sent to images so far: calls, and the bytes of one image in all of them; likewise the way back.
-struct ImageUse {
-  long fills = 0, returns = 0;
-  std::size_t filled = 0, returned = 0;
-};
-
 /// Which rank owns which cells of a grid.
 struct CellOwners {
   /// Divided by particles, a rank that has so many times the mean gives some away at the next sort.

@@ -53,11 +53,6 @@ extern const std::array<const char*, count> names;
 
 class Workspace;
 
-/// What a rank sends to others.
-struct RankTraffic {
-  double messages = 0, bytes = 0;
-};
-
 class Model {
  public:
   Model() = default;
@@ -108,9 +103,6 @@ class Model {
   virtual void gather_to_save() {}
   /// After it, on the first rank.
   virtual void forget_gathered() {}
-  /// Adds what each of so many ranks (as many as `of`) would have sent to others since the start of this run of one
-  /// process, beside what the engine sends. Whether it shares out the work on phases that are whole.
-  virtual bool count_traffic(std::vector<RankTraffic>& /*of*/) const { return false; }
 };
 
 using Models = std::vector<std::unique_ptr<Model>>;

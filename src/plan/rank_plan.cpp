@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t most_rows = 8;
 
 std::string row(const std::string& name, const RankPlan::Rank& r) {
-  return formatted("%-8s %11.0f %10.0f %7.3f %10s %9.1f %12.0f\n", name.c_str(), r.particles, r.ghosts, r.halo_share,
-                   memory_text(r.memory).c_str(), r.messages, r.bytes);
+  return formatted("%-8s %11.0f %10.0f %7.3f %10s\n", name.c_str(), r.particles, r.ghosts, r.halo_share,
+                   memory_text(r.memory).c_str());
 }
 
 }  // namespace
@@ -35,8 +35,7 @@ RankPlan::Rank of_all(const RankPlan& plan, Spread which) {
                                             : sum / static_cast<double>(plan.ranks.size());
   };
   for (const auto value :
-       {&RankPlan::Rank::particles, &RankPlan::Rank::ghosts, &RankPlan::Rank::halo_share, &RankPlan::Rank::memory,
-        &RankPlan::Rank::messages, &RankPlan::Rank::bytes, &RankPlan::Rank::seconds})
+       {&RankPlan::Rank::particles, &RankPlan::Rank::ghosts, &RankPlan::Rank::halo_share, &RankPlan::Rank::memory})
     take(value);
   return all;
 }
@@ -47,34 +46,26 @@ constexpr std::array<std::pair<const char*, Spread>, 3> spreads{
     {{"least", Spread::least}, {"mean", Spread::mean}, {"largest", Spread::largest}}};
 
 nlohmann::ordered_json json_of(const RankPlan::Rank& r) {
-  return {{"particles", r.particles}, {"ghosts", r.ghosts}, {"halo_share", r.halo_share}, {"memory", r.memory},
-          {"messages", r.messages},   {"bytes", r.bytes},   {"seconds", r.seconds}};
+  return {{"particles", r.particles}, {"ghosts", r.ghosts}, {"halo_share", r.halo_share}, {"memory", r.memory}};
 }
 
 }  // namespace
 
 std::string to_text(const RankPlan& plan) {
-  using C = RankConstants;
-  std::string t = formatted("\n%-8s %11s %10s %7s %10s %9s %12s\n", plan.ranks.size() == 1 ? "rank" : "ranks",
-                            "particles", "ghosts", "share", "memory", "messages", "bytes a step");
+  std::string t = formatted("\n%-8s %11s %10s %7s %10s\n", plan.ranks.size() == 1 ? "rank" : "ranks", "particles",
+                            "ghosts", "share", "memory");
   if (plan.ranks.size() <= most_rows)
     for (std::size_t r = 0; r < plan.ranks.size(); ++r) t += row(std::to_string(r), plan.ranks[r]);
   else
     for (const auto& [name, which] : spreads) t += row(name, of_all(plan, which));
   if (plan.whole_particles > 0)
-    t += formatted("every rank has %.0f particles of grains and bodies; they take %.0f %% of a step\n",
-                   plan.whole_particles, 100.0 * plan.whole_share);
+    t += formatted("every rank has %.0f particles of grains and bodies\n", plan.whole_particles);
   t += "at the start every rank makes " +
        (plan.why_start_is_whole.empty() ? "its part of the fluids, and all other particles"
                                         : "all particles, because " + plan.why_start_is_whole) +
        ": " + memory_text(plan.start_memory) +
        (plan.frames_in_pieces ? "; later each one writes its piece of the frames\n"
                               : "; later the first one has the frames of all\n");
-  if (plan.efficiency > 0)
-    t += formatted("predicted efficiency %.3f: of the speed of %zu processes that know nothing of each other\n",
-                   plan.efficiency, plan.ranks.size());
-  t += formatted("predicted with %.3g s a message, %.3g GB/s, %.0f reductions a step; new lists in %.3g of the steps\n",
-                 C::latency, C::bandwidth * 1e-9, C::reductions, plan.searches_a_step);
   const auto idle = std::count_if(plan.ranks.begin(), plan.ranks.end(),
                                   [&](const RankPlan::Rank& r) { return r.particles <= plan.whole_particles; });
   if (idle > 0)
@@ -84,21 +75,15 @@ std::string to_text(const RankPlan& plan) {
 }
 
 std::string to_json(const RankPlan& plan) {
-  using C = RankConstants;
   nlohmann::ordered_json j;
   j["count"] = plan.ranks.size();
   j["of"] = nlohmann::ordered_json::array();
   for (const RankPlan::Rank& r : plan.ranks) j["of"].push_back(json_of(r));
   for (const auto& [name, which] : spreads) j[name] = json_of(of_all(plan, which));
   j["whole_particles"] = plan.whole_particles;
-  j["whole_share"] = plan.whole_share;
   j["start_memory"] = plan.start_memory;
   j["why_start_is_whole"] = plan.why_start_is_whole;
   j["frames_in_pieces"] = plan.frames_in_pieces;
-  j["searches_a_step"] = plan.searches_a_step;
-  j["seconds_alone"] = plan.seconds_alone;
-  j["efficiency"] = plan.efficiency;
-  j["constants"] = {{"latency", C::latency}, {"bandwidth", C::bandwidth}, {"reductions", C::reductions}};
   return j.dump();
 }
 

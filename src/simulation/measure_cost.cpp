@@ -113,11 +113,7 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   Simulation simulation(scene, plan, std::move(blocks));
   simulation.check_start();
   std::optional<RankMeasure> on_ranks;
-  if (ranks > 0) {
-    simulation.measure_processor_time();
-    on_ranks.emplace(simulation, ranks);
-  }
-  constexpr long settling = 10;  // steps: of ranks, what goes between them is counted after them
+  if (ranks > 0) on_ranks.emplace(simulation, ranks);
   Batches batches;
   const auto goes_on = [&] { return simulation.time() < scene.time.end * (1 - 1e-12); };
   const auto make = [&](long most_steps, double most_seconds) {
@@ -127,14 +123,10 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
       const double begin = thread_seconds(), time = simulation.time();
       int steps = 0;
       try {
-        for (; steps < Batches::most && thread_seconds() - start < most_seconds && goes_on(); ++steps) {
+        for (; steps < Batches::most && thread_seconds() - start < most_seconds && goes_on(); ++steps)
           simulation.step(scene.time.end - simulation.time());
-          if (on_ranks && simulation.steps() == 1 && goes_on())
-            on_ranks->begin();  // the first step has what starts a run
-        }
       } catch (const BreakdownError& error) { e.failure = error.what(); }
       if (steps == 0) break;
-      if (on_ranks && simulation.steps() == settling && goes_on()) on_ranks->begin();
       batches.steps.push_back(steps);
       batches.seconds.push_back((thread_seconds() - begin) / steps);
       batches.lengths.push_back((simulation.time() - time) / steps);
@@ -146,17 +138,16 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
     return all;
   };
   constexpr long first_steps = 300;
-  make(first_steps / 2, on_ranks ? 5.0 : 1.0);
+  make(first_steps / 2, 1.0);
   std::uint64_t before_pairs = pairs();
-  make(first_steps, on_ranks ? 5.0 : 1.0);
+  make(first_steps, 1.0);
   e.bytes = static_cast<double>(simulation.bytes());
   if (!batches.lengths.empty()) e.steps = scene.time.end / median(batches.lengths);
   e.memory = memory_of_a_run(simulation, before, retreats ? states_kept(e.steps) : 0.0);
   if (on_ranks)
     e.ranks =
-        on_ranks->plan(median(batches.seconds), {part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
-                                                 part_of(e.memory, "a frame"),
-                                                 part_of(e.memory, "states to go back to"), why_start_is_whole(scene)});
+        on_ranks->plan({part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
+                        part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to"), why_start_is_whole(scene)});
   const std::size_t first_batches = batches.seconds.size();
   const double end_of_more = thread_seconds() + more_seconds;
   while (e.failure.empty() && goes_on() && thread_seconds() < end_of_more &&

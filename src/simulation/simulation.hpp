@@ -58,15 +58,10 @@ class Simulation {
   std::uint64_t pairs(const PlanEntry& entry) const;
   /// How often lists were made anew, of all entries.
   long searches() const;
-  /// How often each stage of the schedule was executed, in the order of the step; wall time of each, and processor time
-  /// of the calling thread, which a benchmark on a busy machine can trust (s).
+  /// How often each stage of the schedule was executed, in the order of the step; wall time of each (s).
   const std::vector<long>& executed() const { return schedule_.executed(); }
   const std::vector<std::pair<std::string, double>>& seconds() const { return schedule_.seconds(); }
-  void measure_processor_time() { schedule_.measure_processor_time(); }
-  const std::vector<double>& processor_seconds() const { return schedule_.processor_seconds(); }
   std::size_t bytes() const;
-  /// Model::count_traffic of all models.
-  bool count_traffic(std::vector<RankTraffic>& of) const;
   /// Of the records of a phase.
   std::size_t bytes_of_an_image(std::size_t phase) const { return work_->bytes_of_an_image(phase); }
 

@@ -61,12 +61,6 @@ void Simulation::save_whole(const std::function<void()>& save) {
   work_->neighbours.forget_gathered();
 }
 
-bool Simulation::count_traffic(std::vector<RankTraffic>& of) const {
-  bool shares = false;
-  for (const auto& model : models_) shares = model->count_traffic(of) || shares;
-  return shares;
-}
-
 void Simulation::load_whole(const std::function<void()>& load) {
   loads_whole_ = ranks::active() != nullptr;
   if (loads_whole_)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What `plan --ranks N` says of a run on N ranks is what that run does: ghosts, bytes and messages; what ranks refuse it refuses.
+"""What `plan --ranks N` says of a run on N ranks is what that run does: particles and ghosts; what ranks refuse it refuses.
 
     test_plan_ranks.py PROGRAM SOURCE_DIR
 """
@@ -12,12 +12,12 @@ import unittest
 import test_ranks
 from test_ranks import PERIODIC, PROGRAM, SOURCE, channel
 
-# scene, end (s) of the run, end of the run that is taken off it, overrides
+# scene, end (s) of the run, overrides
 CASES = {
-    "a periodic fluid": (PERIODIC.format(scheme="consistent", precision=""), 0.06, 0.01),
-    "a channel in three dimensions": (channel("consistent", solid=True), 0.05, 0.01),
-    "a free surface": (SOURCE / "scenes/verification/dam_break.toml", 0.03, 0.004, "spacing=5.715e-3"),
-    "water over spheres": (SOURCE / "scenes/water_over_sand.toml", 0.0006, 0.0001),
+    "a periodic fluid": (PERIODIC.format(scheme="consistent", precision=""), 0.06),
+    "a channel in three dimensions": (channel("consistent", solid=True), 0.05),
+    "a free surface": (SOURCE / "scenes/verification/dam_break.toml", 0.03, "spacing=5.715e-3"),
+    "water over spheres": (SOURCE / "scenes/water_over_sand.toml", 0.0006),
 }
 
 
@@ -41,34 +41,23 @@ class PlanOfRanks(test_ranks.Folder):
 
     @unittest.skipUnless(test_ranks.has_mpi(), "no MPI here")
     def test_against_runs(self):
-        for name, (scene, end, before, *overrides) in CASES.items():
+        for name, (scene, end, *overrides) in CASES.items():
+            sets = [word for key in (f"time.end={end!r}", f"output.every={end!r}", f"output.history-every={end!r}", *overrides) for word in ("--set", key)]
             for ranks in (2, 3, 4):
                 with self.subTest(name, ranks=ranks):
-                    def sets(last):
-                        keys = [f"time.end={last!r}", f"output.every={last!r}", f"output.history-every={last!r}", *overrides]  # looks of rows are no steps
-                        return [word for key in keys for word in ("--set", key)]
-                    plan = self.planned(scene, ranks, *sets(end))
-                    late = self.report(scene, ranks, f"{name}-{ranks}-late", sets(end))
-                    early = self.report(scene, ranks, f"{name}-{ranks}-early", sets(before))
-                    steps = late["steps"] - early["steps"]
-                    ghosts = sum(rank["ghosts"] for rank in plan["of"]) / late["ranks"]["ghosts"]
-                    of_step = {what: sum(rank[what] for rank in plan["of"]) * steps / (late["ranks"][what] - early["ranks"][what])
-                               for what in ("bytes", "messages")}
-                    print(f"{name}, {ranks} ranks, {steps} steps: planned/run ghosts {ghosts:.3f}, bytes {of_step['bytes']:.3f}, "
-                          f"messages {of_step['messages']:.3f}", flush=True)
+                    plan, run = self.planned(scene, ranks, *sets), self.report(scene, ranks, f"{name}-{ranks}", sets)["ranks"]
+                    ghosts = sum(rank["ghosts"] for rank in plan["of"]) / run["ghosts"]
+                    most = max(rank["particles"] for rank in plan["of"]) / run["most_particles"]
+                    print(f"{name}, {ranks} ranks: planned/run ghosts {ghosts:.3f}, particles of the largest {most:.3f}", flush=True)
                     self.assertLess(abs(ghosts - 1), 0.1)
-                    self.assertLess(abs(of_step["bytes"] - 1), 0.1)
-                    self.assertLess(abs(of_step["messages"] - 1), 0.1)
-                    most = max(rank["particles"] for rank in plan["of"])
-                    self.assertLess(abs(most / late["ranks"]["most_particles"] - 1), 0.1)
+                    self.assertLess(abs(most - 1), 0.1)
 
     def test_what_it_says(self):
         scene = PERIODIC.format(scheme="plain", precision="")
         few, many = self.plan(scene, "--ranks", "3").stdout, self.plan(scene, "--ranks", "9").stdout
-        for text in ("particles", "ghosts", "memory", "messages", "bytes a step", "predicted efficiency", "s a message", "GB/s",
-                     "reductions a step"):
+        for text in ("particles", "ghosts", "share", "memory"):
             self.assertIn(text, few)
-        rows = [line.split()[0] for line in few.splitlines() if line[:1].isdigit() and len(line.split()) > 5]
+        rows = [line.split()[0] for line in few.splitlines() if line[:1].isdigit() and len(line.split()) > 4]
         self.assertEqual(rows[-3:], ["0", "1", "2"])
         self.assertIn("\nlargest ", many)
         plan = self.planned(scene, 9)
@@ -79,7 +68,6 @@ class PlanOfRanks(test_ranks.Folder):
         plan = self.planned(SOURCE / "scenes/bouncing_block.toml", 3)
         self.assertGreater(plan["whole_particles"], 0)
         self.assertTrue(all(rank["particles"] >= plan["whole_particles"] for rank in plan["of"]))
-        self.assertLess(plan["efficiency"], 0.6)
 
     def test_a_wrong_number(self):
         for wrong in ("0", "-3", "two", "5000"):

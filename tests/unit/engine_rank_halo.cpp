@@ -87,11 +87,11 @@ TEST_P(RankHalos, AreThoseOfTheListsAndOfTheCellsAboutThem) {
       for (std::size_t other = 0; other < ranks; ++other) {
         EXPECT_EQ(halo[other].to.count(static_cast<std::int32_t>(other)), 0u);
         if (const auto to = halo[other].to.find(static_cast<std::int32_t>(r)); to != halo[other].to.end())
-          from_others += to->second.images;
+          from_others += to->second;
       }
       ASSERT_LE(from_others, halo[r].ghosts);
       images_of_own += halo[r].ghosts - from_others;
-      for (const auto& [to, what] : halo[r].to) sent += what.images;
+      for (const auto& [to, what] : halo[r].to) sent += what;
       EXPECT_LE(static_cast<double>(halo[r].particles) * static_cast<double>(ranks), 2.0 * static_cast<double>(n));
     }
     EXPECT_EQ(particles, n);

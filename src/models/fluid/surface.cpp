@@ -139,7 +139,6 @@ void SurfaceFinder::find_in(PhaseParticles& fluid, const CellGrid& grid, const P
     each_near(k, mark);
     mark(k);
   }
-  grid.note_images(1, true);
   if (surface.shared()) return_marks(grid, n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < all; ++i) {

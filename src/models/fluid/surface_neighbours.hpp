@@ -25,7 +25,6 @@ class SurfaceNeighbours {
       columns_[d] = fluid.column(Field::position, static_cast<int>(d));
       columns_[Dim + 1 + d] = fluid.column(Field::surface_normal, static_cast<int>(d));
     }
-    grid.note_images(width * sizeof(double));
     if (shared_) take_ghosts();
   }
 

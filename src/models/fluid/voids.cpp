@@ -143,7 +143,6 @@ void VoidFinder::take_ghosts(std::span<const Seen> seen) {
 
 /// Marked ghosts mark their sources.
 void VoidFinder::return_marks(const CellGrid& grid, double* left) const {
-  grid.note_images(1, true);
   if (!grid.is_shared()) return;
   grid.return_ghosts(
       1, [&](std::size_t ghost, std::byte* item) { *item = static_cast<std::byte>(marked_[ghost]); },

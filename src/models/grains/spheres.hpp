@@ -89,7 +89,6 @@ class Spheres : public Model {
   void archive(Archive& a) override;
   void gather_to_save() override;
   void forget_gathered() override { drop_other_chunks(); }
-  bool count_traffic(std::vector<RankTraffic>& of) const override;
 
  private:
   /// Spheres of one phase, side by side.
@@ -113,10 +112,6 @@ class Spheres : public Model {
   struct ChunkSums {
     double lost, stored, deepest, contacts;
     const std::array<double, 6>* pushed;  // by watched law
-  };
-  /// What ranks would tell each other, counted by one process too.
-  struct Told {
-    long records = 0, columns = 0, sums = 0, steps = 0, places = 0, memories = 0;  // how often
   };
 
   std::size_t all() const { return moving_ + fixed_kind_.size(); }
@@ -226,7 +221,6 @@ class Spheres : public Model {
   std::vector<double> kept_sums_;                      // of the own chunks, by step and chunk; then of all ranks
   std::vector<std::array<double, 2>> kept_of_bodies_;  // lost and deepest, by step
   std::vector<std::int64_t> shared_flags_;             // sorted_out_ of all ranks
-  Told told_;
   std::vector<std::uint32_t> gone_;  // strays of a step
   SphereStep step_;
   SphereRest rest_;

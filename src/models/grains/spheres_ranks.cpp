@@ -42,7 +42,6 @@ void Spheres::keep_memory(bool moved) {
 
 /// What pairs remember goes to the ranks that have their spheres now.
 void Spheres::share_memory() {
-  ++told_.memories;
   if (!memory_was_shared_) return;  // then every rank has all of it
   std::vector<std::uint32_t> rank_of(moving_);
   for (std::size_t k = 0; k < moving_; ++k) rank_of[numbers_[k]] = static_cast<std::uint32_t>(shares_.rank_of(k));
@@ -63,7 +62,6 @@ void Spheres::share_flags(bool& more) {
 
 /// After a bundle: every rank gets the state of all spheres.
 void Spheres::share_columns() {
-  ++told_.columns;
   if (!shares_.on()) return;
   if (solid_walls_.any()) share_wall_touches();
   for (const Part& part : parts_) {
@@ -117,12 +115,10 @@ void Spheres::copy_radii() {
 }
 
 void Spheres::tell_places() {
-  ++told_.places;
   shares_.tell_all(layout_.dimensions, laws_.parts().rubs, true, records_[now_].data());
 }
 
 void Spheres::tell_records() {
-  ++told_.records;
   if (!bodies_.any()) shares_.tell(layout_.dimensions, laws_.parts().rubs, records_[now_].data());
 }
 
@@ -193,8 +189,6 @@ void Spheres::sum_up(bool last) {
         kept_sums_.insert(kept_sums_.end(), sums.pushed[k].begin(), sums.pushed[k].end());
     }
   if (!last && kept_of_bodies_.size() < steps_told_together) return;
-  ++told_.sums;
-  told_.steps += static_cast<long>(kept_of_bodies_.size());
   if (shares_.on()) add_kept_sums(last);
   kept_of_bodies_.clear();
   kept_sums_.clear();
@@ -252,42 +246,6 @@ void Spheres::gather_to_save() {
                                       come.begin() + static_cast<std::ptrdiff_t>(at + counts[r] * sizeof(double))));
     for (const std::size_t end = c + chunks[r]; c < end; ++c) archive_chunk(of_rank, chunks_[c]);
   }
-}
-
-bool Spheres::count_traffic(std::vector<RankTraffic>& of) const {
-  if (chunks_.size() < of.size()) return false;
-  const double others = static_cast<double>(of.size()) - 1.0, number = sizeof(double),
-               width = static_cast<double>(SphereShares::width(layout_.dimensions, laws_.parts().rubs));
-  for (std::size_t r = 0; r < of.size(); ++r) {
-    RankTraffic& rank = of[r];
-    const auto send = [&](long times, double to, double bytes) {
-      rank.messages += static_cast<double>(times) * to;
-      rank.bytes += static_cast<double>(times) * bytes;
-    };
-    SphereShares shares;
-    shares.divide(chunks_, {r, of.size()});
-    shares.find(chunks_);
-    const auto spheres = static_cast<double>(shares.end() - shares.begin());
-    double met = 0.0, meeting = 0.0;
-    for (const std::size_t n : shares.told()) {
-      met += static_cast<double>(n);
-      meeting += n > 0 ? 1.0 : 0.0;
-    }
-    if (bodies_.any()) send(told_.records, others, others * spheres * width * number);
-    else send(told_.records, meeting, met * width * number);
-    for (const Part& part : parts_) {
-      const auto own = static_cast<double>(shares.spheres_of_ranks(part.first, part.first + part.count)[r]);
-      const auto columns = static_cast<double>(shared_columns(part).size());
-      if (own > 0.0) send(told_.columns, others * (go_together(part) ? 1.0 : columns), others * own * columns * number);
-    }
-    const auto chunks = static_cast<double>(shares.chunks_of_ranks()[r]);
-    send(told_.sums, others, 0.0);
-    send(told_.steps, 0.0, others * chunks * static_cast<double>(4 + 6 * watched_.size()) * number);
-    send(told_.places, others, others * spheres * layout_.dimensions * number);
-    send(told_.memories, others + meeting, others * number + met * static_cast<double>(sizeof(ContactMemory::Kept)));
-    if (sleep_.on()) send(told_.memories, 2.0 * others, others * spheres * (layout_.dimensions == 2 ? 49.0 : 97.0));
-  }
-  return true;
 }
 
 }  // namespace barchan
