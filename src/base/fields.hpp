@@ -8,47 +8,47 @@
 
 namespace barchan {
 
-/// The rows, one a field: name, symbol, unit, rank, whether a step starts from it (state) or a task derives it anew
-/// (derived), meaning. A name is also that of the enumerator and of the field in files and in a scene's output.fields.
+/// The rows, one a field: name, symbol, unit, rank, meaning. A name is also that of the enumerator and of the field in
+/// files and in a scene's output.fields.
 // clang-format off
 #define BARCHAN_FIELDS(row) \
-  row(position, "x", "m", vector, state, "place of the particle") \
-  row(velocity, "v", "m/s", vector, state, "velocity; between steps half a step behind the position") \
-  row(density, "rho", "kg/m3", scalar, state, "density") \
-  row(pressure, "p", "Pa", scalar, state, "pressure from the equation of state") \
-  row(acceleration, "a", "m/s2", vector, state, "total acceleration of the last pass") \
-  row(density_rate, "drho/dt", "kg/m3/s", scalar, state, "rate of change of the density") \
-  row(velocity_gradient, "grad v", "1/s", matrix, derived, "velocity gradient, row-major") \
-  row(stress, "s", "Pa", symmetric, state, "deviatoric stress, xx yy zz xy yz xz") \
-  row(energy, "e", "J/kg", scalar, state, "specific internal energy") \
-  row(energy_rate, "de/dt", "W/kg", scalar, state, "rate of change of the internal energy") \
-  row(shift_velocity, "du", "m/s", vector, state, "transport velocity less the velocity (particle shifting)") \
-  row(anisotropy, "A", "1", deviator, state, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz") \
-  row(wholeness, "chi", "1", scalar, state, "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface") \
-  row(surface_normal, "n", "1/m", vector, state, "of a fluid with a free surface: direction inwards near the surface, zero elsewhere") \
-  row(near_void, "n_v", "1", scalar, state, "of a fluid of the consistent scheme that fills its space: steps for which the particle counts as beside a void, 0 in whole fluid") \
-  row(eddy_viscosity, "nu_t", "m2/s", scalar, state, "kinematic viscosity of the unresolved turbulence") \
-  row(turbulent_kinetic_energy, "k", "m2/s2", scalar, state, "of a fluid with turbulence = \"k-omega\": kinetic energy of the unresolved turbulence") \
-  row(specific_dissipation_rate, "omega", "1/s", scalar, state, "of a fluid with turbulence = \"k-omega\": dissipation of its turbulence over 0.09 k") \
-  row(shear_rate, "|S|", "1/s", scalar, state, "of a fluid with turbulence = \"k-omega\": root of 2 S:S, S the rate of strain") \
-  row(ground_distance, "d", "m", scalar, derived, "distance to the surface of the nearest wall or grain at rest") \
-  row(wall_normal, "n", "1", vector, state, "unit normal of a wall particle, into the fluid") \
-  row(wall_depth, "phi", "m", scalar, state, "distance of a wall particle behind the wall's surface, 0: unknown") \
-  row(surface_velocity, "v_s", "m/s", vector, state, "of a particle of a rigid body in a fluid: velocity of the nearest place of the body's surface") \
-  row(surface_acceleration, "a_s", "m/s2", vector, state, "of a particle of a rigid body in a fluid: the acceleration that the fluid's pressure follows") \
-  row(drag_acceleration, "a_d", "m/s2", vector, state, "acceleration of a grain by the drag of a column of air") \
-  row(smoothing_length, "h", "m", scalar, derived, "half the kernel radius of the phase with itself") \
-  row(radius, "r", "m", scalar, state, "of a sphere whose phase has sizes") \
-  row(angular_velocity, "w", "1/s", axial, state, "of a sphere that rubs; in 2D about z") \
-  row(contact_acceleration, "a_c", "m/s2", vector, state, "of a sphere: what its contacts gave in their last step; acceleration holds all the rest") \
-  row(angular_acceleration, "dw/dt", "1/s2", axial, state, "of a sphere that rubs, in the last step of its contacts") \
-  row(von_mises_stress, "s_v", "Pa", scalar, derived, "of a body: the stress in one direction that distorts as much (von Mises)") \
-  row(principal_stress, "s_1 s_2 s_3", "Pa", principal, derived, "of a body: principal values of Cauchy's stress, the largest first; positive pulls") \
-  row(strain, "E", "1", symmetric, derived, "of a total Lagrangian body: strain of Green and Lagrange, xx yy zz xy yz xz") \
-  row(contact_force, "F_c", "N", vector, state, "of an elastic body that touches bodies or walls by its particles: force of them on the particle in the last step; in 2D per metre of depth")
+  row(position, "x", "m", vector, "place of the particle") \
+  row(velocity, "v", "m/s", vector, "velocity; between steps half a step behind the position") \
+  row(density, "rho", "kg/m3", scalar, "density") \
+  row(pressure, "p", "Pa", scalar, "pressure from the equation of state") \
+  row(acceleration, "a", "m/s2", vector, "total acceleration of the last pass") \
+  row(density_rate, "drho/dt", "kg/m3/s", scalar, "rate of change of the density") \
+  row(velocity_gradient, "grad v", "1/s", matrix, "velocity gradient, row-major") \
+  row(stress, "s", "Pa", symmetric, "deviatoric stress, xx yy zz xy yz xz") \
+  row(energy, "e", "J/kg", scalar, "specific internal energy") \
+  row(energy_rate, "de/dt", "W/kg", scalar, "rate of change of the internal energy") \
+  row(shift_velocity, "du", "m/s", vector, "transport velocity less the velocity (particle shifting)") \
+  row(anisotropy, "A", "1", deviator, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz") \
+  row(wholeness, "chi", "1", scalar, "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface") \
+  row(surface_normal, "n", "1/m", vector, "of a fluid with a free surface: direction inwards near the surface, zero elsewhere") \
+  row(near_void, "n_v", "1", scalar, "of a fluid of the consistent scheme that fills its space: steps for which the particle counts as beside a void, 0 in whole fluid") \
+  row(eddy_viscosity, "nu_t", "m2/s", scalar, "kinematic viscosity of the unresolved turbulence") \
+  row(turbulent_kinetic_energy, "k", "m2/s2", scalar, "of a fluid with turbulence = \"k-omega\": kinetic energy of the unresolved turbulence") \
+  row(specific_dissipation_rate, "omega", "1/s", scalar, "of a fluid with turbulence = \"k-omega\": dissipation of its turbulence over 0.09 k") \
+  row(shear_rate, "|S|", "1/s", scalar, "of a fluid with turbulence = \"k-omega\": root of 2 S:S, S the rate of strain") \
+  row(ground_distance, "d", "m", scalar, "distance to the surface of the nearest wall or grain at rest") \
+  row(wall_normal, "n", "1", vector, "unit normal of a wall particle, into the fluid") \
+  row(wall_depth, "phi", "m", scalar, "distance of a wall particle behind the wall's surface, 0: unknown") \
+  row(surface_velocity, "v_s", "m/s", vector, "of a particle of a rigid body in a fluid: velocity of the nearest place of the body's surface") \
+  row(surface_acceleration, "a_s", "m/s2", vector, "of a particle of a rigid body in a fluid: the acceleration that the fluid's pressure follows") \
+  row(drag_acceleration, "a_d", "m/s2", vector, "acceleration of a grain by the drag of a column of air") \
+  row(smoothing_length, "h", "m", scalar, "half the kernel radius of the phase with itself") \
+  row(radius, "r", "m", scalar, "of a sphere whose phase has sizes") \
+  row(angular_velocity, "w", "1/s", axial, "of a sphere that rubs; in 2D about z") \
+  row(contact_acceleration, "a_c", "m/s2", vector, "of a sphere: what its contacts gave in their last step; acceleration holds all the rest") \
+  row(angular_acceleration, "dw/dt", "1/s2", axial, "of a sphere that rubs, in the last step of its contacts") \
+  row(von_mises_stress, "s_v", "Pa", scalar, "of a body: the stress in one direction that distorts as much (von Mises)") \
+  row(principal_stress, "s_1 s_2 s_3", "Pa", principal, "of a body: principal values of Cauchy's stress, the largest first; positive pulls") \
+  row(strain, "E", "1", symmetric, "of a total Lagrangian body: strain of Green and Lagrange, xx yy zz xy yz xz") \
+  row(contact_force, "F_c", "N", vector, "of an elastic body that touches bodies or walls by its particles: force of them on the particle in the last step; in 2D per metre of depth")
 // clang-format on
 
-#define BARCHAN_NAME(name, symbol, unit, rank, lifetime, meaning) name,
+#define BARCHAN_NAME(name, symbol, unit, rank, meaning) name,
 enum class Field : int { BARCHAN_FIELDS(BARCHAN_NAME) count };
 #undef BARCHAN_NAME
 inline constexpr std::size_t field_count = static_cast<std::size_t>(Field::count);
@@ -63,14 +63,11 @@ struct FieldInfo {
   std::string_view symbol;
   std::string_view unit;
   Rank rank;
-  bool is_state;  // a step starts from it; false: a pass derives it anew (for a reader: nothing is chosen by it yet)
   std::string_view meaning;
 };
 
-enum class Lifetime { state, derived };
-
-#define BARCHAN_ROW(name, symbol, unit, rank, lifetime, meaning) \
-  {Field::name, #name, symbol, unit, Rank::rank, Lifetime::lifetime == Lifetime::state, meaning},
+#define BARCHAN_ROW(name, symbol, unit, rank, meaning) \
+  {Field::name, #name, symbol, unit, Rank::rank, meaning},
 inline constexpr std::array<FieldInfo, field_count> field_table{{BARCHAN_FIELDS(BARCHAN_ROW)}};
 #undef BARCHAN_ROW
 

@@ -1,4 +1,4 @@
-// Columns by particle that belong to a model: registered once with their flags, moved, saved and counted by nobody but
+// Columns by particle that belong to a model: registered once, moved, saved and counted by nobody but
 // the particles of the phase (state/particles.hpp).
 #pragma once
 
@@ -13,10 +13,6 @@
 
 namespace barchan {
 
-/// Whether a step starts from the values of a column: then a checkpoint holds them. Derived ones are made anew before
-/// they are read.
-enum class Kept { state, derived };
-
 /// Which column of a phase it is, and of which type.
 template <class T>
 struct OwnColumn {
@@ -26,8 +22,7 @@ struct OwnColumn {
 
 /// The values of one such column as bytes: all that sorting, creation, removal and saving need to know of it.
 struct OwnValues {
-  std::string name;  // "owner.column": stands once in a phase
-  Kept kept = Kept::state;
+  std::string name;                 // "owner.column": stands once in a phase
   std::size_t width = 0;            // bytes of a value
   std::vector<std::byte> of_new;    // the value of a particle that is made
   AlignedVector<std::byte> values;  // width bytes a particle

@@ -28,12 +28,11 @@ void PhaseParticles::add(Field field) {
   for (auto& column : columns) column.assign(size_, 0.0);
 }
 
-std::size_t PhaseParticles::add_own_bytes(const std::string& name, Kept kept, std::size_t width, const void* of_new) {
+std::size_t PhaseParticles::add_own_bytes(const std::string& name, std::size_t width, const void* of_new) {
   if (std::any_of(own_.begin(), own_.end(), [&](const OwnValues& v) { return v.name == name; }))
     throw std::logic_error("the phase \"" + name_ + "\" has a column \"" + name + "\" already");
   OwnValues& v = own_.emplace_back();
   v.name = name;
-  v.kept = kept;
   v.width = width;
   v.of_new.resize(width);
   std::memcpy(v.of_new.data(), of_new, width);
@@ -240,7 +239,7 @@ void PhaseParticles::archive_columns(Archive& a, const Rows& rows) {
     for (auto& column : columns_[f]) item(name, column.data(), 1);
   }
   for (OwnValues& v : own_)
-    if (v.kept == Kept::state) item(name_ + "." + v.name, v.values.data(), v.width);
+    item(name_ + "." + v.name, v.values.data(), v.width);
 }
 
 std::size_t PhaseParticles::bytes() const {

@@ -54,11 +54,11 @@ class PhaseParticles {
     return columns_[index(field)][static_cast<std::size_t>(component)].data();
   }
 
-  /// Registers a column of a model's own; all its values are `of_new`. Throws std::logic_error when the name is there
+  /// Registers a column of a model's own, which checkpoints hold; all its values are `of_new`. Throws std::logic_error when the name is there
   /// already.
   template <class T>
-  OwnColumn<T> add_own(const std::string& name, Kept kept, const T& of_new = T{}) {
-    return {add_own_bytes(name, kept, sizeof(T), &of_new)};
+  OwnColumn<T> add_own(const std::string& name, const T& of_new = T{}) {
+    return {add_own_bytes(name, sizeof(T), &of_new)};
   }
   template <class T>
   T* own(OwnColumn<T> column) {
@@ -142,7 +142,7 @@ class PhaseParticles {
 #endif
   }
   static std::size_t index(Field f) { return static_cast<std::size_t>(f); }
-  std::size_t add_own_bytes(const std::string& name, Kept kept, std::size_t width, const void* of_new);
+  std::size_t add_own_bytes(const std::string& name, std::size_t width, const void* of_new);
   void find_places();
   void archive_columns(Archive& a, const Rows& rows);
 

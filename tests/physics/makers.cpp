@@ -198,9 +198,9 @@ TEST(Columns, OfAModelMoveWithTheirParticles) {
   struct Three {
     float a, b, c;
   };
-  const auto wide = p.add_own<Three>("model.three", Kept::state, Three{1, 2, 3});
-  const auto narrow = p.add_own<std::uint8_t>("model.mark", Kept::derived, std::uint8_t{7});
-  EXPECT_THROW(p.add_own<double>("model.three", Kept::state), std::logic_error);
+  const auto wide = p.add_own<Three>("model.three", Three{1, 2, 3});
+  const auto narrow = p.add_own<std::uint8_t>("model.mark", std::uint8_t{7});
+  EXPECT_THROW(p.add_own<double>("model.three"), std::logic_error);
   p.number_may_change();
   for (std::size_t k = 0; k < 5; ++k) {
     p.column(Field::position, 0)[k] = static_cast<double>(p.id()[k]);

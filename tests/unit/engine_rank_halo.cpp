@@ -156,7 +156,7 @@ TEST(RankHalosOfAStrip, AreTwoSidesOfIt) {
 TEST(ParticlesOfARank, AreThoseThatItKeepsInTheirNewOrder) {
   Uniform random(3);
   PhaseParticles p = phase(2, scattered(box(2, {5, 5, 0}, {false, false, false}), 9, random), 1.0, {}, 40);
-  const auto own = p.add_own<std::array<std::uint16_t, 3>>("model.three", Kept::state);
+  const auto own = p.add_own<std::array<std::uint16_t, 3>>("model.three");
   std::vector<Vec3> x;
   for (std::size_t k = 0; k < p.size(); ++k) {
     p.own(own)[k] = {static_cast<std::uint16_t>(k), 7, 8};

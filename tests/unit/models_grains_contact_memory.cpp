@@ -55,8 +55,7 @@ TEST(ContactBatchesOfAList, KeepPairsApart) {
 TEST(ContactMemories, DescribeTheirColumn) {
   ContactMemory memory;
   memory.prepare(2);
-  EXPECT_EQ(memory.column().numbers, 2u);
-  EXPECT_TRUE(memory.column().state && memory.column().goes_with_pair && memory.column().ends_with_touch);
+  EXPECT_EQ(memory.numbers(), 2u);
 }
 
 // Six spheres in two chunks, a fixed one, and a side. Between the two lists they change places.

@@ -94,8 +94,8 @@ void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   first_body_ = state.bodies.size();
   const std::vector<Vec3>& x = blocks[number_].position;
   PhaseParticles& p = state.phases[number_];
-  arm_ = p.add_own<Vec3>("arm", Kept::state);
-  body_of_ = p.add_own<std::uint32_t>("body", Kept::state);
+  arm_ = p.add_own<Vec3>("arm");
+  body_of_ = p.add_own<std::uint32_t>("body");
   for (const RigidBody& body : plan_.rigid_bodies) {
     const OwnAxes axes(body);
     for (std::size_t k = 0; k < body.count; ++k) {

@@ -31,7 +31,7 @@ void ElasticInFluid::begin(State& state, const std::vector<ParticleBlock>& block
   const double width = piece_width(layout_.dimensions) * finest;
   border_ = ElasticBorder(scene_, layout_, solid_, blocks[solid_], width, reach + widest);
   PhaseParticles& p = state.phases[solid_];
-  nearest_ = p.add_own<std::uint32_t>("nearest piece of its surface", Kept::state, inner);
+  nearest_ = p.add_own<std::uint32_t>("nearest piece of its surface", inner);
   p.keep_places();
   border_.move(p);
   for (std::size_t k = 0; k < p.size(); ++k) {

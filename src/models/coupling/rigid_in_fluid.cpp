@@ -32,7 +32,7 @@ void RigidInFluid::begin(State& state, const std::vector<ParticleBlock>& blocks)
   const auto first = std::find_if(state.bodies.begin(), state.bodies.end(),
                                   [&](const RigidBody& body) { return body.phase == solid_; });
   first_body_ = static_cast<std::size_t>(first - state.bodies.begin());
-  of_body_ = state.phases[solid_].add_own<OfBody>("surface", Kept::state);
+  of_body_ = state.phases[solid_].add_own<OfBody>("surface");
   for (std::size_t k = 0; k < bodies_; ++k) {
     const RigidBody& body = state.bodies[first_body_ + k];
     find_surface(body, blocks[solid_].position, state.phases[solid_]);

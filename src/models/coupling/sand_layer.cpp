@@ -48,7 +48,7 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
 }
 
 void SandLayer::begin(State& state, const std::vector<ParticleBlock>&) {
-  if (may_rest_) keeps_ = state.phases[grains_].add_own<std::uint8_t>(name_ + ".keeps", Kept::state);
+  if (may_rest_) keeps_ = state.phases[grains_].add_own<std::uint8_t>(name_ + ".keeps");
 }
 
 void SandLayer::attach(Workspace& w) {

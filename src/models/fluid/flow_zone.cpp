@@ -39,7 +39,7 @@ FlowZone::FlowZone(const Scene& scene, const Layout& layout, std::size_t fluid, 
 void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
   PhaseParticles& p = state.phases[fluid_];
   p.number_may_change();
-  where_ = p.add_own<std::uint8_t>(name_, Kept::state, std::uint8_t{away});
+  where_ = p.add_own<std::uint8_t>(name_, std::uint8_t{away});
   std::vector<Vec3> outermost;
   for (std::size_t k = 0; k < p.size(); ++k) {
     const Vec3 x = place_of(p, k);

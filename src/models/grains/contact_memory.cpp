@@ -34,7 +34,7 @@ void ContactBatches::grow(std::size_t batches, std::size_t numbers) {
 void ContactMemory::keep(std::size_t begin, std::size_t end, std::size_t all, std::span<const SphereChunk> chunks,
                          const std::uint32_t* before, const double* places) {
   constexpr std::size_t batch = ContactBatches::batch;
-  const std::size_t numbers = column_.numbers;
+  const std::size_t numbers = numbers_;
   fit(begin_, all + 1);
   std::fill(begin_.begin(), begin_.end(), 0u);
   // Both chunks of a pair have the same bits: that of the first counts, or the only one.
@@ -164,8 +164,8 @@ void ContactMemory::recall(ContactBatches& list, std::size_t place, std::uint32_
   const double* values = find(number, with, apart);
   if (!values) return;
   list.set_touching(place);
-  double* to = list.of_pair(place, column_.numbers);
-  for (std::size_t m = 0; m < column_.numbers; ++m) to[m * ContactBatches::batch] = values[m];
+  double* to = list.of_pair(place, numbers_);
+  for (std::size_t m = 0; m < numbers_; ++m) to[m * ContactBatches::batch] = values[m];
 }
 
 }  // namespace barchan

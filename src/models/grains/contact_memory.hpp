@@ -2,15 +2,15 @@
 // (laws/sphere_contact.hpp), and who touches.
 //
 // This is a column by pair of ids, the ids being the lasting numbers of two spheres, or of a sphere and a side of the
-// domain. Its description (PairColumn) says what follows from it. Two places hold its values: between two searches the
-// lists of pairs, batch by batch, where the loops over contacts read and write them (ContactBatches); in a search, when
-// the lists are made anew, a table by pair (ContactMemory), from which the new lists take them.
+// domain. A checkpoint has it; it stays with its two ids, wherever sorting and searching put them; a pair that does not
+// touch has none. Two places hold its values: between two searches the lists of pairs, batch by batch, where the loops
+// over contacts read and write them (ContactBatches); in a search, when the lists are made anew, a table by pair
+// (ContactMemory), from which the new lists take them.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "base/aligned.hpp"
@@ -28,15 +28,6 @@ void fit(Vector& vector, std::size_t size) {
   if (vector.capacity() < size) vector.reserve(size + size / 2 + 64);
   vector.resize(size);
 }
-
-/// A column by pair of ids, and what must happen to its values.
-struct PairColumn {
-  std::string_view name;
-  std::size_t numbers = 0;      // of a pair
-  bool state = true;            // a step starts from it: a checkpoint has it
-  bool goes_with_pair = true;   // it stays with its two ids, wherever sorting and searching put them
-  bool ends_with_touch = true;  // a pair that does not touch has none
-};
 
 /// The values of the pairs of a list, eight pairs side by side: of each number eight, a pair's beside the next one's.
 struct ContactBatches {
@@ -109,14 +100,13 @@ class ContactMemory {
   /// `numbers` of a pair, at most most_numbers; `period` (m, 0: not periodic): of the domain, where pairs say which
   /// images meet.
   void prepare(std::size_t numbers, int dimensions = 2, const std::array<double, 3>& period = {}) {
-    column_.numbers = numbers;
+    numbers_ = numbers;
     dimensions_ = static_cast<std::size_t>(dimensions);
     period_ = period;
   }
   /// Room for so many pairs that touch.
   void reserve(std::size_t pairs) { kept_.reserve(pairs); }
-  const PairColumn& column() const { return column_; }
-  std::size_t numbers() const { return column_.numbers; }
+  std::size_t numbers() const { return numbers_; }
 
   /// Takes the values of all pairs that touch out of the lists. `before`: lasting numbers of the `all` spheres by their
   /// places when the lists were made. A pair whose first sphere has a place from `begin` to `end` is taken from the
@@ -153,7 +143,7 @@ class ContactMemory {
   void order();
   void order_partners();
 
-  PairColumn column_{"contact_memory"};
+  std::size_t numbers_ = 0;           // of a pair
   std::vector<std::uint32_t> begin_;  // by number: its first place in kept_; one more
   std::vector<Kept> kept_;
   std::size_t dimensions_ = 2;

@@ -63,7 +63,7 @@ HopStatistics::HopStatistics(const Scene& scene, const Layout& layout, const Sal
 }
 
 void HopStatistics::begin(State& state, const std::vector<ParticleBlock>&) {
-  flights_ = state.phases[phase_].add_own<Flight>("hops." + layer_.name, Kept::state);
+  flights_ = state.phases[phase_].add_own<Flight>("hops." + layer_.name);
 }
 
 void HopStatistics::schedule(Schedule& s) {

@@ -48,7 +48,7 @@ void SphereBodies::begin(const Layout& layout, State& state) {
     if (!e.own_steps || !e.by_outlines) continue;
     const std::size_t grains = layout.phases[e.a].own_steps ? e.a : e.b;
     if (remembers_[grains] != 0 || !layout.phases[e.partner(grains)].moves) continue;
-    memory_[grains] = state.phases[grains].add_own<SolidTouches>("bodies that it touches", Kept::state);
+    memory_[grains] = state.phases[grains].add_own<SolidTouches>("bodies that it touches");
     remembers_[grains] = 1;
   }
 }

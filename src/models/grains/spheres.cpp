@@ -45,7 +45,7 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   wall_touches_.resize(n);
   if (solid_walls_.any())
     for (const Part& part : parts_)
-      wall_touches_[part.phase] = state.phases[part.phase].add_own<SolidTouches>("walls that it touches", Kept::state);
+      wall_touches_[part.phase] = state.phases[part.phase].add_own<SolidTouches>("walls that it touches");
   bodies_.begin(layout_, state);
 }
 

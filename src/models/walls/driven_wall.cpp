@@ -25,7 +25,7 @@ void DrivenWall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   for (const Vec3& x : places) centre = centre + 1.0 / static_cast<double>(places.size()) * x;
   motion_.emplace(scene_.motions[number_], layout_.dimensions, centre);
   PhaseParticles& p = state.phases[phase_];
-  arm_ = p.add_own<Vec3>("arm", Kept::state);
+  arm_ = p.add_own<Vec3>("arm");
   for (std::size_t k = 0; k < places.size(); ++k) p.own(arm_)[k] = motion_->arm(places[k]);
   if (reach_ > 0.0) find_faces(p, places);
 }
@@ -42,7 +42,7 @@ void DrivenWall::find_faces(PhaseParticles& p, const std::vector<Vec3>& places) 
   }
   const WallPart alone{&p, 1.0};
   find_wall_normals(p, {&alone, 1}, layout_.bounds, layout_.phases[phase_].spacing);
-  face_ = p.add_own<WallFace>("face", Kept::state);
+  face_ = p.add_own<WallFace>("face");
   for (std::size_t k = 0; k < places.size(); ++k) {
     WallFace& face = p.own(face_)[k];
     face.depth = faces[k].depth;
