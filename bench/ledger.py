@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """The bias ledger, docs/ledger.md: every quantity that is compared with an exact solution, a measurement, the paper or another program, misses first.
 
-    /usr/bin/python3 bench/ledger.py --write                          from the results that are kept in bench/
+    /usr/bin/python3 bench/ledger.py --write                          notes the day of each file of results that has changed
     /usr/bin/python3 bench/ledger.py --measure build/barchan --write  measures what is cheap anew before that (see MEASURES; under 90 minutes on two cores)
-    /usr/bin/python3 bench/ledger.py --check                          says whether the page is what --write would make; exit status 1 if not
+    /usr/bin/python3 bench/ledger.py --check                          says whether results have changed since --write; exit status 1 if so
 
 bench/ledger_rows/ says which rows there are and where each comes from. bench/ledger_rows/measured.csv holds for each file of results its checksum, the
 command that makes it, and the day on which the ledger found it changed.
@@ -17,10 +17,10 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from barchan_bench import ROOT, run, store, table  # noqa: E402
+from barchan_bench import run, store, table  # noqa: E402
 from ledger_rows import accuracy, bodies, sand, told  # noqa: E402
 
-PAGE, MEASURED = ROOT / "docs/ledger.md", HERE / "ledger_rows/measured.csv"
+MEASURED = HERE / "ledger_rows/measured.csv"
 FIELDS = ("quantity", "case", "reference", "measured", "bias", "scatter", "bound", "met", "source", "file")
 LEAST = 100
 
@@ -42,7 +42,7 @@ def command_of(file):
         if (folder, name) == ("saltation", "storm"):
             return "bench/saltation/storm.py"
         return f"bench/saltation/cases.py {name}" if folder == "saltation" else f"bench/accuracy/cases.py build/barchan {name} --write"
-    return {"impacts": "bench/impacts/cases.py build/barchan --write", "paper": "bench/paper/figures.py build/barchan --write",
+    return {"impacts": "bench/impacts/cases.py build/barchan", "paper": "bench/paper/figures.py build/barchan --write",
             "grains": "bench/grains/lammps.py", "ledger_rows": "of each row in the file, by hand"}[folder]
 
 
@@ -80,20 +80,10 @@ def verdict(row):
 
 
 def text_of(rows, known):
-    """The page."""
+    """The tables of docs/ledger.md."""
     missed = sum(verdict(r) == "MISSED" for r in rows)
     free = sum(verdict(r) == "" for r in rows)
-    lines = ["# The bias ledger", "",
-             "Every quantity of Barchan that is compared with an exact solution, a measurement, the paper (Halik et al. 2015) or another program. Made by", "",
-             "    /usr/bin/python3 bench/ledger.py --write", "",
-             "from the results in `bench/*/results`; with `--measure build/barchan` the cheap ones are measured anew first. A test compares this page with what",
-             "the command makes.", "",
-             f"{len(rows)} rows: {missed} miss their bound, {len(rows) - missed - free} meet it, {free} have none and are told for comparison.", "",
-             "- *Bias* is 100 (measured - reference)/reference. Where the reference is 0 the measured value is an error over the scale that its name tells, and",
-             "  the bias is 100 times it. It has a sign where the sign is known. Beside another code the bias is the difference to that code, no error.",
-             "- *Scatter* is what the measured value moves by: the standard error of a mean, or the range over the beds or seeds that were run; one run has none.",
-             "- *Bound* is what was asked before the measurement, of the value or of the bias. Bounds are in the programs that measure; none is set here.",
-             "- The last column numbers the results' files below: by which command and when each was measured.", "",
+    lines = [f"{len(rows)} rows: {missed} miss their bound, {len(rows) - missed - free} meet it, {free} have none and are told for comparison.", "",
              table.head("quantity", "case", "reference", "measured", "bias, %", "scatter", "bound", "", "source of the reference", "file")]
     numbers = {file: k + 1 for k, file in enumerate(sorted(known))}
     for r in sorted(rows, key=order):
@@ -119,6 +109,11 @@ def rows_now():
     return rows
 
 
+def tables():
+    """That of docs/ledger.md."""
+    return {"ledger": text_of(rows_now(), store.load(MEASURED))}
+
+
 def measure(program, only):
     """Runs what MEASURES names, or of it the cases `only`; their programs write their results and pages themselves. A figure that misses its bound
     (status 1) is a row as any other; a program that breaks down is named."""
@@ -127,12 +122,10 @@ def measure(program, only):
         if only and not chosen:
             continue
         print(f"ledger: {script} {' '.join(chosen)} (about {minutes} minutes of one core for all)", flush=True)
-        words = [*chosen, "--barchan", program] if script.startswith("saltation") else [program, *chosen, "--write"]
+        words = [*chosen, "--barchan", program] if script.startswith("saltation") else [program, *chosen, *["--write"] * script.startswith("accuracy")]
         ended = run.command([sys.executable, HERE / script, *words], shown=True)
         if ended.status not in (0, 1):
             sys.exit(f"ledger: {script} ended with status {ended.status}")
-    if not only or set(only) & {"settling", "hop", "splash"}:
-        run.command([sys.executable, HERE / "saltation/page.py"], check=True)
 
 
 def main():
@@ -146,15 +139,13 @@ def main():
         measure(given.measure, list(filter(None, given.only.split(","))))
     rows, known = rows_now(), store.load(MEASURED, {})
     known = days(rows, known, str(datetime.date.today()))
-    text = text_of(rows, known)
     if given.check:
-        if PAGE.read_text() != text:
-            sys.exit("ledger: docs/ledger.md is not what the stored results make: run /usr/bin/python3 bench/ledger.py --write")
+        if known != store.load(MEASURED):
+            sys.exit("ledger: results have changed since their days were noted: run /usr/bin/python3 bench/ledger.py --write")
         if len(rows) < LEAST:
             sys.exit(f"ledger: {len(rows)} rows, expected {LEAST} or more")
     elif given.write:
         store.keep(MEASURED, known)
-        PAGE.write_text(text)
     if not given.check:
         print(f"{len(rows)} rows, {sum(verdict(r) == 'MISSED' for r in rows)} missed")
 

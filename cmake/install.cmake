@@ -19,6 +19,10 @@ if(EXISTS ${PROJECT_SOURCE_DIR}/python/barchan)
 endif()
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN *.png
         PATTERN *.jpg PATTERN figures.json EXCLUDE)
+if(NOT CMAKE_CROSSCOMPILING)  # the same pages with their tables in them; without numpy they stay as they are
+  install(CODE "execute_process(COMMAND /usr/bin/python3 ${PROJECT_SOURCE_DIR}/docs/tables.py --program $<TARGET_FILE:barchan>
+    --into \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR})" COMPONENT program)
+endif()
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 

@@ -15,7 +15,6 @@ docs/figures.json says where each figure comes from. One of:
     "file", "path"    the number at this path of a results file; with "over", divided by the number at that path; with "scale", times
                       that factor (from pairs to million pairs, for example)
 
-Besides, the tables of docs/performance.md must be those that bench/throughput/measure.py makes from its results.
 """
 
 import argparse
@@ -86,17 +85,6 @@ def filled(page, text, figures, used):
     return MARK.sub(fill, text), faults
 
 
-def measured_tables(root):
-    """docs/performance.md as bench/throughput/measure.py would write it."""
-    sys.path.insert(0, str(root / "bench/throughput"))
-    import measure
-    page = (root / "docs/performance.md").read_text()
-    before, _, rest = page.partition(measure.BEGIN)
-    after = rest.partition(measure.END)[2]
-    tables = measure.page(store.load(root / "bench/throughput/results.csv"))
-    return f"{before}{measure.BEGIN}\n\n{tables}\n\n{measure.END}{after}"
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group(required=True)
@@ -117,11 +105,6 @@ def main():
                 page.write_text(new)
         if unused := set(figures) - used:
             raise Wrong(f"docs/figures.json: no page shows {', '.join(sorted(unused))}")
-        performance = root / "docs/performance.md"
-        if (tables := measured_tables(root)) != performance.read_text():
-            faults.append("docs/performance.md: the tables are not those of bench/throughput/results.csv")
-            if options.write:
-                performance.write_text(tables)
     except Wrong as error:
         sys.exit(f"figures: {error}")
     print("\n".join(faults) if faults else f"{len(used)} figures agree with their file")

@@ -1,19 +1,17 @@
 #!/usr/bin/env python3
-"""Writes the list of scenes in docs/gallery/README.md: each scene with its picture, what it shows and its size.
+"""The list of scenes in docs/gallery/README.md: each scene with its picture, what it shows and its size.
 
-    docs/gallery.py [--write | --check] [--root DIR]
+    docs/gallery.py [--root DIR]
 
 The scenes are those of scenes/. docs/gallery/scenes.json has for each scene its picture (in docs/gallery), the ParaView state, the settings of the
-run, the time, and what is seen in it; bench/gallery.py makes the pictures. A picture that is not there is left out. --check has status 1 when the
-page is old, when a scene has no row, or when a row names a scene that is not there. Without the file the scenes are listed without pictures.
+run, the time, and what is seen in it; bench/gallery.py makes the pictures. A picture that is not there is left out. The status is 1 when a scene has
+no row, or when a row names a scene that is not there. Without the file the scenes are listed without pictures.
 """
 import argparse
 import json
 import re
 import sys
 from pathlib import Path
-
-BEGIN, END = "<!-- scenes: begin -->", "<!-- scenes: end -->"
 
 
 def title(scene):
@@ -55,22 +53,16 @@ def wrong(root):
     return found + [f"docs/gallery/scenes.json: there is no {name}" for name in named if not (root / name).exists()]
 
 
+def tables():
+    """That of docs/gallery/README.md."""
+    return {"scenes": "\n".join(table(Path(__file__).resolve().parents[1]))}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--write", action="store_true")
-    parser.add_argument("--check", action="store_true")
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1])
     options = parser.parse_args()
-    page = options.root / "docs/gallery/README.md"
-    text = page.read_text()
-    before, rest = text.split(BEGIN)
-    after = rest.split(END)[1]
-    new = before + BEGIN + "\n" + "\n".join(table(options.root)) + "\n" + END + after
     problems = wrong(options.root)
-    if options.write:
-        page.write_text(new)
-    elif new != text:
-        problems.append("docs/gallery/README.md: the list of scenes is old; docs/gallery.py --write mends it")
     print("\n".join(problems), end="\n" if problems else "")
     return 1 if problems else 0
 

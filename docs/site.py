@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Builds the pages as a site that can be searched, with mkdocs, and checks its links.
 
-    docs/site.py [--out DIR] [--root DIR]    (default: build-site/)
+    docs/site.py [--out DIR] [--root DIR] [--program build/barchan]    (default: build-site/)
 
-A copy of the pages and of the files they lead to is made, so that links into the repository lead somewhere. Status 1 when mkdocs warns, when a
-page stands in no menu, when a link or its anchor leads nowhere, or when a page would fetch something from the network.
+A copy of the pages, with their tables (docs/tables.py), and of the files they lead to is made, so that links into the repository lead somewhere. Status 1
+when mkdocs warns, when a table cannot be made, when a page stands in no menu, when a link or its anchor leads nowhere, or when a page would fetch something from the network.
 """
 import argparse
 import re
@@ -16,6 +16,9 @@ import urllib.parse
 from html.parser import HTMLParser
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from tables import NoTable, Tables  # noqa: E402
+
 IN_PLACE_OF = {"scenes": "docs/gallery/README.md", "docs/gallery": "docs/gallery/README.md"}  # of a folder, which has no page
 
 
@@ -23,7 +26,7 @@ def pages(root):
     return [*sorted(root.glob("*.md")), *sorted(root.glob("docs/**/*.md"))]
 
 
-def gather(root, to):
+def gather(root, to, tables):
     for page in pages(root):
         def link(match, page=page):
             target = match[1].partition("#")[0]
@@ -42,7 +45,7 @@ def gather(root, to):
 
         place = to / page.relative_to(root)
         place.parent.mkdir(parents=True, exist_ok=True)
-        text = re.sub(r"^( *)```[\w-]+$", r"\1```", page.read_text(), flags=re.M)  # no language: nothing highlights it
+        text = re.sub(r"^( *)```[\w-]+$", r"\1```", tables.filled(page.read_text()), flags=re.M)  # no language: nothing highlights it
         place.write_text(re.sub(r"\]\(([^)\s]+)\)", link, text))
 
 
@@ -84,11 +87,14 @@ def wrong_links(site):
     return found
 
 
-def build(root, out):
+def build(root, out, program=None):
     """The problems found; none when the site is whole."""
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
-        gather(root, work / "pages")
+        try:
+            gather(root, work / "pages", Tables(root, program))
+        except NoTable as problem:
+            return [f"tables: {problem}"]
         (work / "mkdocs.yml").write_text(f"INHERIT: {root}/mkdocs.yml\ndocs_dir: {work}/pages\n")
         ended = subprocess.run(["mkdocs", "build", "--strict", "-f", work / "mkdocs.yml", "-d", out], capture_output=True, text=True)
     if ended.returncode != 0:
@@ -102,9 +108,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1])
     parser.add_argument("--out", type=Path)
+    parser.add_argument("--program", type=Path)
     options = parser.parse_args()
     out = (options.out or options.root / "build-site").resolve()
-    problems = build(options.root.resolve(), out)
+    problems = build(options.root.resolve(), out, options.program)
     print("\n".join(problems) if problems else f"site    {out}/index.html")
     return 1 if problems else 0
 

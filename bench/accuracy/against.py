@@ -7,7 +7,7 @@
 OTHER is a program that is built already, of another commit. Every run is made with both, other, this, other, this, ..., on one thread: at least
 once each, and up to --rounds times until it has taken six seconds. Printed are each figure then and now, their ratio, and the median of the ratios
 of the user CPU times of neighbouring runs (with the least and the largest). Ratios of times of neighbouring runs can be trusted on a busy machine,
-times cannot. With --write COMMIT the figures go to bench/accuracy/results/against-COMMIT.csv, and the section of docs/accuracy.md is written again.
+times cannot. With --write COMMIT the figures go to bench/accuracy/results/against-COMMIT.csv.
 
 Both programs read the same file: the scene with the defaults written out that have changed since 142972c (`scheme`, `kernel`, `layers`). One key
 differs: `enclosed`, which the program of today finds from the particles. An older one gets `enclosed = true` where its own scenes had it (ENCLOSED).
@@ -320,18 +320,13 @@ def keep(commit, figures):
     store.keep(file, {"commit": commit, "processor": processor(), "figures": [known[k] for k in sorted(known)]})
 
 
-def write_section():
-    """The tables of all commits that have results, on docs/accuracy.md between its markers."""
+def tables():
+    """Those of all commits that have results, on docs/accuracy.md."""
     text = []
     for file in sorted(harness.RESULTS.glob("against-*.csv")):
         result = store.load(file)
         text += [f"\n### Commit {result['commit']} and now\n", HEAD] + [line(f) for f in result["figures"]] + [f"\nMeasured on {result['processor']}."]
-    page = harness.ROOT / "docs/accuracy.md"
-    before, begin, rest = page.read_text().partition("<!-- against: begin -->\n")
-    _, end, after = rest.partition("<!-- against: end -->\n")
-    if not begin or not end:
-        raise RuntimeError(f"{page} has lost its markers <!-- against: begin --> and <!-- against: end -->")
-    page.write_text(before + begin + "\n".join(text) + "\n" + end + after)
+    return {"against": "\n".join(text)}
 
 
 def main():
@@ -357,8 +352,6 @@ def main():
             print("\n".join(line(f) for f in figures), flush=True)
             if given.write:
                 keep(given.write, figures)
-    if given.write:
-        write_section()
 
 
 if __name__ == "__main__":

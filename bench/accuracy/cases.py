@@ -7,8 +7,7 @@ Runs each case (all of them without a name; --list names them) on one thread wit
 number of spacings, what was measured, its bound, the user CPU seconds and the particle-steps a user CPU second. Exits with 1 when a
 figure misses its bound.
 
-With --write the figures go to bench/accuracy/results/CASE.csv, and docs/accuracy.md and docs/gallery/accuracy.png are written
-again from all that is there; `cases.py none --write` only does the latter. --runs DIR keeps the runs in DIR and takes those that
+With --write the figures go to bench/accuracy/results/CASE.csv; the case cost draws docs/gallery/accuracy.png. --runs DIR keeps the runs in DIR and takes those that
 are there already. A new case is one more line in CASES of the file that its topic has (cases_*.py).
 """
 
@@ -30,11 +29,16 @@ import cases_wind
 from barchan_bench.store import keep
 from barchan_bench.table import HEAD
 from harness import RESULTS, options, rows
-from page import processor, write_page
+from page import figures, plot, processor
 
 CASES = {}  # name: (function, heading of its table)
 for topic in (cases_periodic, cases_walls, cases_surface, cases_grains, cases_wind, cases_open, cases_motion, cases_waves, cases_dams, cases_fsi):
     CASES.update(topic.CASES)
+
+
+def tables():
+    """That of docs/accuracy.md."""
+    return {"figures": figures(CASES)}
 
 
 def main():
@@ -51,9 +55,7 @@ def main():
     if options.list:
         print("\n".join(CASES))
         return 0
-    if options.program == "none":
-        options.cases = ["none"]
-    names = list(CASES) if not options.cases or "all" in options.cases else [c for c in options.cases if c != "none"]
+    names = list(CASES) if not options.cases or "all" in options.cases else options.cases
     unknown = [name for name in names if name not in CASES]
     if unknown or not options.program:
         parser.error(f"no case {', '.join(unknown)}; cases are {', '.join(CASES)}" if unknown else "which program?")
@@ -65,8 +67,8 @@ def main():
         good = good and all(r["good"] for r in rows)
         if options.write:
             keep(RESULTS / f"{name}.csv", {"processor": processor(), "rows": rows})
-    if options.write:
-        write_page(CASES)
+            if name == "cost":
+                plot(rows, processor())
     return 0 if good else 1
 
 

@@ -1,9 +1,9 @@
-"""docs/accuracy.md and its plot, from the results of bench/accuracy/results and from peers.csv."""
+"""The tables of docs/accuracy.md and its plot, from the results of bench/accuracy/results and from peers.csv."""
 
 import pathlib
 
 from barchan_bench import ROOT, store
-from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, fill, processor, pyplot  # noqa: F401
+from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, processor, pyplot  # noqa: F401
 from barchan_bench.table import HEAD, line
 from harness import RESULTS
 
@@ -57,8 +57,8 @@ def peers():
     return out + [f"| {peer} | " + " | ".join(f"{e:.4f}" for e in errors) + " |" for peer, errors in published["series"].items()]
 
 
-def write_page(cases):
-    """docs/accuracy.md between its markers, and the plot, from all results that are there; cases without results are named at the end."""
+def figures(cases):
+    """Of all results that are there; cases without results are named at the end."""
     tables = []
     for name, (_, heading) in cases.items():
         file = RESULTS / f"{name}.csv"
@@ -68,10 +68,9 @@ def write_page(cases):
         result = store.load(file)
         tables.append(HEAD + "\n" + "\n".join(line(r) for r in result["rows"]) + f"\n\nMeasured on {result['processor']}.\n")
         if name == "cost":
-            plot(result["rows"], result["processor"])
             tables.append("![run time against error](gallery/accuracy.png)\n")
             tables += peers()
     left = [f"`{name}` ({heading})" for name, (_, heading) in cases.items() if not (RESULTS / f"{name}.csv").exists()]
     if left:
         tables.append("\n## Without results here\n\nThe same command runs these cases too: " + "; ".join(left) + ".")
-    fill(ROOT / "docs/accuracy.md", "figures", "\n".join(tables))
+    return "\n".join(tables)

@@ -1,5 +1,5 @@
 """What every program of bench/ shares: run.py starts commands, frame.py reads what a run writes, table.py writes figures beside their bounds, store.py
-keeps results, page.py fills the pages of docs/. CONTRIBUTING.md shows a program that uses all five."""
+keeps results. CONTRIBUTING.md shows a program that uses them."""
 
 import pathlib
 

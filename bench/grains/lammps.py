@@ -8,7 +8,7 @@ layer one grain thick, which both programs compute as spheres whose third coordi
 side by side until --grains are there: both programs start from the same places, radii and velocities (0.05 m/s in waves, so that
 contacts open and close and lists are searched anew) and take the same step. LAMMPS runs with each skin of SKINS; its best counts.
 The figure is grain-steps a second of user CPU time, steps only; the median of the rounds. A step here is one of the contacts'.
-With --write the figures go to bench/grains/results/lammps.csv and into the table of docs/performance.md.
+With --write the figures go to bench/grains/results/lammps.csv.
 """
 
 import argparse
@@ -23,11 +23,10 @@ import tempfile
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import run, store  # noqa: E402
+from barchan_bench import run, store, table  # noqa: E402
 from barchan_bench.frame import Frame, write_particles  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
-PAGE = HERE.parents[1] / "docs/performance.md"
 SKINS = (.1, .2, .3)  # of the mean diameter
 SUBSTEPS = 8  # of the grains in a step of Barchan's, when nothing else limits it
 D, YOUNG, POISSON, FRICTION, RESTITUTION, DENSITY = 1e-3, 5e6, .25, .5, .5, 2650.
@@ -186,16 +185,13 @@ def measure(program, lmp, dim, grains, steps, rounds, scratch, before=()):
             "ratio": a / b, "ratios": [o / t for o, t in zip(ours, theirs[best])], "listed_pairs_a_grain": contacts}
 
 
-def write_page(results):
-    """The rows of the table of docs/performance.md."""
-    text = PAGE.read_text()
-    for r in results:
-        row = (f"| {r['dimensions']}D | {r['grains']} | {r['barchan'] / 1e6:.1f} | {r['lammps'] / 1e6:.1f} | {r['ratio']:.2f} "
-               f"({min(r['ratios']):.2f} to {max(r['ratios']):.2f}) |")
-        text, found = re.subn(rf"^\| {r['dimensions']}D \| \d+ \| .*$", row, text, flags=re.MULTILINE)
-        if found != 1:
-            raise SystemExit(f"lammps.py: {found} rows of {PAGE} begin with {r['dimensions']}D; expected 1")
-    PAGE.write_text(text)
+def tables():
+    """That of docs/performance.md."""
+    lines = [table.head("bed", "grains", "Barchan, M grain-steps/s", "LAMMPS", "ratio")]
+    for r in store.load(HERE / "results/lammps.csv"):
+        lines.append(table.row(f"{r['dimensions']}D", r["grains"], f"{r['barchan'] / 1e6:.1f}", f"{r['lammps'] / 1e6:.1f}",
+                               f"{r['ratio']:.2f} ({min(r['ratios']):.2f} to {max(r['ratios']):.2f})"))
+    return {"beds": "\n".join(lines)}
 
 
 if __name__ == "__main__":
@@ -216,4 +212,3 @@ if __name__ == "__main__":
                   f"ratio {r['ratio']:.2f} ({min(r['ratios']):.2f} to {max(r['ratios']):.2f})", flush=True)
     if options.write:
         store.keep(HERE / "results/lammps.csv", results)
-        write_page(results)

@@ -2,8 +2,7 @@
 
     /usr/bin/python3 bench/impacts/bearing.py build/barchan [--threads N] [--of DIR] [--write]
 
---of DIR reads a run that is there instead of running the scene. With --write the figures go into bench/impacts/results/impacts.csv, from which
-bench/impacts/cases.py makes docs/impacts.md.
+--of DIR reads a run that is there instead of running the scene. With --write the figures go into bench/impacts/results/impacts.csv.
 """
 
 import argparse

@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """Bodies against exact solutions and references, and the paper's impacts: the tables and plots of docs/impacts.md.
 
-    /usr/bin/python3 bench/impacts/cases.py build/barchan [--only CASE]... [--write]
-    /usr/bin/python3 bench/impacts/cases.py none --only none --write     # the page from the results, runs nothing
+    /usr/bin/python3 bench/impacts/cases.py build/barchan [--only CASE]...
 
 Cases: cantilever, csm3, restitution, paper, of bars.py bars, rows, of bounce.py rings, block, of hertz.py hertz, hertz_spheres, of eq13.py eq13, and of rigid.py top, pendulum, rolling, gears; bearing.py has a command of its own. Results are kept case by case in bench/impacts/results/impacts.csv. What a case
-draws, docs/gallery/impacts_*.png, it draws when it is measured. With --write, docs/impacts.md (between its markers) is made from the results. One thread, about five minutes
+draws, docs/gallery/impacts_*.png, it draws when it is measured. One thread, about five minutes
 on a quiet core; csm3 takes most of them.
 """
 
@@ -27,7 +26,6 @@ import rigid
 from barchan_bench import ROOT, page as pages, run, store
 
 RESULTS = ROOT / "bench/impacts/results/impacts.csv"
-PAGE = ROOT / "docs/impacts.md"
 TIMOSHENKO, THIN = 0.25645, 0.25403  # s, period of the plate
 SPEED = 10.0  # m/s: of what hits
 
@@ -213,11 +211,15 @@ def plot(name, result):
         hertz.plot(result, gallery, pyplot)
 
 
+def tables():
+    """That of docs/impacts.md."""
+    return {"measured": page(store.load(RESULTS, {}))}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program")
     parser.add_argument("--only", action="append")
-    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     results = store.load(RESULTS, {})
     for name, case in CASES.items():
@@ -226,10 +228,7 @@ def main():
             plot(name, results[name])
             store.keep(RESULTS, results, leave=("history",))
             print(name, "done")
-    if options.write:
-        pages.fill(PAGE, "measured", "\n" + page(results))
-    else:
-        print(page(results))
+    print(page(results))
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ def page_of_discs(results):
              "| --- |" + " --- |" * 11]
     lines += [f"| {name_of(r)} | {r['load']:.0f} | {r['b'] / RADIUS:.3f} | {r['p0'] / YOUNG:.3f} | {r['in b']:.1f} | {r['width']:.3f} | {r['moment']:.3f} | "
               f"{r['farthest']:.3f} | {r['peak']:.3f} | {r['largest']:.3f} | {r['axis'][0]:.3f} to {r['axis'][1]:.3f} | {r['outer']:.2f} at least |"
-              for r in result["table"]]
+              for r in results["hertz"]["table"]]
     lines += ["", "![Pressure in the contact of two discs, and stress below it](gallery/impacts_hertz.png)", ""]
     return lines
 

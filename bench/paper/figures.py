@@ -21,7 +21,7 @@ import harness  # noqa: E402
 from barchan_bench import ROOT, page as pages, store  # noqa: E402
 
 plt = pages.pyplot()
-GALLERY, PAGE = ROOT / "docs/gallery", ROOT / "docs/paper.md"
+GALLERY = ROOT / "docs/gallery"
 MOVES = .01    # m/s: slower grains count as at rest
 EARLY, LATE = 14e-3, 30e-3  # s, figure 10: the first grains leave; the end of the run
 DUNE_TIMES = (2e-3, 20e-3, 40e-3, 70e-3)  # s, figure 14
@@ -205,6 +205,11 @@ def lines(r):
     return "\n".join([*text, "", "![The sand](gallery/paper_sand.png)", ""])
 
 
+def tables():
+    """That of docs/paper.md."""
+    return {"measured": lines(store.load(HERE / "results/figures.csv"))}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", metavar="PROGRAM")
@@ -225,7 +230,6 @@ def main():
     print(lines(result))
     if given.write:
         store.keep(HERE / "results/figures.csv", result)
-        pages.fill(PAGE, "measured", "\n" + lines(result))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@
 
 Every case runs on 2 and 3 ranks of one thread, with cells divided by the number of particles and by time. run.json tells how long each rank was busy in
 all steps (processor time without waiting, so ranks may share cores), and what the divisions took of the run. Both runs must write the same
-checkpoint. With --write the results go to bench/ranks/results/balance.csv and the page.
+checkpoint. With --write the results go to bench/ranks/results/balance.csv.
 """
 
 import argparse
@@ -17,7 +17,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/balance.csv"
-PAGE = ROOT / "docs/ranks.md"
 IMBALANCE, COST = 1.05, .02  # at most: the largest busy time over the mean; what divisions take of the run
 # name: scene, overrides
 CASES = {
@@ -57,6 +56,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"balance": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -72,7 +77,6 @@ def main():
     print(text(results))
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "balance", text(results))
 
 
 if __name__ == "__main__":

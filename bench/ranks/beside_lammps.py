@@ -7,7 +7,7 @@ Fluids: periodic air, a disturbed lattice, the kernel radius 2.1 spacings, the s
 artificial viscosity, no shifts, no correction of gradients); Barchan has its consistent and its plain scheme, which compute more. Grains: the dense beds of
 bench/grains/lammps.py. LMP is an `lmp` with the packages SPH and GRANULAR; Debian's has no SPH, and is built for SSE2: build LAMMPS for the same processor.
 LAMMPS runs with several skins, the best one counts. A figure is particle-steps a second of the steps alone. With --write the results go to
-bench/ranks/results/beside_lammps.csv and the page.
+bench/ranks/results/beside_lammps.csv.
 """
 
 import argparse
@@ -20,11 +20,10 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE), str(HERE.parent / "grains")]
 import lammps as beds  # noqa: E402
-from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
+from barchan_bench import ROOT, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/beside_lammps.csv"
-PAGE = ROOT / "docs/ranks.md"
 BOUND = 1.5
 RADIUS = 2.1  # spacings
 SKINS = (.1, .2, .3, .4)  # of the radius
@@ -130,6 +129,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"beside LAMMPS": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -147,7 +152,6 @@ def main():
     print(text(results))
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "beside LAMMPS", text(results))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@
 Periodic air of the consistent scheme, across * across particles, by turns with PROGRAM and with an older one BEFORE. Two runs of the same few steps, one
 with a checkpoint after every step and one with a checkpoint at its end only: their difference in wall time is that of their checkpoints. Two runs of one
 step, one from the beginning and one from a checkpoint: a restart makes the start too, and the difference is the reading. Prints medians in seconds. With
---write the results go to bench/ranks/results/checkpoint.csv and the page.
+--write the results go to bench/ranks/results/checkpoint.csv.
 """
 
 import argparse
@@ -20,7 +20,6 @@ from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/checkpoint.csv"
-PAGE = ROOT / "docs/ranks.md"
 
 
 class Case:
@@ -48,6 +47,12 @@ def text(result):
     return "\n".join(lines) + f"\n\n{result['particles']} particles on {result['ranks']} ranks, medians of {result['rounds']} rounds."
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"checkpoint": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -69,7 +74,6 @@ def main():
     print(text(result))
     if options.write:
         store.keep(RESULTS, result)
-        pages.fill(PAGE, "checkpoint", text(result))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from every_scene import PAGE, ROOT, Scene, fewer_particles, files, pages, store, table  # noqa: E402
+from every_scene import ROOT, Scene, fewer_particles, files, store, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/every_retreat.csv"
 RANKS = (2, 3)
@@ -54,6 +54,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"every retreat": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -69,7 +75,6 @@ def main():
         print(name, results[name], flush=True)
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "every retreat", text(results))
     return any(o != "same" for r in results.values() for o in r["ways"].values())
 
 

@@ -2,7 +2,6 @@
 """Every scene that comes along, shortened, on ranks: the bytes of one process. The table of docs/ranks.md.
 
     /usr/bin/python3 bench/ranks/every_scene.py PROGRAM [--only SCENE]... [--steps 30] [--write]
-    /usr/bin/python3 bench/ranks/every_scene.py none --only none --write     # the page from the results, runs nothing
 
 Each scene runs for 30 steps as long as the first one: one process of 1 and of 2 threads, 1, 2, 3, 4 and 7 ranks, 2 ranks of 2 threads, and 3 ranks to
 the middle whose checkpoint 2 ranks go on from. Instruments measure from the start, every third step. All files but run.json must have the bytes of the first. Scenes that take long to fill have the overrides
@@ -18,10 +17,9 @@ import tempfile
 import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, checkpoints, page as pages, run, store, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, run, store, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/every_scene.csv"
-PAGE = ROOT / "docs/ranks.md"
 LAUNCH = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "--bind-to", "none", "-n"]
 WAYS = {"2 threads": (0, 2), "1 rank": (1, 1), "2 ranks": (2, 1), "3 ranks": (3, 1), "4 ranks": (4, 1), "7 ranks": (7, 1), "2 ranks of 2 threads": (2, 2)}
 SAME = "same"
@@ -103,6 +101,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"every scene": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -120,7 +124,6 @@ def main():
     results = {name: results[name] for name in every if name in results}
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "every scene", text(results))
     return any(o != SAME for r in results.values() for o in r["ways"].values())
 
 

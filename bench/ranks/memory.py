@@ -5,7 +5,7 @@
 
 Periodic air of the consistent scheme makes a few steps on several ranks, without states to go back to. run.json tells the most that the first rank and
 the others have held at any time. `barchan plan --ranks` says before what it will be; the largest case is too large to be planned in one process.
-With --write the results go to bench/ranks/results/memory.csv and the page.
+With --write the results go to bench/ranks/results/memory.csv.
 """
 
 import argparse
@@ -19,7 +19,6 @@ from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/memory.csv"
-PAGE = ROOT / "docs/ranks.md"
 STEPS = .15  # of a step of the sound over a spacing each: some five steps
 PLANNED = 2e6  # particles, at most, of a case that is planned in one process
 # name: dimensions, particles along an edge, ranks
@@ -54,6 +53,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"memory": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -68,7 +73,6 @@ def main():
     print(text(results))
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "memory", text(results))
 
 
 if __name__ == "__main__":

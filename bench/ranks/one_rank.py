@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/ranks/one_rank.py PROGRAM [--write]
 
 valgrind (callgrind) counts the instructions of the whole process, which noise does not change; it knows AVX2 and not AVX-512, so the program runs with
-BARCHAN_INSTRUCTIONS=avx2. Both runs must write the same bytes. With --write the results go to bench/ranks/results/one_rank.csv and the page.
+BARCHAN_INSTRUCTIONS=avx2. Both runs must write the same bytes. With --write the results go to bench/ranks/results/one_rank.csv.
 """
 
 import argparse
@@ -14,11 +14,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, checkpoints, page as pages, run, store, table  # noqa: E402
+from barchan_bench import ROOT, checkpoints, run, store, table  # noqa: E402
 from speed import GRAINS, air  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/one_rank.csv"
-PAGE = ROOT / "docs/ranks.md"
 # name: scene, overrides
 CASES = {
     "air 2D": (air(2, 100, .06), []),
@@ -58,6 +57,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"one rank": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -70,7 +75,6 @@ def main():
     print(text(results))
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "one rank", text(results))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ Every case runs by turns: two ranks of one thread, one process of two threads; o
 scaling, one process with half of the particles. Every second round goes the other way round. Runs are so long that the frame of the start, which is written
 beside the first steps, is a small part of them. Particle-steps a second are those of run.json. Prints the median of the ratios of neighbouring runs, with
 their range. Of weak scaling, two processes with half of the particles run side by side besides: what the machine gives to two programs that do not know of
-each other. All runs of a case must write the same checkpoint. With --write the results go to bench/ranks/results/speed.csv and the page.
+each other. All runs of a case must write the same checkpoint. With --write the results go to bench/ranks/results/speed.csv.
 """
 
 import argparse
@@ -21,7 +21,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, checkpoints, page as pages, run, store, table  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/speed.csv"
-PAGE = ROOT / "docs/ranks.md"
 AIR = """dimensions = {dimensions}
 spacing = {spacing!r}
 [domain]
@@ -163,6 +162,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"speed": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -177,7 +182,6 @@ def main():
     print(text(results))
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "speed", text(results))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@
 
 Periodic air grows with the ranks, so that each has the same number of particles. More ranks than cores take turns: their times say nothing, so this counts
 what a rank has to do. From run.json of a run and of a shorter one, whose difference leaves the start out: messages and bytes that a rank sends in a step,
-ghosts a rank, and the particles of the largest rank over the mean. The time of two ranks is in bench/ranks/speed.py. With --write the results go to bench/ranks/results/weak.csv and the page.
+ghosts a rank, and the particles of the largest rank over the mean. The time of two ranks is in bench/ranks/speed.py. With --write the results go to bench/ranks/results/weak.csv.
 """
 
 import argparse
@@ -14,11 +14,10 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page as pages, run, store, table  # noqa: E402
+from barchan_bench import ROOT, run, store, table  # noqa: E402
 from speed import air  # noqa: E402
 
 RESULTS = ROOT / "bench/ranks/results/weak.csv"
-PAGE = ROOT / "docs/ranks.md"
 CASES = {"air 2D, 4e4 a rank": (2, 200), "air 3D, 2.7e4 a rank": (3, 30)}  # dimensions, particles along an edge of the part of a rank
 STEPS = 60, 20  # about, of a run and of the one that is taken off it
 COURANT = .12   # of a step: times of the sound (10 m/s) over a spacing, about
@@ -57,6 +56,12 @@ def text(results):
     return "\n".join(lines)
 
 
+def tables():
+    """Those of docs/ranks.md."""
+    results = store.load(RESULTS)
+    return {"weak": text(results) if results else ""}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -73,7 +78,6 @@ def main():
     print(text(results))
     if options.write:
         store.keep(RESULTS, results)
-        pages.fill(PAGE, "weak", text(results))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
     bench/saltation/cases.py settling hop            run these (no name: all), write results/NAME.csv
     bench/saltation/cases.py --barchan build/barchan --out /tmp/saltation flux
 
-bench/saltation/page.py makes docs/saltation.md from results/*.csv; the case flux draws docs/saltation.png.
+docs/saltation.md shows them (bench/saltation/page.py); the case flux draws docs/saltation.png.
 """
 import argparse
 import json

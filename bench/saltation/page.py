@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Makes docs/saltation.md from results/*.csv of cases.py."""
+"""The parts of docs/saltation.md, from results/*.csv of cases.py."""
 import math
 import pathlib
 import sys
@@ -338,15 +337,10 @@ def tunnel(r):
             "![Wind along x, grains by their speed, flux along x and the wind at four places](gallery/dune_tunnel.png)"]
 
 
-def main():
-    lines = ["# Saltation against what is known", "", "Made by `bench/saltation/page.py` from the results of `bench/saltation/cases.py`. How the wind, the drag and the "
-             "exchange of momentum are computed: [method.md](method.md), Air without particles.", ""]
-    for name, part in (("settling", settling), ("hop", hop), ("splash", splash), ("heaps", heaps), ("threshold", threshold), ("flux", flux), ("impact", impact), ("resolved", resolved), ("kernel-drag", kernel_drag), ("storm", storm), ("tunnel", tunnel)):
-        r = load(name)
-        if r:
-            lines += part(r) + [""]
-    (DOCS / "saltation.md").write_text("\n".join(lines).rstrip() + "\n")
+PARTS = {"settling": settling, "hop": hop, "splash": splash, "heaps": heaps, "threshold": threshold, "flux": flux, "impact": impact, "resolved": resolved,
+         "kernel-drag": kernel_drag, "storm": storm, "tunnel": tunnel}
 
 
-if __name__ == "__main__":
-    main()
+def tables():
+    """The parts of docs/saltation.md."""
+    return {name: "\n".join(part(load(name))) for name, part in PARTS.items()}

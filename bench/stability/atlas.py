@@ -3,7 +3,7 @@
 
     /usr/bin/python3 bench/stability/atlas.py build/barchan --write            all families, about 1,700 short runs
     /usr/bin/python3 bench/stability/atlas.py build/barchan vortices dam       some of them
-    /usr/bin/python3 bench/stability/atlas.py none --write                     the page, the picture and the ranges again
+    /usr/bin/python3 bench/stability/atlas.py none --write                     the picture and the ranges again
 
 A family is a small scene. Along each direction one quantity is varied, everything else stays; a map varies two. Each run is done with other
 seeds of the disorder, without retreats, and gets one word:
@@ -40,7 +40,7 @@ from barchan_bench.frame import Frame, series, table  # noqa: E402
 from barchan_bench.page import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION, processor  # noqa: E402
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results" / "atlas.csv"
-PAGE, PICTURE, RANGES = ROOT / "docs/stability.md", ROOT / "docs/gallery/atlas.png", ROOT / "src/plan/stable_ranges.inc"
+PICTURE, RANGES = ROOT / "docs/gallery/atlas.png", ROOT / "src/plan/stable_ranges.inc"
 WORDS = {"stable": GREEN, "told": SKY, "refused": BLUE, "stopped": ORANGE, "slow": "#999999", "SILENT": VERMILION}
 MARGIN = 1.5  # asked of a default: the nearest value that is not stable is at least this factor away
 
@@ -430,7 +430,8 @@ def draw(results):
     figure.savefig(PICTURE, dpi=90, bbox_inches="tight")
 
 
-def write_all():
+def tables():
+    """That of docs/stability.md."""
     kept = store.load(RESULTS)
     results, known = kept["families"], {f.name: f for f in families()}
     counts = collections.Counter(w for points in results.values() for p in points for w in p["words"])
@@ -445,9 +446,7 @@ def write_all():
             "\"Stable\": between the nearest values on both sides of the default at which a run was unstable (a refusal is none). The factor is the distance of the "
             f"nearest of them from the default; {MARGIN} is asked.\n",
             "| family | quantity | default | stable | nearest unstable below | nearest above | factor | | why |\n" + "| --- " * 9 + "|"] + lines
-    pages.fill(PAGE, "atlas", "\n" + "\n".join(text) + "\n")
-    write_ranges(results, known)
-    draw(results)
+    return {"atlas": "\n".join(text)}
     print(text[0] + f"{missed} of {len(lines)} defaults have a margin below {MARGIN}")
 
 
@@ -496,7 +495,9 @@ def main():
             kept["families"] = {f.name: kept["families"][f.name] for f in families() if f.name in kept["families"]}
             store.keep(RESULTS, kept)
     if options.write:
-        write_all()
+        kept, known = store.load(RESULTS), {f.name: f for f in families()}
+        write_ranges(kept["families"], known)
+        draw(kept["families"])
     return 1 if silent else 0
 
 

@@ -11,8 +11,7 @@ at most 2 % in every row of history.csv (a thousand rows a run); no grain leaves
 Of a scene without a logarithmic wind other things differ and are asked: ensemble_any.py.
 
 The runs are cases of a sweep (python/barchan/sweep): single-threaded, --jobs at a time (2). --runs-dir keeps them: a run that is there is not done again, so that an ensemble
-can be stopped and gone on with. With --write the figures go to bench/stability/results/ and docs/stability.md is written again from
-all that is there (`ensemble.py none --write` only does the latter). Exits with 1 when something that was asked is missed.
+can be stopped and gone on with. With --write the figures go to bench/stability/results/. Exits with 1 when something that was asked is missed.
 """
 
 import argparse
@@ -35,7 +34,6 @@ from barchan_bench.table import head  # noqa: E402
 from barchan import sweep  # noqa: E402  (barchan_bench.frame knows where the package is)
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
-PAGE = ROOT / "docs/stability.md"
 DENSITY_BOUND = .02
 HEAD = head("run", "seed", "u*", "precision", "instructions", "status", "ended at, ms", "steps", "largest density error of the air", "fastest grain, m/s",
             "bulk speed, second half/start", "u 1 mm over the bed upstream, end/start", "user CPU s", "message")
@@ -152,8 +150,8 @@ def title(result):
     return ", ".join([result["scene"]] + other)
 
 
-def write_page():
-    """docs/stability.md between its markers, from all results that are there."""
+def tables():
+    """That of docs/stability.md, from all results that are there."""
     parts, rows = [], []
     for file in sorted(RESULTS.glob("*.csv")):
         result = store.load(file)
@@ -168,7 +166,7 @@ def write_page():
     if rows:
         about = "`ensemble.py build/barchan SCENE --runs N`. The step (time.safety) times 0.98, 1 and 1.02, fluids and elastic bodies disturbed with other seeds, mixed and double precision, all instruction sets."
         parts = ["\n## Bodies, heaps and fluids\n", about + " Least and largest of the runs.\n", any_scene.PAGE_HEAD + "\n" + "\n".join(rows) + "\n"] + parts
-    pages.fill(PAGE, "measured", "\n".join(parts or ["\nNothing was measured.\n"]))
+    return {"measured": "\n".join(parts or ["\nNothing was measured.\n"])}
 
 
 def ensemble(path, program, options, folder):
@@ -217,8 +215,6 @@ def main():
                 parser.error(f"no scene {name}")
             with tempfile.TemporaryDirectory() as scratch:
                 good = ensemble(path.resolve(), program, options, options.runs_dir or pathlib.Path(scratch)) and good
-    if options.write:
-        write_page()
     return 0 if good else 1
 
 

@@ -5,7 +5,7 @@
 
 Periodic air of about so many particles, long enough for some seconds on one thread (--seconds); `load`: as many processes that only compute, beside the run. Runs with
 one thread and with the default number alternate. Prints the median of one thread, the median and the worst of the default over it, and how many steps
-were taken with how many threads. With --write the table goes to docs/performance.md, between its markers.
+were taken with how many threads. With --write the figures go to bench/throughput/busy.csv.
 """
 
 import argparse
@@ -17,9 +17,9 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from barchan_bench import ROOT, page, run as runs  # noqa: E402
+from barchan_bench import ROOT, run as runs, store, table  # noqa: E402
 
-PAGE = ROOT / "docs/performance.md"
+RESULTS = ROOT / "bench/throughput/busy.csv"
 
 SCENE = """dimensions = 2
 spacing = {spacing!r}
@@ -76,9 +76,23 @@ def cell(program, particles, load, runs, seconds):
                 burner.wait()
     middle = statistics.median(one)
     total = sum(used.values())
-    shares = ", ".join(f"{n}: {100 * k / total:.0f} %" for n, k in sorted(used.items()))
-    return (f"| {side**2} | {load} | {middle:.2f} | {max(one) / middle:.2f} | {statistics.median(default) / middle:.2f} | "
-            f"{max(default) / middle:.2f} | {shares} |")
+    return {"particles": side**2, "busy": load, "one": middle, "worst of one": max(one) / middle, "median": statistics.median(default) / middle,
+            "worst": max(default) / middle, "threads": ", ".join(f"{n}: {100 * k / total:.0f} %" for n, k in sorted(used.items()))}
+
+
+HEAD = table.head("particles", "busy processes beside it", "one thread, s (median)", "worst of one thread", "default: median over one thread",
+                  "default: worst over one thread", "steps by threads")
+
+
+def line(r):
+    return table.row(r["particles"], r["busy"], *(f"{r[name]:.2f}" for name in ("one", "worst of one", "median", "worst")), r["threads"])
+
+
+def tables():
+    """That of docs/performance.md."""
+    kept = store.load(RESULTS)
+    return {"busy": "\n".join([HEAD, *map(line, kept["rows"]), "", f"{kept['runs']} runs each, {kept['cores']} cores; load of the machine in the minute before the "
+                               f"end: {kept['load']}."])}
 
 
 def main():
@@ -90,16 +104,14 @@ def main():
     parser.add_argument("--seconds", type=float, default=1.5)
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
-    lines = ["| particles | busy processes beside it | one thread, s (median) | worst of one thread | default: median over one thread | default: worst over one thread | steps by threads |",
-             "| --- " * 7 + "|"]
-    print("\n".join(lines), flush=True)
+    rows = []
+    print(HEAD, flush=True)
     for load in map(int, given.load.split(",")):
         for particles in map(int, given.particles.split(",")):
-            lines.append(cell(given.program, particles, load, given.runs, given.seconds))
-            print(lines[-1], flush=True)
+            rows.append(cell(given.program, particles, load, given.runs, given.seconds))
+            print(line(rows[-1]), flush=True)
     if given.write:
-        note = f"{given.runs} runs each, {os.cpu_count()} cores; load of the machine in the minute before the end: {os.getloadavg()[0]:.1f}."
-        page.fill(PAGE, "busy", "\n".join(lines) + "\n\n" + note)
+        store.keep(RESULTS, {"runs": given.runs, "cores": os.cpu_count(), "load": round(os.getloadavg()[0], 1), "rows": rows})
     return 0
 
 

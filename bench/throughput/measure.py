@@ -2,12 +2,10 @@
 """How fast whole steps are, beside the limit loops, in one session: the tables and the plot of docs/performance.md.
 
     /usr/bin/python3 bench/throughput/measure.py BUILD [--only PART]... [--rounds 3] [--write]
-    /usr/bin/python3 bench/throughput/measure.py none --only none --write     # page and plot from the results, measures nothing
 
 BUILD holds bench/throughput and bench/limit_pairs (cmake --preset bench && ninja -C build-bench). Parts: steps, limit,
 threads, growth, bare. Runs are interleaved and medians taken over the rounds; results are kept part by part in
-bench/throughput/results.csv. With --write, docs/performance.md (between its markers) and docs/gallery/performance.png are
-made from them.
+bench/throughput/results.csv. With --write, docs/gallery/performance.png is drawn from them.
 """
 
 import argparse
@@ -20,8 +18,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, page as pages, run, store  # noqa: E402
 
 RESULTS = ROOT / "bench/throughput/results.csv"
-PAGE = ROOT / "docs/performance.md"
-BEGIN, END = pages.marks("measured")
 CASES = {  # name: options of throughput
     "air 2D, plain, 3.0 dx, double": ["--case", "air2d"],
     "air 2D, plain, 3.0 dx, mixed": ["--case", "air2d", "--precision", "mixed"],
@@ -152,11 +148,16 @@ def plot(results):
     figure.savefig(ROOT / "docs/gallery/performance.png", dpi=110)
 
 
+def tables():
+    """That of docs/performance.md."""
+    return {"measured": page(store.load(RESULTS, {}))}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--only", action="append", choices=["none", "steps", "threads", "growth", "bare"],
-                        help="these parts; with none nothing is measured, and --write makes page and plot from what there is")
+                        help="these parts; with none nothing is measured, and --write draws the plot from what there is")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
@@ -168,10 +169,8 @@ def main():
         store.keep(RESULTS, results)
     text = page(results)
     print(text)
-    if options.write:
-        pages.fill(PAGE, "measured", f"\n{text}\n")
-        if "steps" in results:
-            plot(results)
+    if options.write and "steps" in results:
+        plot(results)
 
 
 if __name__ == "__main__":

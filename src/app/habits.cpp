@@ -11,7 +11,7 @@ namespace {
 /// What the options of the commands below are read into.
 struct Chosen {
   std::string what, scene, name, from = "dune", shell;
-  bool names = false, json = false;
+  bool names = false, json = false, markdown = false;
 };
 
 }  // namespace
@@ -36,8 +36,10 @@ void add_habits(CLI::App& app, int& status) {
   c_new->add_option("--from", chosen->from, "the scene to copy (default dune)")->type_name("SCENE");
   c_new->callback([chosen, &status] { status = make_new(chosen->name, chosen->from); });
 
-  app.add_subcommand("schema", "print the JSON schema of a scene file")->callback([&status] {
-    std::cout << scene_schema() << '\n';
+  auto* c_schema = app.add_subcommand("schema", "print the JSON schema of a scene file");
+  c_schema->add_flag("--markdown", chosen->markdown, "all keys as tables to read, in place of the schema");
+  c_schema->callback([chosen, &status] {
+    std::cout << (chosen->markdown ? scene_tables() : scene_schema()) << '\n';
     status = 0;
   });
 

@@ -26,7 +26,7 @@ std::vector<std::string> files_of(const Scene& scene);
 /// checks against.
 std::string scene_schema();
 
-/// The keys of every section as Markdown tables: the second half of docs/scenes.md.
+/// The keys of every section as Markdown tables, with an example each.
 std::string scene_tables();
 
 }  // namespace barchan

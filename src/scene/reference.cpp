@@ -170,10 +170,7 @@ std::string example_of(const Key& key) {
 }
 
 std::string scene_tables() {
-  std::string text =
-      "\nThe program writes these tables from its own table of keys, and a test reads every example back. The unit 1 "
-      "is that of a pure\nnumber; words and sections have no unit (-). The kinds of phase that have a key stand in "
-      "brackets behind its meaning.\n";
+  std::string text;
   for (const auto& [section, heading] : sections) {
     text +=
         "\n### " + std::string(heading) +

@@ -1,6 +1,6 @@
 // The rows of the table of keys: one a key, in the order of docs/scenes.md. To add a key: its member in scene.hpp,
 // without a default; its row here; the model that consumes it. A key that acts only beside other keys has a case in
-// tests/cli/key_consumers_cases.inc too. BARCHAN_WRITE_DOCS=1 test_unit brings docs/scenes.md up to date.
+// tests/cli/key_consumers_cases.inc too.
 #include "scene/scene_slots.hpp"
 
 namespace barchan {

@@ -3,6 +3,7 @@
     test_site.py PROGRAM SOURCE_DIR
 """
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -10,11 +11,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
-SOURCE = Path(sys.argv[2]).resolve()
+PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 
 
 def build(root, out):
-    return subprocess.run([sys.executable, SOURCE / "docs/site.py", "--root", root, "--out", out], capture_output=True, text=True)
+    return subprocess.run([sys.executable, SOURCE / "docs/site.py", "--root", root, "--out", out, "--program", PROGRAM], capture_output=True, text=True)
 
 
 class Site(unittest.TestCase):
@@ -25,6 +26,10 @@ class Site(unittest.TestCase):
             index = json.loads((Path(name) / "search/search_index.json").read_text())["docs"]
             found = [entry["location"] for entry in index if "roughness" in entry["text"]]
             self.assertTrue(any(place.startswith("docs/scenes.html") for place in found), found)
+            pages = {page.name: page.read_text() for page in Path(name).rglob("*.html")}
+            self.assertEqual([page for page, text in pages.items() if re.search(r"^(<p>)?{{ ", text, re.M)], [], "a table was not made")
+            for page, words in (("scenes.html", "friction-velocity"), ("ledger.html", "MISSED"), ("accuracy.html", "Measured on"), ("ranks.html", "the same bytes in all")):
+                self.assertIn(words, pages[page])
 
     def test_what_is_wrong_is_named(self):
         with tempfile.TemporaryDirectory() as name:
@@ -43,6 +48,12 @@ class Site(unittest.TestCase):
             ended = build(root, Path(name) / "site")
             self.assertEqual(ended.returncode, 1)
             self.assertIn("three.md", ended.stdout)
+            for mark, words in (("bench/none.py: x", "bench/none.py"), ("docs/some.py: x", "docs/some.py has no table x; it has y"), ("barchan no-such-command", "barchan no-such-command")):
+                (root / "docs/some.py").write_text("def tables():\n    return {'y': ''}\n")
+                (root / "README.md").write_text(f"# One\n\n{{{{ {mark} }}}}\n")
+                ended = build(root, Path(name) / "site")
+                self.assertEqual(ended.returncode, 1)
+                self.assertIn(f"tables: {words}", ended.stdout)
 
 
 if __name__ == "__main__":
