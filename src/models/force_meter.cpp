@@ -60,7 +60,7 @@ void ForceOn::attach(Workspace& w) {
     if (!e.extends || e.other != phase_) continue;
     w.need(e.fluid, Record::motion);
     fluids_.push_back({{&w.list(e.direction(phase_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
-                        pair_viscosity(scene_, layout_, phase_, e.fluid), false},
+                        viscosity_of_sums(scene_, layout_, e), false},
                        e.corrected ? 1.0 / e.consistency.gradient_sum : 1.0,
                        e.fluid,
                        Forces(scene_, layout_.phases[e.fluid].name)});
@@ -219,7 +219,7 @@ void ForceOn::measure_volume() {
     if (!volume_.near(x)) continue;
     shares_.push_back(volume_.share(x, at(Field::velocity), at(Field::acceleration) - scene_.domain.gravity,
                                     fluid.mass(), fluid.column(Field::density)[k], fluid.column(Field::pressure)[k],
-                                    felt.fluid.viscosity));
+                                    pair_viscosity(scene_, layout_, phase_, felt.phase)));
   }
   force_ = ControlVolume::force(shares_);
 }

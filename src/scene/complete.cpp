@@ -36,16 +36,17 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
   Interaction pair;
   pair.a = a;
   pair.b = b;
-  bool fluid = false, repulsive = false, bodies = true, column = false;
+  bool fluid = false, plain = false, repulsive = false, bodies = true, column = false;
   for (const Phase& phase : phases) {
     if (phase.name != a && phase.name != b) continue;
     fluid = fluid || phase.kind() == PhaseKind::fluid;
+    plain = plain || (phase.kind() == PhaseKind::fluid && phase.fluid().scheme == FluidScheme::plain);
     column = column || phase.kind() == PhaseKind::column;
     repulsive = repulsive || (phase.kind() == PhaseKind::wall && phase.wall().law == WallLaw::repulsive);
     bodies = bodies && phase.kind() == PhaseKind::elastic;
   }
   pair.kernel = fluid ? KernelKind::wendland_c2 : KernelKind::cubic_spline;
-  if (fluid) pair.radius = repulsive ? 0.0 : 2.1;
+  if (fluid) pair.radius = repulsive ? 0.0 : plain ? 3.0 : 2.1;
   else pair.radius = bodies || column ? 0.0 : 1.1;
   const Phase *first = nullptr, *second = nullptr;
   for (const Phase& phase : phases) {

@@ -144,7 +144,7 @@ constexpr Key rows_of_keys[] = {
 
     {"interactions", "kernel", at<&MatrixDefaults::kernel>("wendland-c2 with a fluid and in a total Lagrangian body, else cubic-spline"), "",
      "Kernel of every pair that does not name its own."},
-    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid, 1.6 in a total Lagrangian body, 1.1 of a contact; of updated Lagrangian bodies and repulsive walls required; a column has none").like("2.5"), "spacings",
+    {"interactions.pair", "radius", at<&Interaction::radius>("2.1 with a fluid (plain scheme: 3), 1.6 in a total Lagrangian body, 1.1 of a contact; of updated Lagrangian bodies and repulsive walls required; a column has none").like("2.5"), "spacings",
      "Kernel radius (support), in spacings of the coarser of the two phases.", {.at_most = 8.0, .above = 0.0}},
     {"interactions.pair", "radius-in-metres", at<&Interaction::radius_in_metres>("radius says it").like("2.5e-3"), "m",
      "Kernel radius (support) as a length, in place of radius.", positive},

@@ -97,7 +97,7 @@ void RigidInFluid::attach(Workspace& w) {
   for (const auto& e : layout_.entries)
     if (e.extends && e.other == solid_ && !e.corrected)
       felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
-                       pair_viscosity(scene_, layout_, solid_, e.fluid), false});
+                       viscosity_of_sums(scene_, layout_, e), false});
   const std::size_t n = w.particles(solid_).size();
   rates_.resize(n);
   areas_.resize(n);

@@ -46,7 +46,7 @@ void SolidInFluid::attach(Workspace& w) {
     if (!e.extends || e.other != solid_ || (by_borders_ && e.corrected)) continue;
     fluids_.push_back(e.fluid);
     felt_.push_back({&w.list(e.direction(solid_)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
-                     pair_viscosity(scene_, layout_, solid_, e.fluid), false});
+                     viscosity_of_sums(scene_, layout_, e), false});
   }
 }
 

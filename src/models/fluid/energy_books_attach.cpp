@@ -7,8 +7,10 @@ namespace barchan {
 
 void FluidPhase::open_books() {
   const FluidParameters& q = parameters_;
-  EnergyBooks::Fluid fluid{plan_.name, pressure_, scene_.domain.gravity, phase_.density * keys_.viscosity, 0.0, {}};
-  fluid.artificial = neighbours_.front().viscosity - fluid.viscosity;
+  const double both = neighbours_.front().viscosity,  // as the sums have it: in the ratio of the scene's
+      own = both / pair_viscosity(scene_, layout_, number_, number_) * phase_.density * keys_.viscosity;
+  EnergyBooks::Fluid fluid{plan_.name, pressure_, scene_.domain.gravity, both > 0.0 ? own : 0.0, 0.0, {}};
+  fluid.artificial = both - fluid.viscosity;
   bool falls = false;  // along a periodic axis, where a weight has no potential
   for (std::size_t d = 0; d < 3; ++d) {
     if (!layout_.bounds.periodic[d]) continue;

@@ -161,6 +161,10 @@ double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, s
   return 2.0 * mu_a * mu_b / std::max(mu_a + mu_b, 1e-300);
 }
 
+double viscosity_of_sums(const Scene& scene, const Layout& layout, const PlanEntry& e) {
+  return pair_viscosity(scene, layout, e.a, e.b) / (e.corrected ? 1.0 : e.consistency.gradient_sum);
+}
+
 bool has_interface(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   const auto laminar = [&](std::size_t k) {
     return layout.phases[k].flows && !layout.phases[k].eddies &&
@@ -323,7 +327,7 @@ void FluidPhase::bind_entries() {
                      &w_->records(other, solid ? Record::extended : Record::motion),
                      e.kernel,
                      e.radius,
-                     pair_viscosity(scene_, layout_, number_, other),
+                     viscosity_of_sums(scene_, layout_, e),
                      solid || other == number_,
                      w_->compact(other)};
     if (has_interface(scene_, layout_, e)) bind_interface(e, n);

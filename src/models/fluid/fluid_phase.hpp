@@ -126,6 +126,11 @@ class FluidPhase : public Model {
 /// the artificial one; of two fluids the harmonic mean.
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
 
+/// That of the entry of a fluid (Pa s), as its sums take it. The plain sum of a second derivative, sum V F r_x^2, is on
+/// rows the entry's gradient_sum (0.886 with a radius of 2.1 spacings): over it, so that a shear on rows has its stress.
+/// The corrected sums need none.
+double viscosity_of_sums(const Scene& scene, const Layout& layout, const PlanEntry& e);
+
 /// Whether an entry of two fluids of the consistent scheme has an interface: their densities or viscosities differ.
 /// Phases of one fluid that have spacings of their own have none.
 bool has_interface(const Scene& scene, const Layout& layout, const PlanEntry& e);
