@@ -119,6 +119,8 @@ def square_patch(n):
 FRONT_T = (.41, .84, 1.19, 1.43, 1.63, 1.83, 1.98, 2.20, 2.32, 2.51, 2.65, 2.83, 2.98, 3.11, 3.33)
 FRONT_Z = (1.11, 1.22, 1.44, 1.67, 1.89, 2.11, 2.33, 2.56, 2.78, 3.00, 3.22, 3.44, 3.67, 3.89, 4.11)
 COLUMN = .05715  # m, a
+# The ideal fluid, by boundary elements of our own: where it is .05 a thick.
+IDEAL_T, IDEAL_Z = (.922, 1.785, 2.307, 2.924), (1.44, 2.33, 3.0, 3.89)
 
 
 def front(frame, spacing, fluid_neighbours=3):
@@ -129,6 +131,11 @@ def front(frame, spacing, fluid_neighbours=3):
         if (numpy.linalg.norm(order - one, axis=1) < 1.6 * spacing).sum() > fluid_neighbours:
             return one[0] + .5 * spacing
     return order[0, 0] + .5 * spacing
+
+
+def thick_front(frame, spacing, thickness=.05 * COLUMN):
+    """x of the farthest particle whose upper side is so high, and half a spacing."""
+    return frame.x[frame.x[:, 1] + .5 * spacing > thickness * (1 - 1e-6), 0].max() + .5 * spacing
 
 
 def surface(frame, dx):
@@ -157,6 +164,10 @@ def report_front(name, scheme, n, frames, spacing, seconds):
     free = seen & (measured > 2) & (measured < 4)
     report(name, scheme, n, "speed of the front from Z = 2.1 to 3.9/measured, error",
            abs(speed(numpy.interp(measured[free], z, t), measured[free]) / speed(measured_t[free], measured[free]) - 1), .05, seconds)
+    thick = numpy.maximum.accumulate([thick_front(f, spacing) for f in frames]) / COLUMN
+    late = [numpy.interp(z, thick, t) / ideal - 1 for ideal, z in zip(IDEAL_T, IDEAL_Z)]
+    report(name, scheme, n, f"T at which it is .05 a thick at Z = {', '.join(map(str, IDEAL_Z))} beside the ideal fluid's: " + ", ".join(f"{x:+.4f}" for x in late) + "; largest",
+           max(map(abs, late)), .02, seconds)
 
 
 def dam_break(n):
