@@ -18,7 +18,7 @@ namespace barchan {
   row(pressure, "p", "Pa", scalar, "pressure from the equation of state") \
   row(acceleration, "a", "m/s2", vector, "total acceleration of the last pass") \
   row(density_rate, "drho/dt", "kg/m3/s", scalar, "rate of change of the density") \
-  row(velocity_gradient, "grad v", "1/s", matrix, "velocity gradient, row-major") \
+  row(velocity_gradient, "grad v", "1/s", matrix, "velocity gradient, row-major: of a fluid on request, corrected to first order; of an updated Lagrangian body") \
   row(stress, "s", "Pa", symmetric, "deviatoric stress, xx yy zz xy yz xz") \
   row(energy, "e", "J/kg", scalar, "specific internal energy") \
   row(energy_rate, "de/dt", "W/kg", scalar, "rate of change of the internal energy") \
@@ -30,7 +30,7 @@ namespace barchan {
   row(eddy_viscosity, "nu_t", "m2/s", scalar, "kinematic viscosity of the unresolved turbulence") \
   row(turbulent_kinetic_energy, "k", "m2/s2", scalar, "of a fluid with turbulence = \"k-omega\": kinetic energy of the unresolved turbulence") \
   row(specific_dissipation_rate, "omega", "1/s", scalar, "of a fluid with turbulence = \"k-omega\": dissipation of its turbulence over 0.09 k") \
-  row(shear_rate, "|S|", "1/s", scalar, "of a fluid with turbulence = \"k-omega\": root of 2 S:S, S the rate of strain") \
+  row(shear_rate, "|S|", "1/s", scalar, "of a fluid: root of 2 S:S, S the rate of strain") \
   row(ground_distance, "d", "m", scalar, "distance to the surface of the nearest wall or grain at rest") \
   row(wall_normal, "n", "1", vector, "unit normal of a wall particle, into the fluid") \
   row(wall_depth, "phi", "m", scalar, "distance of a wall particle behind the wall's surface, 0: unknown") \

@@ -200,12 +200,12 @@ void PhaseParticles::archive(Archive& a) {
 
 namespace {
 
-/// Fields of bodies that output.fields adds for frames alone. No step starts from them, so a checkpoint may have others
+/// Fields that output.fields adds for frames alone. No step starts from them, so a checkpoint may have others
 /// than the scene that goes on: what it lacks is made before the next frame. Updated Lagrangian bodies always have
-/// their stress.
+/// their stress and velocity gradient, a fluid with two equations its shear rate.
 constexpr bool may_be_for_frames_alone(Field f) {
   return f == Field::stress || f == Field::von_mises_stress || f == Field::principal_stress || f == Field::strain ||
-         f == Field::contact_force;
+         f == Field::contact_force || f == Field::velocity_gradient || f == Field::shear_rate;
 }
 
 /// Of an archive that loads: whether its next item has this name and holds numbers.

@@ -64,6 +64,8 @@ std::vector<Field> fields_of(const Scene& scene, const Phase& phase, const PlanP
   if (plan.eddies) f.insert(f.end(), {eddy_viscosity, ground_distance});
   if (keys.turbulence == Turbulence::k_omega)
     f.insert(f.end(), {turbulent_kinetic_energy, specific_dissipation_rate, shear_rate});
+  else if (is_output(scene, shear_rate)) f.push_back(shear_rate);  // FluidPhase::derive
+  if (is_output(scene, velocity_gradient)) f.push_back(velocity_gradient);
   if (keys.energy) f.insert(f.end(), {energy, energy_rate});
   return f;
 }
@@ -322,7 +324,7 @@ void FluidPhase::bind_entries() {
     if (!e.has(number_) || !e.continues_fluid) continue;
     const std::size_t other = e.partner(number_);
     const bool solid = e.extends;
-    if (keys_.energy && !solid) w_->need(other, Record::motion);
+    if ((keys_.energy || derives_gradient()) && !solid) w_->need(other, Record::motion);
     FluidNeighbour n{&w_->list(e.direction(number_)),
                      &w_->records(other, solid ? Record::extended : Record::motion),
                      e.kernel,

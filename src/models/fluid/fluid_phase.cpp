@@ -9,6 +9,7 @@
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/energy.hpp"
+#include "models/fluid/velocity_gradient.hpp"
 #include "models/walls/walls.hpp"
 #include "scene/couplings.hpp"
 
@@ -100,6 +101,14 @@ void FluidPhase::schedule(Schedule& s) {
   }
   if (plan_.held) s.add({stage::hold, plan_.name, own({velocity}, {acceleration}), [this] { hold(); }});
   if (keys_.energy_budget) schedule_books(s);
+  if (derives_gradient())
+    s.add({stage::energy, plan_.name, beside(own({}, {}), {}, {Record::motion, Record::extended}),
+           [] {}});  // derive() reads images
+}
+
+void FluidPhase::derive() {
+  if (derives_gradient())
+    derive_velocity_gradient(*particles_, w_->records(number_, Record::motion), neighbours_, derives_shear_rate());
 }
 
 /// After all other forces: what keeps the mean velocity, or what is missing of the force on the ground.

@@ -54,6 +54,7 @@ class FluidPhase : public Model {
   void history(HistoryRow& row) const override;
   void begin_row() override;
   void report(Warnings& warnings) const override;
+  void derive() override;
   void archive(Archive& a) override;
 
  private:
@@ -72,6 +73,8 @@ class FluidPhase : public Model {
   void bind_eddies();
   void bind_k_omega();
   void step_k_omega();
+  bool derives_shear_rate() const { return !has_k_omega() && is_output(scene_, Field::shear_rate); }
+  bool derives_gradient() const { return derives_shear_rate() || is_output(scene_, Field::velocity_gradient); }
   bool has_k_omega() const { return keys_.turbulence == Turbulence::k_omega; }
   void bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles);
   Relief relief() const;
@@ -127,8 +130,8 @@ class FluidPhase : public Model {
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
 
 /// That of the entry of a fluid (Pa s), as its sums take it. The plain sum of a second derivative, sum V F r_x^2, is on
-/// rows the entry's gradient_sum (0.886 with a radius of 2.1 spacings): over it, so that a shear on rows has its stress.
-/// The corrected sums need none.
+/// rows the entry's gradient_sum (0.886 with a radius of 2.1 spacings): over it, so that a shear on rows has its
+/// stress. The corrected sums need none.
 double viscosity_of_sums(const Scene& scene, const Layout& layout, const PlanEntry& e);
 
 /// Whether an entry of two fluids of the consistent scheme has an interface: their densities or viscosities differ.
