@@ -143,16 +143,17 @@ void Budget::report(const State& state, Warnings& warnings, double held) const {
   const auto growth = energy_growth(state, held);
   if (!growth || *growth <= energy_bound) return;
   const bool fluids = std::any_of(moving_.begin(), moving_.end(), [](const Moving& m) { return m.density > 0.0; });
-  const bool is_slow = start_.kinetic <= energy_at(slow * sound_speed_, start_.mass);
+  const bool is_slow = start_.kinetic <= energy_at(slow * sound_speed_, start_.mass) || *growth > 1.0;
   if (!noiseless_ && fluids && is_slow) {
-    // In per cent of so slow a motion it would be a large number, and say nothing of the motion.
+    // In per cent of so slow a motion, or of one in a small part of much water, it would be a large number, and say
+    // nothing of the motion.
     const Sums now = sums(state);
     const double gained = now.mechanical() + held - start_.mechanical(), weight = start_.mass * norm(gravity_);
     return warnings.add(
         "energy",
         "the weight and the compression gained " + brief(gained) + " J" +
             (weight > 0.0 ? ", as if the centre of mass rose by " + brief(gained / weight) + " m" : std::string()) +
-            ", although nothing in the scene gives it; the motion of the start has " + brief(start_.kinetic) +
+            ", although nothing in the scene gives it; the motion has " + brief(std::max(start_.kinetic, now.kinetic)) +
             " J: the particles of the fluid spread a little, and the budget of energy does "
             "not tell how well so slow a motion is kept; a smaller spacing makes it less");
   }
