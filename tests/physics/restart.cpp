@@ -1,21 +1,18 @@
-// A run that is saved between any two of its steps and loaded elsewhere goes on with the same bits, in every scene.
+// A run that is saved between any two of its steps and loaded elsewhere goes on with the same bits. Of every scene:
+// scenes_shortened.cpp.
 #include <omp.h>
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 
 #include "base/errors.hpp"
 
 #include "physics/drive.hpp"
-#include "physics/every_scene.hpp"
 #include "physics/flags.hpp"
 #include "physics/small_scenes.hpp"
 
 namespace barchan {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The name of the first field that has other bits; "" if none has.
 std::string first_difference(const Simulation& a, const Simulation& b) {
@@ -51,18 +48,6 @@ void expect_restarts(Simulation& run, Simulation& other, int steps, int stride, 
     for (int rest = k; rest < steps; ++rest) other.step(1e300);
     ASSERT_EQ(first_difference(run, other), "") << "saved after step " << k;
   }
-}
-
-class RestartOf : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, RestartOf, ::testing::ValuesIn(testing::all_scenes()),
-                         [](const auto& p) { return testing::test_name(p.param); });
-
-TEST_P(RestartOf, HasTheSameBitsOnAnotherNumberOfThreads) {
-  const auto fewer = testing::with_fewer_particles(GetParam());
-  testing::Drive run(GetParam(), fewer), other(GetParam(), fewer);
-  const int threads = omp_get_max_threads();
-  expect_restarts(run.simulation(), other.simulation(), 20, 1, {1, 2});
-  omp_set_num_threads(threads);
 }
 
 TEST(Restart, BetweenAnyTwoOfManySteps) {

@@ -1,10 +1,13 @@
-// Every scene of the repository, shortened: it runs through the library and through the program, and what it says is
-// finite.
+// Every scene of the repository, shortened: it runs through the library and through the program, what it says is
+// finite, and its bits are the same however it is run.
+#include <omp.h>
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -20,7 +23,6 @@ namespace barchan {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Drive;
 
 /// What the scene will do, without the minutes in which its beds settle: they stand as they were filled.
 Plan plan_of_filled(Scene scene) {
@@ -95,23 +97,91 @@ bool comes_of_fewer_particles(const std::string& warning) {
   return warning.find("the mass of its") != warning.npos || warning.find(" m thick at ") != warning.npos;
 }
 
+/// The places of a phase's particles in the order of their ids.
+std::vector<std::uint32_t> by_id(const PhaseParticles& p) {
+  std::vector<std::uint32_t> order(p.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<std::uint32_t>(k);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return p.id()[a] < p.id()[b]; });
+  return order;
+}
+
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+
+/// Where two runs differ first, with the fields that only outputs read: a field of a phase and an id, or a column of
+/// history.csv; "" if nowhere. `in_order`: they stand in the same order in memory too.
+std::string first_difference(const Simulation& a, const Simulation& b, bool in_order) {
+  if (a.time() != b.time() || a.steps() != b.steps() || a.last_step() != b.last_step()) return "time";
+  for (const Simulation* s : {&a, &b}) s->frame(0);  // brings these fields up to date
+  for (std::size_t k = 0; k < a.phases().size(); ++k) {
+    const auto &p = a.phases()[k], &q = b.phases()[k];
+    if (p.size() != q.size() || (in_order && p.id() != q.id())) return p.name() + ": particles";
+    const auto i = by_id(p), j = by_id(q);
+    for (const auto& about : field_table)
+      for (int c = 0; p.has(about.id) && c < p.components(about.id); ++c) {
+        const double *x = p.column(about.id, c), *y = q.column(about.id, c);
+        for (std::size_t n = 0; n < i.size(); ++n)
+          if (p.id()[i[n]] != q.id()[j[n]] || bits(x[i[n]]) != bits(y[j[n]]))
+            return p.name() + "." + std::string(about.name) + " of particle " + std::to_string(p.id()[i[n]]);
+      }
+  }
+  const auto names = a.history_columns();
+  const auto r = a.history_row(), s = b.history_row();
+  for (std::size_t c = 0; c < r.size(); ++c)
+    if (bits(r[c]) != bits(s[c])) return "history.csv: " + names[c];
+  return "";
+}
+
 class EveryScene : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(EveryScene, TakesStepsInTheLibrary) {
-  Drive drive(GetParam(), testing::with_fewer_particles(GetParam()));
-  auto& simulation = drive.simulation();
-  const bool coarser = !testing::with_fewer_particles(GetParam()).empty();
-  for (const std::string& text : drive.plan().warnings)
-    EXPECT_TRUE(is_meant(drive.scene(), text) || (coarser && comes_of_fewer_particles(text))) << text;
-  ASSERT_NO_THROW(simulation.check_start());
-  ASSERT_NO_THROW(for (int k = 0; k < 40; ++k) simulation.step(1e300));
-  ASSERT_NO_THROW(simulation.check());
-  for (const std::string& text : simulation.warnings().texts()) EXPECT_TRUE(is_meant(drive.scene(), text)) << text;
-  const auto columns = drive.simulation().history_columns();
-  const auto row = simulation.history_row();
+/// Forty steps; and of the first twenty the same bits on one thread, on two after a restart between any of them, and on
+/// three from a shuffled storage: results follow from places and ids.
+TEST_P(EveryScene, HasTheSameBitsHoweverItIsRun) {
+  constexpr int steps = 20, stride = 5;
+  const auto fewer = testing::with_fewer_particles(GetParam());
+  const Scene scene = read_scene(testing::scene_file(GetParam()), fewer);
+  const auto blocks = make_particles(scene);
+  const Plan plan = make_plan(scene, blocks);
+  for (const std::string& text : plan.warnings)
+    EXPECT_TRUE(is_meant(scene, text) || (!fewer.empty() && comes_of_fewer_particles(text))) << text;
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  Simulation run(scene, plan, blocks);
+  ASSERT_NO_THROW(run.check_start());
+  std::vector<std::vector<char>> saved;
+  for (int k = 0; k < steps; ++k) {
+    if (k % stride == 0) {
+      Archive a;
+      run.archive(a);
+      saved.push_back(a.bytes());
+    }
+    ASSERT_NO_THROW(run.step(1e300));
+  }
+  {
+    omp_set_num_threads(2);
+    Simulation other(scene, plan, blocks);
+    for (std::size_t n = 0; n < saved.size(); ++n) {
+      Archive a(saved[n]);
+      ASSERT_NO_THROW(other.archive(a));
+      ASSERT_NO_THROW(a.finish());
+      for (int rest = static_cast<int>(n) * stride; rest < steps; ++rest) other.step(1e300);
+      EXPECT_EQ(first_difference(run, other, true), "") << "saved after step " << static_cast<int>(n) * stride;
+    }
+  }
+  {
+    omp_set_num_threads(3);
+    Simulation shuffled(scene, plan, blocks, Simulation::Storage::shuffled);
+    for (int k = 0; k < steps; ++k) shuffled.step(1e300);
+    EXPECT_EQ(first_difference(run, shuffled, false), "") << "shuffled";
+  }
+  omp_set_num_threads(threads);
+  ASSERT_NO_THROW(for (int k = 0; k < steps; ++k) run.step(1e300));
+  ASSERT_NO_THROW(run.check());
+  for (const std::string& text : run.warnings().texts()) EXPECT_TRUE(is_meant(scene, text)) << text;
+  const auto columns = run.history_columns();
+  const auto row = run.history_row();
   ASSERT_EQ(row.size(), columns.size());
   for (std::size_t c = 0; c < row.size(); ++c) EXPECT_TRUE(std::isfinite(row[c])) << columns[c];
-  expect_finite(simulation.frame(0));
+  expect_finite(run.frame(0));
 }
 
 TEST_P(EveryScene, RunsInTheProgram) {
