@@ -70,21 +70,34 @@ struct LinearSpring {
     const V k = c.stiffness * fnma(turn2 * twelfth, V(1.0) + damping2, V(1.0));
     const V dashpot = d.coefficient(m.mass * c.stiffness) * fnma(turn2 * twelfth, damping2, V(1.0));
     const V drag = dashpot * m.inverse_mass * dt.half;
-    const V before = way(m.approach, dt.whole);
-    const V centred = fnma(fma(k, ramp(x, before), held) * m.inverse_mass, dt.half, m.approach);
+    // Far from an onset every ramp is the overlap itself: what only an onset needs is found there.
+    const V deep = simd::max(x, V(0.0)), before = way(m.approach, dt.whole);
+    V first = deep;
+    if (to_bits(x < before) != 0) first = ramp(x, before);
+    const V centred = fnma(fma(k, first, held) * m.inverse_mass, dt.half, m.approach);
     const V a = way(centred, dt.whole);
     NormalForce<V> n;
-    n.share = begin(x, a);
-    const V more = held * n.share;
-    n.elastic = fma(k, ramp_of_work(x, a), more);
-    n.depth = simd::max(x, V(0.0));
+    n.share = V(1.0);
+    V sprung = deep, worked = deep, more = held;
+    if (to_bits(x < a) != 0) {
+      n.share = begin(x, a);
+      sprung = ramp(x, a);
+      worked = ramp_of_work(x, a);
+      more = held * n.share;
+    }
+    n.elastic = fma(k, worked, more);
+    n.depth = deep;
     n.stiffness = c.stiffness;
     n.dashpot = dashpot;
-    const V loading = d.beside(fma(k, ramp(x, a), more), dashpot * n.share, m.approach, fma(drag, n.share, V(1.0)));
-    const V ending = k * ramp(d.beside(fma(k, x, more), dashpot, m.approach, fma(drag, k, k)), a);
+    // One quotient: of contacts that close the force, of those that part its depth, k the stiffness.
+    const auto closes = m.approach > V(0.0);
+    const V pushed = d.beside(fma(k, select(closes, sprung, x), more), dashpot * select(closes, n.share, V(1.0)),
+                              m.approach, select(closes, fma(drag, n.share, V(1.0)), fma(drag, k, k)));
+    V parting = simd::max(pushed, V(0.0));
+    if (to_bits(pushed < a) != 0) parting = ramp(pushed, a);
     const auto loses = d.loses();
     n.elastic = select(loses, n.elastic, k * n.depth);
-    n.force = select(loses, select(m.approach > V(0.0), loading, ending), n.elastic);
+    n.force = select(loses, select(closes, pushed, k * parting), n.elastic);
     n.load = n.force;
     n.stored = V(stored_share) * n.elastic * n.depth;
     return n;
