@@ -93,7 +93,7 @@ void declare_elastic(const Scene&, std::size_t number, Layout& layout) {
 }
 
 void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
-                      std::vector<std::string>& warnings) {
+                      std::vector<std::string>&) {
   using enum Field;
   const Phase& phase = scene.phases[number];
   if (number < blocks.size()) {
@@ -103,12 +103,6 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
   PlanPhase& p = layout.phases[number];
   p.deforms = p.noiseless = p.counts_drive = true;
   p.fixed_neighbours = phase.elastic().formulation == Formulation::total_lagrangian;
-  if (!p.fixed_neighbours)
-    warnings.push_back(
-        "phases." + p.name +
-        ".formulation: an updated Lagrangian body cannot turn, and is softer than its young says: by 8 % (a free rod "
-        "4 particles across) to 40 % (a beam 10 across); it is there for impacts head-on; expected "
-        "\"total-lagrangian\" for what turns or bends");
   p.stress_records = !p.fixed_neighbours;
   if (!p.fixed_neighbours) p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration};
