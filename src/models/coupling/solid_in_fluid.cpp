@@ -1,7 +1,5 @@
 #include "models/coupling/solid_in_fluid.hpp"
 
-#include <algorithm>
-
 #include "models/fluid/fluid_phase.hpp"
 #include "scene/couplings.hpp"
 
@@ -11,12 +9,6 @@ void describe_coupling(const Scene& scene, const Interaction& pair, const Layout
   e.law = "coupling";
   e.blows = layout.phases[e.other].separate;
   describe_extension(scene, pair, e);
-}
-
-bool carries_bodies(const Layout& layout, std::size_t fluid) {
-  return std::any_of(layout.entries.begin(), layout.entries.end(), [&](const PlanEntry& e) {
-    return e.extends && e.fluid == fluid && layout.phases[e.other].moves && !layout.phases[e.other].separate;
-  });
 }
 
 /// In a gap of about a spacing a single fluid particle may be all that a solid particle meets, and as near to the plane

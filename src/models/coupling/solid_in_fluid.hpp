@@ -11,9 +11,6 @@ namespace barchan {
 /// An entry of a fluid and grains or bodies: the solid is a moving wall and feels the reaction.
 void describe_coupling(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
 
-/// Whether a fluid touches bodies that move, rigid or elastic.
-bool carries_bodies(const Layout& layout, std::size_t fluid);
-
 class SolidInFluid : public Model {
  public:
   /// For the phase `solid` and all fluids that are extended into it. `by_borders`: what fluids of the consistent scheme

@@ -6,7 +6,6 @@
 #include "base/ranks.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
-#include "models/coupling/solid_in_fluid.hpp"
 #include "models/fluid/enclosed.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "models/open_sides.hpp"
@@ -275,9 +274,7 @@ void FluidPhase::attach(Workspace& w) {
   q.shift_limit = 0.2 * pace;
   q.gravity = scene_.domain.gravity;
   q.acceleration = forces_.uniform();
-  const bool among_grains = solids_move_in(scene_, phase_);  // they may leave holes
-  q.between = !among_grains && carries_bodies(layout_, number_);
-  if (among_grains || q.between) q.pores = 0.5 * q.sound_speed / q.smoothing_length;
+  if (solids_move_in(scene_, phase_)) q.pores = 0.5 * q.sound_speed / q.smoothing_length;  // they may leave holes
   const Consistency& lattice = own_consistency(layout_, number_);
   q.lattice_moment = lattice.gradient_sum;
   if (plan_.free_surface) {

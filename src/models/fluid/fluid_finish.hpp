@@ -151,10 +151,6 @@ constexpr double least_determinant_of(const FluidParameters& q) {
 /// `pores`.
 constexpr double lonely = 0.1, in_company = 0.3, pore_friction = 0.4;
 
-/// The same holds of one between a body and a wall or another body, where solids fill more than this share of its
-/// neighbourhood: a wall alone fills 0.3 to 0.45 of it, and a drop that flies or lies on a wall falls and runs.
-constexpr double solids_begin = 0.55, solids_surround = 0.75;
-
 /// Where a neighbourhood is not whole, corrected operators feed energy in. chi = det(-M) - h|B|/2 tells: of particles
 /// disturbed by a fifth of a spacing, 99 % of a straight surface lie below 0.31 and 99.9 % of an interior above 0.39.
 /// The corrected operators count with the weight w(chi), the plain ones, in which neighbours push and nothing beyond
@@ -343,12 +339,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     parts.renewed = V(0.0) - r.density;
   }
   if (ends && q.pores > 0.0) {
-    V counts = smooth_step(place.company, lonely, in_company);
-    if (q.between) {
-      const V solids = V(-1.0 / Dim) * trace_of<Dim, V>(s.moment) - place.company;
-      counts = V(1.0) - (V(1.0) - counts) * smooth_step(solids, solids_begin, solids_surround);
-    }
-    const V rate = (V(1.0) - counts) * V(q.pores);
+    const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
     r.density = counts * r.density - rate * (rho - V(q.reference_density));
     for (std::size_t d = 0; d < Dim; ++d) {
       r.acceleration[d] = counts * r.acceleration[d] - V(pore_friction) * rate * place.velocity[d];

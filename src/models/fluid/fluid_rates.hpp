@@ -64,8 +64,7 @@ struct FluidParameters {
   Vec3 gravity;               // m/s2
   Vec3 acceleration;          // m/s2, further uniform body force
   double void_pressure;       // Pa, of what lies beyond the fluid where a neighbourhood is not whole; plain: everywhere
-  double pores;            // 1/s, rate at which a particle alone among solids that move returns to rest; 0: none move
-  bool between = false;    // the solids are bodies: only where solids fill most of its neighbourhood
+  double pores;               // 1/s, rate at which a particle alone among grains returns to rest; 0: no grains
   double least_viscosity;  // Pa s, rho0 h sqrt(g h) of a laminar fluid with a free surface (fluid_surface.hpp); else 0
   double surface_depth;    // m, of the middle of the top row below a heavy free surface, half a spacing
   double surface_diffusivity = 0.0;  // m2/s, of the density beside a heavy free surface, added

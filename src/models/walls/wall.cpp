@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kernels/kernel.hpp"
-#include "models/coupling/solid_in_fluid.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "models/walls/wall_faces.hpp"
 #include "models/walls/wall_normals.hpp"
@@ -20,6 +19,13 @@ constexpr double held_off = 0.02;
 
 /// The same beside bodies that move: they press particles to the outline, one alone in a gap (SolidInFluid).
 constexpr double held_off_by_bodies = 0.25;
+
+/// Whether a fluid touches bodies that move.
+bool carries_bodies(const Layout& layout, std::size_t fluid) {
+  return std::any_of(layout.entries.begin(), layout.entries.end(), [&](const PlanEntry& e) {
+    return e.extends && e.fluid == fluid && layout.phases[e.other].moves && !layout.phases[e.other].separate;
+  });
+}
 
 /// The largest size (m/s) of the velocity that a wall says, at 17 times of the run.
 double largest_in_time(const Scene& scene, const VectorExpression& velocity) {
