@@ -66,8 +66,7 @@ struct FieldInfo {
   std::string_view meaning;
 };
 
-#define BARCHAN_ROW(name, symbol, unit, rank, meaning) \
-  {Field::name, #name, symbol, unit, Rank::rank, meaning},
+#define BARCHAN_ROW(name, symbol, unit, rank, meaning) {Field::name, #name, symbol, unit, Rank::rank, meaning},
 inline constexpr std::array<FieldInfo, field_count> field_table{{BARCHAN_FIELDS(BARCHAN_ROW)}};
 #undef BARCHAN_ROW
 

@@ -9,7 +9,7 @@ namespace barchan {
 
 /// What a rank has of a phase that is shared out.
 struct RankHalo {
-  std::size_t particles = 0, ghosts = 0;    // ghosts: images of own particles beyond periodic sides among them
+  std::size_t particles = 0, ghosts = 0;   // ghosts: images of own particles beyond periodic sides among them
   std::map<std::int32_t, std::size_t> to;  // own particles that another rank has as ghosts, by that rank
 };
 

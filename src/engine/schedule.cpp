@@ -19,10 +19,7 @@ double since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 }  // namespace
 
 Schedule::Schedule(std::span<const char* const> stages)
-    : tasks_(stages.size()),
-      repeat_of_(stages.size()),
-      images_(stages.size()),
-      executed_(stages.size(), 0) {
+    : tasks_(stages.size()), repeat_of_(stages.size()), images_(stages.size()), executed_(stages.size(), 0) {
   for (const char* name : stages) seconds_.emplace_back(name, 0.0);
 }
 

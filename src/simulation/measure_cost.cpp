@@ -145,9 +145,9 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   if (!batches.lengths.empty()) e.steps = scene.time.end / median(batches.lengths);
   e.memory = memory_of_a_run(simulation, before, retreats ? states_kept(e.steps) : 0.0);
   if (on_ranks)
-    e.ranks =
-        on_ranks->plan({part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
-                        part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to"), why_start_is_whole(scene)});
+    e.ranks = on_ranks->plan({part_of(e.memory, "program"), part_of(e.memory, "arrays"), of_blocks,
+                              part_of(e.memory, "a frame"), part_of(e.memory, "states to go back to"),
+                              why_start_is_whole(scene)});
   const std::size_t first_batches = batches.seconds.size();
   const double end_of_more = thread_seconds() + more_seconds;
   while (e.failure.empty() && goes_on() && thread_seconds() < end_of_more &&

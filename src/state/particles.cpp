@@ -238,8 +238,7 @@ void PhaseParticles::archive_columns(Archive& a, const Rows& rows) {
     }
     for (auto& column : columns_[f]) item(name, column.data(), 1);
   }
-  for (OwnValues& v : own_)
-    item(name_ + "." + v.name, v.values.data(), v.width);
+  for (OwnValues& v : own_) item(name_ + "." + v.name, v.values.data(), v.width);
 }
 
 std::size_t PhaseParticles::bytes() const {

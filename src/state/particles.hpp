@@ -54,8 +54,8 @@ class PhaseParticles {
     return columns_[index(field)][static_cast<std::size_t>(component)].data();
   }
 
-  /// Registers a column of a model's own, which checkpoints hold; all its values are `of_new`. Throws std::logic_error when the name is there
-  /// already.
+  /// Registers a column of a model's own, which checkpoints hold; all its values are `of_new`. Throws std::logic_error
+  /// when the name is there already.
   template <class T>
   OwnColumn<T> add_own(const std::string& name, const T& of_new = T{}) {
     return {add_own_bytes(name, sizeof(T), &of_new)};

@@ -221,7 +221,7 @@ class Spheres : public Model {
   std::vector<double> kept_sums_;                      // of the own chunks, by step and chunk; then of all ranks
   std::vector<std::array<double, 2>> kept_of_bodies_;  // lost and deepest, by step
   std::vector<std::int64_t> shared_flags_;             // sorted_out_ of all ranks
-  std::vector<std::uint32_t> gone_;  // strays of a step
+  std::vector<std::uint32_t> gone_;                    // strays of a step
   SphereStep step_;
   SphereRest rest_;
   SphereSleep sleep_;

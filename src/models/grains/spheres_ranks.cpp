@@ -114,9 +114,7 @@ void Spheres::copy_radii() {
     records_[1 - now_][k * stride + radius] = records_[now_][k * stride + radius];
 }
 
-void Spheres::tell_places() {
-  shares_.tell_all(layout_.dimensions, laws_.parts().rubs, true, records_[now_].data());
-}
+void Spheres::tell_places() { shares_.tell_all(layout_.dimensions, laws_.parts().rubs, true, records_[now_].data()); }
 
 void Spheres::tell_records() {
   if (!bodies_.any()) shares_.tell(layout_.dimensions, laws_.parts().rubs, records_[now_].data());
