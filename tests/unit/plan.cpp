@@ -89,10 +89,10 @@ TEST(Plan, WarnsOfFieldsForFramesThatNoPhaseHas) {
   const std::size_t others = plan_of(s).warnings.size();
   s.output.fields = {"smoothing_length", "shift_velocity", "id"};
   EXPECT_EQ(plan_of(s).warnings.size(), others);
-  s.output.fields = {"shift_velocity", "velocity_gradient", "radius"};
+  s.output.fields = {"shift_velocity", "strain", "radius"};
   std::string all;
   for (const std::string& text : plan_of(s).warnings) all += text;
-  EXPECT_NE(all.find("no phase of this scene has \"velocity_gradient\""), std::string::npos) << all;
+  EXPECT_NE(all.find("no phase of this scene has \"strain\""), std::string::npos) << all;
   EXPECT_NE(all.find("no phase of this scene has \"radius\""), std::string::npos) << all;
   EXPECT_EQ(all.find("\"shift_velocity\""), std::string::npos) << all;
 }
