@@ -130,7 +130,7 @@ class FluidPhase : public Model {
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b);
 
 /// That of the entry of a fluid (Pa s), as its sums take it. The plain sum of a second derivative, sum V F r_x^2, is on
-/// rows the entry's gradient_sum (0.886 with a radius of 2.1 spacings): over it, so that a shear on rows has its
+/// rows the entry's gradient_sum (0.980 with a radius of 2.1 spacings): over it, so that a shear on rows has its
 /// stress. The corrected sums need none.
 double viscosity_of_sums(const Scene& scene, const Layout& layout, const PlanEntry& e);
 
