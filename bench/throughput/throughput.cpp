@@ -4,8 +4,9 @@
 //   [--steps S] [--json]
 //
 // Steps run without output. One thread: processor time of that thread, so that a busy machine does not matter; more
-// threads: wall time. Pairs are counted from both sides and are those within the kernel radius, not those in the skin.
-// Medians of five stretches of S steps, after a warm-up that includes rebuilds of the lists.
+// threads: wall time. The parts of a step are shares of wall time. Pairs are counted from both sides and are those
+// within the kernel radius, not those in the skin. Medians of five stretches of S steps, after a warm-up that includes
+// rebuilds of the lists.
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
@@ -13,9 +14,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "base/clock.hpp"
 #include "base/denormals.hpp"
 #include "scene/reader.hpp"
 #include "simulation/simulation.hpp"
@@ -91,11 +92,9 @@ double true_pairs(Simulation& s) {
 void compare_with_bare(Simulation& s, int steps) {
   BareAir bare(s);
   const auto seconds = [](auto&& work) {
-    timespec begin{}, end{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+    const double begin = thread_seconds();
     work();
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
-    return static_cast<double>(end.tv_sec - begin.tv_sec) + 1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
+    return thread_seconds() - begin;
   };
   std::vector<double> ratios;
   for (int stretch = 0; stretch < 11; ++stretch) {
@@ -144,7 +143,6 @@ int main(int argc, char** argv) {
   const auto blocks = generate(scene);
   const Plan plan = make_plan(scene, blocks);
   Simulation s(scene, plan, blocks);
-  s.measure_processor_time();
   for (int k = 0; k < warm; ++k) s.step(1.0);
   if (bare) {
     compare_with_bare(s, steps);
@@ -152,29 +150,29 @@ int main(int argc, char** argv) {
   }
   const auto clock = [&] {
     if (threads > 1) return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    double sum = 0;
-    for (const double p : s.processor_seconds()) sum += p;
-    return sum;
+    return thread_seconds();
   };
   std::vector<double> rates;
   const auto rebuilds = s.neighbours().rebuilds();
-  const std::vector<double> before = s.processor_seconds();
+  const auto before = s.seconds();
+  const double begin = clock();
   for (int stretch = 0; stretch < 5; ++stretch) {
     const double start = clock();
     for (int k = 0; k < steps; ++k) s.step(1.0);
     rates.push_back(plan.particles() * steps / (clock() - start));
   }
+  const double spent = clock() - begin;
   std::sort(rates.begin(), rates.end());
   const double every = 5.0 * steps / std::max(1.0, static_cast<double>(s.neighbours().rebuilds() - rebuilds));
   const double pairs = true_pairs(s), neighbours = pairs / plan.particles();
   const double bytes = static_cast<double>(s.bytes()) / plan.particles();
-  double fluid = 0, all = 0;
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    const double seconds = s.processor_seconds()[k] - before[k];
-    all += seconds;
-    if (s.seconds()[k].first == "fluid rates" || s.seconds()[k].first == "elastic forces" ||
-        s.seconds()[k].first == "contacts")
-      fluid += seconds;
+  std::vector<std::pair<std::string, double>> parts = s.seconds();
+  double all = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) all += parts[k].second -= before[k].second;
+  double fluid = 0;
+  for (auto& [part, share] : parts) {
+    share /= all;
+    if (part == "fluid rates" || part == "elastic forces" || part == "contacts") fluid += share * spent;
   }
   if (json) {
     nlohmann::ordered_json j{{"case", name},
@@ -187,8 +185,8 @@ int main(int argc, char** argv) {
                              {"steps_per_rebuild", every},
                              {"skin", s.neighbours().skin()},
                              {"bytes_per_particle", bytes}};
-    for (std::size_t k = 0; k < before.size(); ++k)
-      if (const double t = s.processor_seconds()[k] - before[k]; t > 0) j["share"][s.seconds()[k].first] = t / all;
+    for (const auto& [part, share] : parts)
+      if (share > 0) j["share"][part] = share;
     std::printf("%s\n", j.dump(2).c_str());
     return 0;
   }
@@ -198,8 +196,7 @@ int main(int argc, char** argv) {
       name.c_str(), plan.particles(), threads, neighbours, rates[2] * 1e-6, rates[2] * neighbours * 1e-6,
       fluid > 0 ? pairs * 5.0 * steps / fluid * 1e-6 : 0.0, every, s.neighbours().skin(), bytes);
   std::printf("  share of the step:");
-  for (std::size_t k = 0; k < before.size(); ++k)
-    if (const double t = s.processor_seconds()[k] - before[k]; t > 0.002 * all)
-      std::printf("  %s %.1f %%", s.seconds()[k].first.c_str(), 100 * t / all);
+  for (const auto& [part, share] : parts)
+    if (share > 0.002) std::printf("  %s %.1f %%", part.c_str(), 100 * share);
   std::printf("\n");
 }
