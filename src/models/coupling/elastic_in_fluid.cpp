@@ -39,6 +39,7 @@ void ElasticInFluid::begin(State& state, const std::vector<ParticleBlock>& block
     if (near && near->distance < 0.0) p.own(nearest_)[k] = static_cast<std::uint32_t>(near->piece);
   }
   stress_.resize(border_.pieces().size());
+  followed_.assign(stress_.size(), Followed{});
   parted_.assign(fluids_.size(), std::vector<double>(stress_.size(), 0.0));
   force_.resize(p.size());
 }
@@ -124,8 +125,29 @@ void ElasticInFluid::hold() {
   }
 }
 
+/// Adds this step to the mean acceleration of each piece: the mean of a mean, each over a part of h/c. What vibrates
+/// faster falls off with the square of its frequency, and what is slow lags by twice that time. A single mean over half
+/// of h/c left a gate (Antoci et al. 2007, c = 68 m/s) 1.04 of its energy; over 0.7 of it a plate a quarter as dense as
+/// the water around it came apart within a second.
+void ElasticInFluid::follow() {
+  constexpr double part = 0.3;
+  PhaseParticles& p = w_->particles(solid_);
+  double slowest = 0.0;  // s, h/c
+  for (const BorderFluid& fluid : fluids_)
+    slowest = std::max(slowest, layout_.phases[fluid.phase].smoothing_length / fluid.sound_speed);
+  const double share = std::min(1.0, w_->state.dt / (part * slowest));
+  std::array<const double*, 3> a{};
+  for (int d = 0; d < layout_.dimensions; ++d) a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d);
+  for (std::size_t q = 0; q < followed_.size(); ++q) {
+    auto& [mean, of_means] = followed_[q];
+    mean = mean + share * (border_.mean(q, p.places(), a) - mean);
+    of_means = of_means + share * (mean - of_means);
+  }
+}
+
 /// Normals, depths, velocities and accelerations of the nearest places of the surface.
 void ElasticInFluid::move_surface() {
+  follow();
   PhaseParticles& p = w_->particles(solid_);
   const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
   std::array<const double*, 3> x{}, a{};
@@ -161,7 +183,7 @@ void ElasticInFluid::move_surface() {
       depth[k] = std::max(-dot(r, piece.normal), 0.0);
       n_k = piece.normal;
       v_k = piece.velocity_at(r + depth[k] * n_k);
-      a_k = border_.mean(nearest[k], p.places(), a);
+      a_k = followed_[nearest[k]].of_means;
     }
     for (std::size_t d = 0; d < dimensions; ++d) {
       normal[d][k] = n_k[d];
@@ -237,6 +259,7 @@ void ElasticInFluid::sum(const BorderFluid& fluid) {
 }
 
 void ElasticInFluid::archive(Archive& a) {
+  a.values("accelerations followed at " + layout_.phases[solid_].name, followed_.data(), followed_.size());
   for (std::size_t c = 0; c < fluids_.size(); ++c)
     a.values("parting speeds at " + layout_.phases[solid_].name + " of " + layout_.phases[fluids_[c].phase].name,
              parted_[c].data(), parted_[c].size());

@@ -15,7 +15,9 @@ namespace barchan {
 /// The fluid's pressure follows the border by way of its density, some steps late, and feeds vibrations faster than
 /// c/h. So the pressure is that of an acoustic wave that meets the border: p - rho c w, w = (v_fluid - v_border).n
 /// there, which is zero but for the error of the scheme (the solution of Riemann's problem for sound; of SPH with
-/// solids e.g. Zhang, Rezavand & Hu 2021). Less its mean over h/c, this is no load of slow motions.
+/// solids e.g. Zhang, Rezavand & Hu 2021). Less its mean over h/c, this is no load of slow motions. The acceleration
+/// with which the fluid is continued is a mean as well: that of single steps has vibrations which no
+/// pressure of the fluid follows, and their work on the body came from nowhere (docs/method.md).
 class ElasticInFluid : public Model {
  public:
   /// For the phase `solid` (ends_at_border of scene/couplings.hpp) and all its entries with such fluids.
@@ -28,7 +30,12 @@ class ElasticInFluid : public Model {
   void archive(Archive& a) override;
 
  private:
+  /// m/s2: the mean acceleration of a piece, and the mean of that.
+  struct Followed {
+    Vec3 mean{}, of_means{};
+  };
   void hold();
+  void follow();
   void move_surface();
   void load();
   void find_stress(std::size_t fluid);
@@ -44,6 +51,7 @@ class ElasticInFluid : public Model {
   OwnColumn<std::uint32_t> nearest_;         // piece of the surface by particle; `inner`: none is near
   std::vector<PiecePlace> places_;           // by piece
   std::vector<BorderStress> stress_;         // by piece, of the fluid that is looked at
+  std::vector<Followed> followed_;           // by piece
   std::vector<std::vector<double>> parted_;  // m/s by fluid and piece: mean speed of parting
   std::vector<Vec3> force_;                  // N by particle (id from the phase's first)
   Workspace* w_ = nullptr;
