@@ -10,6 +10,7 @@ over the median of one thread; bound 2 (of the worst; ranks with the 0.5 s in wh
 import argparse
 import math
 import pathlib
+import signal
 import statistics
 import sys
 import tempfile
@@ -75,6 +76,7 @@ def main():
     parser.add_argument("--load", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=1.0)
     given = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # the busy processes end with this one
     for particles in map(int, given.particles.split(",")):
         walls = measured(given.program.resolve(), particles, given.load, given.runs, given.seconds)
         one = statistics.median(walls["one thread"])

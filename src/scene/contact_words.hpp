@@ -43,12 +43,12 @@ constexpr bool of_spheres(ContactLaw law) { return sphere_keys_of(law) != nullpt
 
 /// What a phase of grains says of its contacts: the keys from which laws of spheres take their constants.
 struct SphereMaterial {
-  double restitution{};             // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
-  double friction{};                // Coulomb's coefficient, of spheres
-  double rolling_friction{};        // largest rolling torque over normal force and reduced radius, of spheres
-  std::optional<double> stiffness;  // N/m, of a linear contact of two grains of the phase
-  double largest_overlap{};         // of the mean diameter, at the largest speed of the scene
-  double young{};                   // Pa, of a Hertzian contact; 0: from largest_overlap
+  double restitution{};                   // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
+  double friction{};                      // Coulomb's coefficient, of spheres
+  double rolling_friction{};              // largest rolling torque over normal force and reduced radius, of spheres
+  std::optional<double> stiffness;        // N/m, of a linear contact of two grains of the phase
+  std::optional<double> largest_overlap;  // of the mean diameter, at the largest speed of the scene
+  double young{};                         // Pa, of a Hertzian contact; 0: from largest_overlap
   double poisson{};
 };
 

@@ -104,10 +104,11 @@ constexpr Key rows_of_keys[] = {
      "Rolling resistance of spheres: the largest torque over normal force and reduced radius.", {.at_least = 0.0, .at_most = 10.0}},
     {"phases", "stiffness", of<&GrainsKeys::stiffness, &RigidKeys::stiffness>("from largest-overlap").like("20"), "N/m",
      "Stiffness of a contact of two grains with law = \"linear\"; of a contact of rigid bodies, in 2D per metre of depth.", positive},
-    {"phases", "largest-overlap", of<&GrainsKeys::largest_overlap, &RigidKeys::largest_overlap>(0.02), "",
+    {"phases", "largest-overlap", of<&GrainsKeys::largest_overlap, &RigidKeys::largest_overlap>("0.02; 0.5 of rigid bodies where a fluid is between").like("0.02"), "",
      "Overlap of two that meet with the largest speed of the scene (time.largest-speed): of spheres in mean diameters, of rigid bodies in "
-     "spacings. It makes the stiffness.",
-     {.at_most = 0.2, .above = 0.0}},
+     "spacings. It makes the stiffness. Two rigid bodies, or one and a wall, that touch the same fluid meet a spacing of it before their outlines do: "
+     "no particle has room between them.",
+     {.at_most = 0.5, .above = 0.0}},
     {"phases", "sleep", of<&GrainsKeys::sleep>(false), "",
      "Spheres that nothing disturbs sleep: they stay where they are and cost nothing until forces on them change by 0.3 of their weight. "
      "Needs gravity."},

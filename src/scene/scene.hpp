@@ -94,8 +94,10 @@ struct RigidKeys {
   static constexpr PhaseKind kind = PhaseKind::rigid;
   static constexpr const char* word = "rigid";
   static constexpr bool has_particles = true;
-  std::optional<double> stiffness;  // N/m, of a contact (per metre of depth in 2D)
-  double largest_overlap{};         // of the spacing, at the largest speed of the scene: makes the stiffness
+  std::optional<double> stiffness;        // N/m, of a contact (per metre of depth in 2D)
+  std::optional<double> largest_overlap;  // of the spacing, at the largest speed of the scene: makes the stiffness
+  /// Without the key; wet: where a fluid is between. A body that is stopped as fast as a dry one hammers the water.
+  static constexpr double dry_overlap = 0.02, wet_overlap = 0.5;
 };
 
 struct GrainsKeys : SphereMaterial {

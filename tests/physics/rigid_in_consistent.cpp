@@ -215,7 +215,9 @@ TEST(RigidInConsistentFluid, KeepsMomentumToTheOrderOfTheScheme) {
 }
 
 // Under a disc that comes to the floor a particle of water may be all that meets the disc's own particles, at the
-// height of the plane of its surface: the line of no slip through it had a pole there, and its density ran away.
+// height of the plane of its surface: the line of no slip through it had a pole there, and its density ran away. With
+// the default stiffness the disc then squeezed that particle out of its place: contacts begin a spacing before, where
+// it has room.
 TEST(RigidInConsistentFluid, ADiscThatSinksToTheFloorSqueezesTheWaterOut) {
   const std::string pool = R"(dimensions = 2
 spacing = 0.01
@@ -232,7 +234,6 @@ kind = "wall"
 [phases.disc]
 kind = "rigid"
 density = 2650
-largest-overlap = 0.2
 [interactions]
 water-water = {}
 water-tank = {}
@@ -263,9 +264,9 @@ end = 0.4
       go(run, time);
       most = std::max(most, value(run, "largest_density_error"));
     }
-    report(std::string("density under a disc from ") + height + " m, largest error", most, 0.1);
-    EXPECT_LT(most, 0.1) << "before: 0.2, and at other heights the run ended";
-    EXPECT_NEAR(value(run, "disc_y"), 0.06, 0.008) << "the disc lies on the floor, or on a particle of water";
+    report(std::string("density under a disc from ") + height + " m, largest error", most, 0.05);
+    EXPECT_LT(most, 0.05) << "before: 0.2 with largest-overlap = 0.2, and with the default stiffness the run ended";
+    EXPECT_NEAR(value(run, "disc_y"), 0.07, 0.002) << "the disc lies a spacing of the water above the floor";
   }
 }
 

@@ -175,6 +175,57 @@ TEST(RigidContact, ABlockTouchesTheFloorWithTwoCorners) {
   EXPECT_NEAR(run.history("a_floor_taken_energy") / (0.5 * mass), 1.0 - std::pow(run.history("a_velocity_y"), 2), 1e-4);
 }
 
+/// A square of 0.2 m over the floor of a tank, with its bottom at a height (m); `water`: entries with one, or none.
+ContactRun over_a_floor(double height, const std::string& water) {
+  return ContactRun(bodies_in_a_box(
+      "gravity = [0, -1]\n[phases.water]\nkind = \"fluid\"\ndensity = 1\nviscosity = 1\n",
+      "water-water = {}\na-floor = { restitution = 0.5 }\n" + water + "[phases.floor]\nkind = \"wall\"\n",
+      "[[fill]]\nphase = \"a\"\nshape = { box = { min = [0.8, " + text_of_number(height) + "], max = [1, " +
+          text_of_number(height + 0.2) +
+          "] } }\n[[fill]]\nphase = \"floor\"\nshape = { sides = [\"bottom\"] }\n[[fill]]\n"
+          "phase = \"water\"\nshape = { box = { min = [1.6, 1.6], max = [1.8, 1.8] } }\n"));
+}
+
+/// m, of the square's bottom where the floor first pushes.
+double height_of_the_first_push(ContactRun run) {
+  for (int step = 0; step < 20000; ++step) {
+    const double height = run.simulation->state().bodies[0].now.place[1] - 0.1;
+    run.simulation->step(1.0);
+    if (run.simulation->state().bodies[0].now.touch_force[1] > 0.0) return height;
+  }
+  return -1.0;
+}
+
+/// Where a fluid is between, a contact begins a spacing of it before the outlines meet, or as far as they have been
+/// apart. A fluid that only one of both feels is not between.
+TEST(RigidContact, BeginsASpacingOfTheFluidBefore) {
+  const std::string both = "water-a = {}\nwater-floor = {}\n";
+  EXPECT_NEAR(height_of_the_first_push(over_a_floor(0.12, both)), 0.04, 1e-3);
+  EXPECT_NEAR(height_of_the_first_push(over_a_floor(0.02, both)), 0.02, 1e-3) << "no push before it fell";
+  EXPECT_NEAR(height_of_the_first_push(over_a_floor(0.12, "water-a = {}\n")), 0.0, 1e-3);
+}
+
+/// Without a key the water's contact is softer: it stops the fastest body of the scene within half a spacing, not
+/// within a fiftieth.
+TEST(RigidContact, IsSofterInAFluidWhereTheSceneSaysNothing) {
+  const auto step_of = [](std::string water, const std::string& key) {
+    std::string text =
+        bodies_in_a_box("[phases.water]\nkind = \"fluid\"\ndensity = 1\nviscosity = 1\n",
+                        "water-water = {}\na-a = { restitution = 0.5 }\n" + water,
+                        "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [0.5, 0.5], radius = 0.2 } }\n"
+                        "[[fill]]\nphase = \"water\"\nshape = { box = { min = [1.6, 1.6], max = [1.8, 1.8] } }\n");
+    text.replace(text.find("largest-overlap = 0.2\n"), 22, key);
+    const ContactRun run(text);
+    for (const auto& l : run.simulation->plan().limits)
+      if (l.name == "contact a-a") return l.value;
+    return 0.0;
+  };
+  const double dry = step_of("", "");
+  EXPECT_GT(dry, 0.0);
+  EXPECT_NEAR(step_of("water-a = {}\n", "") / dry, 25.0, 1e-9);
+  EXPECT_EQ(step_of("water-a = {}\n", "largest-overlap = 0.02\n"), dry) << "what the scene says";
+}
+
 /// The step of a contact: 0.1 sqrt(m/K) of the two lightest, with `safety`; a push on a disc goes through its centre.
 TEST(RigidContact, LimitsTheStepByTheLightest) {
   ContactRun run(

@@ -48,10 +48,15 @@ void describe_rigid_contact(const Scene&, const Interaction&, const Layout& layo
 }
 
 RigidContact::RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
-    : scene_(scene), layout_(layout), entry_(entry) {
+    : scene_(scene), layout_(layout), entry_(entry), room_(room_of_water()) {
   double stiffness = 1e300;
-  for (const std::size_t k : {entry.a, entry.b})
-    if (layout.phases[k].moves) stiffness = std::min(stiffness, layout.phases[k].contact_stiffness);
+  for (const std::size_t k : {entry.a, entry.b}) {
+    if (!layout.phases[k].moves) continue;
+    const RigidKeys& keys = scene.phases[k].rigid();
+    const bool softer = room_ > 0.0 && !keys.stiffness && !keys.largest_overlap;
+    const double ratio = softer ? RigidKeys::dry_overlap / RigidKeys::wet_overlap : 1.0;
+    stiffness = std::min(stiffness, layout.phases[k].contact_stiffness * ratio * ratio);
+  }
   if (!(stiffness > 0.0))
     throw SceneError(located(scene, "interactions." + entry.name) +
                      ": nothing in the scene moves or weighs, from which the stiffness of the contact could follow; "
@@ -77,7 +82,7 @@ void RigidContact::attach(Workspace& w) {
       if (fill.phase == layout_.phases[k].name)
         for (const ContactSurface& surface : surfaces_of(fill.shape, scene_, layout_.phases[k].spacing))
           for (const TouchPoint& probe : surface.probes()) widest = std::max(widest, probe.radius);
-  const double reach = widest + std::max(layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing);
+  const double reach = widest + std::max({layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing, room_});
   const auto add = [&](std::size_t phase, std::vector<Side>& sides) {
     if (layout_.phases[phase].moves) add_bodies(phase, reach, sides);
     else add_wall(phase, reach, sides);
@@ -87,6 +92,21 @@ void RigidContact::attach(Workspace& w) {
   for (std::size_t i = 0; i < a_.size(); ++i)
     for (std::size_t j = entry_.a == entry_.b ? i + 1 : 0; j < (entry_.a == entry_.b ? a_ : b_).size(); ++j)
       refuse_wide(a_[i], (entry_.a == entry_.b ? a_ : b_)[j]);
+  apart_.assign(a_.size() * (entry_.a == entry_.b ? a_ : b_).size(), 0.0);
+}
+
+/// A spacing of the fluid that both touch: particles of it cannot be closer to both.
+double RigidContact::room_of_water() const {
+  double room = 0.0;
+  const auto wets = [&](std::size_t fluid, std::size_t phase) {
+    return std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
+      return e.continues_fluid && e.has(fluid) && e.has(phase) && fluid != phase;
+    });
+  };
+  for (std::size_t k = 0; k < layout_.phases.size(); ++k)
+    if (layout_.phases[k].flows && wets(k, entry_.a) && wets(k, entry_.b))
+      room = std::max(room, layout_.phases[k].spacing);
+  return room;
 }
 
 void RigidContact::add_bodies(std::size_t phase, double reach, std::vector<Side>& sides) {
@@ -173,13 +193,10 @@ void RigidContact::touch() {
       side.now = OwnAxes(body_of(side));
       side.force = side.torque = Vec3{};
     }
-  if (entry_.a == entry_.b) {
-    for (std::size_t i = 0; i < a_.size(); ++i)
-      for (std::size_t j = i + 1; j < a_.size(); ++j) touch(a_[i], a_[j]);
-    return;
-  }
-  for (Side& a : a_)
-    for (Side& b : b_) touch(a, b);
+  std::vector<Side>& others = entry_.a == entry_.b ? a_ : b_;
+  for (std::size_t i = 0; i < a_.size(); ++i)
+    for (std::size_t j = entry_.a == entry_.b ? i + 1 : 0; j < others.size(); ++j)
+      touch(a_[i], others[j], apart_[i * others.size() + j]);
 }
 
 /// Of the forces of this step with the velocities of now.
@@ -203,35 +220,43 @@ Vec3 RigidContact::image_between(const RigidBody& a, const RigidBody& b) const {
   return image;
 }
 
-void RigidContact::touch(Side& a, Side& b) {
+/// `apart` (m): where their contact begins, as far apart as they have been, at most the room of a fluid.
+void RigidContact::touch(Side& a, Side& b, double& apart) {
   const RigidBody &first = body_of(a), &second = body_of(b);
   const bool planes = !(std::max(a.reach, b.reach) < 1e300);
   const Vec3 image = planes ? Vec3{} : image_between(first, second);
-  if (!planes && norm(first.now.place + image - second.now.place) > a.reach + b.reach) return;
-  for (const ContactSurface& of_a : a.surfaces)
-    for (const ContactSurface& of_b : b.surfaces) {
-      // A round body touches with the place that is nearest to the other; all others with their corners.
-      if (is_round(of_a) || !is_round(of_b)) touch(a, of_a, b, of_b, image);
-      if (!is_round(of_a)) touch(b, of_b, a, of_a, -1.0 * image);
-    }
+  double gap = room_;
+  if (planes || !(norm(first.now.place + image - second.now.place) > a.reach + b.reach + room_))
+    for (const ContactSurface& of_a : a.surfaces)
+      for (const ContactSurface& of_b : b.surfaces) {
+        // A round body touches with the place that is nearest to the other; all others with their corners.
+        if (is_round(of_a) || !is_round(of_b)) gap = std::min(gap, touch(a, of_a, b, of_b, image, apart));
+        if (!is_round(of_a)) gap = std::min(gap, touch(b, of_b, a, of_a, -1.0 * image, apart));
+      }
+  apart = std::max(apart, gap);
 }
 
-/// The probes of a on the surface of b.
-void RigidContact::touch(Side& a, const ContactSurface& of_a, Side& b, const ContactSurface& on_b, const Vec3& image) {
+/// The probes of a on the surface of b. Returns the least distance between them (m).
+double RigidContact::touch(Side& a, const ContactSurface& of_a, Side& b, const ContactSurface& on_b, const Vec3& image,
+                           double apart) {
   const RigidBody &first = body_of(a), &second = body_of(b);
+  double least = 1e300;
   for (const TouchPoint& probe : of_a.probes()) {
     const Vec3 x = first.now.place + image + a.now.to_space(a.first.to_own(probe.at - first.first_place));
     const Vec3 from_b = x - second.now.place;
-    if (b.reach < 1e300 && dot(from_b, from_b) > std::pow(b.reach + probe.radius, 2)) continue;
+    if (b.reach < 1e300 && dot(from_b, from_b) > std::pow(b.reach + probe.radius + room_, 2)) continue;
     const auto gap = on_b.gap(second.first_place + b.first.to_space(b.now.to_own(from_b)));
     if (!gap) continue;
-    const double overlap = probe.radius - gap->distance;
-    if (!(overlap > 0.0) || overlap > probe.deepest) continue;
+    const double inside = probe.radius - gap->distance, overlap = inside + apart;
+    if (inside > probe.deepest) continue;
+    least = std::min(least, -inside);
+    if (!(overlap > 0.0)) continue;
     overlap_ = std::max(overlap_, overlap);
     if (!std::isfinite(overlap)) continue;  // trouble() tells
     const Vec3 normal = b.now.to_space(b.first.to_own(gap->normal));
-    push(a, b, x - (probe.radius - 0.5 * overlap) * normal, image, overlap, normal);
+    push(a, b, x - (probe.radius - 0.5 * inside) * normal, image, overlap, normal);
   }
+  return least;
 }
 
 /// Forces at the place `at` (m); `normal` points at a, whose places lie `image` away.
@@ -268,17 +293,19 @@ void RigidContact::history(HistoryRow& row) const {
 
 void RigidContact::archive(Archive& a) {
   a.number("overlap of " + entry_.name, overlap_);
+  if (room_ > 0.0) a.values("distances of " + entry_.name, apart_.data(), apart_.size());
   a.number("power of " + entry_.name, power_);
   a.number("energy of " + entry_.name, taken_);
 }
 
 std::optional<std::string> RigidContact::trouble() const {
   const double spacing = std::min(layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing);
-  if (!(overlap_ > deepest_overlap * spacing)) return std::nullopt;
+  const double bound = std::max(deepest_overlap * spacing, room_);
+  if (!(overlap_ > bound)) return std::nullopt;
   const std::string& name = layout_.phases[layout_.phases[entry_.a].moves ? entry_.a : entry_.b].name;
-  return "the outlines of " + entry_.name + " overlap by " + brief(overlap_) + " m (bound " +
-         brief(deepest_overlap * spacing) +
-         " m); the contact could not keep them apart, or the fills overlap: raise phases." + name +
+  return "the outlines of " + entry_.name + " overlap by " + brief(overlap_) + " m (bound " + brief(bound) + " m" +
+         (room_ > 0.0 ? ", a spacing of the fluid between included" : "") +
+         "); the contact could not keep them apart, or the fills overlap: raise phases." + name +
          ".stiffness or time.largest-speed, or move the fills apart";
 }
 

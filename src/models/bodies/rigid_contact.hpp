@@ -36,11 +36,13 @@ class RigidContact : public Model {
   void add_wall(std::size_t phase, double reach, std::vector<Side>& sides);
   RigidBody& body_of(const Side& side) { return side.still ? still_[side.body] : w_->state.bodies[side.body]; }
   void refuse_wide(const Side& a, const Side& b);
+  double room_of_water() const;
   Vec3 image_between(const RigidBody& a, const RigidBody& b) const;
   double largest_inverse_mass(std::size_t phase) const;
   void touch();
-  void touch(Side& a, Side& b);
-  void touch(Side& a, const ContactSurface& of_a, Side& b, const ContactSurface& on_b, const Vec3& image);
+  void touch(Side& a, Side& b, double& apart);
+  double touch(Side& a, const ContactSurface& of_a, Side& b, const ContactSurface& on_b, const Vec3& image,
+               double apart);
   void push(Side& of_a, Side& of_b, const Vec3& at, const Vec3& image, double overlap, const Vec3& normal);
   void load(Side& side, const Vec3& arm, const Vec3& force);
   double power();
@@ -51,6 +53,8 @@ class RigidContact : public Model {
   SurfaceContactLaw law_;
   std::vector<Side> a_, b_;       // b_ is empty where both are of one phase
   std::vector<RigidBody> still_;  // places of walls
+  double room_ = 0.0;             // m, that a fluid keeps between two bodies; 0: none is between them
+  std::vector<double> apart_;     // m, of each two: where their contact begins
   double overlap_ = 0.0;          // m, the deepest of the last step
   double power_ = 0.0;            // W, that the contacts take out of the motion at the end of the last step
   double taken_ = 0.0;            // J, that they took since the start

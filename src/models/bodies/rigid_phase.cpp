@@ -65,8 +65,9 @@ void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks
   double heaviest = 0.0;
   for (const RigidBody& body : p.rigid_bodies) heaviest = std::max(heaviest, body.mass);
   // A body that comes with the largest speed v is stopped within the overlap d: K d^2 = M v^2.
-  p.contact_stiffness =
-      keys.stiffness.value_or(heaviest * std::pow(layout.largest_speed / (keys.largest_overlap * p.spacing), 2));
+  p.contact_stiffness = keys.stiffness.value_or(
+      heaviest *
+      std::pow(layout.largest_speed / (keys.largest_overlap.value_or(RigidKeys::dry_overlap) * p.spacing), 2));
   p.rules = rigid_rules(p, layout.largest_speed, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 

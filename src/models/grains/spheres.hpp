@@ -67,7 +67,7 @@ typename Row::Law::Normal normal_spring(const Scene& scene, const Layout& layout
   if (const auto given = Normal::of(keys)) return *given;
   if (!(layout.largest_speed > 0.0)) refuse_unknown_stiffness(scene, phase, sphere_keys_of(Row::word)->stiffness);
   return Normal::of_overlap(keys, impact_of(layout, phase, layout.largest_speed),
-                            keys.largest_overlap * layout.phases[phase].diameter);
+                            keys.largest_overlap.value_or(0.02) * layout.phases[phase].diameter);
 }
 /// Whether spheres of the phase turn: some law of theirs rubs.
 bool spheres_turn(const Scene& scene, std::size_t phase);
