@@ -208,7 +208,7 @@ TEST(RigidContact, BeginsASpacingOfTheFluidBefore) {
 /// Without a key the water's contact is softer: it stops the fastest body of the scene within half a spacing, not
 /// within a fiftieth.
 TEST(RigidContact, IsSofterInAFluidWhereTheSceneSaysNothing) {
-  const auto step_of = [](std::string water, const std::string& key) {
+  const auto step_of = [](const std::string& water, const std::string& key) {
     std::string text =
         bodies_in_a_box("[phases.water]\nkind = \"fluid\"\ndensity = 1\nviscosity = 1\n",
                         "water-water = {}\na-a = { restitution = 0.5 }\n" + water,
