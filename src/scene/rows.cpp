@@ -108,7 +108,7 @@ constexpr Key rows_of_keys[] = {
      "Overlap of two that meet with the largest speed of the scene (time.largest-speed): of spheres in mean diameters, of rigid bodies in "
      "spacings. It makes the stiffness. Two rigid bodies, or one and a wall, that touch the same fluid meet a spacing of it before their outlines do: "
      "no particle has room between them.",
-     {.at_most = 0.5, .above = 0.0}},
+     {.at_most = 0.2, .above = 0.0}},
     {"phases", "sleep", of<&GrainsKeys::sleep>(false), "",
      "Spheres that nothing disturbs sleep: they stay where they are and cost nothing until forces on them change by 0.3 of their weight. "
      "Needs gravity."},
