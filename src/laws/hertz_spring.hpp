@@ -129,8 +129,11 @@ struct HertzSpring {
     n.dashpot = n.dashpot * fnma(drag * drag, dt.whole * dt.whole * V(1.0 / 12.0), V(1.0));
     const V push = d.beside(elastic, n.dashpot, approach, fma(n.dashpot * inverse_mass, dt.half, V(1.0)));
     const V ending = select(x > V(0.0), ramp(push, V(1.5) * here * before), V(0.0));
-    n.force = select(d.loses(), select(approach > V(0.0), push, ending), n.elastic);
-    n.elastic = select(d.loses(), n.elastic + more, n.elastic);
+    n.force = n.elastic;
+    if (d.loses) {
+      n.force = select(approach > V(0.0), push, ending);
+      n.elastic = n.elastic + more;
+    }
     n.load = n.force;
     n.stored = V(stored_share) * n.elastic * simd::max(x, V(0.0));
     return n;

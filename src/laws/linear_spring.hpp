@@ -64,11 +64,11 @@ struct LinearSpring {
     using namespace contact_onset;
     using simd::fma;
     using simd::fnma;
-    const V x = m.overlap, twelfth(1.0 / 12.0), damping2 = d.ratio * d.ratio;
-    const V turn2 = c.stiffness * (dt.whole * dt.whole) * m.inverse_mass;
-    const V mean = turn2 * twelfth * (V(1.0) + damping2), held = mean * simd::max(m.others, V(0.0));
-    const V k = c.stiffness * fnma(turn2 * twelfth, V(1.0) + damping2, V(1.0));
-    const V dashpot = d.coefficient(m.mass * c.stiffness) * fnma(turn2 * twelfth, damping2, V(1.0));
+    const V x = m.overlap, damping2 = d.ratio * d.ratio, of_dashpot = damping2 * V(1.0 / 12.0),
+            of_both = of_dashpot + V(1.0 / 12.0);
+    const V turn2 = c.stiffness * (dt.whole * dt.whole) * m.inverse_mass, mean = turn2 * of_both;
+    const V held = mean * simd::max(m.others, V(0.0)), k = fnma(c.stiffness, mean, c.stiffness);
+    const V dashpot = d.coefficient(m.mass * c.stiffness) * fnma(turn2, of_dashpot, V(1.0));
     const V drag = dashpot * m.inverse_mass * dt.half;
     // Far from an onset every ramp is the overlap itself: what only an onset needs is found there.
     const V deep = simd::max(x, V(0.0)), before = way(m.approach, dt.whole);
@@ -89,17 +89,19 @@ struct LinearSpring {
     n.depth = deep;
     n.stiffness = c.stiffness;
     n.dashpot = dashpot;
+    if (!d.loses) {
+      n.force = n.load = n.elastic = k * deep;
+      n.stored = V(stored_share) * n.elastic * deep;
+      return n;
+    }
     // One quotient: of contacts that close the force, of those that part its depth, k the stiffness.
     const auto closes = m.approach > V(0.0);
     const V pushed = d.beside(fma(k, select(closes, sprung, x), more), dashpot * select(closes, n.share, V(1.0)),
                               m.approach, select(closes, fma(drag, n.share, V(1.0)), fma(drag, k, k)));
     V parting = simd::max(pushed, V(0.0));
     if (to_bits(pushed < a) != 0) parting = ramp(pushed, a);
-    const auto loses = d.loses();
-    n.elastic = select(loses, n.elastic, k * n.depth);
-    n.force = select(loses, select(closes, pushed, k * parting), n.elastic);
-    n.load = n.force;
-    n.stored = V(stored_share) * n.elastic * n.depth;
+    n.force = n.load = select(closes, pushed, k * parting);
+    n.stored = V(stored_share) * n.elastic * deep;
     return n;
   }
 };

@@ -40,6 +40,10 @@ struct NormalDashpot {
     for (int k = 0; k < 200; ++k) (restitution(0.5 * (low + high)) > e ? low : high) = 0.5 * (low + high);
     return 0.5 * (low + high);
   }
+  /// Steps in a contact (laws/contact_onset.hpp), so that every e from 0.05 is kept within 0.3 % of itself; most codes
+  /// take 10 to 50. Below e = 0.3 they follow zeta. With fewer than 12 zeta the dashpots of packed spheres, up to four
+  /// times one of them, gain energy (laws/other_forces.hpp).
+  static double steps(double e) { return std::max(12.0, 20.5 * damping_ratio(e)); }
   /// Beside a spring, whose `dashpot_share()` is D/zeta.
   template <class Spring>
   static NormalDashpot of_restitution(double e) {
@@ -56,7 +60,8 @@ struct NormalDashpot {
   template <class V>
   struct Constants {
     V ratio;
-    explicit Constants(const NormalDashpot& d) : ratio(d.ratio) {}
+    bool loses;  // not where another entry of the scene alone has a dashpot
+    explicit Constants(const NormalDashpot& d) : ratio(d.ratio), loses(d.ratio > 0.0) {}
 
     /// c (N s/m) of the reduced mass times the stiffness (kg N/m).
     BARCHAN_SIMD_INLINE V coefficient(V mass_stiffness) const { return ratio * simd::sqrt(mass_stiffness); }
@@ -64,7 +69,6 @@ struct NormalDashpot {
     static BARCHAN_SIMD_INLINE V beside(V spring, V dashpot, V approach, V slow) {
       return simd::fma(dashpot, approach, spring) / slow;
     }
-    BARCHAN_SIMD_INLINE auto loses() const { return ratio > V(0.0); }
   };
 };
 
@@ -74,11 +78,11 @@ struct NoDashpot {
   template <class V>
   struct Constants {
     V ratio{0.0};
+    static constexpr bool loses = false;
     explicit Constants(const NoDashpot&) {}
 
     BARCHAN_SIMD_INLINE V coefficient(V) const { return V(0.0); }
     static BARCHAN_SIMD_INLINE V beside(V spring, V, V, V slow) { return spring / slow; }
-    BARCHAN_SIMD_INLINE auto loses() const { return ratio > V(0.0); }
   };
 };
 

@@ -941,6 +941,19 @@ BARCHAN_SIMD_INLINE void load_transposed(const T* records, std::size_t stride, c
   }
 }
 
+// The last two lanes in each other's place.
+template <class T>
+BARCHAN_SIMD_INLINE Vec<T, 4> swap_last(Vec<T, 4> a) {
+  if constexpr (detail::kind<T, 4> == detail::Kind::native) a.v = __builtin_shufflevector(a.v, a.v, 0, 1, 3, 2);
+  else {
+    T x[4];
+    a.store(x);
+    std::swap(x[2], x[3]);
+    a = Vec<T, 4>::load(x);
+  }
+  return a;
+}
+
 // Rows become columns: lane k of the result's vector j is lane j of vector k.
 template <class T>
 BARCHAN_SIMD_INLINE void transpose(Vec<T, 4>& a, Vec<T, 4>& b, Vec<T, 4>& c, Vec<T, 4>& d) {

@@ -89,9 +89,9 @@ TEST(SphereContactSteps, KeepTheWrittenRestitution) {
       for (const double speed : {1.0, 0.1})
         both(e, 0.0, [&, m_a = a, m_b = b](const auto& law) {
           // Of Hertz a slow contact lasts longer; of the linear law as long.
-          const After after = meet(law, m_a, m_b, speed, 0.0, 12.0);
+          const After after = meet(law, m_a, m_b, speed, 0.0, NormalDashpot::steps(e));
           const auto [least, most] = std::minmax_element(after.speed, after.speed + phases);
-          const double bound = std::max(3e-3 * e, 1.5e-3);
+          const double bound = 3e-3 * e;
           EXPECT_NEAR(*least / speed, e, bound) << name_of(law.normal) << e << ' ' << m_b;
           EXPECT_NEAR(*most / speed, e, bound) << name_of(law.normal) << e << ' ' << m_b;
           const double reduced = m_a * m_b / (m_a + m_b), energy = 0.5 * reduced * speed * speed;

@@ -300,6 +300,12 @@ TEST(FourDoubles, AreTransposed) {
     for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(v[j][static_cast<int>(k)], rows[4 * k + j]) << j << " " << k;
 }
 
+TEST(FourDoubles, SwapTheLastTwo) {
+  const double x[4] = {1, 2, 3, 4};
+  const auto swapped = swap_last(Vec<double, 4>::load(x));
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(swapped[k], (std::array{1.0, 2.0, 4.0, 3.0}[static_cast<std::size_t>(k)]));
+}
+
 TEST(IntegerVectors, WrapAround) {
   const Vec<std::int32_t, 8> big(std::numeric_limits<std::int32_t>::max()), two(2);
   EXPECT_EQ((big + two)[3], std::numeric_limits<std::int32_t>::min() + 1);

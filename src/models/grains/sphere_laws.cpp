@@ -10,12 +10,6 @@ namespace barchan {
 
 namespace {
 
-/// Steps in a contact with loss (laws/contact_onset.hpp); most codes take 10 to 50.
-constexpr double steps_with_loss = 12.0;
-/// The same by zeta: with fewer the dashpots of packed spheres, up to four times one of them, gain energy
-/// (laws/other_forces.hpp). It tells below a restitution of 0.15.
-constexpr double steps_by_damping = 12.0;
-
 /// Mass of a sphere of the phase (kg, not by depth): of the mean diameter, times a share of its radius cubed.
 double mass_of(const Layout& layout, std::size_t phase, double share = 1.0) {
   return layout.phases[phase].mass * layout.slab * share * share * share;
@@ -98,9 +92,7 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
       using Row = decltype(row);
       if (e.contact != Row::word) return;
       const auto law = law_of<Row>(scene, layout, grains);
-      const double steps = restitution < 1.0
-                               ? std::max(steps_with_loss, steps_by_damping * NormalDashpot::damping_ratio(restitution))
-                               : Row::Law::Normal::steps_without_loss;
+      const double steps = restitution < 1.0 ? NormalDashpot::steps(restitution) : Row::Law::Normal::steps_without_loss;
       step_ = std::min(step_, law.normal.duration(hardest) / steps);
       has_.damps = has_.damps || restitution < 1.0;
       has_.rolls = has_.rolls || law.rolling.friction > 0.0;

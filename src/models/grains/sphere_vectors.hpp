@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 
@@ -37,43 +38,47 @@ BARCHAN_SIMD_INLINE void fetch(const double* records, const std::uint32_t* a, co
     }
 }
 
+/// Four numbers of each of a vector of pairs, pair by pair: of[k] is lane k of all four.
+template <int W>
+BARCHAN_SIMD_INLINE void by_pair(const std::array<simd::Vec<double, W>, 4>& x, Four* of) {
+  if constexpr (W == 8) {
+    for (std::size_t d = 0; d < 4; ++d) {
+      of[d] = simd::lower(x[d]);
+      of[4 + d] = simd::upper(x[d]);
+    }
+    simd::transpose(of[4], of[5], of[6], of[7]);
+  } else
+    for (std::size_t d = 0; d < 4; ++d) of[d] = x[d];
+  simd::transpose(of[0], of[1], of[2], of[3]);
+}
+
 /// Adds the forces of a vector of pairs to both sides, pair after pair.
 template <int Dim, bool Rubs>
 BARCHAN_SIMD_INLINE void add_up(Sums<Dim>& sums, const ContactForces<V, Dim>& f, const std::uint32_t* a,
                                 const std::uint32_t* b, std::size_t begin, std::uint32_t count) {
-  static constexpr std::uint32_t rows[4] = {0, 1, 2, 3};
   const auto slot = [&](std::uint32_t sphere) {
     return static_cast<std::size_t>(std::min(sphere - static_cast<std::uint32_t>(begin), count)) * Sums<Dim>::size;
   };
-  constexpr std::size_t sets = Dim == 2 ? 2 : Rubs ? 3 : 1;
-  alignas(64) double lanes[sets][4][width];
-  const auto put = [&](std::size_t set, V x, V y, V z) {
-    x.store(lanes[set][0]);
-    y.store(lanes[set][1]);
-    z.store(lanes[set][2]);
-    V(0.0).store(lanes[set][3]);
-  };
-  if constexpr (Dim == 2) {
-    put(0, f.force[0], f.force[1], f.torque_a[0]);
-    put(1, f.force[0], f.force[1], -f.torque_b[0]);
-  } else {
-    put(0, f.force[0], f.force[1], f.force[2]);
+  constexpr int W = static_cast<int>(width);
+  Four force[width];
+  [[maybe_unused]] Four torque_a[width], torque_b[width];
+  // In 2D the fourth of a is the torque of b and the other way round: what stands there is nobody's.
+  if constexpr (Dim == 2) by_pair<W>({f.force[0], f.force[1], f.torque_a[0], -f.torque_b[0]}, force);
+  else {
+    by_pair<W>({f.force[0], f.force[1], f.force[2], V(0.0)}, force);
     if constexpr (Rubs) {
-      put(1, f.torque_a[0], f.torque_a[1], f.torque_a[2]);
-      put(2, f.torque_b[0], f.torque_b[1], f.torque_b[2]);
+      by_pair<W>({f.torque_a[0], f.torque_a[1], f.torque_a[2], V(0.0)}, torque_a);
+      by_pair<W>({f.torque_b[0], f.torque_b[1], f.torque_b[2], V(0.0)}, torque_b);
     }
   }
-  Four of[sets][width];
-  for (std::size_t set = 0; set < sets; ++set)
-    for (std::size_t q = 0; q < width; q += 4)  // four pairs at once
-      simd::load_transposed<4>(&lanes[set][0][q], width, rows, of[set] + q);
   for (std::size_t k = 0; k < width; ++k) {
     double *to_a = sums.of + slot(a[k]), *to_b = sums.of + slot(b[k]);
-    (Four::load(to_a) + of[0][k]).store(to_a);
-    (Four::load(to_b) - of[Dim == 2 ? 1 : 0][k]).store(to_b);
+    (Four::load(to_a) + force[k]).store(to_a);
+    if constexpr (Dim == 2) force[k] = simd::swap_last(force[k]);
+    (Four::load(to_b) - force[k]).store(to_b);
     if constexpr (Dim == 3 && Rubs) {
-      (Four::load(to_a + 4) + of[1][k]).store(to_a + 4);
-      (Four::load(to_b + 4) + of[2][k]).store(to_b + 4);
+      (Four::load(to_a + 4) + torque_a[k]).store(to_a + 4);
+      (Four::load(to_b + 4) + torque_b[k]).store(to_b + 4);
     }
   }
 }

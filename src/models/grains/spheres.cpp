@@ -120,7 +120,7 @@ void Spheres::limits(std::vector<StepLimit>& limits) const {
   const bool sound = std::any_of(layout_.phases.begin(), layout_.phases.end(), [](const auto& p) { return p.flows; });
   if (laws_.laws().empty() || sound) return;
   limits.push_back({"contacts", 8.0 * scene_.time.safety * laws_.step(),
-                    "eight steps of the grains, each a twelfth of a contact's duration (without loss less)"});
+                    "eight steps of the grains, each a twelfth of a contact's duration or less"});
 }
 
 void Spheres::point_at_columns() {
