@@ -249,6 +249,19 @@ TEST(PlanWarns, OfWallsThatAFluidReachesThrough) {
   }
 }
 
+TEST(PlanWarns, OfAPlainFluidWithASmallRadius) {
+  const std::string says = "the plain scheme presses about 11 % less on walls";
+  const auto warned = [&](const std::string& radius, const std::string& scheme) {
+    const std::string air = "kind = \"fluid\"\nscheme = \"" + scheme + "\"";
+    const Scene scene = parse_scene(
+        with(with(testing::square_text, "kind = \"fluid\"", air), "air-air = 3.0", "air-air = " + radius), "air.toml");
+    return warns(make_plan(scene, generate(scene)), says);
+  };
+  EXPECT_TRUE(warned("1.7", "plain"));
+  EXPECT_FALSE(warned("1.8", "plain"));
+  EXPECT_FALSE(warned("1.7", "consistent"));
+}
+
 TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {
   const std::string body =
       with(with(testing::square_text, "kind = \"fluid\"", "kind = \"elastic\"\nyoung = 1e6"), "air-air = 3.0",
