@@ -4,9 +4,9 @@
     /usr/bin/python3 docs/figures.py --check       says which page disagrees; exit status 1 if one does
     /usr/bin/python3 docs/figures.py --write       writes the figures into the pages
 
-A page marks a figure with its name and a format of Python:
+A figure on a page is a link to that file, whose title is its name and a format of Python:
 
-    <!--fig taylor-green.50 .4f-->0.0028<!--/fig-->
+    [0.0028](figures.json "taylor-green.50 .4f")
 
 docs/figures.json says where each figure comes from. One of:
 
@@ -27,7 +27,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
 sys.dont_write_bytecode = True
 from barchan_bench import store  # noqa: E402
 
-MARK = re.compile(r"<!--fig ([\w.-]+) ([^\s<>]+?)-->(.*?)<!--/fig-->")
+MARK = re.compile(r'\[([^\]]*)\]\(((?:\.\./|docs/)*figures\.json) "([\w.-]+) ([^\s"]+)"\)')
 
 
 class Wrong(Exception):
@@ -71,17 +71,17 @@ def filled(page, text, figures, used):
     faults = []
 
     def fill(mark):
-        name, form, found = mark.groups()
+        found, file, name, form = mark.groups()
         if name not in figures:
             raise Wrong(f"{page}: no figure '{name}' in docs/figures.json")
         used.add(name)
         expected = text_of(figures[name], form)
         if found != expected:
             faults.append(f"{page}: {name} is {found} here and {expected} in docs/figures.json")
-        return f"<!--fig {name} {form}-->{expected}<!--/fig-->"
+        return f'[{expected}]({file} "{name} {form}")'
 
-    if text.count("<!--fig ") != len(MARK.findall(text)):
-        raise Wrong(f"{page}: a mark of a figure is not complete")
+    if text.count('figures.json "') != len(MARK.findall(text)):
+        raise Wrong(f"{page}: a link of a figure is not complete")
     return MARK.sub(fill, text), faults
 
 

@@ -36,7 +36,7 @@ def gather(root, to, tables):
             if file.is_dir():
                 folder = str(file.relative_to(root))
                 other = IN_PLACE_OF.get(folder if folder in IN_PLACE_OF else folder.split("/")[0], "README.md")
-                return f"]({'../' * (len(page.relative_to(root).parts) - 1)}{other})"
+                return f"]({'../' * (len(page.relative_to(root).parts) - 1)}{other}"
             if file.suffix != ".md":
                 place = to / file.relative_to(root)
                 place.parent.mkdir(parents=True, exist_ok=True)
@@ -46,7 +46,7 @@ def gather(root, to, tables):
         place = to / page.relative_to(root)
         place.parent.mkdir(parents=True, exist_ok=True)
         text = re.sub(r"^( *)```[\w-]+$", r"\1```", tables.filled(page.read_text()), flags=re.M)  # no language: nothing highlights it
-        place.write_text(re.sub(r"\]\(([^)\s]+)\)", link, text))
+        place.write_text(re.sub(r"\]\(([^)\s]+)", link, text))
 
 
 class Links(HTMLParser):

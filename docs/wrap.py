@@ -4,7 +4,7 @@
     docs/wrap.py [--write | --check] [PAGE...] [--root DIR]    (default: all pages; --check)
 
 A paragraph or an item of a list with a line of more than 140 characters is filled anew. Tables, code, headings, pictures, quotes and what programs
-write between `<!-- NAME: begin -->` and its end stay as they are. Marks of figures, code in a line and links are never cut. --check has status 1 and
+write between `<!-- NAME: begin -->` and its end stay as they are. Code in a line and links are never cut. --check has status 1 and
 names each line that is too long.
 """
 import argparse
@@ -13,9 +13,9 @@ import sys
 from pathlib import Path
 
 WIDTH = 140
-WHOLE = re.compile(r"<!--fig .*?<!--/fig-->|!?\[[^\]]*\]\([^)]*\)|`[^`]*`|\S")  # \S: any other character of a word
+WHOLE = re.compile(r"!?\[[^\]]*\]\([^)]*\)|`[^`]*`|\S")  # \S: any other character of a word
 ITEM = re.compile(r"^( *)([-*] |\d+\. )")
-AS_IT_IS = re.compile(r"^(\||#|>|!\[|<!--(?!fig )|    )")
+AS_IT_IS = re.compile(r"^(\||#|>|!\[|<!--|    )")
 
 
 def words(text):

@@ -58,7 +58,7 @@ class Pages(unittest.TestCase):
         root = self.copy()
         page = root / "docs/validation.md"
         right = page.read_text()
-        wrong, count = re.subn(r"(<!--fig dune\.crest [^\s>]+-->)[^<]*", r"\g<1>99.9", right)
+        wrong, count = re.subn(r'\[[^\]]*(\]\(figures\.json "dune\.crest )', r"[99.9\1", right)
         self.assertEqual(count, 1)
         page.write_text(wrong)
         result = self.figures(root)
@@ -89,7 +89,7 @@ class Pages(unittest.TestCase):
         self.assertGreater(len(TABLES.of), 15)
 
     def test_wrong_marks_are_refused(self):
-        for text in ("<!--fig no.such .2f-->1<!--/fig-->", "<!--fig dune.crest .2f-->1"):
+        for text in ('[1](docs/figures.json "no.such .2f")', '[1](docs/figures.json "dune.crest .2f)'):
             root = self.copy()
             (root / "README.md").write_text(text)
             result = self.figures(root)
@@ -104,7 +104,7 @@ class Pages(unittest.TestCase):
     def test_links_lead_somewhere(self):
         count = 0
         for page in PAGES:
-            for target in re.findall(r"\]\(([^)\s]+)\)", TABLES.filled(page.read_text())):
+            for target in re.findall(r"\]\(([^)\s]+)", TABLES.filled(page.read_text())):
                 if re.match(r"[a-z]+:", target):
                     continue
                 name, _, anchor = target.partition("#")
@@ -122,7 +122,7 @@ class Pages(unittest.TestCase):
 
     def test_filling_keeps_words_marks_and_what_is_no_paragraph(self):
         words = "a word " * 30
-        text = (f"{words}<!--fig one .1%-->0.4 %<!--/fig--> `code that is long` [a link of words](page.md#part)\n\n- {words}\n  of an item\n\n"
+        text = (f"{words}[0.4 %](figures.json \"one .1%\") `code that is long` [a link of words](page.md#part)\n\n- {words}\n  of an item\n\n"
                 f"| {words} |\n\n    {words}\n\n```sh\n{words}\n```\n\n<!-- x: begin -->\n{words}\n<!-- x: end -->\n")
         with tempfile.TemporaryDirectory() as folder:
             page = Path(folder) / "page.md"
@@ -133,7 +133,7 @@ class Pages(unittest.TestCase):
             self.assertEqual(subprocess.run([*check, "--write"]).returncode, 0)
             after = page.read_text()
             self.assertEqual(after.split(), text.split())
-            for kept in ("<!--fig one .1%-->0.4 %<!--/fig-->", "`code that is long`", "[a link of words](page.md#part)", f"| {words} |", f"    {words}",
+            for kept in ("[0.4 %](figures.json \"one .1%\")", "`code that is long`", "[a link of words](page.md#part)", f"| {words} |", f"    {words}",
                          f"```sh\n{words}\n```", f"begin -->\n{words}\n<!-- x"):
                 self.assertIn(kept, after)
             self.assertEqual(subprocess.run([*check, "--check"]).returncode, 0)
