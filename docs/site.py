@@ -5,6 +5,7 @@
 
 A copy of the pages, with their tables (docs/tables.py), and of the files they lead to is made, so that links into the repository lead somewhere. Status 1
 when mkdocs warns, when a table cannot be made, when a page stands in no menu, when a link or its anchor leads nowhere, or when a page would fetch something from the network.
+It prints which pages have long sentences (docs/reading.py), and fails for none.
 """
 import argparse
 import re
@@ -17,6 +18,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import reading  # noqa: E402
 from tables import NoTable, Tables  # noqa: E402
 
 IN_PLACE_OF = {"scenes": "docs/gallery/README.md", "docs/gallery": "docs/gallery/README.md"}  # of a folder, which has no page
@@ -112,7 +114,7 @@ def main():
     options = parser.parse_args()
     out = (options.out or options.root / "build-site").resolve()
     problems = build(options.root.resolve(), out, options.program)
-    print("\n".join(problems) if problems else f"site    {out}/index.html")
+    print("\n".join([*reading.report(options.root.resolve()), *(problems or [f"site    {out}/index.html"])]))
     return 1 if problems else 0
 
 

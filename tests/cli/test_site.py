@@ -12,6 +12,8 @@ import unittest
 from pathlib import Path
 
 PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(SOURCE / "docs"))
+import reading  # noqa: E402
 
 
 def build(root, out):
@@ -30,6 +32,12 @@ class Site(unittest.TestCase):
             self.assertEqual([page for page, text in pages.items() if re.search(r"^(<p>)?{{ ", text, re.M)], [], "a table was not made")
             for page, words in (("scenes.html", "friction-velocity"), ("ledger.html", "MISSED"), ("accuracy.html", "Measured on"), ("ranks.html", "the same bytes in all")):
                 self.assertIn(words, pages[page])
+
+    def test_words_of_sentences_are_counted(self):
+        text = ("# A heading of five words\n\nTwo words. One [link of four words](a.md#b) and `code of three`.\n\n- an item\n  of a list\n\n"
+                "| a | table |\n\n    code = 1\n\n```\nmore code\n```\n\nA fluid knows " + "word " * 40 + "end.\n")
+        of = reading.read(text)
+        self.assertEqual((of["words"], of["longest"], len(of["long"]), of["guessed"]), (2 + 7 + 5 + 44, 44, 1, 1))
 
     def test_what_is_wrong_is_named(self):
         with tempfile.TemporaryDirectory() as name:
