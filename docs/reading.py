@@ -31,7 +31,7 @@ def sentences(text):
     found = []
     for words in blocks:
         words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", words)
-        words = re.sub(r"`[^`]*`", "code", words).replace("**", "")
+        words = re.sub(r"`[^`]*`", "Code", words).replace("**", "")
         found += [s for s in re.split(r"(?<=[.!?:])\s+(?=[A-Z(])", words) if len(s.split()) > 1]
     return found
 
