@@ -16,7 +16,7 @@ FRAMES = 16  # of the end, whose mean is taken: what vibrates is averaged
 
 def last_frames(ended):
     """Places and fields of the last frames of a run, in the order of ids."""
-    frames = [Frame(path, time).by_id() for time, path in ended.series()[-FRAMES:]]
+    frames = [Frame(path, time) for time, path in ended.series()[-FRAMES:]]
     return [{"place": f.x, **f.arrays} for f in frames]
 
 

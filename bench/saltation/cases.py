@@ -320,7 +320,7 @@ SPLASHES = ({"scene": "splash", "dimensions": 2, "runs": 20, "strikers": 3, "wid
 
 def frames_of(folder, name, phase):
     """Times, places and velocities of a phase in the order of its ids, frame by frame."""
-    frames = [frame.Frame(file, time, phase).by_id() for time, file in frame.series(folder / f"{name}.pvd")]
+    frames = [frame.Frame(file, time, phase) for time, file in frame.series(folder / f"{name}.pvd")]
     return [(f.time, f.x.astype(float), f["velocity"].astype(float)) for f in frames]
 
 

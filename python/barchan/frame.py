@@ -11,7 +11,7 @@ PARTICLES = ("PolyData", "UnstructuredGrid")
 
 
 class Frame:
-    """The particles of one moment.
+    """The particles of one moment, in the order of their ids: those of two frames stand side by side while none enters or leaves.
 
     `x`: positions (n, 3), m; `arrays`: the fields by name, SI units, (n,) or (n, components); `time`: s; `names` and `kinds`: of the phases by number;
     `units`: of the fields by name; `domain`: (3, 2) bounds in m or None; `step`, `number`: of the run, or None.
@@ -24,8 +24,9 @@ class Frame:
     step = number = domain = None
     names, kinds, units = (), (), {}
 
-    def __init__(self, path, time=None, phase=None):
-        """`time`: that of the list of the series, if it is given, else the frame's own; `phase`: only the particles of the phase with this name."""
+    def __init__(self, path, time=None, phase=None, order="id"):
+        """`time`: that of the list of the series, if it is given, else the frame's own; `phase`: only the particles of the phase with this name;
+        `order="file"`: as the file has them, which changes whenever the program sorts its particles."""
         self.path = pathlib.Path(path)
         if not files.is_file(self.path):
             raise Unreadable(f"{path}: there is no such frame")
@@ -46,6 +47,9 @@ class Frame:
         self.step, self.number = (int(value[0]) if len(value) and value.dtype.kind in "iu" else None for value in (about.numbers("step"), about.numbers("frame")))
         if phase is not None:
             self.keep(self.mask(phase))
+        ids = self.arrays.get("id", self.x[:0])
+        if order == "id" and ids.ndim == 1 and (ids[1:] < ids[:-1]).any():
+            self.keep(numpy.argsort(ids, kind="stable"))
 
     @property
     def fields(self):
@@ -98,10 +102,6 @@ class Frame:
         self.x = self.x[chosen]
         self.arrays = {name: values[chosen] for name, values in self.arrays.items()}
         return self
-
-    def by_id(self):
-        """The particles in the order of their ids; returns the frame itself."""
-        return self.keep(numpy.argsort(self["id"]))
 
     def to_pandas(self):
         """A pandas.DataFrame, one row a particle, with its id as the index: x, y, z, the name of its phase, and the fields, vectors as velocity_x, ..."""

@@ -181,12 +181,12 @@ class Package(unittest.TestCase):
         self.assertEqual(ended.seconds.work, ended.report["steps"] * sum(ended.report["particles"].values()))
         times = [time for time, _ in ended.series()]
         self.assertEqual((times[0], times[-1], len(times)), (0, 2, 3))
-        whole, part = frames.Frame(ended.series()[-1][1]), frames.Frame(ended.series()[-1][1], 7., "water").by_id()
+        whole, part = frames.Frame(ended.series()[-1][1]), frames.Frame(ended.series()[-1][1], 7., "water")
         self.assertEqual((whole.time, part.time, len(part.x)), (2, 7., ended.report["particles"]["water"]))
         self.assertTrue((numpy.diff(part["id"]) > 0).all() and (part["phase"] == whole.names.index("water")).all())
         self.assertEqual(ended.history()["time"][-1], 2)
         run.generate(PROGRAM, "couette", out / "start.vtu", check=True)
-        start, first = frames.Frame(out / "start.vtu").by_id(), frames.Frame(ended.series()[0][1]).by_id()
+        start, first = frames.Frame(out / "start.vtu"), frames.Frame(ended.series()[0][1])
         self.assertEqual(start.names, first.names)
         self.assertTrue((start.x == first.x).all())
 

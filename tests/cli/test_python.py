@@ -77,9 +77,18 @@ class Reading(Case):
         except ImportError:
             self.skipTest("python3-meshio is not there")
         mesh = meshio.read(series.files[-1])
+        stored = barchan.Frame(series.files[-1], order="file")
+        self.assertTrue((mesh.points == stored.x).all() and (mesh.point_data["velocity"] == stored["velocity"]).all())
         ours, vtp = series[-1], barchan.open(self.out)[-1]
-        self.assertTrue((mesh.points == ours.x).all() and (mesh.point_data["velocity"] == ours["velocity"]).all())
-        self.assertTrue((vtp.by_id()["velocity"] == ours.by_id()["velocity"]).all() and vtp.names == ours.names and vtp.units == ours.units)
+        self.assertTrue((vtp["velocity"] == ours["velocity"]).all() and vtp.names == ours.names and vtp.units == ours.units)
+
+    def test_particles_are_in_the_order_of_their_ids(self):
+        from barchan import vtk_xml
+        file, x = self.folder / "mixed.vtp", numpy.array([[2., 0, 0], [0, 0, 0], [1, 0, 0]])
+        vtk_xml.write_particles(file, x, {"phase": numpy.zeros(3, numpy.uint8), "id": numpy.array([2, 0, 1])}, {"phase_names": ["sand"]})
+        self.assertEqual(barchan.Frame(file)["id"].tolist(), [0, 1, 2])
+        self.assertEqual(barchan.Frame(file, phase="sand").x[:, 0].tolist(), [0, 1, 2])
+        self.assertEqual(barchan.Frame(file, order="file").x[:, 0].tolist(), [2, 0, 1])
 
     def test_files_as_vtk_writes_them(self):
         """Appended as raw bytes and as base64, inline as base64 and as text, each without a compressor, with zlib and with LZ4: the numbers that VTK reads."""
@@ -91,7 +100,7 @@ class Reading(Case):
         reader, whole = vtkXMLPolyDataReader(), barchan.open(self.out).files[-1]
         reader.SetFileName(str(whole))
         reader.Update()
-        data, ours = reader.GetOutput(), barchan.Frame(whole)
+        data, ours = reader.GetOutput(), barchan.Frame(whole, order="file")
         self.assertTrue((vtk_to_numpy(data.GetPoints().GetData()) == ours.x).all() and (vtk_to_numpy(data.GetPointData().GetArray("velocity")) == ours["velocity"]).all())
         for mode in ("raw", "appended", "binary", "ascii"):
             for compressor in ("None", "ZLib", "LZ4"):
@@ -104,7 +113,7 @@ class Reading(Case):
                     getattr(writer, f"SetCompressorTypeTo{compressor}")()
                     getattr(writer, f"SetHeaderTypeTo{head}")()
                     writer.Write()
-                    read = barchan.Frame(file)
+                    read = barchan.Frame(file, order="file")
                     self.assertEqual((read.names, read.kinds, read.units, read.step, read.number), (ours.names, ours.kinds, ours.units, ours.step, ours.number))
                     for name, values in {**ours.arrays, "position": ours.x}.items():
                         self.assertEqual((read[name].dtype, read[name].shape), (values.dtype, values.shape))
@@ -291,7 +300,7 @@ class Shapes(Case):
         scene = {**BALLS, "fill": [BALLS["fill"][0], {"phase": "ball", "shape": {"file": file}}]}
         scene["phases"] = {**BALLS["phases"], "ball": {**BALLS["phases"]["ball"], "diameter": {"mean": .019, "spread": .1}}}
         scene["output"] = {**BALLS["output"], "fields": ["radius"]}
-        made = barchan.generate(scene, self.folder / "start.vtp").of("ball").by_id()
+        made = barchan.generate(scene, self.folder / "start.vtp").of("ball")
         self.assertLess(abs(made.x[:, :2] - x).max(), 1e-15)
         self.assertLess(abs(made["radius"] - [.01, .009, .0095]).max(), 1e-15)
 

@@ -39,8 +39,8 @@ class Pieces(Folder):
             self.assertEqual(content(self.at / "in-one" / name), content(self.at / "in-three" / name))
         self.assertEqual((self.at / "in-one" / "scene.pvd").read_bytes(), (self.at / "in-three" / "scene.pvd").read_bytes())
 
-        one, three = (barchan.Frame(self.at / out / f"{stems[-1]}.pvtp") for out in ("in-one", "in-three"))
-        whole = barchan.Frame(self.at / "whole" / f"{stems[-1]}.vtp")
+        one, three = (barchan.Frame(self.at / out / f"{stems[-1]}.pvtp", order="file") for out in ("in-one", "in-three"))
+        whole = barchan.Frame(self.at / "whole" / f"{stems[-1]}.vtp", order="file")
         for frame in (one, three):  # the same particles in the same order, and what concerns the frame as a whole
             self.assertEqual((frame.time, frame.step, frame.names, frame.kinds, frame.units, frame.fields),
                              (whole.time, whole.step, whole.names, whole.kinds, whole.units, whole.fields))
