@@ -36,7 +36,7 @@ if(BARCHAN_SANITIZE)
 endif()
 
 # Two thirds of the compiler's time of most files go into the headers that they include, so the frequent ones are read once for a
-# target. A file still includes what it uses: preset clang reads every header in every file.
+# target. A file still includes what it uses: preset dev reads every header in every file.
 set(BARCHAN_FREQUENT_HEADERS
   <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstdint> <cstdio> <cstring> <filesystem> <fstream> <functional> <limits>
   <map> <memory> <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view> <tuple> <type_traits> <unordered_map> <utility>
@@ -56,8 +56,8 @@ function(barchan_read_headers_once target)
 endfunction()
 
 # Compiles the sources of a target together, at most six files of a folder in one batch; a file that is named by no call stays
-# alone. Names in namespaces without a name must differ within a folder then. Presets dev and clang compile each file
-# alone: a file includes what it uses.
+# alone. Names in namespaces without a name must differ within a folder then. Preset dev compiles each file alone:
+# a file includes what it uses.
 function(barchan_compile_together target)
   if(NOT BARCHAN_TOGETHER)
     return()
