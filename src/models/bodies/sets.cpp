@@ -75,8 +75,7 @@ const std::vector<std::uint32_t>& SetOfBody::here() const {
 }
 
 DrivenSet::DrivenSet(const Scene& scene, const Layout& layout, std::size_t number)
-    : scene_(scene),
-      layout_(layout),
+    : layout_(layout),
       number_(number),
       set_(layout, scene.motions[number]),
       velocity_(compile(scene.motions[number].velocity)) {}

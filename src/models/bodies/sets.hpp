@@ -59,7 +59,6 @@ class DrivenSet : public Model {
   void set_velocity(double time);
   Vec3 velocity_at(double time) const;
 
-  const Scene& scene_;
   const Layout& layout_;
   std::size_t number_;
   SetOfBody set_;
