@@ -337,7 +337,9 @@ constexpr double least_plain_radius = 1.8;
 void warn_of_small_radius(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries) {
     const Interaction& pair = *entry_between(scene, scene.phases[e.a], scene.phases[e.b]);
-    if (e.a == e.b && plan.phases[e.a].flows && scene.phases[e.a].fluid().scheme == FluidScheme::plain &&
+    const bool presses = std::any_of(plan.entries.begin(), plan.entries.end(),
+                                     [&](const PlanEntry& other) { return other.extends && other.has(e.a); });
+    if (e.a == e.b && presses && plan.phases[e.a].flows && scene.phases[e.a].fluid().scheme == FluidScheme::plain &&
         e.radius >= e.spacing && e.radius < least_plain_radius * e.spacing * (1.0 - 1e-9))
       plan.warnings.push_back("interactions." + e.name +
                               ": with a radius below 1.8 spacings the plain scheme presses about 11 % less on walls "

@@ -251,15 +251,20 @@ TEST(PlanWarns, OfWallsThatAFluidReachesThrough) {
 
 TEST(PlanWarns, OfAPlainFluidWithASmallRadius) {
   const std::string says = "the plain scheme presses about 11 % less on walls";
-  const auto warned = [&](const std::string& radius, const std::string& scheme) {
-    const std::string air = "kind = \"fluid\"\nscheme = \"" + scheme + "\"";
-    const Scene scene = parse_scene(
-        with(with(testing::square_text, "kind = \"fluid\"", air), "air-air = 3.0", "air-air = " + radius), "air.toml");
+  const auto warned = [&](const std::string& radius, const std::string& scheme, bool walled = true) {
+    const std::string air = "kind = \"fluid\"\nscheme = \"" + scheme + "\"",
+                      wall =
+                          "\nair-floor = 2.1\n[phases.floor]\nkind = \"wall\"\n[[fill]]\nphase = \"floor\"\n"
+                          "shape = { sides = [\"bottom\"] }";
+    const Scene scene = parse_scene(with(with(testing::square_text, "kind = \"fluid\"", air), "air-air = 3.0",
+                                         "air-air = " + radius + (walled ? wall : "")),
+                                    "air.toml");
     return warns(make_plan(scene, generate(scene)), says);
   };
   EXPECT_TRUE(warned("1.7", "plain"));
   EXPECT_FALSE(warned("1.8", "plain"));
   EXPECT_FALSE(warned("1.7", "consistent"));
+  EXPECT_FALSE(warned("1.7", "plain", false)) << "it presses on nothing";
 }
 
 TEST(PlanWarns, OfABodyThatNothingHoldsTogether) {
