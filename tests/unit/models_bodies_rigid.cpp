@@ -225,7 +225,8 @@ struct Moments {
   Vec3 centre;
 };
 
-void expect_moments(int dimensions, const std::string& fill, const Moments& exact, std::vector<double> spacings) {
+void expect_moments(int dimensions, const std::string& fill, const Moments& exact,
+                    const std::vector<double>& spacings) {
   for (const double spacing : spacings) {
     const RigidBody b = body_of(dimensions, spacing, fill);
     const double inertia = dimensions == 2 ? b.inertia[2] : b.inertia[0] + b.inertia[1] + b.inertia[2];
