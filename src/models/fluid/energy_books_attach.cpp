@@ -27,7 +27,7 @@ void FluidPhase::open_books() {
   may[loose_fluid] = q.loosening > 0 || q.calming > 0;
   may[torn_surface] = plan_.free_surface;
   may[kept_density] = plan_.enclosed;
-  may[held_at_walls] = keeps_inside_ || !boxes_.empty() || relief_.exists();
+  may[held_at_walls] = keeps_inside_ || held_shapes_.any() || relief_.exists();
   may[forcing] = falls || std::any_of(scene_.forcings.begin(), scene_.forcings.end(),
                                       [&](const Forcing& f) { return f.phase == plan_.name; });
   may[open_sides] = layout_.leaves(number_);

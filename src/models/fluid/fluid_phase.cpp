@@ -132,7 +132,7 @@ void FluidPhase::kick_and_drift() {
   if (plan_.free_surface) release_surface(*particles_, surface_wholeness(keys_.scheme), pressure_);
   if (books_) books_->released();
   if (keeps_inside_) hold_inside(*particles_, held_);
-  if (!boxes_.empty()) hold_outside(*particles_, boxes_, layout_.bounds);
+  if (held_shapes_.any()) hold_outside(*particles_, held_shapes_, layout_.bounds);
   for (const MovingBox& box : moving_boxes_) hold_outside(*particles_, box, layout_.bounds, w_->state.time + 0.5 * dt);
   if (relief_.exists()) hold_above(*particles_, relief_, held_.margin);
   if (books_) books_->held();

@@ -105,7 +105,7 @@ class FluidPhase : public Model {
   std::optional<Drive> drive_;          // where something drives it along x
   std::unique_ptr<EnergyBooks> books_;  // null: the scene asks for none
   bool keeps_inside_ = false;
-  std::vector<HeldBox> boxes_;
+  HeldShapes held_shapes_;
   std::vector<MovingBox> moving_boxes_;  // the same of walls that move
 
   std::vector<PairEntry<InterfaceSide>> sides_of_interface_;  // empty: it meets no other fluid

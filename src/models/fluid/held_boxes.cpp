@@ -51,27 +51,63 @@ void put_back(PhaseParticles& phase, std::size_t k, const HeldBox& box, const st
   v = sign > 0.0 ? std::max(v, 0.0) : std::min(v, 0.0);
 }
 
-}  // namespace
+/// How far a surface keeps the normals of its inside (spacings): a step is far shorter.
+constexpr double depth_of_surfaces = 2.0;
 
-std::vector<HeldBox> held_boxes(const Scene& scene, const Layout& layout, std::size_t fluid,
-                                const PhaseParticles& particles) {
-  std::vector<HeldBox> boxes;
-  for (const Fill& fill : scene.fills) {
-    const auto* box = std::get_if<BoxShape>(&fill.shape);
-    const Phase* wall = find_phase(scene, fill.phase);
-    if (!box || !wall || !entry_between(scene, scene.phases[fluid], *wall)) continue;
-    const PlanPhase& plan = layout.phases[static_cast<std::size_t>(wall - scene.phases.data())];
-    if (plan.moves || plan.travels) continue;
-    const HeldBox held{box->min, box->max};
-    bool empty = true;
-    for (std::size_t k = 0; k < particles.size(); ++k)
-      empty = empty && !is_in(held, place_of(particles, k), layout.dimensions);
-    if (!ranks::any(!empty)) boxes.push_back(held);
-  }
-  return boxes;
+bool is_in(const ContactSurface& surface, const Vec3& x, double tolerance) {
+  const auto gap = surface.gap(x);
+  return gap && gap->distance < -tolerance;
 }
 
-void hold_outside(PhaseParticles& phase, const std::vector<HeldBox>& boxes, const Bounds& bounds) {
+}  // namespace
+
+HeldShapes held_shapes(const Scene& scene, const Layout& layout, std::size_t fluid, const PhaseParticles& particles) {
+  HeldShapes shapes;
+  const auto stands_in = [&](auto&& holds) {
+    bool any = false;
+    for (std::size_t k = 0; k < particles.size() && !any; ++k) any = holds(place_of(particles, k));
+    return ranks::any(any);
+  };
+  for (const Fill& fill : scene.fills) {
+    const Phase* wall = find_phase(scene, fill.phase);
+    if (!wall || !entry_between(scene, scene.phases[fluid], *wall)) continue;
+    const PlanPhase& plan = layout.phases[static_cast<std::size_t>(wall - scene.phases.data())];
+    if (plan.moves || plan.travels) continue;
+    if (const auto* box = std::get_if<BoxShape>(&fill.shape)) {
+      const HeldBox held{box->min, box->max};
+      if (!stands_in([&](const Vec3& x) { return is_in(held, x, layout.dimensions); })) shapes.boxes.push_back(held);
+      continue;
+    }
+    if (layout.dimensions != 2) continue;
+    for (ContactSurface& surface : surfaces_of(fill.shape, scene, plan.spacing)) {
+      surface.prepare(depth_of_surfaces * plan.spacing, plan.spacing);
+      const double tolerance = 1e-9 * plan.spacing;
+      if (!stands_in([&](const Vec3& x) { return is_in(surface, x, tolerance); }))
+        shapes.surfaces.push_back(std::move(surface));
+    }
+  }
+  return shapes;
+}
+
+static void hold_outside(PhaseParticles& phase, const ContactSurface& surface) {
+  const auto n = static_cast<std::int64_t>(phase.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto gap = surface.gap(place_of(phase, k));
+    if (!gap || !(gap->distance < 0.0) || !std::isfinite(gap->distance)) continue;
+    double inwards = 0.0;
+    for (int d = 0; d < phase.dimensions(); ++d)
+      inwards += phase.column(Field::velocity, d)[k] * gap->normal[static_cast<std::size_t>(d)];
+    for (int d = 0; d < phase.dimensions(); ++d) {
+      const double normal = gap->normal[static_cast<std::size_t>(d)];
+      phase.column(Field::position, d)[k] -= gap->distance * normal;
+      phase.column(Field::velocity, d)[k] -= std::min(inwards, 0.0) * normal;
+    }
+  }
+}
+
+static void hold_outside(PhaseParticles& phase, const std::vector<HeldBox>& boxes, const Bounds& bounds) {
   const auto n = static_cast<std::int64_t>(phase.size());
   const bool solid = phase.dimensions() == 3;
   const double *x = phase.column(Field::position, 0), *y = phase.column(Field::position, 1),
@@ -87,6 +123,11 @@ void hold_outside(PhaseParticles& phase, const std::vector<HeldBox>& boxes, cons
     for (std::size_t k = 0; k < phase.size(); ++k)
       if (is_in(box, place_of(phase, k), phase.dimensions())) put_back(phase, k, box, boxes, bounds);
   }
+}
+
+void hold_outside(PhaseParticles& phase, const HeldShapes& shapes, const Bounds& bounds) {
+  hold_outside(phase, shapes.boxes, bounds);
+  for (const ContactSurface& surface : shapes.surfaces) hold_outside(phase, surface);
 }
 
 }  // namespace barchan
