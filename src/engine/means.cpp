@@ -53,6 +53,16 @@ void accelerate(PhaseParticles& fluid, int axis, double amount) {
   add_everywhere(fluid.column(Field::acceleration, axis), fluid.size(), amount);
 }
 
+void keep_momentum(std::span<PhaseParticles* const> fluids, int axis, double wanted) {
+  double force = 0.0, mass = 0.0;
+  for (const PhaseParticles* fluid : fluids) {
+    force += fluid->mass() * reproducible_total(fluid->column(Field::acceleration, axis), fluid->size());
+    mass += fluid->mass() * static_cast<double>(ranks::total(fluid->size()));
+  }
+  if (!(mass > 0.0)) return;
+  for (PhaseParticles* fluid : fluids) accelerate(*fluid, axis, wanted - force / mass);
+}
+
 void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt) {
   if (ranks::total(fluid.size()) == 0) return;
   for (int d = 0; d < fluid.dimensions(); ++d) {

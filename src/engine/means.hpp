@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "state/particles.hpp"
 
@@ -24,6 +25,10 @@ struct BulkHold {
 
 /// Adds a uniform acceleration (m/s2) along an axis.
 void accelerate(PhaseParticles& fluid, int axis, double amount);
+
+/// Adds to fluids together the uniform acceleration with which their mean acceleration along an axis, by mass, is
+/// `wanted` (m/s2).
+void keep_momentum(std::span<PhaseParticles* const> fluids, int axis, double wanted);
 
 /// All forces on the fluid must be in its acceleration; its velocities are half a step (dt/2) behind.
 void hold_bulk_velocity(PhaseParticles& fluid, BulkHold& hold, double dt);

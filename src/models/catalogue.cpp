@@ -19,6 +19,7 @@
 #include "models/coupling/solid_in_fluid.hpp"
 #include "models/fluid/flow_zone.hpp"
 #include "models/fluid/fluid_phase.hpp"
+#include "models/fluid/kept_momentum.hpp"
 #include "models/fluid/spacing_border.hpp"
 #include "models/force_meter.hpp"
 #include "models/grains/contact_entry.hpp"
@@ -198,6 +199,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
   if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.own_steps; }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) add_of_entry(scene, layout, e, models);
+  if (auto kept = kept_momentum(scene, layout)) models.push_back(std::move(kept));
   add_grain_fluxes(scene, layout, models);
   for (const SaltationLayer& layer : scene.measuring.saltation)
     models.push_back(std::make_unique<SaltationHistory>(scene, layout, layer));

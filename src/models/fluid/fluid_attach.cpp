@@ -305,7 +305,7 @@ void FluidPhase::attach(Workspace& w) {
     q.void_pressure = lifted ? -pressure_lift(phase_.density, speed, q.smoothing_length, keys_.viscosity) : 0.0;
   }
   keeps_inside_ = (corrected || plan_.free_surface) && held_.any();
-  if (plan_.free_surface || plan_.eddies) boxes_ = held_boxes(scene_, layout_, number_, *particles_);
+  if (plan_.free_surface || plan_.eddies) held_shapes_ = held_shapes(scene_, layout_, number_, *particles_);
   if (plan_.free_surface) moving_boxes_ = moving_boxes(w, number_, *particles_);
   if (corrected) relief_ = relief();
   if (plan_.eddies) {
@@ -330,6 +330,8 @@ void FluidPhase::bind_entries() {
                      solid || other == number_,
                      w_->compact(other)};
     if (has_interface(scene_, layout_, e)) bind_interface(e, n);
+    if (keys_.scheme == FluidScheme::plain && !solid)
+      n.pressure_share = 2.0 * phase_.density / (phase_.density + scene_.phases[other].density);
     // The phase's own entry comes first: its viscosity is the phase's.
     if (other == number_) neighbours_.insert(neighbours_.begin(), n);
     else neighbours_.push_back(n);

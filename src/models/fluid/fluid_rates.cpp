@@ -92,7 +92,15 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
           continue;
         }
       }
-      if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, own_of, raw)) {
+      const double across = e.pressure_share;
+      const auto pressed = [&](std::size_t k) __attribute__((always_inline)) {
+        auto own = own_of(k);
+        if (across != 1.0) own.p *= simd::broadcast<V>((2.0 - across) / across);
+        return own;
+      };
+      if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, pressed, raw)) {
+        if (across != 1.0)
+          for (Four& p : raw.pressure) p *= Four(across);
         if constexpr (Joined)
           s.take(JoinedFluids<Dim>::template without_kink<Four>(raw), kernels[c].slope_factor(), 0.0, 0.0, weight);
         else s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);

@@ -26,6 +26,7 @@ struct FluidNeighbour {
   double beyond = 0;                        // Pa s: viscosity of that fluid
   const EddyRecords* distances = nullptr;   // of that fluid's particles to the interface (3D; 2D: in their records)
   double nearest = 0;                       // m, of friction across that interface the least distance of a particle
+  double pressure_share = 1;                // 2 rho_a/(rho_a + rho_b) of another fluid b, plain scheme
 };
 
 struct InterfacePlanes;
