@@ -7,7 +7,9 @@
 //     a_w is that of an elastic body; grains count as unaccelerated: the blows of their contacts, thousands of g for
 //     some microseconds, are no motion of a boundary that the fluid could follow
 //   no-slip, depth known: v_w = v_wall - phi_w sum W phi_a (v_a - v_wall) / sum W phi_a^2, the line through the wall's
-//     velocity at the surface that fits the fluid best (phi: distance to the surface); exact for a linear profile
+//     velocity at the surface that fits the fluid best (phi: distance to the surface); exact for a linear profile.
+//     Fluid inside the surface, where r < phi_w, or about to enter, counts as fluid as far outside: with a negative
+//     phi_a it would be met by its own velocity magnified, and drawn in
 //   no-slip, depth unknown: v_w = 2 v_wall - sum v_a W / sum W                   (Adami et al. 2012, eq. 23)
 //   grains: v_w = v_wall, their own; a jump of twice the slip across one grain in flight would be no smooth field.
 //     Where a form drag acts, a grain alone in the fluid has the fluid's mean velocity instead: one spacing cannot
@@ -60,6 +62,7 @@ struct Extension : PairLaw<Needs::value_and_gradient, Quantity::velocity, Quanti
     std::array<T, Dim> normal;    // into the fluid
     std::array<T, Dim> pull;      // g - a_w [m/s2]
     T behind;                     // -phi_w [m]
+    T inside2;                    // m2: fluid nearer than its root is inside the solid, or about to enter
   };
 
   template <int Dim, class T>
@@ -80,6 +83,7 @@ struct Extension : PairLaw<Needs::value_and_gradient, Quantity::velocity, Quanti
       phi = fnma(w.normal[d], wa.r[d], phi);  // phi_a = n.(x_a - x_w) - phi_w
     }
     if constexpr (OneSided) weight = select(phi < T(0.0), T(from_behind) * weight, weight);
+    else phi = select((phi < T(0.0)) & (wa.r2 < w.inside2), T(0.0) - phi, phi);
     const T w_phi = weight * phi;
     s.weight += weight;
     if constexpr (Curved) s.lever = fma(weight * T(density), phi - w.behind, s.lever);

@@ -177,7 +177,7 @@ constexpr Key rows_of_keys[] = {
      "relaxed: the outermost layer follows the border of a box, disc, sphere, ring, polygon or surface, half a spacing inside, and the volumes are even; "
      "\"the-rest\" goes round such shapes. Fluids take rows, fitted or relaxed, bodies rows or relaxed, walls all but settled, grains all but fitted and relaxed."},
     {"fill", "leave-out", at<&Fill::leave_out>(LeaveOut::nothing), "",
-     "What the shape leaves free: places nearer than 0.75 spacings to particles of earlier fills, as \"the-rest\" does, so that a fluid goes round a body."},
+     "What the shape leaves free: places inside solids of earlier fills or nearer than 0.75 spacings to particles of earlier fills, as \"the-rest\" does, so that a fluid goes round a body."},
     {"fill", "perturb", at<&Fill::perturb>(0.0).like("0.1"), "spacings",
      "Every coordinate is moved by a random number of at most this size.", {.at_least = 0.0, .at_most = 0.5}},
     {"fill", "seed", at<&Fill::seed>(1), "",

@@ -196,12 +196,31 @@ std::vector<Vec3> random_places(const Scene& scene, const ShapeRegion& region, d
   return places;
 }
 
-/// Lattice places over the ground that keep their distance from what is there.
+/// Depth in the earlier fills of solids whose border is known (m): the places between their rows are theirs, too. In 3D
+/// the middle between eight of them is farther than rest_distance from all.
+std::function<double(const Vec3&)> depth_in_solids(const Scene& scene, std::size_t k, double dx) {
+  std::vector<std::function<double(const Vec3&)>> depths;
+  for (std::size_t j = 0; j < k; ++j) {
+    const Phase* const phase = find_phase(scene, scene.fills[j].phase);
+    if (!phase || std::holds_alternative<FluidKeys>(phase->own) || phase->if_grains()) continue;
+    if (const auto solid = solid_of(scene, scene.fills[j].shape, dx))
+      depths.push_back(depth_with_images(scene, *solid, dx));
+  }
+  return [depths](const Vec3& x) {
+    double deepest = -1e300;
+    for (const auto& depth : depths) deepest = std::max(deepest, depth(x));
+    return deepest;
+  };
+}
+
+/// Lattice places over the ground and outside of solids that keep their distance from what is there.
 void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k, double dx, const Occupied& occupied) {
   const bool over_ground = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
                                        [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
   const Ground ground(scene);
   const double slack = 1e-9 * dx;
+  const auto depth = depth_in_solids(scene, k, dx);
+  std::erase_if(places, [&](const Vec3& x) { return depth(x) > 0.25 * dx; });
   leave_out(places, occupied.by_all, [&](const Vec3& x) {
     if (over_ground && x[1] - scene.domain.origin[1] < ground.height(x[0], x[2]) - slack) return true;
     return occupied.is_taken(x, dx, rest_distance);

@@ -90,9 +90,12 @@ double energy_drift(const std::string& text, int steps, const std::vector<std::s
 
 /// The rest is of the second order in the step: 1/4 with half of it.
 void expect_energy(const char* what, const std::string& text, int steps, const std::vector<std::string>& moving,
-                   const std::vector<std::string>& driven) {
-  const double rest = energy_drift(text, steps, moving, driven),
-               finer = energy_drift(text, 2 * steps, moving, driven, {"time.safety=0.5"});
+                   const std::vector<std::string>& driven, double safety = 1.0) {
+  const auto drift = [&](int halvings) {
+    return energy_drift(text, steps << halvings, moving, driven,
+                        {"time.safety=" + std::to_string(safety / (1 << halvings))});
+  };
+  const double rest = drift(0), finer = drift(1);
   report(std::string("energy left over the heat, ") + what, rest, 5e-3);
   report("the same with half the step", finer, 1e-3);
   EXPECT_LT(rest, 5e-3) << what;
@@ -104,7 +107,9 @@ TEST(RigidInFluid, WhatLeavesTheMotionIsHeat) {
   expect_energy("free bodies", small::drowned, 200, {"water", "ball", "block"}, {});
   const std::string motion = "\n[[motion]]\nphase = \"block\"\nabout = [0.9, 0.4]\nangular-velocity = \"20*t\"\n";
   expect_energy("one is driven and touches another", small::drowned + motion, 200, {"water", "ball"}, {"block"});
-  expect_energy("3D", small::drowned_ball, 50, {"water", "ball"}, {});
+  // The ball starts at once in water at rest, as from a blow: with a safety of 1 0.006 to 0.009 are left of the first
+  // steps, by where its rows lie. (0.003 where water stood inside of the ball, as it did before.)
+  expect_energy("3D", small::drowned_ball, 100, {"water", "ball"}, {}, 0.5);
 }
 
 void go(Simulation& run, double time) {

@@ -1,4 +1,4 @@
-// Water beside walls that stand slanted: it rests, and a wedge between two walls lets none of it in.
+// Water beside walls and bodies whose outlines lie across its rows: none of it comes in.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,6 +70,85 @@ TEST(SlantedWalls, ADamRunsOverARidge) {
       report("the deepest place of water in the ridge (m)", deepest, 1e-9);
       EXPECT_LE(deepest, 1e-9) << slip << " " << packing;
     }
+}
+
+/// A tank of 0.3 m of water and `more`, which stands in it or swings to and fro.
+std::string tank_with(const std::string& scheme, const std::string& slip, const std::string& more,
+                      const std::string& begin = "0") {
+  const std::string radius = scheme == "plain" ? "3" : "2.6";
+  return R"(spacing = 0.01
+[domain]
+size = [0.6, 0.5]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+viscosity = 1e-6
+sound-speed = 20
+scheme = ")" +
+         scheme + R"("
+[phases.tank]
+kind = "wall"
+slip = ")" +
+         slip + "\"\n[interactions]\nwater-water = " + radius + "\nwater-tank = " + radius +
+         "\nwater-solid = " + radius + "\n" + more + R"([[fill]]
+phase = "tank"
+shape = { sides = ["bottom", "left", "right"] }
+[[fill]]
+phase = "water"
+shape = { box = { min = [)" +
+         begin + R"(, 0], max = [0.6, 0.3] } }
+pressure = "hydrostatic"
+leave-out = "earlier-fills"
+[time]
+end = 0.4
+largest-speed = 2
+)";
+}
+
+/// The largest error of the density until this time (s).
+double worst_density(const std::string& scene, double until) {
+  const auto run = small::simulation(scene);
+  double worst = 0.0;
+  while (run->time() < until) {
+    run->step(1.0);
+    const PhaseParticles& p = run->phases()[0];
+    for (std::size_t k = 0; k < p.size(); ++k)
+      worst = std::max(worst, std::abs(p.column(Field::density)[k] / 1000.0 - 1.0));
+  }
+  return worst;
+}
+
+// The first row of the water stands on the outline of the paddle, or is cut by that of a disc: of these eight tanks six
+// ended before 0.4 s, in both schemes.
+TEST(SlantedWalls, WaterOnTheOutlineOfAWallThatMovesStaysOutside) {
+  for (const char* scheme : {"consistent", "plain"})
+    for (const char* shape : {"polygon = [[0.05, 0], [0.105, 0], [0.105, 0.4], [0.05, 0.4]]",
+                              "disc = { centre = [0.3, 0.15], radius = 0.06 }"})
+      for (const char* slip : {"no-slip", "free-slip"}) {
+        const double worst =
+            worst_density(tank_with(scheme, slip,
+                                    std::string("[phases.solid]\nkind = \"wall\"\nslip = \"") + slip +
+                                        "\"\n[[fill]]\nphase = \"solid\"\nshape = { " + shape +
+                                        " }\n[[motion]]\nphase = \"solid\"\nvelocity = [\"0.1*sin(6*t)\", 0]\n",
+                                    shape[0] == 'p' ? "0.1" : "0"),
+                          0.4);
+        report("largest error of the density", worst, 0.1);
+        EXPECT_LT(worst, 0.1) << scheme << " " << shape << " " << slip;
+      }
+}
+
+// Without any friction of the water: the disc ended the run of the plain scheme at 0.1 s. It lands at 0.3 s.
+TEST(SlantedWalls, ADiscThatSinksLetsNoWaterIn) {
+  for (const char* scheme : {"consistent", "plain"}) {
+    const double worst = worst_density(
+        tank_with(scheme, "no-slip",
+                  "solid-tank = {}\n[phases.solid]\nkind = \"rigid\"\ndensity = 2650\n[[fill]]\nphase = \"solid\"\n"
+                  "shape = { disc = { centre = [0.3, 0.2], radius = 0.06 } }\n"),
+        0.25);
+    report("largest error of the density", worst, 0.05);
+    EXPECT_LT(worst, 0.05) << scheme;
+  }
 }
 
 }  // namespace

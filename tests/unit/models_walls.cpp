@@ -220,6 +220,33 @@ TEST(FlatWall, FreeSlipKeepsTheTangentialAndReflectsTheNormal) {
   });
 }
 
+// A particle that has come between two of the wall's, or stands on the surface, is met by a velocity against its own.
+// With the sign of its depth it was met by twice its own: it felt the wall flee, and went through rigid bodies and
+// paddles.
+TEST(FlatWall, WhatComesInIsMetByAVelocityAgainstItsOwn) {
+  for (const double y : {0.05, 0.0, -0.1, -0.3}) {
+    std::vector<PhaseParticles> p;
+    const std::vector<Vec3> wall{{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {-0.5, -1.5, 0}, {0.5, -1.5, 0}};
+    p.push_back(phase(2, wall, 1.0, {Field::velocity, Field::wall_normal, Field::wall_depth}));
+    p.push_back(phase(2, {{0, y, 0}}, 1.2, {Field::velocity, Field::density, Field::pressure}, 1000));
+    for (std::size_t k = 0; k < p[0].size(); ++k) {
+      p[0].column(Field::wall_normal, 1)[k] = 1.0;
+      p[0].column(Field::wall_depth)[k] = -position(p[0], k)[1];
+    }
+    p[1].column(Field::velocity, 1)[0] = -1.0;
+    p[1].column(Field::density)[0] = 1.2;
+    Cast cast(box(2, {10, 8, 0}, {false, false, false}), std::move(p), {{0, 1, 3.0}});
+    const std::vector<ExtensionSource> fluid{{&cast.list(0), &cast.motion[1], KernelKind::wendland_c2, 3.0, 1.2}};
+    ExtensionRule rule{Slip::no_slip};
+    rule.least_phi = 0.25;
+    extend_into_solid(cast.phases[0], cast.motion[0], fluid, Vec3{}, rule);
+    for (std::size_t k = 0; k < cast.phases[0].size(); ++k)
+      EXPECT_NEAR(cast.motion[0][k][3], -position(cast.phases[0], k)[1] * std::abs(y) / std::max(y * y, 0.25 * 0.25),
+                  1e-12)
+          << y;
+  }
+}
+
 TEST(FlatWall, ARestingColumnGivesTheWallItsPressure) {
   const Vec3 gravity{0, -9.81, 0};
   const auto weight = [](const Vec3& x) { return 20.0 - 1.2 * 9.81 * x[1]; };

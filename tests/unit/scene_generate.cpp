@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "base/errors.hpp"
+#include "physics/small_scenes.hpp"
 #include "scene/places.hpp"
 #include "scene/reader.hpp"
 #include "unit/scene_texts.hpp"
@@ -459,6 +460,13 @@ TEST(Generate, TellsOfOverlapsEmptyFillsAndParticlesOutside) {
   const std::string across = with(periodic, "\"the-rest\"", "{ points = [[0.01, 0.5]] }") +
                              "[[fill]]\nphase = \"air\"\nshape = { points = [[0.99, 0.5]] }\n";
   EXPECT_NE(fault_of(parse_scene(across, "s.toml")), "") << "overlap across the period";
+}
+
+// The rows of the ball begin at its centre, half a spacing from those of the water along each axis: 32 of the water's
+// places lay in the middle of eight of the ball's.
+TEST(Generate, TheRestLeavesOutTheInsideOfABall) {
+  const Scene scene = parse_scene(small::drowned_ball, "s.toml");
+  for (const Vec3& x : generate(scene)[0].position) EXPECT_GE(norm(x - Vec3{0.7, 0.7, 0.7}), 0.3 - 0.25 * 0.1);
 }
 
 TEST(Generate, IsTheSameEveryTime) {

@@ -36,6 +36,8 @@ void extend(const PhaseParticles& solid, RecordArray& own, std::span<const Exten
       if (!forced.empty()) w.pull[d] += Lanes(forced[k * Dim + d]);
     }
     w.behind = Lanes(-(depth ? depth[k] : 0.0));
+    const double inside = depth ? depth[k] + rule.least_phi : 0.0;
+    w.inside2 = Lanes(inside * inside);
   };
   const auto finish = [&](std::size_t k, const typename Law::template Sums<Dim, Lanes>& s, bool) {
     double* record = own[k];
