@@ -151,6 +151,8 @@ void ContactLine::end_in(const PhaseParticles& wall, std::span<const double> for
       tilt += face[d] * down[d];
     }
     if (std::abs(tilt) > level_to) continue;  // no level surface ends at a floor
+    Vector aside;                             // the level part of the normal, of length 1
+    for (std::size_t d = 0; d < dim; ++d) aside[d] = (face[d] - tilt * down[d]) / std::sqrt(1.0 - tilt * tilt);
     double sum = 0.0, height = 0.0, level = 0.0;
     const auto at_surface = [&](std::size_t a) { return surface.wholeness(a) < fluid.threshold; };
     surface.each(row, at, radius * radius, at_surface, [&](std::size_t a, const Vector& r) {
@@ -158,11 +160,11 @@ void ContactLine::end_in(const PhaseParticles& wall, std::span<const double> for
       for (std::size_t d = 0; d < dim; ++d) {
         square += r[d] * r[d];
         size += surface.normal(a, d) * surface.normal(a, d);
-        across += surface.normal(a, d) * face[d];
+        across += surface.normal(a, d) * aside[d];
         fall += surface.normal(a, d) * down[d];
       }
       if (!(size > 0.0)) return;
-      for (std::size_t d = 0; d < dim; ++d) along -= r[d] * (surface.normal(a, d) - across * face[d]);
+      for (std::size_t d = 0; d < dim; ++d) along -= r[d] * (surface.normal(a, d) - across * aside[d]);
       const double near = 1.0 - std::sqrt(square) / radius, weight = near * near, per_size = weight / std::sqrt(size);
       sum += weight;
       height += along * per_size;

@@ -26,7 +26,10 @@ constexpr double least_spread = 0.15;
 ///
 /// A particle w of the wall knows its normal N. Over the fluid's particles a of the surface (wholeness below the
 /// threshold) within the kernel radius R, with weights (1 - r/R)^2:
-///   height = mean of (x_a - x_w).t_a/dx - 1/2,  t = n - N (N.n),  n: direction inwards, of length 1
+///   height = mean of (x_a - x_w).t_a/dx - 1/2,  t = n - M (M.n),  n: direction inwards, of length 1,  M: the level
+///     part of N, of length 1. So a level surface goes on into a slanted wall as a level one, and any surface beside an
+///     upright wall is mirrored. With N in place of M, which ends the wall across itself, the particle at the shore of
+///     a tank with sides of 60 degrees pumped at 0.06 sqrt(gH).
 ///   level  = mean of n.g/|g|
 /// It counts with 1 - S(level; 0.5, 0.9) S(height; -0.2, 0.2), S a smooth step: wholly where no surface is near,
 /// below floors, and beside a surface that stands or folds.
