@@ -9,13 +9,13 @@ without bound, and the largest overlap. Exits with 1 where a run ends or goes ba
 """
 
 import argparse
-import csv
 import math
 import pathlib
-import shutil
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from barchan_bench import run as runs, table  # noqa: E402
 
 RADII = {"consistent": 2.6, "plain": 3.0}
 HEIGHTS = (.12, .18, .25, .31, .37, .43)
@@ -96,13 +96,11 @@ def cases():
         yield (f"sphere, {scheme}", scene(scheme, body("sphere = { centre = [0.2, 0.25, 0.2], radius = 0.06 }"), (.4, .5, .4), .4, .8, dx=.02), .06)
 
 
-def speed_of_fall(rows, radius, dimensions):
+def speed_of_fall(history, radius, dimensions):
     """Speed after a way of one radius over that of an ideal fluid without bound, whose added mass is that of the displaced fluid (2D) or half of it (3D)."""
-    added = 1. if dimensions == 2 else .5
-    ideal = math.sqrt(2 * 9.81 * 1.65 / (2.65 + added) * radius)
+    ideal = math.sqrt(2 * 9.81 * 1.65 / (2.65 + (1. if dimensions == 2 else .5)) * radius)
     way, last = 0., (0., 0.)
-    for row in rows:
-        t, v = float(row["time [s]"]), float(row["body_largest_speed [m/s]"])
+    for t, v in zip(history["time [s]"], history["body_largest_speed [m/s]"]):
         way += .5 * (v + last[1]) * (t - last[0])
         last = t, v
         if way >= radius:
@@ -117,25 +115,21 @@ def main():
     parser.add_argument("--runs", metavar="DIR")
     options = parser.parse_args()
     good = True
-    print("| case | status | steps | went back | density off | speed after one radius/ideal | overlap, m |\n| --- | --- | --- | --- | --- | --- | --- |")
+    print(table.head("case", "status", "steps", "went back", "density off", "speed after one radius/ideal", "overlap, m"))
     with tempfile.TemporaryDirectory() as own:
         for name, text, radius in cases():
             if options.only not in name:
                 continue
             folder = pathlib.Path(options.runs or own) / name.replace(" ", "_").replace(",", "")
-            shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir(parents=True)
-            (folder / "scene.toml").write_text(text)
-            done = subprocess.run([options.program, "run", str(folder / "scene.toml"), "--out", str(folder / "out"), "--threads", "1", "--quiet"],
-                                  capture_output=True, text=True)
-            (folder / "log").write_text(done.stdout + done.stderr)
-            rows = list(csv.DictReader(open(folder / "out" / "history.csv"))) if (folder / "out" / "history.csv").exists() else []
-            back = "went back" in done.stdout + done.stderr
-            good = good and done.returncode == 0 and not back
-            off = max((float(r["largest_density_error"]) for r in rows if float(r["time [s]"]) > .02), default=math.nan)
-            speed = speed_of_fall(rows, radius, 3 if "sphere" in name else 2) if radius else math.nan
-            overlap = max((float(value) for r in rows for key, value in r.items() if "overlap" in key), default=math.nan)
-            print(f"| {name} | {done.returncode} | {rows[-1]['step'] if rows else '-'} | {'yes' if back else 'no'} | {off:.3f} | {speed:.3f} | {overlap:.2g} |", flush=True)
+            ended = runs.scene(options.program, text, folder, check=False)
+            back = "went back" in ended.stdout + ended.stderr
+            good = good and ended.status == 0 and not back
+            history = ended.history()
+            late = history["time [s]"] > .02
+            speed = speed_of_fall(history, radius, 3 if "sphere" in name else 2) if radius else math.nan
+            overlap = max((history[key].max() for key in history if "overlap" in key), default=math.nan)
+            print(table.row(name, ended.status, int(history["step"][-1]), "yes" if back else "no", f"{history['largest_density_error'][late].max():.3f}", f"{speed:.3f}",
+                            f"{overlap:.2g}"), flush=True)
     return 0 if good else 1
 
 

@@ -13,7 +13,7 @@ namespace {
 /// Sides of the domain along which fluids slip: they take no momentum along periodic axes.
 bool is_slippery_side(const Scene& scene, const Layout& layout, std::size_t wall) {
   const PlanPhase& p = layout.phases[wall];
-  return scene.phases[wall].kind() == PhaseKind::wall && p.friction == Friction::slip && !p.gives_energy &&
+  return p.takes_momentum && p.friction == Friction::slip && !p.gives_energy &&
          std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
            return fill.phase != p.name || std::holds_alternative<SidesShape>(fill.shape);
          });
