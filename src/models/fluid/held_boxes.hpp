@@ -10,7 +10,7 @@
 
 namespace barchan {
 
-/// A box of a wall that a fluid feels (m).
+/// A box of a wall that a fluid touches (m).
 struct HeldBox {
   Vec3 low, high;
 };
@@ -21,7 +21,7 @@ struct HeldShapes {
   bool any() const { return !boxes.empty() || !surfaces.empty(); }
 };
 
-/// The shapes of the walls at rest that the fluid feels, less those in which fluid stands at the start.
+/// The shapes of the walls at rest that the fluid touches, less those in which fluid stands at the start.
 HeldShapes held_shapes(const Scene& scene, const Layout& layout, std::size_t fluid, const PhaseParticles& particles);
 
 /// hold_inside() of engine/integrate.hpp for shapes: a particle whose centre is in one is put back to the nearest place
