@@ -18,7 +18,7 @@
 
 #include "base/clock.hpp"
 #include "base/denormals.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/simulation.hpp"
 #include "throughput/bare_air.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "base/fields.hpp"
 #include "plan/plan.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
 

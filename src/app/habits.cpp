@@ -3,7 +3,8 @@
 #include <iostream>
 #include <memory>
 
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
+#include "scene/schema.hpp"
 
 namespace barchan {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/shipped.hpp"
 #include "base/data_folder.hpp"
 #include "base/errors.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "scene/settable.hpp"
 
 namespace barchan {

@@ -9,9 +9,10 @@
 #include "base/errors.hpp"
 #include "base/input_file.hpp"
 #include "base/version.hpp"
+#include "checks/reader.hpp"
 #include "output/series.hpp"
 #include "output/whole_file.hpp"
-#include "scene/reader.hpp"
+#include "scene/scene_files.hpp"
 
 namespace barchan {
 namespace {

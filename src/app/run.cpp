@@ -21,6 +21,7 @@
 #include "base/instructions.hpp"
 #include "base/ranks.hpp"
 #include "base/sha256.hpp"
+#include "checks/reader.hpp"
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
@@ -29,7 +30,6 @@
 #include "output/whole_file.hpp"
 #include "plan/memory_need.hpp"
 #include "scene/identity.hpp"
-#include "scene/reader.hpp"
 #include "simulation/settle.hpp"
 
 namespace barchan {

@@ -81,7 +81,7 @@ inline bool shared = false;
 /// Of the program; null: one process.
 inline Communicator* available() { return detail::given; }
 /// Null as long as every process holds all particles. They are shared out when they are sorted first, or before any is
-/// made (scene/shared_start.hpp).
+/// made (start/shared_start.hpp).
 inline Communicator* active() { return detail::shared ? detail::given : nullptr; }
 inline void give(Communicator* communicator) { detail::given = communicator; }
 /// What is shared out stays so: who calls this where it is Alone changes nothing.

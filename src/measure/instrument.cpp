@@ -6,7 +6,7 @@
 
 #include "models/fluid/relief.hpp"
 #include "scene/couplings.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 namespace {

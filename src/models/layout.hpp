@@ -12,8 +12,8 @@
 
 #include "base/fields.hpp"
 #include "engine/neighbours.hpp"
-#include "scene/flow_ends.hpp"
 #include "scene/scene.hpp"
+#include "start/flow_ends.hpp"
 #include "state/access.hpp"
 #include "state/rigid_body.hpp"
 

@@ -13,7 +13,7 @@
 #include "models/history_row.hpp"
 #include "models/layout.hpp"
 #include "models/step_limits.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 #include "state/state.hpp"
 
 namespace barchan {

@@ -9,8 +9,8 @@
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
-#include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
+#include "start/flow_ends.hpp"
 
 namespace barchan {
 

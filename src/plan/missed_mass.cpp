@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "plan/plan.hpp"
-#include "scene/shape_content.hpp"
+#include "start/shape_content.hpp"
 
 namespace barchan {
 namespace {

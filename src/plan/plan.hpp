@@ -9,8 +9,8 @@
 #include "measure/instrument.hpp"
 #include "models/layout.hpp"
 #include "models/step_limits.hpp"
-#include "scene/generate.hpp"
 #include "scene/scene.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 
@@ -24,7 +24,7 @@ struct Plan : Layout {
   std::vector<std::string> warnings;         // what the scene may mean otherwise, one sentence each
 };
 
-/// Decides. What no law can do was refused when the scene was read (scene/check_physics.cpp). Throws SceneError where
+/// Decides. What no law can do was refused when the scene was read (checks/check_physics.cpp). Throws SceneError where
 /// only the particles show a mistake: no speed to choose a sound speed from.
 Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks);
 

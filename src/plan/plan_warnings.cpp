@@ -8,11 +8,11 @@
 #include "models/fluid/flow_zone.hpp"
 #include "output/numbers.hpp"
 #include "plan/plan.hpp"
-#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
-#include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
-#include "scene/thin_wall.hpp"
+#include "start/ball_surfaces.hpp"
+#include "start/flow_ends.hpp"
+#include "start/thin_wall.hpp"
 
 namespace barchan {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/outline.hpp"
-
 namespace barchan {
 
 const Phase* find_phase(const Scene& scene, const std::string& name) {
@@ -118,6 +116,11 @@ bool has_eddies(const Scene& scene, const Phase& fluid) {
            return wall.kind() == PhaseKind::wall && (wall.wall().roughness || wall.wall().shear_stress) &&
                   entry_between(scene, fluid, wall);
          });
+}
+
+int facet_dimensions(const Shape& shape) {
+  if (const auto* surface = std::get_if<SurfaceShape>(&shape)) return surface->triangles ? 3 : 2;
+  return std::holds_alternative<PolygonShape>(shape) ? 2 : 0;
 }
 
 bool has_surface(const Shape& shape, int dimensions) {

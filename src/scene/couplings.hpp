@@ -65,6 +65,8 @@ bool has_artificial_stress(const Scene& scene);
 bool bodies_may_touch(const Phase& a, const Phase& b);
 /// Whether they touch by their surfaces, not by their particles: rigid bodies with rigid bodies and walls.
 bool touch_by_surfaces(const Phase& a, const Phase& b);
+/// Dimensions of the facets of a shape: 2 of segments, 3 of triangles; 0 of shapes without facets.
+int facet_dimensions(const Shape& shape);
 /// Whether the shape says where its surface lies.
 bool has_surface(const Shape& shape, int dimensions);
 /// Whether all shapes of a wall say where their surfaces lie: a body then touches those, not the wall's particles.

@@ -11,7 +11,7 @@
 
 #include "base/input_file.hpp"
 #include "base/memory.hpp"
-#include "scene/reader.hpp"
+#include "scene/scene_files.hpp"
 
 namespace barchan {
 

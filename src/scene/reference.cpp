@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "scene/keys.hpp"
-#include "scene/reader.hpp"
+#include "scene/schema.hpp"
 
 namespace barchan {
 namespace {

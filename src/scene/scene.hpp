@@ -1,6 +1,6 @@
 // A scene as plain data: what the user said, checked, in SI units. No behaviour.
 //
-// scene/reader.hpp makes one from a TOML document, scene/generate.hpp makes particles from it, plan/plan.hpp decides
+// checks/reader.hpp makes one from a TOML document, start/generate.hpp makes particles from it, plan/plan.hpp decides
 // what will run. Defaults stand in the rows of the table of keys (scene/rows.cpp), so that nobody but the reader makes
 // a Scene. Lengths are metres, times seconds, unless a comment says "spacings" (multiples of `spacing`).
 #pragma once
@@ -309,7 +309,7 @@ struct Forcing {
   bool holds_force() const { return hold == Hold::stress || hold == Hold::pressure_gradient; }
 };
 
-/// A side of the domain through which a fluid enters (scene/flow_ends.hpp).
+/// A side of the domain through which a fluid enters (start/flow_ends.hpp).
 /// Synthetic turbulence on top of the velocity of an inflow (models/fluid/inflow_fluctuations.hpp).
 struct Fluctuations {
   double length{};        // m, longitudinal integral length

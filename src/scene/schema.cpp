@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/keys.hpp"
-#include "scene/reader.hpp"
+#include "scene/schema.hpp"
 
 namespace barchan {
 namespace {

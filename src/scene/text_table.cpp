@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "scene/mesh_words.hpp"
+#include "scene/text_words.hpp"
 
 namespace barchan {
 

@@ -13,8 +13,8 @@
 #include "output/series.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
-#include "scene/places.hpp"
-#include "scene/reader.hpp"
+#include "scene/scene_files.hpp"
+#include "start/places.hpp"
 
 namespace barchan {
 

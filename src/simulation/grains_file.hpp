@@ -2,7 +2,7 @@
 #pragma once
 
 #include "output/frame.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 

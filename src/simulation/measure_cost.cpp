@@ -8,8 +8,8 @@
 #include "base/clock.hpp"
 #include "base/errors.hpp"
 #include "base/memory.hpp"
-#include "scene/shared_start.hpp"
 #include "simulation/measure_ranks.hpp"
+#include "start/shared_start.hpp"
 
 namespace barchan {
 

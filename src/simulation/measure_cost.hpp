@@ -2,7 +2,7 @@
 #pragma once
 
 #include "plan/run_cost.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 

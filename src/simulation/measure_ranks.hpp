@@ -18,7 +18,7 @@ struct MemoryOfOne {
   double blocks = 0;   // of the particles as they were made
   double frame = 0;
   double states = 0;               // to go back to
-  std::string why_start_is_whole;  // scene/shared_start.hpp
+  std::string why_start_is_whole;  // start/shared_start.hpp
 };
 
 class RankMeasure {

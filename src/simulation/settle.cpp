@@ -11,16 +11,16 @@
 #include "base/errors.hpp"
 #include "base/ranks.hpp"
 #include "engine/team.hpp"
-#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
-#include "scene/ground.hpp"
-#include "scene/places.hpp"
 #include "scene/settling_scene.hpp"
-#include "scene/shapes.hpp"
-#include "scene/shared_start.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/settle_room.hpp"
 #include "simulation/simulation.hpp"
+#include "start/ball_surfaces.hpp"
+#include "start/ground.hpp"
+#include "start/places.hpp"
+#include "start/shapes.hpp"
+#include "start/shared_start.hpp"
 
 namespace barchan {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <ostream>
 
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 #include "state/archive.hpp"
 
 namespace barchan {

@@ -7,9 +7,9 @@
 #include "base/errors.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
-#include "scene/ground.hpp"
 #include "scene/located.hpp"
-#include "scene/shapes.hpp"
+#include "start/ground.hpp"
+#include "start/shapes.hpp"
 
 namespace barchan {
 

@@ -22,8 +22,8 @@
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "scene/keys.hpp"
-#include "scene/reader.hpp"
 
 namespace barchan {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "base/data_folder.hpp"
 #include "base/errors.hpp"
-#include "scene/generate.hpp"
+#include "checks/reader.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
-#include "scene/reader.hpp"
+#include "start/generate.hpp"
 #include "unit/scene_texts.hpp"
 
 namespace barchan {

@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else ".")
-DOWN = "app simulation plan measure models output engine laws state scene kernels simd base".split()
+DOWN = "app simulation plan measure models output engine laws state checks start scene kernels simd base".split()
 
 
 def climbs(src):
@@ -49,11 +49,11 @@ ALLOWED = {
 
 
 def kinds(src):
-    """Places outside scene/ and the one visit that ask for the kind of a phase or of an entry."""
+    """Places outside scene/, start/, checks/ and the one visit that ask for the kind of a phase or of an entry."""
     found = []
     for f in sorted(src.rglob("*.?pp")):
         name = str(f.relative_to(src))
-        if name.startswith("scene/") or name == "models/catalogue.cpp":
+        if name.startswith(("scene/", "start/", "checks/")) or name == "models/catalogue.cpp":
             continue
         code = re.sub(r"//.*", "", f.read_text())
         found += [f"{name} asks for {what}" for what, how in QUESTIONS.items()

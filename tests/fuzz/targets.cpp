@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "output/checked_bytes.hpp"
 #include "output/checkpoint.hpp"
 #include "output/checkpoint_pieces.hpp"
@@ -13,9 +14,8 @@
 #include "output/pieces.hpp"
 #include "output/pvd.hpp"
 #include "scene/formula.hpp"
-#include "scene/mesh_texts.hpp"
-#include "scene/mesh_vtk.hpp"
-#include "scene/reader.hpp"
+#include "start/mesh_texts.hpp"
+#include "start/mesh_vtk.hpp"
 
 namespace barchan::fuzz {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "physics/drive.hpp"
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 namespace {

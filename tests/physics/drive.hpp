@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "checks/reader.hpp"
 #include "plan/plan.hpp"
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
+#include "start/generate.hpp"
 
 namespace barchan::testing {
 

@@ -5,10 +5,10 @@
 #include <ostream>
 #include <string>
 
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/settle.hpp"
 #include "simulation/simulation.hpp"
+#include "start/generate.hpp"
 
 namespace barchan::small {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "checks/reader.hpp"
 #include "physics/drive.hpp"
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 namespace {

@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "output/series.hpp"
-#include "scene/reader.hpp"
 #include "stress/detector.hpp"
 #include "stress/scenes.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "models/step_limits.hpp"
-#include "scene/reader.hpp"
 #include "simulation/simulation.hpp"
 #include "stress/scenes.hpp"
 

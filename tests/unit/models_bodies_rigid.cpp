@@ -6,12 +6,12 @@
 #include <random>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "laws/surface_contact.hpp"
 #include "models/bodies/contact_surface.hpp"
 #include "plan/plan.hpp"
-#include "scene/generate.hpp"
-#include "scene/outline.hpp"
-#include "scene/reader.hpp"
+#include "start/generate.hpp"
+#include "start/outline.hpp"
 
 namespace barchan {
 namespace {

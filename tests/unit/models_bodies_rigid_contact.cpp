@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "checks/reader.hpp"
 #include "laws/surface_contact.hpp"
 #include "plan/plan.hpp"
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
 #include "simulation/simulation.hpp"
+#include "start/generate.hpp"
 #include "unit/particle_sets.hpp"
 
 namespace barchan::rigid_contact_test {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "models/fluid/control_volume.hpp"
-#include "scene/random.hpp"
+#include "start/random.hpp"
 
 namespace barchan {
 namespace {

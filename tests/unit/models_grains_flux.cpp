@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "checks/reader.hpp"
 #include "plan/plan.hpp"
-#include "scene/reader.hpp"
 #include "simulation/simulation.hpp"
 #include "unit/scene_texts.hpp"
 

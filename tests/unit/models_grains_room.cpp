@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "base/errors.hpp"
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/simulation.hpp"
+#include "start/generate.hpp"
 
 namespace barchan::sphere_room_test {
 namespace {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <numbers>
 
+#include "checks/reader.hpp"
 #include "models/grains/sphere_search.hpp"
 #include "models/grains/sphere_sleep.hpp"
 #include "plan/plan.hpp"
-#include "scene/reader.hpp"
 #include "unit/particle_sets.hpp"
 #include "unit/sphere_sets.hpp"
 

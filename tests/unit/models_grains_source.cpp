@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "output/series.hpp"
-#include "scene/reader.hpp"
 
 namespace barchan {
 namespace grain_source {

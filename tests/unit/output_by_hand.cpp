@@ -9,7 +9,7 @@
 #include "measure/measurements.hpp"
 #include "output/series.hpp"
 #include "physics/small_scenes.hpp"
-#include "scene/ground.hpp"
+#include "start/ground.hpp"
 #include "unit/output_example.hpp"
 
 namespace barchan {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/simulation.hpp"
 #include "unit/scene_texts.hpp"
 

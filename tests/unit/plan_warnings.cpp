@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "checks/reader.hpp"
 #include "plan/plan.hpp"
 #include "plan/run_cost.hpp"
-#include "scene/reader.hpp"
 #include "unit/scene_texts.hpp"
 
 namespace barchan {

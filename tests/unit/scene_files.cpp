@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "base/errors.hpp"
-#include "scene/generate.hpp"
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/settle.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 namespace {

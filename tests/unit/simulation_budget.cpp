@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "scene/reader.hpp"
+#include "checks/reader.hpp"
 #include "simulation/simulation.hpp"
 #include "unit/scene_texts.hpp"
 

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/outline.hpp"
+#include "scene/couplings.hpp"
+#include "start/outline.hpp"
 
 namespace barchan {
 

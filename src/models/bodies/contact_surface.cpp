@@ -7,7 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "scene/outline.hpp"
+#include "scene/couplings.hpp"
+#include "start/outline.hpp"
 
 namespace barchan {
 

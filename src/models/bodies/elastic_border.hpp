@@ -9,7 +9,7 @@
 #include "base/vec3.hpp"
 #include "models/bodies/border_points.hpp"
 #include "models/layout.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "scene/outline.hpp"
+#include "start/outline.hpp"
 
 namespace barchan {
 

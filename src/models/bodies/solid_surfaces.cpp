@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/outline.hpp"
+#include "scene/couplings.hpp"
+#include "start/outline.hpp"
 
 namespace barchan {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "kernels/kernel.hpp"
-#include "scene/random.hpp"
+#include "start/random.hpp"
 
 namespace barchan {
 

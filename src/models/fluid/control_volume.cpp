@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/reproducible_sum.hpp"
-#include "scene/point_cells.hpp"
+#include "start/point_cells.hpp"
 
 namespace barchan {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "models/layout.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 
 namespace barchan {
 

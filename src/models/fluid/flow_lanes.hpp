@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/vec3.hpp"
-#include "scene/flow_ends.hpp"
+#include "start/flow_ends.hpp"
 
 namespace barchan {
 

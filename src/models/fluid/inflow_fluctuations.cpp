@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/random.hpp"
+#include "start/random.hpp"
 
 namespace barchan {
 namespace {

@@ -8,7 +8,7 @@
 #include "engine/cell_grid.hpp"
 #include "engine/pair_list.hpp"
 #include "models/fluid/fluid_rates.hpp"
-#include "scene/flow_ends.hpp"
+#include "start/flow_ends.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {

@@ -9,12 +9,12 @@
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "output/series.hpp"
-#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
-#include "scene/flow_ends.hpp"
 #include "scene/located.hpp"
-#include "scene/random.hpp"
-#include "scene/reader.hpp"
+#include "scene/scene_files.hpp"
+#include "start/ball_surfaces.hpp"
+#include "start/flow_ends.hpp"
+#include "start/random.hpp"
 
 namespace barchan {
 

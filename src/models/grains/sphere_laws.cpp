@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "models/grains/spheres.hpp"
-#include "scene/ball_surfaces.hpp"
 #include "scene/contact_words.hpp"
 #include "scene/couplings.hpp"
+#include "start/ball_surfaces.hpp"
 
 namespace barchan {
 

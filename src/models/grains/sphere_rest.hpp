@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/grains/sphere_pairs.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 #include "state/archive.hpp"
 
 namespace barchan {

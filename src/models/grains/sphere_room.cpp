@@ -7,9 +7,9 @@
 #include "base/errors.hpp"
 #include "models/grains/sphere_pairs.hpp"
 #include "output/numbers.hpp"
-#include "scene/ball_surfaces.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "start/ball_surfaces.hpp"
 
 namespace barchan {
 

@@ -7,7 +7,7 @@
 #include "models/bodies/solid_surfaces.hpp"
 #include "models/layout.hpp"
 #include "models/walls/wall_motion.hpp"
-#include "scene/generate.hpp"
+#include "start/generate.hpp"
 #include "state/state.hpp"
 
 namespace barchan {

@@ -5,7 +5,7 @@
 
 #include "models/grains/spheres.hpp"
 #include "models/walls/wall_motion.hpp"
-#include "scene/ball_surfaces.hpp"
+#include "start/ball_surfaces.hpp"
 
 namespace barchan {
 
