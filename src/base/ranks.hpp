@@ -110,8 +110,8 @@ class Alone {
 inline bool is_first() { return !detail::given || detail::given->rank() == 0; }
 
 template <class T>
-T reduced(T value, Communicator::Take how) {
-  if (Communicator* all = active()) all->reduce(&value, 1, how);
+T reduced(T value, Communicator::Take how, Communicator* all = active()) {
+  if (all) all->reduce(&value, 1, how);
   return value;
 }
 /// Of all ranks.
@@ -126,9 +126,8 @@ inline bool any(bool value) { return largest(std::int64_t{value ? 1 : 0}) != 0; 
 
 /// The value of each rank; of one process its own.
 template <class T>
-std::vector<T> each(const T& value) {
+std::vector<T> each(const T& value, Communicator* all = active()) {
   static_assert(std::is_trivially_copyable_v<T>);
-  Communicator* const all = active();
   std::vector<T> values(all ? static_cast<std::size_t>(all->size()) : 1, value);
   if (all) all->all_gather(&value, sizeof(T), values.data());
   return values;
@@ -139,24 +138,23 @@ inline bool makes_particles() { return !active() || active()->rank() == 0; }
 
 /// The value of the first rank that has one; where none has, this rank's. Of one process its own.
 template <class T>
-T of_first(bool has, const T& value) {
+T of_first(bool has, const T& value, Communicator* all = active()) {
   struct Offer {
     bool has;
     T value;
   };
-  if (!active()) return value;
-  for (const Offer& offer : each(Offer{has, value}))
+  if (!all) return value;
+  for (const Offer& offer : each(Offer{has, value}, all))
     if (offer.has) return offer.value;
   return value;
 }
 
 /// The values of all ranks, one rank after another, on every one of them.
 template <class T>
-void join(std::vector<T>& values) {
+void join(std::vector<T>& values, Communicator* all = active()) {
   static_assert(std::is_trivially_copyable_v<T>);
-  Communicator* const all = active();
   if (!all) return;
-  const auto counts = each(values.size());
+  const auto counts = each(values.size(), all);
   std::size_t total = 0, own = 0;
   for (std::size_t r = 0; r < counts.size(); ++r) {
     if (static_cast<int>(r) == all->rank()) own = total;
@@ -171,11 +169,11 @@ void join(std::vector<T>& values) {
 }
 
 /// Where the particles of this rank begin among those of all ranks, in the order of one process.
-inline std::size_t before(std::size_t count) {
-  if (!active()) return 0;
-  const auto counts = each(count);
+inline std::size_t before(std::size_t count, Communicator* all = active()) {
+  if (!all) return 0;
+  const auto counts = each(count, all);
   std::size_t sum = 0;
-  for (int r = 0; r < active()->rank(); ++r) sum += counts[static_cast<std::size_t>(r)];
+  for (int r = 0; r < all->rank(); ++r) sum += counts[static_cast<std::size_t>(r)];
   return sum;
 }
 
@@ -210,9 +208,9 @@ inline std::string first_text(std::string text) {
 /// Items for each rank, one rank after another; `counts`: for how many each. Returns those that all ranks have for this
 /// one, one rank after another.
 template <class T>
-std::vector<T> exchanged(const std::vector<T>& items, const std::vector<std::size_t>& counts) {
+std::vector<T> exchanged(const std::vector<T>& items, const std::vector<std::size_t>& counts,
+                         Communicator& all = *active()) {
   static_assert(std::is_trivially_copyable_v<T>);
-  Communicator& all = *active();
   const std::vector<std::size_t> ones(counts.size(), 1);
   std::vector<std::size_t> coming(counts.size(), 0);
   all.exchange(counts.data(), ones, coming.data(), ones, sizeof(std::size_t));
@@ -243,13 +241,13 @@ inline Share own_share() {
 
 /// What `candidate` is best by `better`, a strict order; equal ones: the first rank's. Returns the rank.
 template <class T, class Better>
-int best(T& candidate, Better&& better) {
-  if (!active()) return 0;
-  const auto all = each(candidate);
+int best(T& candidate, Better&& better, Communicator* all = active()) {
+  if (!all) return 0;
+  const auto candidates = each(candidate, all);
   std::size_t first = 0;
-  for (std::size_t r = 1; r < all.size(); ++r)
-    if (better(all[r], all[first])) first = r;
-  candidate = all[first];
+  for (std::size_t r = 1; r < candidates.size(); ++r)
+    if (better(candidates[r], candidates[first])) first = r;
+  candidate = candidates[first];
   return static_cast<int>(first);
 }
 
@@ -262,8 +260,7 @@ struct Sums {
 /// Sums that go through the particles in the order of one process: each rank takes `sums` from the one before it, calls
 /// `add`, and hands them on; at last all have them. For what happens once a run or once in many steps.
 template <class Add>
-void in_turn(std::initializer_list<Sums> sums, Add&& add) {
-  Communicator* const all = active();
+void in_turn(std::initializer_list<Sums> sums, Add&& add, Communicator* all = active()) {
   if (all && all->rank() > 0)
     for (const Sums& s : sums) all->receive(s.data, s.bytes, all->rank() - 1);
   add();
@@ -273,9 +270,9 @@ void in_turn(std::initializer_list<Sums> sums, Add&& add) {
   for (const Sums& s : sums) all->broadcast(s.data, s.bytes, all->size() - 1);
 }
 template <class T, class Add>
-void in_turn(T& value, Add&& add) {
+void in_turn(T& value, Add&& add, Communicator* all = active()) {
   static_assert(std::is_trivially_copyable_v<T>);
-  in_turn({Sums{&value, sizeof value}}, add);
+  in_turn({Sums{&value, sizeof value}}, add, all);
 }
 
 }  // namespace ranks

@@ -34,7 +34,7 @@ double reproducible_total(const double* values, std::size_t size) {
   const SumCuts cuts(largest, all);
 #pragma omp parallel for simd schedule(static) reduction(+ : high, low)
   for (std::int64_t k = 0; k < n; ++k) cuts.add(values[k], high, low);
-  add_of_ranks(high, low);
+  add_of_ranks(high, low, ranks::active());
   return high + low;
 }
 

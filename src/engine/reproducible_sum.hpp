@@ -57,18 +57,18 @@ inline double largest_of(const double* values, std::size_t n) {
 inline constexpr double least_term = 1e-250;
 
 /// The parts of all ranks: these sums are exact too.
-inline void add_of_ranks(double& high, double& low) {
-  if (!ranks::active()) return;
+inline void add_of_ranks(double& high, double& low, Communicator* all) {
+  if (!all) return;
   std::array<double, 2> parts{high, low};
-  ranks::active()->reduce(parts.data(), parts.size(), Communicator::Take::sum);
+  all->reduce(parts.data(), parts.size(), Communicator::Take::sum);
   high = parts[0];
   low = parts[1];
 }
 
-/// Sum of f(k) over k < n, of all ranks, the same for any order of the f(k). f is called twice for each k and must give
-/// the same. NaN when a value is not finite. Allocates nothing.
+/// Sum of f(k) over k < n, of the ranks of a communicator (null: of this process), the same for any order of the f(k).
+/// f is called twice for each k and must give the same. NaN when a value is not finite. Allocates nothing.
 template <class F>
-double reproducible_sum(std::size_t n, F&& f) {
+double reproducible_sum(std::size_t n, F&& f, Communicator* ranks_of_it = ranks::active()) {
   constexpr std::size_t block = 256;
   std::array<double, block> values;
   const auto fill = [&](std::size_t first) {
@@ -82,8 +82,9 @@ double reproducible_sum(std::size_t n, F&& f) {
     if (!(most <= largest)) largest = most;
     if (std::isnan(largest)) break;
   }
-  largest = std::bit_cast<double>(ranks::largest(bits_of_size(largest)));
-  const std::size_t all = ranks::total(n);
+  largest = std::bit_cast<double>(ranks::reduced(bits_of_size(largest), Communicator::Take::largest, ranks_of_it));
+  const auto all =
+      static_cast<std::size_t>(ranks::reduced(static_cast<std::int64_t>(n), Communicator::Take::sum, ranks_of_it));
   if (std::isnan(largest)) return largest;
   if (largest < least_term) return 0.0;
   const SumCuts cuts(largest, all);
@@ -93,7 +94,7 @@ double reproducible_sum(std::size_t n, F&& f) {
 #pragma omp simd reduction(+ : high, low)
     for (std::size_t q = 0; q < count; ++q) cuts.add(values[q], high, low);
   }
-  add_of_ranks(high, low);
+  add_of_ranks(high, low, ranks_of_it);
   return high + low;
 }
 

@@ -1,11 +1,10 @@
 #include "measure/measurements.hpp"
+#include "engine/exchange.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
-
-#include "base/ranks.hpp"
 
 namespace barchan {
 namespace {
@@ -122,12 +121,12 @@ void Measurements::sample(const State& state) {
   for (std::size_t k = 0; k < instruments_.size(); ++k)
     if (due(k, state.time)) due_.push_back(k);
   if (due_.empty()) return;
-  if (ranks::active()) gather(state);
+  if (Exchange().is_shared()) gather(state);
   for (const std::size_t k : due_) {
     const Instrument& i = instruments_[k];
     const bool averaged = state.time >= i.start * (1.0 - 1e-12);
     if (averaged) ++memory_.moments[k];
-    if (!ranks::is_first()) continue;  // the first one samples
+    if (!Exchange::is_first_process()) continue;  // the first one samples
     if (i.points.empty()) {
       if (i.over_sand()) take_ground(k, state);
       else i.kind == InstrumentKind::slices ? take_slices(k, state) : take_layers(k, state);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 namespace barchan {
 
 namespace {
@@ -124,9 +124,9 @@ void Forces::relax(PhaseParticles& p, double time, double dt) const {
 }
 
 Vec3 Forces::sum(const PhaseParticles& p, double time, double dt) const {
-  Vec3 total = static_cast<double>(ranks::total(p.size())) * uniform();
+  Vec3 total = static_cast<double>(Exchange().total(p.size())) * uniform();
   if (!varies()) return total;
-  ranks::in_turn(total, [&] { add_varying(total, p, time, dt); });
+  Exchange().in_turn(total, [&] { add_varying(total, p, time, dt); });
   return total;
 }
 

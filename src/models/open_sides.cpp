@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -107,8 +107,8 @@ void OpenSides::begin(State& state, const std::vector<ParticleBlock>&) {
   state.departed.back().phase = static_cast<std::int64_t>(phase_);
   PhaseParticles& p = state.phases[phase_];
   p.number_may_change();
-  const ranks::Alone alone(!p.is_part());
-  ranks::in_turn(start_mass_, [&] {
+  const Exchange among = p.is_part() ? Exchange() : Exchange::none();
+  among.in_turn(start_mass_, [&] {
     for (std::size_t k = 0; k < p.size(); ++k) start_mass_ += p.mass_of(k);
   });
 }
@@ -177,11 +177,11 @@ void OpenSides::book(const PhaseParticles& p, std::size_t k, Departed& departed)
 
 void OpenSides::leave() {
   PhaseParticles& p = w_->particles(phase_);
-  const ranks::Alone alone(p.is_whole());
-  if (!ranks::any(any_beyond(p))) return;
+  const Exchange among(p);
+  if (!among.any(any_beyond(p))) return;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;
-  if (ranks::total(kept) == 0 && !plan_.own_steps) {
+  if (among.total(kept) == 0 && !plan_.own_steps) {
     trouble_ = "all particles of \"" + plan_.name + "\" are beyond " + sides_text() +
                ": nothing is left to compute; close a side with a wall, or enlarge domain.size";
     return;
@@ -190,7 +190,7 @@ void OpenSides::leave() {
     Departed departed;
     std::array<std::array<PassedSide, 2>, 3> passed;
   } booked{w_->state.departed[place_], passed_};
-  ranks::in_turn(booked, [&] {
+  among.in_turn(booked, [&] {
     passed_ = booked.passed;
     for (std::size_t k = 0; k < p.size(); ++k)
       if (is_beyond(p, k)) book(p, k, booked.departed);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "engine/exchange.hpp"
 #include "engine/integrate.hpp"
 #include "models/bodies/artificial_stress.hpp"
 #include "models/bodies/updated_lagrangian.hpp"
@@ -119,7 +120,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   wall_motions.resize(phases, nullptr);
   for (std::size_t k = 0; k < phases; ++k) {
     const PlanPhase& p = layout.phases[k];
-    if (ranks::available() && layout.is_whole(k)) state.phases[k].be_whole();
+    if (Exchange::may_be() && layout.is_whole(k)) state.phases[k].be_whole();
     records_.push_back(std::make_unique<PhaseRecords>(p.name, layout.dimensions));
     if (read[k]) need(k, Record::motion);
     if (seen[k]) need(k, Record::extended);
@@ -206,11 +207,11 @@ void CommonWork::find_neighbours() {
   const auto beside = [this] {
     for (const auto& call : w_->when_sorted) call();
   };
-  if (layout_.directions.empty()) return ranks::share();
+  if (layout_.directions.empty()) return Exchange::share_out();
   long changes = 0;
   for (const auto& p : w_->state.phases) changes += p.changes();
   const bool others = w_->must_search || changes != w_->changes_of_lists;  // particles than the lists are of
-  const bool shared = ranks::available() != nullptr;  // then who is called may ask other ranks: not beside the search
+  const bool shared = Exchange::may_be();  // then who is called may ask other ranks: not beside the search
   const bool sorted = shared ? w_->neighbours.update(w_->state.phases, others)
                              : w_->neighbours.update(w_->state.phases, others, beside);
   w_->changes_of_lists = changes;
@@ -255,12 +256,13 @@ void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
     if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
-  if (ranks::active() && (!std::isfinite(largest) || formula_fault()))
+  const Exchange among;
+  if (among.is_shared() && (!std::isfinite(largest) || formula_fault()))
     largest = std::numeric_limits<double>::infinity();  // NaN has no order, and all ranks must know
-  if (Communicator* const all = ranks::active()) {
+  if (among.is_shared()) {
     found_.assign(1, largest);
     for (const double* value : w_->largest_of_ranks) found_.push_back(*value);
-    all->reduce(found_.data(), found_.size(), Communicator::Take::largest);
+    among.reduce(found_.data(), found_.size(), Exchange::Take::largest);
     largest = found_.front();
     for (std::size_t k = 0; k < w_->largest_of_ranks.size(); ++k) *w_->largest_of_ranks[k] = found_[k + 1];
   }

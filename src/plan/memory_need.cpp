@@ -5,7 +5,7 @@
 
 #include "base/errors.hpp"
 #include "base/memory.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/records.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
@@ -132,7 +132,7 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
 
 void check_memory(const Scene& scene, const MemoryNeed& need) {
   const AvailableMemory there = available_memory();
-  const double bytes = need.bytes() * ranks::share_of_machine();
+  const double bytes = need.bytes() * Exchange::share_of_machine();
   if (bytes <= there.bytes) return;
   throw SceneError(located(scene, "spacing") + ": the run needs about " + memory_text(bytes) + " of memory, " +
                    there.of + " leaves " + memory_text(there.bytes) +

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/catalogue.hpp"
 #include "models/grains/grain_source.hpp"
 #include "output/numbers.hpp"
@@ -88,7 +88,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
   for (const PlanPhase& p : plan.phases) speed = std::max(speed, p.surface_speed);
   for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion, blocks));
-  speed = ranks::largest(std::max({speed, entering_speed(scene, blocks), influx_speed(scene)}));
+  speed = Exchange().largest(std::max({speed, entering_speed(scene, blocks), influx_speed(scene)}));
   double height = 0;
   for (std::size_t d = 0; d < 3; ++d) height += std::abs(scene.domain.gravity[d]) * scene.domain.size[d];
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));

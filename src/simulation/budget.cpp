@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 #include "output/numbers.hpp"
 
 namespace barchan {
@@ -55,24 +55,24 @@ Budget::Sums Budget::sums(const State& state) const {
   for (const Moving& moving : moving_) {
     const PhaseParticles& p = state.phases[moving.phase];
     if (has_bodies(state, moving.phase)) continue;
-    const ranks::Alone alone(p.is_whole());
+    const Exchange among(p);
     const std::size_t n = p.size();
-    s.mass += reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i); });
+    s.mass += among.sum(n, [&](std::size_t i) { return p.mass_of(i); });
     for (int d = 0; d < p.dimensions(); ++d) {
       const auto c = static_cast<std::size_t>(d);
       const double *v = p.column(Field::velocity, d), *x = p.column(Field::position, d);
-      s.momentum[c] += reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i]; });
-      s.kinetic += 0.5 * reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i] * v[i]; });
+      s.momentum[c] += among.sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i]; });
+      s.kinetic += 0.5 * among.sum(n, [&](std::size_t i) { return p.mass_of(i) * v[i] * v[i]; });
       if (gravity_[c] != 0.0)
         s.potential -=
-            moving.weight_share * gravity_[c] * reproducible_sum(n, [&](std::size_t i) { return p.mass_of(i) * x[i]; });
+            moving.weight_share * gravity_[c] * among.sum(n, [&](std::size_t i) { return p.mass_of(i) * x[i]; });
     }
     if (moving.density > 0.0) {
       const double* rho = p.column(Field::density);
-      s.stored += 0.5 * std::pow(moving.sound_speed, 2) * reproducible_sum(n, [&](std::size_t i) {
-                    const double strain = rho[i] / moving.density - 1.0;
-                    return p.mass_of(i) * strain * strain;
-                  });
+      s.stored += 0.5 * std::pow(moving.sound_speed, 2) * among.sum(n, [&](std::size_t i) {
+        const double strain = rho[i] / moving.density - 1.0;
+        return p.mass_of(i) * strain * strain;
+      });
     }
   }
   for (const RigidBody& body : state.bodies) {

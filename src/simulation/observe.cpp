@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -13,8 +12,8 @@ std::uint64_t Simulation::pairs(const PlanEntry& e) const {
   for (const int direction : {e.forward, e.backward})
     if (direction >= 0) n += work_->list(direction).entries();
   for (const auto& model : models_) n += model->pairs(e);
-  const ranks::Alone alone(state_.phases[e.a].is_whole() && state_.phases[e.b].is_whole());
-  return ranks::total(n);
+  const bool whole = state_.phases[e.a].is_whole() && state_.phases[e.b].is_whole();
+  return (whole ? Exchange::none() : Exchange()).total(n);
 }
 
 long Simulation::searches() const {
@@ -30,7 +29,7 @@ std::vector<RestingContact> Simulation::resting_contacts(std::size_t phase) cons
   return all;
 }
 
-std::size_t Simulation::bytes() const { return ranks::total(work_->bytes() + (watch_ ? watch_->bytes() : 0)); }
+std::size_t Simulation::bytes() const { return Exchange().total(work_->bytes() + (watch_ ? watch_->bytes() : 0)); }
 
 /// Whether outputs have a particle: those in zones beyond sides with a flow belong to the world outside.
 bool Simulation::is_shown(const PhaseParticles& p, std::size_t k) const {
@@ -68,7 +67,7 @@ Frame Simulation::frame(int index) const {
   std::vector<std::size_t> written = written_phases();
   f.in_pieces = is_in_pieces(written);
   if (f.in_pieces) {
-    const ranks::Share own = ranks::own_share();
+    const Exchange::Share own = Exchange().share();
     f.piece = static_cast<int>(own.number);
     f.pieces = static_cast<int>(own.count);
     if (own.number > 0) std::erase_if(written, [&](std::size_t k) { return state_.phases[k].is_whole(); });
@@ -97,7 +96,7 @@ Frame Simulation::frame(int index) const {
     }
   }
   for (const Field field : frame_fields(scene_)) f.fields.push_back(values_of(field, written, n));
-  if (ranks::active() && !f.in_pieces) gather_frame(f, written);
+  if (Exchange().is_shared() && !f.in_pieces) gather_frame(f, written);
   return f;
 }
 
@@ -130,13 +129,13 @@ FrameField Simulation::values_of(Field field, const std::vector<std::size_t>& wr
 
 void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   const auto& p = state_.phases[k];
-  const ranks::Alone alone(p.is_whole());
-  const std::size_t n = p.size(), shown = ranks::total(shown_of(k));
+  const Exchange among(p);
+  const std::size_t n = p.size(), shown = among.total(shown_of(k));
   std::array<const double*, 3> v{};
   for (int d = 0; d < plan_.dimensions; ++d) v[static_cast<std::size_t>(d)] = p.column(Field::velocity, d);
   double fastest = 0.0;
   const bool sizes = p.has(Field::radius);
-  const double square = reproducible_sum(n, [&](std::size_t i) {
+  const double square = among.sum(n, [&](std::size_t i) {
     if (!is_shown(p, i)) return 0.0;
     double s = 0;
     for (int d = 0; d < plan_.dimensions; ++d)
@@ -150,11 +149,11 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   std::array<double, 3> mean{};
   for (int d = 0; d < plan_.dimensions; ++d) {
     const auto c = static_cast<std::size_t>(d);
-    const double total = reproducible_sum(n, [&](std::size_t i) { return is_shown(p, i) ? v[c][i] : 0.0; });
+    const double total = among.sum(n, [&](std::size_t i) { return is_shown(p, i) ? v[c][i] : 0.0; });
     mean[c] = shown > 0 ? total / static_cast<double>(shown) : 0.0;
     if (rigid) continue;
     row.values[HistoryRow::momentum_x + c] +=
-        sizes ? reproducible_sum(n, [&](std::size_t i) { return is_shown(p, i) ? p.mass_of(i) * v[c][i] : 0.0; })
+        sizes ? among.sum(n, [&](std::size_t i) { return is_shown(p, i) ? p.mass_of(i) * v[c][i] : 0.0; })
               : p.mass() * total;
   }
   for (const RigidBody& body : state_.bodies) {
@@ -163,7 +162,7 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
     for (std::size_t c = 0; c < 3; ++c) row.values[HistoryRow::momentum_x + c] += momentum[c];
     kinetic += kinetic_energy(body);
   }
-  fastest = std::sqrt(ranks::largest(fastest));
+  fastest = std::sqrt(among.largest(fastest));
   row.raise(HistoryRow::largest_speed, fastest);
   const std::string& name = plan_.phases[k].name;
   row.add(name + "_kinetic_energy [J]", kinetic);

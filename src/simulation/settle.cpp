@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/team.hpp"
 #include "scene/couplings.hpp"
 #include "scene/settling_scene.hpp"
@@ -225,7 +225,7 @@ Scene softened(Scene s, double stiffness) {
 }  // namespace
 
 SettledGrains settle(const Scene& scene, std::size_t k, std::ostream* words) {
-  const ranks::Alone alone;  // every rank makes the whole bed
+  const ComputedByAll alone;  // every rank makes the whole bed
   const SettlingRoom c = settling_room(scene, k);
   const Scene s = settling_scene(scene, k, c);
   double thickness = 0.0;
@@ -279,7 +279,7 @@ void SettledBeds::archive(Archive& a, const Scene& scene) {
 
 std::vector<ParticleBlock> make_particles(const Scene& scene, std::ostream* words, SettledBeds* beds) {
   refuse_beds_in_one_place(scene);
-  if (why_start_is_whole(scene).empty()) ranks::share();
+  if (why_start_is_whole(scene).empty()) Exchange::share_out();
   return generate(scene, [&](const Scene& of, std::size_t fill, const std::vector<ParticleBlock>&) {
     if (of.fills[fill].packing != Packing::settled) return grains_of_file(of, fill);
     if (!beds) return settle(of, fill, words);

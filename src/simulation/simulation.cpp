@@ -6,7 +6,6 @@
 #include <random>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
 #include "engine/rank_load.hpp"
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/integrate.hpp"
 #include "engine/pair_loop.hpp"
 #include "models/drive.hpp"
@@ -117,11 +117,11 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   for (const auto& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const PlanPhase& plan = see_.plan.phases[g.phase];
-    const ranks::Alone alone(p.is_whole());
-    const auto count = static_cast<double>(ranks::total(p.size()));
+    const Exchange among(p);
+    const auto count = static_cast<double>(among.total(p.size()));
     mass_ += p.mass() * count;
     start_energy_ += 0.5 * p.mass() * count * std::pow(plan.rules.idle * plan.sound_speed, 2);
-    ranks::in_turn(start_energy_, [&] {
+    among.in_turn(start_energy_, [&] {
       for (std::size_t k = 0; k < p.size(); ++k) {
         double v2 = 0.0;
         for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
@@ -133,7 +133,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
               std::pow(p.column(Field::pressure)[k] / (see_.scene.phases[g.phase].density * plan.sound_speed), 2);
       }
     });
-    start_fastest_ = ranks::largest(start_fastest_);
+    start_fastest_ = among.largest(start_fastest_);
   }
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
@@ -172,13 +172,13 @@ void Watch::make_guards() {
         const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
         g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
-      if (plan.phases[other].moves || plan.phases[other].travels || ranks::total(see_.particles[other].size()) == 0)
+      if (plan.phases[other].moves || plan.phases[other].travels || Exchange().total(see_.particles[other].size()) == 0)
         continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
       for (std::size_t d = 0; d < 3; ++d) {
-        sides.low[d] = ranks::largest(sides.low[d]);
-        sides.high[d] = ranks::least(sides.high[d]);
+        sides.low[d] = Exchange().largest(sides.low[d]);
+        sides.high[d] = Exchange().least(sides.high[d]);
         if (sides.low[d] > -Sides::far) g.closed[d][0] = static_cast<int>(other);
         if (sides.high[d] < Sides::far) g.closed[d][1] = static_cast<int>(other);
         // A grain or a body whose centre is beyond the side is half its diameter deep in the wall.
@@ -256,7 +256,7 @@ double Watch::look_at_phases(const Moment& now) {
   double fastest_solid = 0.0, energy = 0.0, wrong = 0.0;
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
-    const ranks::Alone alone(p.is_whole());
+    const Exchange among(p);
     const double bound = speed_bound(g, now.dt), bound2 = bound * bound;
     const auto n = static_cast<std::int64_t>((p.size() + block - 1) / block);
     if (parts_.size() < static_cast<std::size_t>(n)) parts_.resize(static_cast<std::size_t>(n));
@@ -277,13 +277,13 @@ double Watch::look_at_phases(const Moment& now) {
       all.lightest = std::min(all.lightest, part.lightest);
       all.densest = std::max(all.densest, part.densest);
     }
-    if (ranks::active()) all = of_all_ranks(all);
+    if (among.is_shared()) all = of_all_ranks(all);
     energy += 0.5 * p.mass() * all.squares;
     fastest_of_[g.phase] = std::sqrt(all.fastest);
     wrong += all.wrong;
     const PhaseRules& rules = see_.plan.phases[g.phase].rules;
     if (rules.solid) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
-    else if (ranks::total(p.size()) > 0)
+    else if (among.total(p.size()) > 0)
       note_density(g, std::max(all.densest, 2.0 * g.reference_density - all.lightest) / g.reference_density - 1.0, now);
   }
   energy_ = energy;
@@ -297,9 +297,9 @@ bool Watch::too_near(Apart& pair) const {
   see_.work.fill_images(pair.b, record);  // no task may have read them since they were packed
   const RecordArray &own = see_.work.records(pair.a, record), &others = see_.work.records(pair.b, record);
   const std::size_t n = see_.particles[pair.a].size();
-  const double least = ranks::least(see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
-                                    : pair.stress             ? least_separation<3, 16>(n, list, own, others)
-                                                              : least_separation<3, 8>(n, list, own, others));
+  const double least = Exchange().least(see_.plan.dimensions == 2 ? least_separation<2, 8>(n, list, own, others)
+                                        : pair.stress             ? least_separation<3, 16>(n, list, own, others)
+                                                                  : least_separation<3, 8>(n, list, own, others));
   pair.left = std::sqrt(std::min(least, pair.reach * pair.reach)) - pair.distance;
   return pair.left < 0.0;
 }
@@ -354,12 +354,12 @@ double Watch::strongest_force(const Moment& now) const {
   double strongest = drag_;
   for (const Force& f : forces_) {
     const PhaseParticles& p = see_.particles[f.phase];
-    const ranks::Alone alone(p.is_whole());
+    const Exchange among(p);
     const bool constant =
         f.acceleration[0].is_constant() && f.acceleration[1].is_constant() && f.acceleration[2].is_constant();
-    const std::size_t stride = constant ? p.size() : std::max<std::size_t>(1, ranks::total(p.size()) / sample);
+    const std::size_t stride = constant ? p.size() : std::max<std::size_t>(1, among.total(p.size()) / sample);
     double most = 0.0;
-    for (std::size_t k = constant ? 0 : (stride - ranks::before(p.size()) % stride) % stride; k < p.size();
+    for (std::size_t k = constant ? 0 : (stride - among.before(p.size()) % stride) % stride; k < p.size();
          k += stride) {
       Vec3 x{};
       for (int d = 0; d < p.dimensions(); ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
@@ -368,7 +368,7 @@ double Watch::strongest_force(const Moment& now) const {
       };
       most = std::max(most, norm({at(0), at(1), at(2)}));
     }
-    strongest += ranks::largest(most);
+    strongest += among.largest(most);
   }
   return strongest;
 }
@@ -376,7 +376,7 @@ double Watch::strongest_force(const Moment& now) const {
 /// What all ranks see; of one process the same.
 Watch::Part Watch::of_all_ranks(Part part) {
   Part all;
-  for (const Part& one : ranks::each(part)) {
+  for (const Part& one : Exchange().each(part)) {
     all.squares += one.squares;
     all.wrong += one.wrong;
     all.fastest = std::max(all.fastest, one.fastest);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "output/numbers.hpp"
 #include "scene/formula_keys.hpp"
 #include "simulation/watch.hpp"
@@ -63,12 +63,12 @@ std::string Watch::most_accelerated(const Moment& now) const {
     double most;
     std::int64_t id;
   } found{most, most < 0.0 ? 0 : see_.particles[phase].id()[particle]};
-  const int rank = ranks::best(
+  const int rank = Exchange().best(
       found, [](const Found& a, const Found& b) { return a.most > b.most || (a.most == b.most && a.id < b.id); });
   const bool here = most == found.most && most >= 0.0;
   most = found.most;
   if (most < 0.0) return "no particle";
-  return ranks::text_of(rank, here ? who(phase, particle, now) : "") + ", with an acceleration of " + brief(most) +
+  return Exchange().text_of(rank, here ? who(phase, particle, now) : "") + ", with an acceleration of " + brief(most) +
          " m/s2";
 }
 
@@ -160,8 +160,8 @@ std::optional<std::string> Watch::formula_to_blame(const Moment& now) const {
 void Watch::tell_worst(const Moment& now) const {
   const auto formula = formula_to_blame(now);
   int blamed = formula ? 1 : 0;
-  const int first_to_blame = ranks::best(blamed, [](int a, int b) { return a > b; });
-  if (blamed != 0) throw LastingBreakdown(ranks::text_of(first_to_blame, formula.value_or("")));
+  const int first_to_blame = Exchange().best(blamed, [](int a, int b) { return a > b; });
+  if (blamed != 0) throw LastingBreakdown(Exchange().text_of(first_to_blame, formula.value_or("")));
   std::int64_t lowest = -1;
   long wrong = 0;
   std::string what, whom;
@@ -170,17 +170,17 @@ void Watch::tell_worst(const Moment& now) const {
     for (std::size_t k = 0; k < p.size(); ++k) {
       const auto found = wrong_with(g, k, now.dt);
       if (!found) continue;
-      if (!p.is_whole() || ranks::is_first()) ++wrong;
+      if (!p.is_whole() || Exchange::is_first_process()) ++wrong;
       if (lowest >= 0 && p.id()[k] > lowest) continue;
       lowest = p.id()[k];
       what = *found;
       whom = who(g.phase, k, now);
     }
   }
-  wrong = static_cast<long>(ranks::total(std::int64_t{wrong}));
+  wrong = static_cast<long>(Exchange().total(std::int64_t{wrong}));
   std::int64_t of_all = lowest;
-  const int rank = ranks::best(of_all, [](std::int64_t a, std::int64_t b) { return a >= 0 && (b < 0 || a < b); });
-  whom = ranks::text_of(rank, whom + what);
+  const int rank = Exchange().best(of_all, [](std::int64_t a, std::int64_t b) { return a >= 0 && (b < 0 || a < b); });
+  whom = Exchange().text_of(rank, whom + what);
   what.clear();
   if (wrong == 0) throw BreakdownError("a sum of accelerations is not finite; " + most_accelerated(now));
   throw BreakdownError(whom + what + (wrong > 1 ? " (" + std::to_string(wrong) + " particles are wrong)" : ""));
@@ -213,7 +213,7 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
     }
   }
   std::int64_t lowest = any ? a.id()[first] : -1;  // a row may be that of one rank alone
-  const int rank = ranks::best(lowest, [](std::int64_t x, std::int64_t y) { return x >= 0 && (y < 0 || x < y); });
+  const int rank = Exchange().best(lowest, [](std::int64_t x, std::int64_t y) { return x >= 0 && (y < 0 || x < y); });
   const double spacing = 0.5 * (see_.plan.phases[pair.a].spacing + see_.plan.phases[pair.b].spacing);
   const std::string near = brief(distance / spacing) + " spacings (bound " + brief(pair.distance / spacing) + ")";
   const std::string& stiffer = see_.plan.phases[pair.a].rules.stiffness_key;
@@ -223,7 +223,7 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
                                      " apart; the contact could not keep them apart, or "
                                : " is deep in the wall \"" + b.name() + "\", " + near +
                                      " from a particle of it; it was too fast or pressed too hard for the contact, or ";
-  throw BreakdownError(ranks::text_of(
+  throw BreakdownError(Exchange().text_of(
       rank, who(pair.a, first, now) + what + "the fills overlap: raise " + stiffer + ", or move the fills apart"));
 }
 
@@ -235,8 +235,8 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
 void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const {
   const PhaseParticles& p = see_.particles[g.phase];
   const double near2 = std::pow(WatchBounds::pair_distance * see_.plan.phases[g.phase].spacing, 2);
-  const auto own = static_cast<std::int64_t>(p.size()), before = static_cast<std::int64_t>(ranks::before(p.size())),
-             n = ranks::total(own);
+  const auto own = static_cast<std::int64_t>(p.size()), before = static_cast<std::int64_t>(Exchange().before(p.size())),
+             n = Exchange().total(own);
   take_places_of_ghosts(g.phase);
   const auto share = [&](std::int64_t first, std::int64_t stride) {
     std::int64_t near = 0, seen = 0;
@@ -246,8 +246,8 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
       near += nearest(g, static_cast<std::size_t>(k)) < near2 ? 1 : 0;
       ++seen;
     }
-    near = ranks::total(near);
-    seen = ranks::total(seen);
+    near = Exchange().total(near);
+    seen = Exchange().total(seen);
     return seen > 0 ? static_cast<double>(near) / static_cast<double>(seen) : 0.0;
   };
   constexpr std::int64_t least_sample = 128, thinning = 64, close_sample = 4096;
@@ -263,8 +263,8 @@ void Watch::look_for_pairing(const Guard& g, const Moment& now, bool all) const 
     first = k;
   }
   std::int64_t of_all = lowest;
-  const int rank = ranks::best(of_all, [](std::int64_t a, std::int64_t b) { return a >= 0 && (b < 0 || a < b); });
-  throw BreakdownError(ranks::text_of(rank, lowest >= 0 ? who(g.phase, first, now) : "") + " and " +
+  const int rank = Exchange().best(of_all, [](std::int64_t a, std::int64_t b) { return a >= 0 && (b < 0 || a < b); });
+  throw BreakdownError(Exchange().text_of(rank, lowest >= 0 ? who(g.phase, first, now) : "") + " and " +
                        brief(100.0 * paired) + " % of its phase stand in pairs, nearer than " +
                        brief(WatchBounds::pair_distance) + " spacings to another (bound " +
                        brief(100.0 * WatchBounds::paired) + " %); " + unpairing(g));
@@ -305,7 +305,7 @@ void Watch::look_at_energy(const Moment& now) {
   for (std::size_t k = 0; k < see_.particles.size(); ++k)
     if (!see_.plan.phases[k].moves) {
       const bool here = see_.particles[k].size() > 0;
-      walls = std::max(walls, ranks::of_first(here, here ? size_of(see_.particles[k], 0, Field::velocity) : 0.0));
+      walls = std::max(walls, Exchange().of_first(here, here ? size_of(see_.particles[k], 0, Field::velocity) : 0.0));
     }
   wall_speed_ = std::max(wall_speed_, walls);
   speed += wall_speed_;
@@ -313,8 +313,8 @@ void Watch::look_at_energy(const Moment& now) {
   double mass = 0.0;  // of more particles than at the start: those that entered have no more than the largest speed
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
-    const ranks::Alone alone(p.is_whole());
-    mass += p.mass() * static_cast<double>(ranks::total(p.size()));
+    const Exchange among(p);
+    mass += p.mass() * static_cast<double>(among.total(p.size()));
   }
   const double bound = WatchBounds::energy * 0.5 * std::max(mass, mass_) * speed * speed;
   if (energy_ <= bound) return;
@@ -339,7 +339,7 @@ void Watch::note_density(const Guard& g, double error, const Moment& now) {
     found.id = p.id()[k];
     found.place = place_of(p, k);
   }
-  ranks::best(found, [](const Extreme& a, const Extreme& b) {
+  Exchange(p).best(found, [](const Extreme& a, const Extreme& b) {
     return a.error > b.error || (a.error == b.error && a.id < b.id);
   });
   extreme_ = found;
@@ -362,7 +362,7 @@ void Watch::note_speed(double given, const Moment& now) {
       found.id = p.id()[k];
       found.place = place_of(p, k);
     }
-    ranks::best(found, [](const Extreme& a, const Extreme& b) {
+    Exchange().best(found, [](const Extreme& a, const Extreme& b) {
       return a.value > b.value || (a.value == b.value && a.id < b.id);
     });
     fastest_ = found;

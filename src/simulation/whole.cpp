@@ -1,5 +1,5 @@
 // What is written of a run on several ranks: the frames and checkpoints of one process.
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "simulation/simulation.hpp"
 
 namespace barchan {
@@ -18,13 +18,13 @@ void gather(std::vector<T>& values, const std::vector<Held>& phases, std::size_t
   std::vector<T> whole;
   std::size_t at = 0;
   for (const Held& held : phases) {
-    const std::size_t count = held.whole && !ranks::is_first() ? 0 : held.count;
-    const std::vector<std::size_t> of_ranks = ranks::each(count);
+    const std::size_t count = held.whole && !Exchange::is_first_process() ? 0 : held.count;
+    const std::vector<std::size_t> of_ranks = Exchange().each(count);
     std::size_t total = 0;
     for (const std::size_t n : of_ranks) total += n;
     const std::size_t before = whole.size();
-    if (ranks::is_first()) whole.resize(before + total * width);
-    ranks::active()->gather(values.data() + at * width, count, whole.data() + before, of_ranks, width * sizeof(T));
+    if (Exchange::is_first_process()) whole.resize(before + total * width);
+    Exchange().gather(values.data() + at * width, count, whole.data() + before, of_ranks, width * sizeof(T));
     at += held.count;
   }
   values = std::move(whole);
@@ -36,8 +36,8 @@ void gather(std::vector<T>& values, const std::vector<Held>& phases, std::size_t
 bool Simulation::is_in_pieces(const std::vector<std::size_t>& written) const {
   std::size_t n = 0;
   for (const std::size_t k : written)
-    if (!state_.phases[k].is_whole() || ranks::is_first()) n += shown_of(k);
-  return ranks::total(n) >= static_cast<std::size_t>(scene_.output.pieces_from);
+    if (!state_.phases[k].is_whole() || Exchange::is_first_process()) n += shown_of(k);
+  return Exchange().total(n) >= static_cast<std::size_t>(scene_.output.pieces_from);
 }
 
 /// The frame of all ranks on the first one; an empty one on the others.
@@ -51,7 +51,7 @@ void Simulation::gather_frame(Frame& f, const std::vector<std::size_t>& written)
 }
 
 void Simulation::save_whole(const std::function<void()>& save) {
-  if (!ranks::active()) return save();
+  if (!Exchange().is_shared()) return save();
   work_->neighbours.gather();
   for (const auto& model : models_) model->gather_to_save();
   for (PhaseParticles& p : state_.phases) p.archive_all(true);
@@ -62,7 +62,7 @@ void Simulation::save_whole(const std::function<void()>& save) {
 }
 
 void Simulation::load_whole(const std::function<void()>& load) {
-  loads_whole_ = ranks::active() != nullptr;
+  loads_whole_ = Exchange().is_shared();
   if (loads_whole_)
     for (PhaseParticles& p : state_.phases) p.archive_all(true);
   load();

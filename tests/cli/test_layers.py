@@ -26,6 +26,13 @@ def climbs(src):
     return found
 
 
+def reach_ranks(src):
+    """Files above the engine that reach other ranks by themselves: engine/exchange.hpp does it for them."""
+    above = DOWN[DOWN.index("simulation"):DOWN.index("models") + 1]
+    return [str(f.relative_to(src)) for f in sorted(src.rglob("*.?pp"))
+            if f.relative_to(src).parts[0] in above and re.search(r'"base/ranks.hpp"|\branks::', f.read_text())]
+
+
 # Questions for the kind of a phase or of an entry, by its name or by what only one kind has. What is asked instead is a
 # fact that the model declares (models/layout.hpp: PlanPhase, PlanEntry).
 QUESTIONS = {
@@ -170,6 +177,14 @@ class Layers(unittest.TestCase):
 
     def test_includes_point_down(self):
         self.assertEqual(climbs(ROOT / "src"), [])
+
+    def test_only_the_engine_reaches_other_ranks(self):
+        self.assertEqual(reach_ranks(ROOT / "src"), [])
+        with tempfile.TemporaryDirectory() as scratch:
+            for name in ("models/fluid", "engine"):
+                (pathlib.Path(scratch) / name).mkdir(parents=True)
+                (pathlib.Path(scratch) / name / f"{name[0]}.cpp").write_text('#include "base/ranks.hpp"\n')
+            self.assertEqual(reach_ranks(pathlib.Path(scratch)), ["models/fluid/m.cpp"])
 
     def test_nobody_asks_for_a_kind(self):
         self.assertEqual(kinds(ROOT / "src"), [])

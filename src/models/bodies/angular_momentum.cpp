@@ -1,6 +1,6 @@
 #include "models/bodies/angular_momentum.hpp"
 
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 
 namespace barchan {
 
@@ -10,8 +10,8 @@ double sum_over(const PhaseParticles* const* phases, std::size_t count, auto&& t
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     const PhaseParticles& p = *phases[k];
-    const ranks::Alone alone(p.is_whole());
-    sum += reproducible_sum(p.size(), [&](std::size_t i) { return p.mass_of(i) * term(p, i); });
+    const Exchange among(p);
+    sum += among.sum(p.size(), [&](std::size_t i) { return p.mass_of(i) * term(p, i); });
   }
   return sum;
 }

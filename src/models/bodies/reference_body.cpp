@@ -6,7 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/neighbours.hpp"
 #include "kernels/kernel.hpp"
 
@@ -32,7 +32,7 @@ std::vector<std::vector<Near>> find_near(const std::vector<Vec3>& places, const 
   const auto dimensions = static_cast<std::size_t>(bounds.dimensions);
   for (std::size_t d = 0; d < dimensions; ++d)
     for (std::size_t k = 0; k < n; ++k) p.column(Field::position, static_cast<int>(d))[k] = places[k][d];
-  const ranks::Alone alone;  // every rank makes the whole body
+  const ComputedByAll alone;  // every rank makes the whole body
   Neighbours search(bounds, {{0, 0, radius}}, 1e-3, {spacing}, simd::width_in_use<double>(), n);
   search.update(all, true);
   const auto& images = search.grid(0).image_list();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 #include "output/numbers.hpp"
 
 namespace barchan {
@@ -25,9 +25,9 @@ double step_of(const RigidBody& body, double spacing) {
 
 /// A sum whose bits no order decides.
 template <class F>
-Vec3 sum_of(std::size_t n, F&& f) {
+Vec3 sum_of(const Exchange& among, std::size_t n, F&& f) {
   Vec3 total{};
-  for (std::size_t d = 0; d < 3; ++d) total[d] = reproducible_sum(n, [&](std::size_t k) { return f(k)[d]; });
+  for (std::size_t d = 0; d < 3; ++d) total[d] = among.sum(n, [&](std::size_t k) { return f(k)[d]; });
   return total;
 }
 
@@ -104,7 +104,7 @@ void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       p.own(body_of_)[body.first + k] = static_cast<std::uint32_t>(state.bodies.size() - first_body_);
     }
     const Vec3 mean = 1.0 / static_cast<double>(body.count) *
-                      sum_of(body.count, [&](std::size_t k) { return p.own(arm_)[body.first + k]; });
+                      sum_of(Exchange::none(), body.count, [&](std::size_t k) { return p.own(arm_)[body.first + k]; });
     levers_.push_back(body.centre - mean);
     mass_shares_.push_back(body.mass / (p.mass() * static_cast<double>(body.count)));
     state.bodies.push_back(body);
@@ -230,10 +230,10 @@ void RigidPhase::add_forcings(PhaseParticles& p) {
     double* const a = p.column(Field::acceleration, d);
     for (std::size_t k = 0; k < p.size(); ++k) a[k] *= mass_shares_[body_of[k]];
   }
-  const ranks::Alone alone(p.is_whole());
+  const Exchange among(p);
   for (std::size_t b = 0; b < bodies(); ++b) {
     const std::uint32_t* const place_of = p.places() + body(b).first;
-    const Vec3 force = p.mass() * sum_of(body(b).count, [&](std::size_t k) {
+    const Vec3 force = p.mass() * sum_of(among, body(b).count, [&](std::size_t k) {
                          Vec3 a{};
                          for (int d = 0; d < layout_.dimensions; ++d)
                            a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d)[place_of[k]];
@@ -256,10 +256,10 @@ void RigidPhase::add_particles(std::size_t number) {
     return f;
   };
   const std::uint32_t* const place_of = p.places() + body.first;
-  const ranks::Alone alone(p.is_whole());
+  const Exchange among(p);
   for (std::size_t d = 0; d < 3; ++d) {
-    body.now.touch_force[d] += reproducible_sum(body.count, [&](std::size_t k) { return force_on(place_of[k])[d]; });
-    body.now.touch_torque[d] += reproducible_sum(
+    body.now.touch_force[d] += among.sum(body.count, [&](std::size_t k) { return force_on(place_of[k])[d]; });
+    body.now.touch_torque[d] += among.sum(
         body.count, [&](std::size_t k) { return cross(axes.to_space(arm[place_of[k]]), force_on(place_of[k]))[d]; });
   }
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "scene/formula.hpp"
 #include "scene/located.hpp"
@@ -174,7 +174,7 @@ RigidBody make_body(const Scene& scene, const ParticleBlock& block, const Partic
 
 std::vector<RigidBody> rigid_bodies(const Scene& scene, const ParticleBlock& block, std::size_t phase,
                                     const Layout& layout) {
-  const ranks::Alone alone;  // every rank has the whole bodies
+  const ComputedByAll alone;  // every rank has the whole bodies
   std::vector<RigidBody> bodies;
   for (std::size_t k = 0; k < block.parts.size(); ++k) {
     const std::size_t end = k + 1 < block.parts.size() ? block.parts[k + 1].first : block.position.size();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/neighbours.hpp"
 
 namespace barchan {
@@ -25,7 +25,7 @@ void each_neighbour(const PhaseParticles& body, PairList::Row row, const CellGri
 
 std::vector<std::vector<std::uint32_t>> first_neighbours(const std::vector<Vec3>& places, const Bounds& bounds,
                                                          double spacing, double radius) {
-  const ranks::Alone alone;  // a body is whole on every rank
+  const ComputedByAll alone;  // a body is whole on every rank
   const std::size_t n = places.size();
   std::vector<PhaseParticles> all;
   all.emplace_back("body", bounds.dimensions, n, 1.0, 0);

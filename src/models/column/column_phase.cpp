@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 #include "laws/kept_drag.hpp"
 #include "models/coupling/wind_exchange.hpp"
 #include "models/drive.hpp"
@@ -373,9 +373,9 @@ double ColumnPhase::momentum() const {
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
     const double* drag = p.column(Field::drag_acceleration, 0);
-    const ranks::Alone alone(p.is_whole());
+    const Exchange among(p);
     const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
-    sum -= time * reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
+    sum -= time * among.sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }
   return sum;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 
 namespace barchan {
 
@@ -56,9 +56,9 @@ void AirGrid::gather(const PhaseParticles& air) {
         velocity_[node][1] += m * weight * v[k];
       }
   };
-  ranks::in_turn({ranks::Sums{mass_.data(), mass_.size() * sizeof(double)},
-                  ranks::Sums{velocity_.data(), velocity_.size() * sizeof(Flat)}},
-                 add);
+  Exchange().in_turn({Exchange::Sums{mass_.data(), mass_.size() * sizeof(double)},
+                      Exchange::Sums{velocity_.data(), velocity_.size() * sizeof(Flat)}},
+                     add);
   for (std::size_t n = 0; n < mass_.size(); ++n)
     for (double& c : velocity_[n]) c = mass_[n] > 0.0 ? c / mass_[n] : 0.0;
 }

@@ -1,4 +1,5 @@
 #include "models/coupling/border_neighbours.hpp"
+#include "engine/exchange.hpp"
 
 #include <omp.h>
 
@@ -29,7 +30,7 @@ void BorderNeighbours::look_from(const Workspace& w, const std::vector<PiecePlac
   pieces_ = &pieces;
   found_.resize(std::max(found_.size(), static_cast<std::size_t>(omp_get_max_threads())));
   for (auto& found : found_) found.reserve(w.layout.dimensions == 2 ? 64 : 256);  // twice as many as on a lattice
-  if (!ranks::active()) return;
+  if (!Exchange().is_shared()) return;
   find_owners();
   exchange();
 }

@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/exchange.hpp"
 #include "models/coupling/border_neighbours.hpp"
 
 namespace barchan {
 
 void BorderNeighbours::find_owners() {
   const CellGrid& grid = w_->neighbours.grid(fluid_);
-  own_rank_ = ranks::active()->rank();
+  own_rank_ = Exchange().rank();
   owners_.clear();
   for (const PiecePlace& piece : *pieces_) {
     std::array<float, 3> at = piece.sorted;
@@ -19,7 +20,7 @@ void BorderNeighbours::find_owners() {
 
 /// Each rank sends what it has about the pieces of others.
 void BorderNeighbours::exchange() {
-  Communicator& all = *ranks::active();
+  const Exchange all;
   const auto count = static_cast<std::int64_t>(owners_.size());
   of_others_.resize(std::max(of_others_.size(), owners_.size()));
 #pragma omp parallel for schedule(dynamic, 16)

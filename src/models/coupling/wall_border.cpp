@@ -1,5 +1,6 @@
 #include "models/coupling/wall_border.hpp"
 
+#include "engine/exchange.hpp"
 #include "models/bodies/border_points.hpp"
 #include "models/bodies/elastic_border.hpp"
 
@@ -36,7 +37,7 @@ void WallBorder::find_places(const Workspace& w) {
   for (std::size_t q = 0; q < pieces_.size(); ++q)
     if (const std::uint32_t at = places[pieces_[q].anchor]; at != PhaseParticles::elsewhere)
       found.push_back({q, piece_place(w, wall_, at, pieces_[q].beside)});
-  ranks::join(found);
+  Exchange().join(found);
   places_.resize(pieces_.size());
   for (const Found& one : found) places_[one.piece] = one.place;
 }

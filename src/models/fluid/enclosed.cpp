@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -33,9 +33,7 @@ class Cells {
   }
 
   /// On several ranks: what any of them has taken is taken.
-  void join_ranks() {
-    if (Communicator* all = ranks::active()) all->reduce(taken_.data(), taken_.size(), Communicator::Take::bits);
-  }
+  void join_ranks() { Exchange().reduce(taken_.data(), taken_.size(), Exchange::Take::bits); }
 
   /// Along closed axes -1 and the count are the layers outside; farther cells are cut off.
   Cell cell_of(const Vec3& x) const {
@@ -132,11 +130,11 @@ std::string find_free_space(const Scene& scene, const std::vector<ParticleBlock>
     const auto q = static_cast<long>(k);
     return Cells::Cell{q % n[0], q / n[0] % n[1], q / (n[0] * n[1])};
   };
-  const ranks::Share share = ranks::own_share();
+  const Exchange::Share share = Exchange().share();
   std::size_t first = share.begin(cells);
   while (first < share.end(cells) && (all.taken_about(cell(first), 1) || !own.taken_about(cell(first), 2))) ++first;
   if (first == share.end(cells)) first = cells;
-  first = static_cast<std::size_t>(ranks::reduced(static_cast<std::int64_t>(first), Communicator::Take::least));
+  first = static_cast<std::size_t>(Exchange().least(static_cast<std::int64_t>(first)));
   return first < cells ? place_text(all.centre(cell(first)), scene.dimensions) : "";
 }
 
@@ -185,7 +183,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
     Vec3 at{};
   } found;
   if (const auto x = find_open_side(scene, phase, blocks[fluid].position, walls)) found = {true, *x};
-  found = ranks::of_first(found.any, found);
+  found = Exchange().of_first(found.any, found);
   if (found.any) {
     result.why = "no wall that it feels beyond " + place_text(found.at, scene.dimensions);
     result.open = true;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/means.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "scene/couplings.hpp"
@@ -159,13 +159,13 @@ void EnergyBooks::held() {
         });
   }
   if (!leaves()) return;
-  number_before_ = ranks::total(particles_->size());
+  number_before_ = Exchange().total(particles_->size());
   energy_before_ = whole_energy();
 }
 
 void EnergyBooks::find_left() {
   fit();
-  if (leaves() && number_before_ > ranks::total(particles_->size()))
+  if (leaves() && number_before_ > Exchange().total(particles_->size()))
     numbers_.taken[open_sides] += energy_before_ - whole_energy();
   number_before_ = 0;
 }

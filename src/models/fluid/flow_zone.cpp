@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "models/workspace.hpp"
 
@@ -47,7 +47,7 @@ void FlowZone::begin(State& state, const std::vector<ParticleBlock>&) {
     p.own(where_)[k] = d > 0.0 ? beyond : d > -reach_ ? near : away;
     if (d > end_.length - (1.0 + 1e-6) * dx_ && d <= end_.length) outermost.push_back(x);
   }
-  if (p.is_part()) ranks::join(outermost);
+  if (p.is_part()) Exchange().join(outermost);
   changes_ = flow_changes(scene_, scene_.phases[fluid_]) || starts_otherwise(p) ? 1.0 : 0.0;
   lanes_ = FlowLanes(std::move(outermost), end_.axis(), dx_, periods());
   lane_.assign(lanes_.size(), {});
@@ -180,7 +180,7 @@ void FlowZone::gather() {
     sum.depth2.add(depth * depth);
     sum.sloped.add(depth * level);
   }
-  if (ranks::active()) gather_ranks();
+  if (Exchange().is_shared()) gather_ranks();
   entered_ += p.mass() * static_cast<double>(passed_[0]);
   left_ += p.mass() * static_cast<double>(passed_[1]);
   gone_ += fastest_ * w_->state.dt / dx_;
@@ -263,7 +263,7 @@ void FlowZone::learn_layer() {
 bool FlowZone::has_room(const Vec3& x) const {
   const PhaseParticles& p = w_->particles(fluid_);
   const std::size_t axis = end_.axis();
-  return !ranks::any(std::any_of(members_.begin(), members_.end(), [&](std::uint32_t k) {
+  return !Exchange().any(std::any_of(members_.begin(), members_.end(), [&](std::uint32_t k) {
     if (std::abs(p.column(Field::position, static_cast<int>(axis))[k] - x[axis]) > dx_) return false;
     Vec3 r = place_of(p, k) - x;
     for (std::size_t d = 0; d < 3; ++d)
@@ -308,7 +308,7 @@ void FlowZone::remove_and_create() {
       make_at(at);
     }
   }
-  if (ranks::any(p.changes() != changes)) w_->must_search = true;  // on all ranks
+  if (Exchange().any(p.changes() != changes)) w_->must_search = true;  // on all ranks
 }
 
 // ---- what the scene gives -------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/fluid/flow_zone.hpp"
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
@@ -50,7 +50,7 @@ bool FlowZone::starts_otherwise(const PhaseParticles& p) const {
       otherwise = otherwise || std::abs(difference) > unlike * c_;
     }
   }
-  return ranks::any(otherwise);
+  return Exchange().any(otherwise);
 }
 
 /// Brings what a lane has nearer to what the scene gives, by `most` a step; at the start it has that.

@@ -1,7 +1,7 @@
 // Of models/fluid/flow_zone.hpp on several ranks: sums of all of them, exact; who makes a particle.
 #include <cstring>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/fluid/flow_zone.hpp"
 #include "models/workspace.hpp"
 
@@ -33,7 +33,7 @@ void FlowZone::gather_ranks() {
     told_.resize(before + n);
     std::memcpy(told_.data() + before, from, n * sizeof(std::int64_t));
   });
-  ranks::active()->reduce(told_.data(), told_.size(), Communicator::Take::sum);
+  Exchange().reduce(told_.data(), told_.size(), Exchange::Take::sum);
   std::size_t at = 0;
   each([&](void* to, std::size_t n) {
     std::memcpy(to, told_.data() + at, n * sizeof(std::int64_t));
@@ -45,14 +45,14 @@ void FlowZone::gather_ranks() {
 
   told_largest_.assign(1, fastest_);
   for (const Lane& lane : lane_) told_largest_.push_back(lane.outermost);
-  ranks::active()->reduce(told_largest_.data(), told_largest_.size(), Communicator::Take::largest);
+  Exchange().reduce(told_largest_.data(), told_largest_.size(), Exchange::Take::largest);
   fastest_ = told_largest_.front();
   for (std::size_t k = 0; k < lane_.size(); ++k) lane_[k].outermost = told_largest_[k + 1];
 }
 
 /// A new particle of the zone, on one of the ranks.
 void FlowZone::make_at(const Vec3& x) {
-  if (!ranks::makes_particles()) {
+  if (!Exchange().is_first()) {
     ++w_->state.ids.next;
     return;
   }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/enclosed.hpp"
@@ -39,7 +39,7 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
   p.takes_momentum = p.gives_energy = !p.flow_ends.empty();
   for (const FlowEnd& end : p.flow_ends) {
     const auto& places = blocks[fluid].position;
-    if (ranks::any(
+    if (Exchange().any(
             std::any_of(places.begin(), places.end(), [&](const Vec3& x) { return end.beyond(x[end.axis()]) > 0.0; })))
       continue;
     throw SceneError(located(scene, end.inflow ? "inflow" : "outflow") + ": no particle of \"" + p.name +
@@ -224,7 +224,7 @@ namespace {
 
 /// From now on the fluid keeps the mean velocity along periodic axes that it has.
 void hold_as_it_is(BulkHold& hold, const PhaseParticles& fluid, const Bounds& bounds) {
-  const bool any = ranks::total(fluid.size()) > 0;
+  const bool any = Exchange().total(fluid.size()) > 0;
   for (int d = 0; d < fluid.dimensions() && any; ++d) {
     const auto c = static_cast<std::size_t>(d);
     hold.axes[c] = bounds.periodic[c];

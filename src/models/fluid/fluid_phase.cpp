@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/energy.hpp"
@@ -115,7 +115,7 @@ void FluidPhase::derive() {
 void FluidPhase::hold() {
   if (drive_ && drive_->holds_force()) {
     hold_.acceleration[0] =
-        drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(ranks::total(particles_->size())));
+        drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(Exchange().total(particles_->size())));
     accelerate(*particles_, 0, hold_.acceleration[0]);
   } else {
     hold_bulk_velocity(*particles_, hold_, w_->state.dt);
@@ -161,7 +161,7 @@ void FluidPhase::find_eddies() {
     const bool here = e.wall->size() > 0;
     for (int d = 0; here && d < layout_.dimensions; ++d)
       e.wall_velocity[static_cast<std::size_t>(d)] = e.wall->column(Field::velocity, d)[0];
-    e.wall_velocity = ranks::of_first(here, e.wall_velocity);
+    e.wall_velocity = Exchange().of_first(here, e.wall_velocity);
   }
 }
 
@@ -245,7 +245,7 @@ void FluidPhase::history(HistoryRow& row) const {
   const std::size_t n = particles_->size();
   const bool all = plan_.flow_ends.empty();
   const auto counts = [&](std::size_t i) { return all || layout_.in_domain(*particles_, i); };
-  const double count = all ? static_cast<double>(ranks::total(n))
+  const double count = all ? static_cast<double>(Exchange().total(n))
                            : reproducible_sum(n, [&](std::size_t i) { return counts(i) ? 1.0 : 0.0; });
   const double* rho = std::as_const(*particles_).column(Field::density);
   const double* pressure = std::as_const(*particles_).column(Field::pressure);
@@ -256,7 +256,7 @@ void FluidPhase::history(HistoryRow& row) const {
     worst = std::max(worst, e);
     return e * e;
   });
-  row.raise(HistoryRow::largest_density_error, ranks::largest(worst));
+  row.raise(HistoryRow::largest_density_error, Exchange().largest(worst));
   row.add(
       plan_.name + "_mean_pressure [Pa]",
       count > 0.0 ? reproducible_sum(n, [&](std::size_t i) { return counts(i) ? pressure[i] : 0.0; }) / count : 0.0);
@@ -277,7 +277,7 @@ void FluidPhase::begin_row() {
 }
 
 void FluidPhase::report(Warnings& warnings) const {
-  if (drive_) drive_->report(particles_->mass() * static_cast<double>(ranks::total(particles_->size())), warnings);
+  if (drive_) drive_->report(particles_->mass() * static_cast<double>(Exchange().total(particles_->size())), warnings);
 }
 
 void FluidPhase::archive(Archive& a) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/walls/sides.hpp"
 
 namespace barchan {
@@ -109,8 +109,8 @@ bool GroundDistance::are_known(std::span<const Ground> phases) {
   for (const Ground& phase : phases) {
     std::vector<Piece> pieces;
     each_piece(phase, [&](const Piece& piece) { pieces.push_back(piece); });
-    const ranks::Alone alone(phase.particles->is_whole());
-    ranks::join(pieces);
+    const Exchange among(*phase.particles);
+    among.join(pieces);
     of_ranks_.insert(of_ranks_.end(), pieces.begin(), pieces.end());
   }
   return false;
@@ -118,7 +118,7 @@ bool GroundDistance::are_known(std::span<const Ground> phases) {
 
 template <int Dim>
 void GroundDistance::refresh(std::span<const Ground> phases) {
-  if (ranks::active() && are_known(phases)) return;
+  if (Exchange().is_shared() && are_known(phases)) return;
   const bool known = !seeds_.empty();
   std::swap(seeds_, last_.seeds);
   std::swap(normals_, last_.normals);
@@ -130,7 +130,7 @@ void GroundDistance::refresh(std::span<const Ground> phases) {
   half_.clear();
   Place at{};
   const auto each = [&](auto&& f) {
-    if (ranks::active()) std::for_each(of_ranks_.begin(), of_ranks_.end(), f);
+    if (Exchange().is_shared()) std::for_each(of_ranks_.begin(), of_ranks_.end(), f);
     else
       for (const Ground& phase : phases) each_piece(phase, f);
   };

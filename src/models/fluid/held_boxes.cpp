@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -66,7 +66,7 @@ HeldShapes held_shapes(const Scene& scene, const Layout& layout, std::size_t flu
   const auto stands_in = [&](auto&& holds) {
     bool any = false;
     for (std::size_t k = 0; k < particles.size() && !any; ++k) any = holds(place_of(particles, k));
-    return ranks::any(any);
+    return Exchange().any(any);
   };
   for (const Fill& fill : scene.fills) {
     const Phase* wall = find_phase(scene, fill.phase);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/fluid/fluid_phase.hpp"
 
 namespace barchan {
@@ -44,7 +44,7 @@ Column column_of(const Scene& scene, const Layout& layout, const ParticleBlock& 
   column.linear = s.fluid().equation_of_state == EquationOfState::linear;
   double highest = 1e300;
   for (const Vec3& x : block.position) highest = std::min(highest, dot(g, x));
-  column.potential = ranks::least(highest) - 0.5 * layout.phases[k].spacing * norm(g);
+  column.potential = Exchange().least(highest) - 0.5 * layout.phases[k].spacing * norm(g);
   for (std::size_t d = 0; d < 3; ++d) {  // disturbed rows: where the lattice has its surface
     if (!perturbed || g[d] == 0 || std::abs(g[d]) < norm(g)) continue;
     const double row = column.potential / g[d] - scene.domain.origin[d];

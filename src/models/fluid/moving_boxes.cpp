@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "scene/couplings.hpp"
 
 namespace barchan {
@@ -89,7 +89,7 @@ std::vector<MovingBox> moving_boxes(const Workspace& w, std::size_t fluid, const
     bool empty = true;
     for (std::size_t k = 0; k < particles.size(); ++k)
       empty = empty && !frame.holds(frame.own(vector_of(particles, Field::position, k)));
-    if (!ranks::any(!empty)) boxes.push_back(box);
+    if (!Exchange().any(!empty)) boxes.push_back(box);
   }
   return boxes;
 }

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
@@ -88,7 +88,7 @@ bool SpacingBorder::is_due() {
       most = std::max(most, speed2);
     }
   }
-  most = ranks::largest(most);
+  most = Exchange().largest(most);
   gone_ += std::sqrt(most) * w_->state.dt / fine_spacing_;
   return gone_ >= often;
 }
@@ -147,11 +147,11 @@ bool SpacingBorder::find_members() {
       if (m.coarse ? m.distance < -over : m.distance > over) deepest = std::max(deepest, std::abs(m.distance));
     }
   }
-  deepest = ranks::largest(deepest);
+  deepest = Exchange().largest(deepest);
   if (deepest == 0.0) return false;
   std::erase_if(members_, [&](const Member& m) { return std::abs(m.distance) > deepest + 3.0 * coarse_spacing_; });
   details_.clear();
-  if (ranks::active()) join_ranks();
+  if (Exchange().is_shared()) join_ranks();
   return true;
 }
 
@@ -193,7 +193,7 @@ void SpacingBorder::book(std::size_t phase, const Vec3& x, const Values& values,
 void SpacingBorder::create(std::size_t phase, const std::vector<Made>& made) {
   if (made.empty()) return;
   for (const Made& one : made) book(phase, one.x, one.values, -1.0);
-  if (!ranks::makes_particles()) {
+  if (!Exchange().is_first()) {
     w_->state.ids.next += static_cast<std::int64_t>(made.size());
     return;
   }

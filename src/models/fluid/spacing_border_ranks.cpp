@@ -1,6 +1,6 @@
 // Of models/fluid/spacing_border.hpp on several ranks: every rank knows all members about the border, and passes the
 // same on; each takes its own particles away.
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/fluid/spacing_border.hpp"
 
 namespace barchan {
@@ -13,11 +13,11 @@ void SpacingBorder::join_ranks() {
     detail.values = values_of(m);
     detail.kept = kept_of(m);
     detail.x = stands_at(m);
-    detail.rank = ranks::active()->rank();
+    detail.rank = Exchange().rank();
     detail.place = static_cast<std::int64_t>(m.place);
   }
-  ranks::join(members_);
-  ranks::join(details);
+  Exchange().join(members_);
+  Exchange().join(details);
   details_ = std::move(details);
   for (std::size_t k = 0; k < members_.size(); ++k) members_[k].place = static_cast<std::uint32_t>(k);
 }
@@ -33,7 +33,7 @@ Vec3 SpacingBorder::stands_at(const Member& m) const {
 std::optional<std::size_t> SpacingBorder::place_here(const Member& m) const {
   if (details_.empty()) return m.place;
   const Detail& detail = details_[m.place];
-  if (detail.rank != ranks::active()->rank()) return std::nullopt;
+  if (detail.rank != Exchange().rank()) return std::nullopt;
   return static_cast<std::size_t>(detail.place);
 }
 

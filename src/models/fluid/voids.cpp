@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "base/ranks.hpp"
 #include "engine/entry_of_list.hpp"
+#include "engine/exchange.hpp"
 
 namespace barchan {
 
@@ -122,7 +122,7 @@ bool VoidFinder::find_in(PhaseParticles& fluid, std::span<const Seen> seen, doub
   }
   return_marks(*seen.front().grid, left);
   std::array<std::int64_t, 3> found{broken, any, n};  // of all ranks together
-  if (Communicator* const all = ranks::active()) all->reduce(found.data(), found.size(), Communicator::Take::sum);
+  Exchange().reduce(found.data(), found.size(), Exchange::Take::sum);
   any = found[1] > 0 ? 1 : 0;
   const bool many = found[0] > 0 && static_cast<double>(found[0]) >= unresolved_share * static_cast<double>(found[2]);
   unresolved_ = std::max<std::int64_t>(unresolved_ + (many ? 1 : -1), 0);
@@ -154,7 +154,7 @@ void VoidFinder::return_marks(const CellGrid& grid, double* left) const {
 bool VoidFinder::find(PhaseParticles& fluid, std::span<const Seen> seen, double radius, double spacing,
                       LooseParticles& loose) {
   if (until_ > 0) --until_;
-  if (near_ == 0 && !ranks::any(loose.count.load(std::memory_order_relaxed) != 0)) {
+  if (near_ == 0 && !Exchange().any(loose.count.load(std::memory_order_relaxed) != 0)) {
     unresolved_ = std::max<std::int64_t>(unresolved_ - 1, 0);
     return false;
   }

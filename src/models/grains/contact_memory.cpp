@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/grains/sphere_work.hpp"
 
 namespace barchan {
@@ -117,7 +117,7 @@ void ContactMemory::count(std::size_t all) {
 }
 
 void ContactMemory::share(const std::vector<std::uint32_t>& ranks) {
-  std::vector<std::size_t> counts(static_cast<std::size_t>(ranks::active()->size()), 0);
+  std::vector<std::size_t> counts(static_cast<std::size_t>(Exchange().size()), 0);
   const auto each = [&](auto&& call) {
     for (const Kept& k : kept_) {
       const std::uint32_t first = ranks[k.number];
@@ -130,12 +130,12 @@ void ContactMemory::share(const std::vector<std::uint32_t>& ranks) {
   for (std::size_t r = 1; r < counts.size(); ++r) next[r] = next[r - 1] + counts[r - 1];
   std::vector<Kept> go(next.back() + counts.back());
   each([&](std::uint32_t rank, const Kept& k) { go[next[rank]++] = k; });
-  kept_ = ranks::exchanged(go, counts);
+  kept_ = Exchange().exchanged(go, counts);
   order();
 }
 
 void ContactMemory::join() {
-  ranks::join(kept_);
+  Exchange().join(kept_);
   order();
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -37,8 +37,8 @@ void GrainFlux::schedule(Schedule& s) {
 double GrainFlux::flux() const {
   const PhaseParticles& p = w_->particles(grains_);
   const double* vx = p.column(Field::velocity, 0);
-  const ranks::Alone alone(p.is_whole());
-  return reproducible_sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * vx[k]; }) / area_;
+  const Exchange among(p);
+  return among.sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * vx[k]; }) / area_;
 }
 
 void GrainFlux::sample() {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/errors.hpp"
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/workspace.hpp"
 #include "output/numbers.hpp"
 #include "output/series.hpp"
@@ -192,7 +192,7 @@ void GrainSource::schedule(Schedule& s) {
 bool GrainSource::has_room(const Vec3& x, double radius) {
   constexpr double rounding = 1e-9;
   const bool outside = room_->nearest(x).gap < radius * (1.0 - rounding);
-  return !ranks::any(is_taken(x, radius)) && !outside;
+  return !Exchange().any(is_taken(x, radius)) && !outside;
 }
 
 /// m, a place along the side where a sphere has room between the sides of the

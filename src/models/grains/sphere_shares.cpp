@@ -1,4 +1,5 @@
 #include "models/grains/sphere_shares.hpp"
+#include "engine/exchange.hpp"
 
 #include <algorithm>
 
@@ -28,13 +29,13 @@ void add_to(std::vector<std::uint32_t>& ordered, std::uint32_t sphere) {
 
 }  // namespace
 
-void SphereShares::divide(std::span<const SphereChunk> chunks, ranks::Share own) {
+void SphereShares::divide(std::span<const SphereChunk> chunks, Exchange::Share own) {
   if (chunks.size() < own.count) own = {};
   own_ = own.number;
   chunks_.assign(own.count + 1, 0);
   spheres_.assign(own.count + 1, 0);
   for (std::size_t r = 0; r < own.count; ++r) {
-    chunks_[r + 1] = ranks::Share{r, own.count}.end(chunks.size());
+    chunks_[r + 1] = Exchange::Share{r, own.count}.end(chunks.size());
     spheres_[r + 1] = chunks_[r + 1] > 0 ? chunks[chunks_[r + 1] - 1].end : 0;
   }
   meetings_.clear();
@@ -126,7 +127,7 @@ void SphereShares::tell(int dimensions, bool turn, double* records) {
   for (const auto& spheres : tells_)
     for (const std::uint32_t k : spheres)
       each_told_number(dimensions, turn, false, [&](std::size_t n) { *to++ = records[k * stride + n]; });
-  ranks::active()->exchange(sent_.data(), tell_counts_, come_.data(), hear_counts_, each * sizeof(double));
+  Exchange().exchange(sent_.data(), tell_counts_, come_.data(), hear_counts_, each * sizeof(double));
   const double* from = come_.data();
   each_told([&](std::size_t k) {
     each_told_number(dimensions, turn, false, [&](std::size_t n) { records[k * stride + n] = *from++; });
@@ -141,7 +142,7 @@ void SphereShares::tell_all(int dimensions, bool turn, bool places_alone, double
   double* to = come_.data() + begin() * each;
   for (std::size_t k = begin(); k < end(); ++k)
     each_told_number(dimensions, turn, places_alone, [&](std::size_t n) { *to++ = records[k * stride + n]; });
-  ranks::active()->gather_in_place(come_.data(), spheres_of_ranks(0, moving), each * sizeof(double));
+  Exchange().gather_in_place(come_.data(), spheres_of_ranks(0, moving), each * sizeof(double));
   for (std::size_t k = 0; k < moving; ++k) {
     if (has(k)) continue;
     const double* from = come_.data() + k * each;
@@ -163,7 +164,7 @@ void SphereShares::gather_together(std::span<double* const> columns, const std::
   each_piece([this](std::size_t rank, const double* column, double* piece, std::size_t n) {
     if (rank == own_) std::copy_n(column, n, piece);
   });
-  ranks::active()->gather_in_place(come_.data(), counts, columns.size() * sizeof(double));
+  Exchange().gather_in_place(come_.data(), counts, columns.size() * sizeof(double));
   each_piece([this](std::size_t rank, double* column, const double* piece, std::size_t n) {
     if (rank != own_) std::copy_n(piece, n, column);
   });

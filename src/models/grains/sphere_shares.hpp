@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/ranks.hpp"
+#include "engine/exchange.hpp"
 #include "models/grains/sphere_work.hpp"
 
 namespace barchan {
@@ -19,7 +19,7 @@ namespace barchan {
 class SphereShares {
  public:
   /// Divides the chunks, as equally as their number allows. Where they are fewer than the ranks, each rank has all.
-  void divide(std::span<const SphereChunk> chunks, ranks::Share own);
+  void divide(std::span<const SphereChunk> chunks, Exchange::Share own);
   /// Whether other ranks have chunks that this one has not.
   bool on() const { return chunks_.size() > 2; }
   bool has_chunk(std::size_t chunk) const { return chunk >= chunks_[own_] && chunk < chunks_[own_ + 1]; }

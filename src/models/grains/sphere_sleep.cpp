@@ -1,4 +1,5 @@
 #include "models/grains/sphere_sleep.hpp"
+#include "engine/exchange.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -149,7 +150,7 @@ std::span<const std::uint32_t> SphereSleep::wake(std::span<const SphereChunk> ch
       woken_.push_back(k);
     }
   }
-  if (shared) ranks::join(woken_);
+  if (shared) Exchange().join(woken_);
   for (const std::uint32_t k : woken_) rouse(numbers[k]);
   return woken_;
 }
@@ -165,8 +166,8 @@ void SphereSleep::share(const SphereShares& shares, const std::uint32_t* numbers
     std::copy_n(unrest_.data() + numbers[k] * numbers_, numbers_, to + numbers_);
     fresh[k] = fresh_[numbers[k]];
   }
-  ranks::active()->gather_in_place(forces.data(), counts, 2 * numbers_ * sizeof(double));
-  ranks::active()->gather_in_place(fresh.data(), counts, 1);
+  Exchange().gather_in_place(forces.data(), counts, 2 * numbers_ * sizeof(double));
+  Exchange().gather_in_place(fresh.data(), counts, 1);
   for (std::size_t k = 0; k < moving_; ++k) {
     const double* const from = forces.data() + k * 2 * numbers_;
     std::copy_n(from, numbers_, offset_.data() + numbers[k] * numbers_);

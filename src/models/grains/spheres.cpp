@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/exchange.hpp"
 #include "models/grains/pair_order.hpp"
 #include "models/grains/sphere_forces.hpp"
 #include "models/grains/sphere_room.hpp"
@@ -150,7 +151,7 @@ double Spheres::longest_step() const {
 /// A step of the scene begins: as many steps of the contacts as it needs.
 void Spheres::begin_steps() {
   if (others_are_there()) renumber();
-  if (ranks::active() && !divided_) divide();
+  if (Exchange().is_shared() && !divided_) divide();
   if (must_search_ || since_sort_ >= searches_a_sort) sort();
   point_at_columns();
   if (sleep_.on() && sleep_.look(*w_, numbers_.data(), lost_)) others_sleep_ = true;
@@ -202,7 +203,7 @@ double Spheres::longest_forced_step() {
   forcing_.make_room(moving_);
   constexpr double apart = 1e-2;  // of the reach
   double stiffest = forcing_.stiffest(own_chunks(), columns_.data(), w_->state.time, apart * laws_.reach());
-  if (shares_.on()) ranks::active()->reduce(&stiffest, 1, Communicator::Take::largest);
+  if (shares_.on()) Exchange().reduce(&stiffest, 1, Exchange::Take::largest);
   return scene_.time.safety * SphereForcing::step / std::sqrt(std::max(stiffest, 1e-300));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "engine/exchange.hpp"
 #include "models/grains/spheres.hpp"
 
 namespace barchan {
@@ -69,7 +70,7 @@ void Spheres::renumber() {
   for (std::size_t k = 0; k < fixed; ++k) to[moved + k] = static_cast<std::uint32_t>(moving_ + k);
   std::vector<std::uint32_t> left_alone;
   search_.renumber(to, all(), left_alone);
-  if (shares_.on()) ranks::join(left_alone);
+  if (shares_.on()) Exchange().join(left_alone);
   rest_.renumber(to);
   const std::size_t slept = sleep_.sleeping();
   sleep_.renumber(to, moving_);

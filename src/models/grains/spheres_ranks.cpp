@@ -1,14 +1,15 @@
 // The steps of contacts on several ranks: what each of them has, and what they tell each other.
 #include <algorithm>
 
+#include "engine/exchange.hpp"
 #include "models/grains/spheres.hpp"
 
 namespace barchan {
 
 /// Anew, where there are other chunks or the ranks have begun to share.
 void Spheres::divide() {
-  divided_ = ranks::active() != nullptr;
-  shares_.divide(chunks_, ranks::own_share());
+  divided_ = Exchange().is_shared();
+  shares_.divide(chunks_, Exchange().share());
   drop_other_chunks();
 }
 
@@ -27,7 +28,7 @@ void Spheres::drop_other_chunks() {
 Spheres::Extremes Spheres::of_all_ranks(Extremes own) const {
   if (!shares_.on()) return own;
   double values[] = {own.fastest, own.farthest, own.wakes};
-  ranks::active()->reduce(values, 3, Communicator::Take::largest);
+  Exchange().reduce(values, 3, Exchange::Take::largest);
   return {values[0], values[1], values[2]};
 }
 
@@ -52,7 +53,7 @@ void Spheres::share_memory() {
 void Spheres::share_flags(bool& more) {
   if (!shares_.on()) return;
   shared_flags_.assign(sorted_out_.begin(), sorted_out_.end());
-  ranks::active()->reduce(shared_flags_.data(), shared_flags_.size(), Communicator::Take::largest);
+  Exchange().reduce(shared_flags_.data(), shared_flags_.size(), Exchange::Take::largest);
   more = false;
   for (std::size_t c = 0; c < sorted_out_.size(); ++c) {
     sorted_out_[c] = static_cast<std::uint8_t>(shared_flags_[c]);
@@ -69,7 +70,7 @@ void Spheres::share_columns() {
     const std::vector<double*> columns = shared_columns(part);
     if (go_together(part)) shares_.gather_together(columns, counts);
     else
-      for (double* const column : columns) ranks::active()->gather_in_place(column, counts, sizeof(double));
+      for (double* const column : columns) Exchange().gather_in_place(column, counts, sizeof(double));
   }
 }
 
@@ -88,7 +89,7 @@ void Spheres::share_wall_touches() {
       else c.walls[k] = {};
     }
   }
-  ranks::join(all);
+  Exchange().join(all);
   for (const Remembers& one : all) columns_[parts_[one.part].phase].walls[one.sphere] = one.touches;
 }
 
@@ -138,7 +139,7 @@ void Spheres::tell_strays() {
     stray.sphere = k;
     std::copy_n(records_[now_].data() + k * stride, stride, stray.record);
   }
-  ranks::join(strays);
+  Exchange().join(strays);
   gone_.clear();
   for (const Stray& stray : strays) {
     gone_.push_back(static_cast<std::uint32_t>(stray.sphere));
@@ -206,7 +207,7 @@ void Spheres::add_kept_sums(bool last) {
   std::vector<double> all(chunks_.size() * steps * width);
   std::copy(kept_sums_.begin(), kept_sums_.end(),
             all.begin() + static_cast<std::ptrdiff_t>(shares_.first_chunk() * steps * width));
-  ranks::active()->gather_in_place(all.data(), counts, width * sizeof(double));
+  Exchange().gather_in_place(all.data(), counts, width * sizeof(double));
   std::vector<std::size_t> a_step;  // numbers of a step of its rank, by chunk
   for (const std::size_t n : chunks) a_step.insert(a_step.end(), n, n * width);
   std::vector<std::array<double, 6>> pushed(watched_.size());
@@ -221,7 +222,7 @@ void Spheres::add_kept_sums(bool last) {
 
 void Spheres::gather_to_save() {
   if (!shares_.on()) return;
-  Communicator& all = *ranks::active();
+  const Exchange all;
   sleep_.share(shares_, listed_numbers_.data());
   const std::size_t stride = layout_.dimensions == 2 ? SphereRecord<2>::size : SphereRecord<3>::size;
   all.gather_in_place(records_[now_].data(), shares_.spheres_of_ranks(0, moving_), stride * sizeof(double));
@@ -231,12 +232,12 @@ void Spheres::gather_to_save() {
   });
   std::vector<char> bytes = lists.bytes();
   bytes.resize((bytes.size() + sizeof(double) - 1) / sizeof(double) * sizeof(double));
-  const std::vector<std::size_t> counts = ranks::each(bytes.size() / sizeof(double));
+  const std::vector<std::size_t> counts = Exchange().each(bytes.size() / sizeof(double));
   std::size_t total = 0;
   for (const std::size_t n : counts) total += n * sizeof(double);
-  std::vector<char> come(ranks::is_first() ? total : 0);
+  std::vector<char> come(Exchange::is_first_process() ? total : 0);
   all.gather(bytes.data(), bytes.size() / sizeof(double), come.data(), counts, sizeof(double));
-  if (!ranks::is_first()) return;
+  if (!Exchange::is_first_process()) return;
   const std::vector<std::size_t> chunks = shares_.chunks_of_ranks();
   std::size_t c = chunks[0], at = counts[0] * sizeof(double);
   for (std::size_t r = 1; r < chunks.size(); at += counts[r++] * sizeof(double)) {

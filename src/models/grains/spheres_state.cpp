@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/reproducible_sum.hpp"
+#include "engine/exchange.hpp"
 #include "models/grains/sphere_forces.hpp"
 #include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
@@ -15,9 +15,9 @@ void Spheres::history(HistoryRow& row) const {
   for (const Part& part : parts_) {
     const PhaseParticles& p = w_->particles(part.phase);
     if (!p.has(Field::angular_velocity)) continue;
-    const ranks::Alone alone(p.is_whole());
+    const Exchange among(p);
     const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-    turning += reproducible_sum(p.size(), [&](std::size_t k) {
+    turning += among.sum(p.size(), [&](std::size_t k) {
       const double r = radius ? radius[k] : part.mean_radius;
       double w2 = 0.0;
       for (int d = 0; d < p.components(Field::angular_velocity); ++d)
@@ -44,7 +44,7 @@ double Spheres::energy_of_sleepers() const {
   std::vector<double> of(chunks_.size(), 0.0);
   std::size_t c = shares_.first_chunk();
   for (const SphereChunk& chunk : own_chunks()) of[c++] = energy_at_rest(now, chunk);
-  if (shares_.on()) ranks::active()->gather_in_place(of.data(), shares_.chunks_of_ranks(), sizeof(double));
+  if (shares_.on()) Exchange().gather_in_place(of.data(), shares_.chunks_of_ranks(), sizeof(double));
   double stored = stored_;
   for (const double energy : of) stored += energy;
   return stored;
@@ -77,8 +77,9 @@ std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
     }));
   }
   // Who asks adds up the ranks where one of the phases is no whole one.
-  if (!layout_.is_whole(entry.a) || !layout_.is_whole(entry.b)) return shares_.on() || ranks::is_first() ? n : 0;
-  return shares_.on() ? ranks::total(n) : n;
+  if (!layout_.is_whole(entry.a) || !layout_.is_whole(entry.b))
+    return shares_.on() || Exchange::is_first_process() ? n : 0;
+  return shares_.on() ? Exchange().total(n) : n;
 }
 
 std::vector<RestingContact> Spheres::resting_contacts(std::size_t phase) const {
