@@ -98,25 +98,20 @@ void describe_kernel_sums(const Interaction& pair, int dimensions, PlanEntry& e)
 /// the consistent scheme"; empty: nothing does.
 void describe_approximation(const Interaction& pair, int dimensions, const std::string& correction, PlanEntry& e);
 
+/// What is wrong with a particle.
+enum class Fault { not_finite, passed_wall, density, too_fast, too_far, too_near };
+
 /// How the watch guards the particles of a phase (simulation/watch.hpp), and the words in which it tells of them.
 struct PhaseRules {
-  double way = 0;                       // m a step
-  double way_in_lengths = 0;            // above 0: `way` is so many smoothing lengths, which the plan knows later
-  double signal_speed = 0;              // m/s; what is faster is wrong
-  bool contacts_limit_speed = false;    // the energy that its contacts can store bounds the speed
-  double density_share = 0;             // |rho/rho0 - 1| at most; 0: the density must be above zero only
-  double idle = 0.1;                    // of the sound speed: motion that disorder alone may cause
-  bool pressure_stores_energy = false;  // the pressure of the start may become motion
-  bool pairs_up = false;                // under too wide a kernel its particles stand in pairs: they are searched
-  bool tells_speed = false;             // a particle much faster than anything can have made it is told at the end
-  bool stops_at_sides = false;          // a centre beyond a closed side is in the wall
-  bool solid = false;                   // its contacts must be looked at the sooner, the faster it is
-  std::string one = "particle";         // of it
-  std::string if_not_finite;            // "raise ...", for each fault what to change
-  std::string if_passed, if_dense;
-  std::function<std::string(double speed, double bound)> if_fast;  // "is faster than" what, and what to change
-  std::function<std::string(double speed)> if_far;                 // moves too far in one step
-  std::string stiffness_key;                                       // of its contacts
+  double way = 0;               // m a step; 0: two smoothing lengths
+  double signal_speed = 0;      // m/s; what is faster is wrong; 0: what its contacts can stop, by the energy they store
+  double density_share = 0;     // |rho/rho0 - 1| at most; 0: the density must be above zero only
+  double idle = 0.1;            // of the sound speed: motion that disorder alone may cause
+  bool stops_at_sides = false;  // a centre beyond a closed side is in the wall
+  std::string one = "particle";  // of it
+  /// What to change, "raise ...", of a particle too fast or too far with its speed and the bound (m/s); too fast:
+  /// "than" what, first. Not finite, too near: the key of what to raise.
+  std::function<std::string(Fault fault, double speed, double bound)> remedy;
 };
 
 /// Whether output.fields names the field.

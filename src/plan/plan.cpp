@@ -155,7 +155,6 @@ void add_entries(const Scene& scene, Plan& plan) {
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
     if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // no search
-    if (p.rules.way_in_lengths > 0.0) p.rules.way = p.rules.way_in_lengths * p.smoothing_length;
   }
 }
 

@@ -37,7 +37,7 @@ bool stands_behind_sides(const Scene& scene, const Phase& wall) {
 
 void warn_of_pairing(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries)
-    if (plan.phases[e.a].rules.pairs_up && plan.phases[e.b].rules.pairs_up && e.kernel == KernelKind::cubic_spline &&
+    if (plan.phases[e.a].flows && plan.phases[e.b].flows && e.kernel == KernelKind::cubic_spline &&
         e.radius > widest_cubic_spline * e.spacing * (1.0 + 1e-9))
       plan.warnings.push_back(
           "interactions." + e.name +

@@ -127,7 +127,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
         for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
         start_energy_ += 0.5 * p.mass() * v2;
         start_fastest_ = std::max(start_fastest_, std::sqrt(v2));
-        if (plan.rules.pressure_stores_energy)
+        if (plan.flows)  // its pressure may become motion
           start_energy_ +=
               0.5 * p.mass() *
               std::pow(p.column(Field::pressure)[k] / (see_.scene.phases[g.phase].density * plan.sound_speed), 2);
@@ -153,8 +153,9 @@ void Watch::make_guards() {
     const PhaseRules& rules = p.rules;
     Guard g;
     g.phase = k;
-    g.signal_speed = rules.signal_speed;
-    g.way = rules.way;
+    const bool by_contacts = !(rules.signal_speed > 0.0);
+    g.signal_speed = by_contacts ? 1e300 : rules.signal_speed;
+    g.way = rules.way > 0.0 ? rules.way : 2.0 * p.smoothing_length;
     for (std::size_t d = 0; d < 3; ++d) {
       const double margin = WatchBounds::outside * p.spacing;
       const Bounds& room = p.flow_ends.empty() ? plan.domain : plan.bounds;
@@ -166,9 +167,9 @@ void Watch::make_guards() {
     }
     for (const auto& e : plan.entries) {
       if (!e.has(k)) continue;
-      if (rules.pairs_up && e.a == e.b) g.own_list = e.forward;
+      if (p.flows && e.a == e.b) g.own_list = e.forward;
       const std::size_t other = e.partner(k);
-      if (rules.contacts_limit_speed && e.stopping_depth > 0.0) {
+      if (by_contacts && e.stopping_depth > 0.0) {
         const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
         g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
@@ -281,8 +282,7 @@ double Watch::look_at_phases(const Moment& now) {
     energy += 0.5 * p.mass() * all.squares;
     fastest_of_[g.phase] = std::sqrt(all.fastest);
     wrong += all.wrong;
-    const PhaseRules& rules = see_.plan.phases[g.phase].rules;
-    if (rules.solid) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
+    if (!see_.plan.phases[g.phase].flows) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
     else if (among.total(p.size()) > 0)
       note_density(g, std::max(all.densest, 2.0 * g.reference_density - all.lightest) / g.reference_density - 1.0, now);
   }

@@ -82,22 +82,25 @@ std::optional<std::string> Watch::wrong_with(const Guard& g, std::size_t k, doub
     for (int d = 0; d < p.dimensions(); ++d)
       if (!std::isfinite(p.column(f, d)[k]))
         return ": " + std::string(info(f).name) + " is not finite; the step was too long or particles overlap: lower " +
-               step_key() + ", raise " + rules.if_not_finite + ", or look for particles in one place in the fills";
+               step_key() + ", raise " + rules.remedy(Fault::not_finite, 0.0, 0.0) +
+               ", or look for particles in one place in the fills";
   if (auto outside = wrong_place(g, k)) return outside;
   const double speed = size_of(p, k, Field::velocity);
   if (!(speed <= g.signal_speed))
     return " is faster (" + brief(speed) + " m/s, with an acceleration of " +
-           brief(size_of(p, k, Field::acceleration)) + " m/s2) than " + rules.if_fast(speed, g.signal_speed);
+           brief(size_of(p, k, Field::acceleration)) + " m/s2) than " +
+           rules.remedy(Fault::too_fast, speed, g.signal_speed);
   if (!(speed * dt <= g.way))
     return " moves " + brief(speed * dt / spacing) + " spacings in one step (" + brief(speed) + " m/s in " + brief(dt) +
            " s; the bound is " + brief(g.way / spacing) +
-           " spacings) and would pass what it meets: " + rules.if_far(speed);
+           " spacings) and would pass what it meets: " + rules.remedy(Fault::too_far, speed, g.way / dt);
   if (!g.dense) return std::nullopt;
   const double rho = p.column(Field::density)[k];
   if (rho >= g.least_density && rho <= g.most_density) return std::nullopt;
-  if (!(rules.density_share > 0.0)) return ": density " + brief(rho) + " kg/m3 " + rules.if_dense;
+  if (!(rules.density_share > 0.0))
+    return ": density " + brief(rho) + " kg/m3 " + rules.remedy(Fault::density, speed, 0.0);
   return ": density " + brief(rho) + " kg/m3 is out of bounds (" + brief(g.least_density) + " to " +
-         brief(g.most_density) + "); " + rules.if_dense;
+         brief(g.most_density) + "); " + rules.remedy(Fault::density, speed, 0.0);
 }
 
 /// Beyond which side a particle is, and what to do; nothing if it is within its bounds.
@@ -114,7 +117,7 @@ std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) con
       return " passed the wall \"" + see_.plan.phases[static_cast<std::size_t>(wall)].name + "\" at the " + side +
              " (a bound at " + brief(low ? g.low[c] : g.high[c]) +
              " m); the wall could not stop it, it was too fast or pressed too hard: " +
-             see_.plan.phases[g.phase].rules.if_passed;
+             see_.plan.phases[g.phase].rules.remedy(Fault::passed_wall, 0.0, 0.0);
     const double speed = size_of(p, k, Field::velocity);
     if (given_ > 0.0 && speed > WatchBounds::remarkable_speed * given_)
       return " escaped through the " + side + " at " + brief(speed) + " m/s, " + brief(speed / given_) +
@@ -216,7 +219,7 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
   const int rank = Exchange().best(lowest, [](std::int64_t x, std::int64_t y) { return x >= 0 && (y < 0 || x < y); });
   const double spacing = 0.5 * (see_.plan.phases[pair.a].spacing + see_.plan.phases[pair.b].spacing);
   const std::string near = brief(distance / spacing) + " spacings (bound " + brief(pair.distance / spacing) + ")";
-  const std::string& stiffer = see_.plan.phases[pair.a].rules.stiffness_key;
+  const std::string stiffer = see_.plan.phases[pair.a].rules.remedy(Fault::too_near, 0.0, 0.0);
   const std::string what = see_.plan.phases[pair.b].moves
                                ? " is in the same place as " + see_.plan.phases[pair.b].rules.one + " " +
                                      std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
@@ -351,7 +354,7 @@ void Watch::note_speed(double given, const Moment& now) {
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const double speed = fastest_of_[g.phase];
-    if (!see_.plan.phases[g.phase].rules.tells_speed || !(speed > WatchBounds::remarkable_speed * given) ||
+    if (!see_.plan.phases[g.phase].flows || !(speed > WatchBounds::remarkable_speed * given) ||
         speed < 1.01 * fastest_.value)
       continue;
     Extreme found{speed / given, -1.0, now.time, g.phase, 0, {}, now.step};

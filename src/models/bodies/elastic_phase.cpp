@@ -33,25 +33,29 @@ double compression_speed(const ElasticKeys& p, double density) {
 }
 
 PhaseRules elastic_rules(const PlanPhase& p, double spacing, const std::string& step_key) {
-  const std::string key = "phases." + p.name + ".";
-  const double c = p.sound_speed;
   PhaseRules r;
   r.way = 0.5 * spacing;
-  r.signal_speed = c;
+  r.signal_speed = p.sound_speed;
   r.idle = 0.01;
-  r.stops_at_sides = r.solid = true;
+  r.stops_at_sides = true;
   r.one = "particle of a body";
-  r.if_not_finite = key + "artificial-viscosity";
-  r.if_passed = "raise " + key + "young, lower its speed, or lower " + step_key;
-  r.if_dense = "is impossible; the body was torn or pressed into nothing: lower " + step_key + ", or raise " + key +
+  r.remedy = [key = "phases." + p.name + ".", c = p.sound_speed, can_turn = p.fixed_neighbours, step_key](
+                 Fault fault, double, double) {
+    switch (fault) {
+      case Fault::not_finite: return key + "artificial-viscosity";
+      case Fault::passed_wall: return "raise " + key + "young, lower its speed, or lower " + step_key;
+      case Fault::density:
+        return "is impossible; the body was torn or pressed into nothing: lower " + step_key + ", or raise " + key +
                "artificial-viscosity";
-  r.if_fast = [key, c](double, double) {
-    return "compression waves of its body (" + brief(c) + " m/s), so that no contact can stop it: raise " + key +
-           "young, or lower its speed";
+      case Fault::too_fast:
+        return "compression waves of its body (" + brief(c) + " m/s), so that no contact can stop it: raise " + key +
+               "young, or lower its speed";
+      case Fault::too_far: return "lower " + step_key;
+      case Fault::too_near:
+        return key + "young" + (can_turn ? "" : ", or let it turn: " + key + "formulation = \"total-lagrangian\"");
+    }
+    return std::string();
   };
-  r.if_far = [step_key](double) { return "lower " + step_key; };
-  r.stiffness_key = key + "young";
-  if (!p.fixed_neighbours) r.stiffness_key += ", or let it turn: " + key + "formulation = \"total-lagrangian\"";
   return r;
 }
 

@@ -32,22 +32,23 @@ Vec3 sum_of(const Exchange& among, std::size_t n, F&& f) {
 }
 
 PhaseRules rigid_rules(const PlanPhase& p, double largest_speed, const std::string& step_key) {
-  const std::string key = "phases." + p.name + ".stiffness";
   PhaseRules r;
   r.way = 0.5 * p.spacing;
   r.signal_speed = largest_speed > 0.0 ? out_of_scale * largest_speed : 1e300;
   r.idle = 0.0;
-  r.solid = true;  // that outlines stop at walls is what RigidContact looks at
+  // That outlines stop at walls is what RigidContact looks at.
   r.one = "particle of a rigid body";
-  r.if_not_finite = key;
-  r.if_passed = "raise " + key + " or time.largest-speed";
-  r.if_dense = "is impossible";
-  r.if_fast = [](double, double bound) {
-    return "ten times the largest speed of the scene, from which the stiffness of contacts follows (the bound is " +
-           brief(bound) + " m/s): raise time.largest-speed";
+  r.remedy = [key = "phases." + p.name + ".stiffness", step_key](Fault fault, double, double bound) {
+    switch (fault) {
+      case Fault::passed_wall: return "raise " + key + " or time.largest-speed";
+      case Fault::density: return std::string("is impossible");
+      case Fault::too_fast:
+        return "ten times the largest speed of the scene, from which the stiffness of contacts follows (the bound is " +
+               brief(bound) + " m/s): raise time.largest-speed";
+      case Fault::too_far: return "lower " + step_key;
+      default: return key;
+    }
   };
-  r.if_far = [step_key](double) { return "lower " + step_key; };
-  r.stiffness_key = key;
   return r;
 }
 

@@ -69,27 +69,29 @@ std::vector<Field> fields_of(const Scene& scene, const Phase& phase, const PlanP
   return f;
 }
 
-/// How the watch guards a fluid.
-PhaseRules rules_of(const PlanPhase& p, const std::string& step_key) {
-  const std::string key = "phases." + p.name + ".";
-  const double c = p.sound_speed;
+/// How the watch guards a fluid. `movers`: "; or ...", what else may press it.
+PhaseRules rules_of(const PlanPhase& p, const std::string& step_key, const std::string& movers) {
   PhaseRules r;
-  r.signal_speed = c;
-  r.way_in_lengths = 2.0;
+  r.signal_speed = p.sound_speed;
   r.density_share = 0.3;
-  r.idle = 0.1;
-  r.pressure_stores_energy = r.pairs_up = r.tells_speed = true;
-  r.if_not_finite = key + "sound-speed or " + key + "density-diffusion";
-  r.if_passed = "lower " + step_key + " or raise " + key + "sound-speed";
-  r.if_dense = "the pressure ran away, or neighbours are too few: lower the spacing or " + step_key +
-               ", raise the radius of interactions." + p.name + "-" + p.name + ", or " + key +
-               "sound-speed where the flow is faster than " + brief(0.1 * c) + " m/s, a tenth of it";
-  r.if_fast = [key, step_key, c](double, double) {
-    return "sound (" + brief(c) + " m/s); the flow ran away, or the scene has too slow a sound: raise " + key +
-           "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
-           "artificial-viscosity, or lower " + step_key;
+  r.remedy = [key = "phases." + p.name + ".", own = p.name, c = p.sound_speed, step_key, movers](Fault fault, double,
+                                                                                                 double) {
+    switch (fault) {
+      case Fault::not_finite: return key + "sound-speed or " + key + "density-diffusion";
+      case Fault::passed_wall: return "lower " + step_key + " or raise " + key + "sound-speed";
+      case Fault::density:
+        return "the pressure ran away, or neighbours are too few: lower the spacing or " + step_key +
+               ", raise the radius of interactions." + own + "-" + own + ", or " + key +
+               "sound-speed where the flow is faster than " + brief(0.1 * c) + " m/s, a tenth of it" + movers;
+      case Fault::too_fast:
+        return "sound (" + brief(c) + " m/s); the flow ran away, or the scene has too slow a sound: raise " + key +
+               "sound-speed to ten times the largest speed, " + key + "viscosity or " + key +
+               "artificial-viscosity, or lower " + step_key;
+      case Fault::too_far: return "lower " + step_key;
+      case Fault::too_near: break;
+    }
+    return std::string();
   };
-  r.if_far = [step_key](double) { return "lower " + step_key; };
   return r;
 }
 
@@ -118,10 +120,11 @@ void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
     throw SceneError(scene.file + ": phases." + p.name +
                      ".sound-speed: nothing in the scene moves or weighs, so that no sound speed "
                      "can be chosen; give sound-speed or time.largest-speed");
-  p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety");
+  std::string movers;
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if (layout.phases[k].travels && entry_between(scene, phase, scene.phases[k]))
-      p.rules.if_dense += "; or \"" + layout.phases[k].name + "\", which moves, leaves it too little or too much room";
+      movers += "; or \"" + layout.phases[k].name + "\", which moves, leaves it too little or too much room";
+  p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety", movers);
 }
 
 std::string correction_of(const Scene& scene, std::size_t fluid) {

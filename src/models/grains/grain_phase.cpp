@@ -17,22 +17,20 @@ namespace barchan {
 namespace {
 
 PhaseRules rules_of(const PlanPhase& p, double spacing, bool fixed_step) {
-  const std::string key = "phases." + p.name + ".contact-speed", step_key = fixed_step ? "time.step" : "time.safety";
-  const double c = p.sound_speed;
   PhaseRules r;
   r.way = 0.25 * spacing;
-  r.signal_speed = 1e300;
-  r.contacts_limit_speed = r.stops_at_sides = r.solid = true;
+  r.stops_at_sides = true;
   r.one = "grain";
-  r.if_not_finite = r.stiffness_key = key;
-  r.if_passed = "raise " + key;
-  r.if_fast = [key, c](double speed, double bound) {
-    return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + " (" + brief(c) + " m/s) to " +
-           brief(2.0 * speed) + " or more";
-  };
-  r.if_far = [key, c, fixed_step, step_key](double speed) {
-    return fixed_step ? "lower " + step_key
-                      : "raise " + key + " (" + brief(c) + " m/s) to " + brief(speed) + " or more";
+  r.remedy = [key = "phases." + p.name + ".contact-speed", c = p.sound_speed, fixed_step](Fault fault, double speed,
+                                                                                          double bound) {
+    const std::string to = " (" + brief(c) + " m/s) to ";
+    switch (fault) {
+      case Fault::passed_wall: return "raise " + key;
+      case Fault::too_fast:
+        return "its contacts can stop (" + brief(bound) + " m/s): raise " + key + to + brief(2.0 * speed) + " or more";
+      case Fault::too_far: return fixed_step ? "lower time.step" : "raise " + key + to + brief(speed) + " or more";
+      default: return key;
+    }
   };
   return r;
 }
@@ -47,16 +45,19 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound) {
   PhaseRules r;
   r.way = 1e300;
   r.signal_speed = bound;
-  r.stops_at_sides = r.solid = true;
+  r.stops_at_sides = true;
   r.one = "grain";
-  r.stiffness_key = "phases." + p.name + "." + sphere_stiffness_keys(" or .");
-  r.if_not_finite = r.stiffness_key;
-  r.if_passed = "raise time.largest-speed, " + r.stiffness_key;
-  r.if_fast = [name = p.name](double speed, double most) {
-    return "its contacts can stop (" + brief(most) + " m/s): raise time.largest-speed to " + brief(2.0 * speed) +
-           ", or make the contacts of \"" + name + "\" stiffer";
+  r.remedy = [name = p.name](Fault fault, double speed, double most) {
+    const std::string key = "phases." + name + "." + sphere_stiffness_keys(" or .");
+    switch (fault) {
+      case Fault::passed_wall: return "raise time.largest-speed, " + key;
+      case Fault::too_fast:
+        return "its contacts can stop (" + brief(most) + " m/s): raise time.largest-speed to " + brief(2.0 * speed) +
+               ", or make the contacts of \"" + name + "\" stiffer";
+      case Fault::too_far: return std::string("lower time.safety");
+      default: return key;
+    }
   };
-  r.if_far = [](double) { return std::string("lower time.safety"); };
   return r;
 }
 
