@@ -23,7 +23,7 @@
 
 #include "base/clock.hpp"
 #include "base/errors.hpp"
-#include "output/seats.hpp"
+#include "output/placement.hpp"
 
 namespace barchan {
 
@@ -390,7 +390,7 @@ void join_ranks(const Launch& launch, const std::string& command, const std::str
 
 int threads_of_a_rank() {
   if (!ranks::available()) return 0;
-  return threads_on_seat(seats_of_ranks(0), ranks::available()->rank(), omp_get_max_threads());
+  return threads_of_placement(placements_of_ranks(0), ranks::available()->rank(), omp_get_max_threads());
 }
 
 int leave_ranks(int status) {

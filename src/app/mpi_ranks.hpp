@@ -15,8 +15,8 @@ bool has_mpi();
 /// of their own stay independent runs. Throws SceneError for what is neither.
 void join_ranks(const Launch& launch, const std::string& command, const std::string& out);
 
-/// Of one rank, where the user says no number: its part of the cores that it may use (threads_on_seat()). Every rank
-/// calls it. 0: as without ranks.
+/// Of one rank, where the user says no number: its part of the cores that it may use (threads_of_placement()). Every
+/// rank calls it. 0: as without ranks.
 int threads_of_a_rank();
 
 /// At the end of a command that did not fail on this rank alone; nothing where join_ranks() was not called. Returns the

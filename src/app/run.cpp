@@ -26,7 +26,7 @@
 #include "output/folder_lock.hpp"
 #include "output/numbers.hpp"
 #include "output/pieces.hpp"
-#include "output/seats.hpp"
+#include "output/placement.hpp"
 #include "output/whole_file.hpp"
 #include "plan/memory_need.hpp"
 #include "scene/identity.hpp"
@@ -125,12 +125,12 @@ void hold(std::optional<FolderLock>& lock, const fs::path& directory, const Laun
 /// After a failed step: goes back and lets the next steps be smaller. False when that has been tried often enough.
 class Retreater {
  public:
-  Retreater(Course& course, int most) : course_(course), most_(course.scene.time.fixed_step ? 0 : most) {}
+  Retreater(RunContext& context, int most) : context_(context), most_(context.scene.time.fixed_step ? 0 : most) {}
 
-  Past* past() { return most_ > 0 ? &past_ : nullptr; }
+  EarlierStates* past() { return most_ > 0 ? &past_ : nullptr; }
 
   bool go_back(Run& run, const std::string& why) {
-    Simulation& s = course_.simulation;
+    Simulation& s = context_.simulation;
     const long failed = s.steps();
     const double when = s.time();
     const bool again = when <= s.retreat().until;
@@ -139,8 +139,8 @@ class Retreater {
     if (count > most_ || share < smallest_share || !past_.go_back(s, run.measurements(), failed)) return false;
     // At smaller steps until it is as long after the failure as the state that it went back to was before.
     s.retreat() = {count, share, when + (when - s.time())};
-    course_.retreats.push_back({when, s.time(), failed, share, why});
-    course_.progress.back(s);
+    context_.retreats.push_back({when, s.time(), failed, share, why});
+    context_.progress.back(s);
     std::cerr << "barchan: step " << failed << " failed: " << why << "\nbarchan: going back to t = " << brief(s.time())
               << " s, step " << s.steps() << ", and on with " << brief(share)
               << " of the step until t = " << brief(s.retreat().until) << " s\n";
@@ -150,28 +150,28 @@ class Retreater {
 
  private:
   static constexpr double smallest_share = 0.125;
-  Course& course_;
+  RunContext& context_;
   int most_;
-  Past past_;
+  EarlierStates past_;
 };
 
 /// The files go back to where the simulation went back to.
-void begin_again(std::optional<Run>& run, Course& course) {
+void begin_again(std::optional<Run>& run, RunContext& context) {
   Archive measured;
   if (run->measurements()) run->measurements()->archive(measured);
-  run.emplace(course, true);
+  run.emplace(context, true);
   measured.load_again();
   if (run->measurements()) run->measurements()->archive(measured);
   run->open();
 }
 
-int run_to_the_end(Course& course, From from, int retreats) {
-  Simulation& simulation = course.simulation;
-  Retreater retreater(course, retreats);
-  std::optional<Run> run(std::in_place, course, from.state.has_value());
+int run_to_the_end(RunContext& context, From from, int retreats) {
+  Simulation& simulation = context.simulation;
+  Retreater retreater(context, retreats);
+  std::optional<Run> run(std::in_place, context, from.state.has_value());
   if (std::optional<Archive>& state = from.state) {
     state->load_again();
-    course.beds.archive(*state, course.scene);
+    context.beds.archive(*state, context.scene);
     simulation.load_whole([&] { simulation.archive(*state); });
     if (run->measurements()) run->measurements()->archive(*state);
     state->finish();
@@ -195,7 +195,7 @@ int run_to_the_end(Course& course, From from, int retreats) {
         goes_on = retreater.go_back(*run, why);
       } catch (const BreakdownError& e) { why = e.what(); }  // the state that it went back to is wrong too
       if (!goes_on) throw BreakdownError(run->break_down(why));
-      begin_again(run, course);
+      begin_again(run, context);
     }
   } catch (const BreakdownError&) { throw; } catch (const OutputError& e) {
     const std::string folder = run->fault_of_folder(), why = folder.empty() ? e.what() : folder;
@@ -240,7 +240,7 @@ std::string command_of(const RunOptions& options) {
 /// Ranks compute what they all hold by themselves: with other instructions it would have other bits.
 void refuse_other_instructions() {
   if (!ranks::available()) return;
-  const std::string own = name_of(instructions()), of_first = ranks::told_by(0, own),
+  const std::string own = name_of(instructions()), of_first = ranks::text_of_rank(0, own),
                     other = ranks::first_text(own == of_first ? "" : own);
   if (!other.empty())
     throw SceneError("the ranks have different instruction sets, " + of_first + " and " + other +
@@ -267,9 +267,9 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   check_memory(scene, memory_need(scene, plan, options.retreats > 0 && !scene.time.fixed_step));
   const int share = threads_of_a_rank();
   use_threads(options.threads > 0 ? options.threads : share, plan.particles());
-  std::vector<RunReport::Seat> seats = seats_of_ranks(omp_get_max_threads());
-  for (const std::string& warning : warnings_of(seats)) std::cerr << "barchan: warning: " << warning << "\n";
-  if (!quiet) std::cout << to_text(plan, scene) << to_text(seats) << std::flush;
+  std::vector<RunReport::Placement> placements = placements_of_ranks(omp_get_max_threads());
+  for (const std::string& warning : warnings_of(placements)) std::cerr << "barchan: warning: " << warning << "\n";
+  if (!quiet) std::cout << to_text(plan, scene) << to_text(placements) << std::flush;
   else
     for (const std::string& warning : plan.warnings) std::cerr << "barchan: warning: " << warning << "\n";
   Simulation simulation(scene, plan, std::move(blocks));
@@ -283,23 +283,23 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   if (first && !lock->left_by().empty())
     std::cerr << "barchan: the run of " << lock->left_by() << " ended without a word in this folder\n";
   if (first) clear(directory, scene, plan, from);
-  Course course{scene,
-                simulation,
-                directory,
-                Progress(scene.time.end, plan.particles(), quiet),
-                beds,
-                Team(omp_get_max_threads(), options.threads == 0),
-                std::move(seats),
-                std::move(checksum)};
-  course.lock = lock ? &*lock : nullptr;
-  return run_to_the_end(course, std::move(from), options.retreats);
+  RunContext context{scene,
+                     simulation,
+                     directory,
+                     Progress(scene.time.end, plan.particles(), quiet),
+                     beds,
+                     Team(omp_get_max_threads(), options.threads == 0),
+                     std::move(placements),
+                     std::move(checksum)};
+  context.lock = lock ? &*lock : nullptr;
+  return run_to_the_end(context, std::move(from), options.retreats);
 }
 
 }  // namespace
 
 int run(const RunOptions& options) {
   outlive_readers();
-  hear_questions();
+  handle_questions();
   const Launch launch = how_launched();
   std::ostringstream words;
   int status = 0;

@@ -15,7 +15,7 @@
 #include "base/version.hpp"
 #include "output/checkpoint.hpp"
 #include "output/numbers.hpp"
-#include "output/seats.hpp"
+#include "output/placement.hpp"
 
 namespace barchan {
 
@@ -76,13 +76,13 @@ fs::path checkpoint_file(const fs::path& directory, const Scene& scene) {
 
 std::string bad_stem(const Scene& scene) { return scene.name + "_bad"; }
 
-Run::Run(Course& course, bool continued)
-    : course_(course),
-      scene_(course.scene),
-      simulation_(course.simulation),
-      directory_(course.directory),
+Run::Run(RunContext& context, bool continued)
+    : context_(context),
+      scene_(context.scene),
+      simulation_(context.simulation),
+      directory_(context.directory),
       continued_(continued),
-      pieces_(course.directory, course.scene.output.format, course.scene.output.compress) {
+      pieces_(context.directory, context.scene.output.format, context.scene.output.compress) {
   const Plan& plan = simulation_.plan();
   if (!plan.instruments.empty()) measurements_.emplace(plan.instruments, plan.bounds, densities(scene_));
 }
@@ -100,7 +100,7 @@ void Run::open() {
   refuse_other_folders();
 }
 
-int Run::go(Past* past) {
+int Run::go(EarlierStates* past) {
   const int status = loop(past);
   if (clock().last_frame_step != simulation_.steps()) {
     simulation_.check_aside();
@@ -112,7 +112,7 @@ int Run::go(Past* past) {
   return status;
 }
 
-int Run::loop(Past* past) {
+int Run::loop(EarlierStates* past) {
   const double end = scene_.time.end;
   const double frame_every = scene_.output.every > 0 ? scene_.output.every : end;
   const double row_every = row_interval(scene_);
@@ -134,7 +134,7 @@ int Run::loop(Past* past) {
     const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
     const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
     const double next = rows_cut ? std::min(next_frame, next_row) : next_frame;
-    course_.team.step([&] { simulation_.step(next - simulation_.time()); });
+    context_.team.step([&] { simulation_.step(next - simulation_.time()); });
     if (due(next_row) || due(next_frame)) simulation_.check();  // no file gets a state that is wrong
     if (measurements_) measurements_->sample(simulation_.state());
     if (due(next_row)) {
@@ -147,7 +147,7 @@ int Run::loop(Past* past) {
     }
     agree();
     if (checkpoint_due()) write_checkpoint();
-    course_.progress.step(simulation_);
+    context_.progress.step(simulation_);
     if (int status = 0; asked_to_stop(status)) return status;
   }
   reason_ = "end";
@@ -156,13 +156,13 @@ int Run::loop(Past* past) {
 
 /// Looks for signals after every step, for the file TERMINATE after every sixteenth.
 bool Run::asked_to_stop(int& status) {
-  if (const int signal = ranks::active() ? course_.agreed.signal : stop_signal(); signal != 0) {
+  if (const int signal = ranks::active() ? context_.agreed.signal : stop_signal(); signal != 0) {
     status = stop(signal_name(signal), 128 + signal);
     return true;
   }
   if (ranks::active()) {
-    if (course_.agreed.terminate) status = stop("TERMINATE", 0);
-    return course_.agreed.terminate;
+    if (context_.agreed.terminate) status = stop("TERMINATE", 0);
+    return context_.agreed.terminate;
   }
   if (!is_terminated()) return false;
   status = stop("TERMINATE", 0);
@@ -192,7 +192,7 @@ void Run::agree() {
   std::array<std::int64_t, 4> asks{stop_signal(), asked || (first && checkpoint_is_late()) ? 1 : 0,
                                    first && is_terminated() ? 1 : 0, pieces};
   ranks::active()->reduce(asks.data(), asks.size(), Communicator::Take::largest);
-  course_.agreed = {static_cast<int>(asks[0]), asks[1] != 0, asks[2] != 0};
+  context_.agreed = {static_cast<int>(asks[0]), asks[1] != 0, asks[2] != 0};
   if (asks[3] == 2) throw_of_one(error);
   if (unlisted_ && asks[3] == 0) list_pieces();
 }
@@ -206,13 +206,13 @@ int Run::stop(const std::string& why, int status) {
 }
 
 bool Run::checkpoint_due() const {
-  if (ranks::active()) return course_.agreed.checkpoint;
+  if (ranks::active()) return context_.agreed.checkpoint;
   return checkpoint_was_asked_for() || checkpoint_is_late();
 }
 
 bool Run::checkpoint_is_late() const {
   return scene_.output.checkpoint_every > 0 &&
-         course_.progress.seconds() - course_.last_checkpoint >= scene_.output.checkpoint_every;
+         context_.progress.seconds() - context_.last_checkpoint >= scene_.output.checkpoint_every;
 }
 
 void Run::write_checkpoint() {
@@ -230,18 +230,19 @@ void Run::write_checkpoint() {
                                simulation_.steps(),
                                {}},
                               [&](Archive& a) {
-                                course_.beds.archive(a, scene_);
+                                context_.beds.archive(a, scene_);
                                 simulation_.archive(a);
                                 if (measurements_) measurements_->archive(a);
                               });
   });
-  course_.last_checkpoint = course_.progress.seconds();
-  course_.checkpoint_step = simulation_.steps();
-  course_.checkpoint_frames = clock().frames;
+  context_.last_checkpoint = context_.progress.seconds();
+  context_.checkpoint_step = simulation_.steps();
+  context_.checkpoint_frames = clock().frames;
 }
 
 void Run::bring_checkpoint_up_to_date() {
-  if (course_.checkpoint_step != simulation_.steps() || course_.checkpoint_frames != clock().frames) write_checkpoint();
+  if (context_.checkpoint_step != simulation_.steps() || context_.checkpoint_frames != clock().frames)
+    write_checkpoint();
 }
 
 void Run::give_up_later_checkpoints() {
@@ -358,7 +359,7 @@ void Run::write_row() {
 }
 
 std::string Run::fault_of_folder() const {
-  if (!course_.lock || course_.lock->is_there()) return "";
+  if (!context_.lock || context_.lock->is_there()) return "";
   return "the folder '" + directory_.string() +
          "' was removed or replaced while the run went on; nothing is written into another one";
 }
@@ -391,20 +392,20 @@ void Run::check_files() {
 
 RunReport Run::report(const std::string& reason) const {
   RunReport r = make_report(simulation_, series_ ? &*series_ : nullptr, measurements_ ? &*measurements_ : nullptr,
-                            course_.progress);
+                            context_.progress);
   if (const double seconds = pieces_.seconds_writing(); seconds > 0.0) {
     r.seconds.emplace_back("pieces of frames (waiting)", pieces_.seconds_waiting());
     r.seconds.emplace_back("pieces of frames (behind)", seconds);
   }
   r.end_reason = reason;
-  r.scene_sha256 = course_.scene_sha256;
-  r.threads = course_.team.most();
-  r.thread_uses = course_.team.uses();
-  r.thread_switches = course_.team.switches();
-  r.ranks.seats = course_.seats;
-  const std::vector<std::string> of_seats = warnings_of(course_.seats);
-  r.warnings.insert(r.warnings.begin(), of_seats.begin(), of_seats.end());
-  r.retreats = course_.retreats;
+  r.scene_sha256 = context_.scene_sha256;
+  r.threads = context_.team.most();
+  r.thread_uses = context_.team.uses();
+  r.thread_switches = context_.team.switches();
+  r.ranks.placements = context_.placements;
+  const std::vector<std::string> of_placements = warnings_of(context_.placements);
+  r.warnings.insert(r.warnings.begin(), of_placements.begin(), of_placements.end());
+  r.retreats = context_.retreats;
   r.retreat_count = simulation_.state().retreat.count;
   if (r.retreat_count > 0)
     r.warnings.push_back("the run went back to an earlier step " + std::to_string(r.retreat_count) +
@@ -419,14 +420,15 @@ void Run::finish(const std::string& reason) {
   finish_series();
   const RunReport r = report(reason);
   if (!series_) return;
-  const std::size_t told = simulation_.plan().warnings.size() + warnings_of(course_.seats).size();  // at the start
+  const std::size_t told =
+      simulation_.plan().warnings.size() + warnings_of(context_.placements).size();  // at the start
   for (std::size_t k = told; k < r.warnings.size(); ++k) std::cerr << "barchan: warning: " << r.warnings[k] << '\n';
   write_run_report(directory_ / "run.json", r);
-  course_.progress.end(reason);
+  context_.progress.end(reason);
 }
 
 void Run::fail(const std::string& reason) {
-  if (course_.lock && !course_.lock->is_there()) return course_.progress.end(reason);  // run.json is another run's
+  if (context_.lock && !context_.lock->is_there()) return context_.progress.end(reason);  // run.json is another run's
   if (ranks::active()) {  // the others may not be there to count with
     beginning_.end_reason = reason;
     beginning_.steps = simulation_.steps();
@@ -439,7 +441,7 @@ void Run::fail(const std::string& reason) {
     finish_series();                  // a frame that is whole is listed
   } catch (const std::exception&) {}  // NOLINT(bugprone-empty-catch): the reason of the end is another one
   if (series_) try_to_write(directory_ / "run.json", report(reason));
-  course_.progress.end(reason);
+  context_.progress.end(reason);
 }
 
 }  // namespace barchan

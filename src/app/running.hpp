@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/past.hpp"
+#include "app/earlier_states.hpp"
 #include "app/progress.hpp"
 #include "engine/team.hpp"
 #include "measure/measurements.hpp"
@@ -21,14 +21,14 @@
 namespace barchan {
 
 /// What a run has that lasts when it goes back to an earlier step.
-struct Course {
+struct RunContext {
   const Scene& scene;
   Simulation& simulation;
   std::filesystem::path directory;
   Progress progress;
   SettledBeds& beds;
   Team team;
-  std::vector<RunReport::Seat> seats;                 // of ranks
+  std::vector<RunReport::Placement> placements;       // of ranks
   std::string scene_sha256;                           // of the text of the scene's file
   double last_checkpoint = 0.0;                       // s of the run's wall time
   long checkpoint_step = -1, checkpoint_frames = -1;  // what it was written of
@@ -48,14 +48,14 @@ std::string bad_stem(const Scene& scene);
 class Run {
  public:
   /// The simulation stands at its beginning, or `continued`: at a state of a run in this folder.
-  Run(Course& course, bool continued);
+  Run(RunContext& context, bool continued);
 
   Measurements* measurements() { return measurements_ ? &*measurements_ : nullptr; }
   /// Makes the files; begins those of a continued run where its state says. Throws OutputError, SceneError.
   void open();
   /// Steps to the end, or until it is asked to stop. Returns the exit status. Throws BreakdownError for a step that
   /// failed. `past`: where states to go back to are kept; null: none.
-  int go(Past* past);
+  int go(EarlierStates* past);
   /// The state as it is now, in place of the last checkpoint. Frames that it counts are on the disk.
   void write_checkpoint();
   /// After going back: frames that were handed over are listed, and the checkpoint is written anew where there is one,
@@ -75,7 +75,7 @@ class Run {
 
  private:
   OutputClock& clock() { return simulation_.outputs(); }
-  int loop(Past* past);
+  int loop(EarlierStates* past);
   int stop(const std::string& why, int status);
   bool asked_to_stop(int& status);
   bool is_terminated() const;
@@ -103,7 +103,7 @@ class Run {
   RunReport report(const std::string& reason) const;
   void finish(const std::string& reason);
 
-  Course& course_;
+  RunContext& context_;
   const Scene& scene_;
   Simulation& simulation_;
   const std::filesystem::path& directory_;

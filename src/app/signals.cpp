@@ -26,7 +26,7 @@ void handle(int number, void (*handler)(int)) {
 
 void outlive_readers() { handle(SIGPIPE, SIG_IGN); }
 
-void hear_questions() { handle(SIGUSR1, on_question); }
+void handle_questions() { handle(SIGUSR1, on_question); }
 
 void listen_to_signals() {
   for (const auto& [number, name] : stops) {

@@ -13,7 +13,7 @@ namespace barchan {
 void outlive_readers();
 
 /// From now on SIGUSR1 does not end the program: before the first step it asks for a checkpoint after that one.
-void hear_questions();
+void handle_questions();
 
 /// SIGHUP and SIGQUIT that the program's parent has switched off (nohup) stay off.
 void listen_to_signals();

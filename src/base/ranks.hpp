@@ -178,7 +178,7 @@ inline std::size_t before(std::size_t count, Communicator* all = active()) {
 }
 
 /// The text that one rank has, before anything is shared out too. There are ranks.
-inline std::string told_by(int rank, std::string text) {
+inline std::string text_of_rank(int rank, std::string text) {
   Communicator& all = *available();
   std::uint64_t size = text.size();
   all.broadcast(&size, sizeof size, rank);
@@ -187,7 +187,7 @@ inline std::string told_by(int rank, std::string text) {
   return text;
 }
 /// The text of one rank; of one process its own.
-inline std::string text_of(int rank, std::string text) { return active() ? told_by(rank, std::move(text)) : text; }
+inline std::string text_of(int rank, std::string text) { return active() ? text_of_rank(rank, std::move(text)) : text; }
 
 /// The first text of all processes that is not empty, on every one of them, shared out or not; "" where all are empty.
 inline std::string first_text(std::string text) {

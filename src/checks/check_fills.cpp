@@ -71,7 +71,7 @@ void check_leave_out(const Fill& fill, const std::string& dotted, const Report& 
   const bool placed = std::holds_alternative<CubeShape>(fill.shape) ||
                       std::holds_alternative<PointsShape>(fill.shape) ||
                       std::holds_alternative<FileShape>(fill.shape) || std::holds_alternative<SidesShape>(fill.shape);
-  const bool always = std::holds_alternative<TheRestShape>(fill.shape) || fill.packing == Packing::random;
+  const bool always = std::holds_alternative<RemainderShape>(fill.shape) || fill.packing == Packing::random;
   if (always)
     report(dotted + ".leave-out",
            "\"the-rest\" and random places leave out earlier fills by themselves; expected no such key");
@@ -197,7 +197,7 @@ void check_fitted(const Scene& scene, std::size_t k, const Phase& phase, const s
   const Fill& fill = scene.fills[k];
   const auto* bed = std::get_if<BedShape>(&fill.shape);
   const bool wall = phase.kind() == PhaseKind::wall && bed;
-  const bool rest = phase.kind() == PhaseKind::fluid && std::holds_alternative<TheRestShape>(fill.shape);
+  const bool rest = phase.kind() == PhaseKind::fluid && std::holds_alternative<RemainderShape>(fill.shape);
   const bool tried = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
                                  [](const Fill& f) { return f.packing == Packing::fitted; });  // told there
   if (report.touched(dotted + ".shape") || report.touched(dotted + ".packing")) return;

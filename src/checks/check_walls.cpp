@@ -51,7 +51,7 @@ struct SameAlong {
   bool operator()(const CubeShape&) const { return false; }
   bool operator()(const PointsShape&) const { return false; }
   bool operator()(const FileShape&) const { return false; }
-  bool operator()(const TheRestShape&) const { return false; }
+  bool operator()(const RemainderShape&) const { return false; }
 };
 
 /// A wall of `sides`, or a box beyond a side: it may slide along a side that ends, as the lid of a cavity does.

@@ -93,7 +93,9 @@ class Exchange {
     return ranks::best(candidate, std::forward<Better>(better), all_);
   }
   /// The text of one rank.
-  std::string text_of(int rank, std::string text) const { return all_ ? ranks::told_by(rank, std::move(text)) : text; }
+  std::string text_of(int rank, std::string text) const {
+    return all_ ? ranks::text_of_rank(rank, std::move(text)) : text;
+  }
   /// Where the particles of this rank begin among those of all ranks, in the order of one process.
   std::size_t before(std::size_t count) const { return ranks::before(count, all_); }
   /// The values of all ranks, one rank after another, on every one of them.

@@ -69,8 +69,8 @@ void Neighbours::mark_beside(std::size_t block, std::vector<char>& near) const {
       for (std::size_t x = 0; x < mx; ++x) near[static_cast<std::size_t>((zs[z] * ny + ys[y]) * nx + xs[x])] = 1;
 }
 
-std::map<std::int32_t, ToldBlocks> Neighbours::told_blocks(const std::vector<const CellOwners*>& cells,
-                                                           std::int32_t rank) const {
+std::map<std::int32_t, SharedBlocks> Neighbours::shared_blocks(const std::vector<const CellOwners*>& cells,
+                                                               std::int32_t rank) const {
   std::vector<char> own(blocks_.size(), 0), near(blocks_.size(), 0);
   for (std::size_t p = 0; p < grids_.size(); ++p)
     if (cells[p])
@@ -79,21 +79,21 @@ std::map<std::int32_t, ToldBlocks> Neighbours::told_blocks(const std::vector<con
       });
   for (std::size_t q = 0; q < own.size(); ++q)
     if (own[q] != 0) mark_beside(q, near);
-  std::map<std::int32_t, ToldBlocks> told;
+  std::map<std::int32_t, SharedBlocks> told;
   for (std::size_t p = 0; p < grids_.size(); ++p)
     if (cells[p])
       grids_[p]->each_block(*cells[p], [&](std::size_t block, std::int32_t owner, std::uint32_t) {
         if (owner == rank || near[block] == 0) return;
-        std::vector<std::size_t>& hears = told[owner].hears;
-        if (hears.empty() || hears.back() != block) hears.push_back(block);
+        std::vector<std::size_t>& receives = told[owner].receives;
+        if (receives.empty() || receives.back() != block) receives.push_back(block);
       });
   for (auto& [other, blocks] : told) {
-    std::sort(blocks.hears.begin(), blocks.hears.end());
-    blocks.hears.erase(std::unique(blocks.hears.begin(), blocks.hears.end()), blocks.hears.end());
+    std::sort(blocks.receives.begin(), blocks.receives.end());
+    blocks.receives.erase(std::unique(blocks.receives.begin(), blocks.receives.end()), blocks.receives.end());
     std::vector<char> beside(blocks_.size(), 0);
-    for (const std::size_t q : blocks.hears) mark_beside(q, beside);
+    for (const std::size_t q : blocks.receives) mark_beside(q, beside);
     for (std::size_t q = 0; q < own.size(); ++q)
-      if (own[q] != 0 && beside[q] != 0) blocks.tells.push_back(q);
+      if (own[q] != 0 && beside[q] != 0) blocks.sends.push_back(q);
   }
   return told;
 }

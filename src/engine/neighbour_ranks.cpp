@@ -92,15 +92,15 @@ void Neighbours::find_watched() {
   std::vector<std::vector<std::uint32_t>> pieces;
   for (const CellOwners* owners : cells)
     if (owners) pieces.push_back(owners->first);
-  if (pieces != told_for_) {
-    told_blocks_ = told_blocks(cells, ranks::active()->rank());
-    told_for_ = std::move(pieces);
+  if (pieces != shared_for_) {
+    shared_blocks_ = shared_blocks(cells, ranks::active()->rank());
+    shared_for_ = std::move(pieces);
   }
   std::vector<char> watched(blocks_.size(), 0);
   for (std::size_t q = 0; q < blocks_.size(); ++q)
     watched[q] = std::any_of(grids_.begin(), grids_.end(), [q](const auto& g) { return g && !g->runs(q).empty(); });
-  for (const auto& [rank, blocks] : told_blocks_)
-    for (const std::size_t q : blocks.hears) watched[q] = 1;
+  for (const auto& [rank, blocks] : shared_blocks_)
+    for (const std::size_t q : blocks.receives) watched[q] = 1;
   watched_.clear();
   for (std::size_t q = 0; q < watched.size(); ++q)
     if (watched[q] != 0) watched_.push_back(q);
@@ -115,22 +115,22 @@ void Neighbours::widen_by_ranks(Range& all) {
   std::vector<std::vector<Range>*> shared;
   for (std::size_t p = 0; p < grids_.size(); ++p)
     if (grids_[p] && grids_[p]->is_shared()) shared.push_back(&ranges_[p]);
-  told_.clear();
-  told_counts_.assign(static_cast<std::size_t>(others->size()), 0);
-  heard_counts_ = told_counts_;
+  sent_.clear();
+  send_counts_.assign(static_cast<std::size_t>(others->size()), 0);
+  receive_counts_ = send_counts_;
   std::size_t heard = 0;
-  for (const auto& [rank, blocks] : told_blocks_) {
+  for (const auto& [rank, blocks] : shared_blocks_) {
     for (const std::vector<Range>* ranges : shared)
-      for (const std::size_t q : blocks.tells) told_.push_back((*ranges)[q]);
-    told_counts_[static_cast<std::size_t>(rank)] = blocks.tells.size() * shared.size();
-    heard += heard_counts_[static_cast<std::size_t>(rank)] = blocks.hears.size() * shared.size();
+      for (const std::size_t q : blocks.sends) sent_.push_back((*ranges)[q]);
+    send_counts_[static_cast<std::size_t>(rank)] = blocks.sends.size() * shared.size();
+    heard += receive_counts_[static_cast<std::size_t>(rank)] = blocks.receives.size() * shared.size();
   }
-  heard_.resize(heard);
-  others->exchange(told_.data(), told_counts_, heard_.data(), heard_counts_, sizeof(Range));
-  const Range* from = heard_.data();
-  for (const auto& [rank, blocks] : told_blocks_)
+  received_.resize(heard);
+  others->exchange(sent_.data(), send_counts_, received_.data(), receive_counts_, sizeof(Range));
+  const Range* from = received_.data();
+  for (const auto& [rank, blocks] : shared_blocks_)
     for (std::vector<Range>* ranges : shared)
-      for (const std::size_t q : blocks.hears) (*ranges)[q].widen(*from++);
+      for (const std::size_t q : blocks.receives) (*ranges)[q].widen(*from++);
   std::array<float, 6> bounds{};
   for (std::size_t d = 0; d < 3; ++d) {
     bounds[2 * d] = -all.low[d];

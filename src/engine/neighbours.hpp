@@ -80,10 +80,12 @@ class Neighbours {
   void rebalance(std::vector<std::optional<CellOwners>>& owners) const;
   /// By rank: particles and ghosts of a phase with owners.
   std::vector<RankHalo> halo_of(std::size_t phase, const std::vector<std::optional<CellOwners>>& owners) const;
-  /// By the other rank: the blocks whose displacements a rank tells it in every step, and hears from it. A rank hears
-  /// of the blocks in and beside those of its own cells: two particles that no list holds come within the radius in the
-  /// same or adjacent blocks first, and the rank of either looks at both. `cells`: owners by phase; null: it is whole.
-  std::map<std::int32_t, ToldBlocks> told_blocks(const std::vector<const CellOwners*>& cells, std::int32_t rank) const;
+  /// By the other rank: the blocks whose displacements a rank sends it in every step, and receives from it. A rank
+  /// receives of the blocks in and beside those of its own cells: two particles that no list holds come within the
+  /// radius in the same or adjacent blocks first, and the rank of either looks at both. `cells`: owners by phase; null:
+  /// it is whole.
+  std::map<std::int32_t, SharedBlocks> shared_blocks(const std::vector<const CellOwners*>& cells,
+                                                     std::int32_t rank) const;
 
  private:
   /// Blocks are at least this many of the widest searches wide: narrow ones follow the shear of the flow closely, but
@@ -132,12 +134,12 @@ class Neighbours {
   std::vector<Chunk> chunks_;  // of all lists
   Blocks blocks_;
   std::vector<std::vector<Range>> ranges_;  // by phase, block
-  std::vector<std::size_t> watched_;        // blocks of this rank's particles, and those it hears of; none: all blocks
+  std::vector<std::size_t> watched_;        // blocks of this rank's particles, and those it receives; none: all blocks
   // On several ranks: what is told in every step, for these pieces of the walks, and where it is told.
-  std::map<std::int32_t, ToldBlocks> told_blocks_;
-  std::vector<std::vector<std::uint32_t>> told_for_;
-  std::vector<Range> told_, heard_;
-  std::vector<std::size_t> told_counts_, heard_counts_;  // by rank
+  std::map<std::int32_t, SharedBlocks> shared_blocks_;
+  std::vector<std::vector<std::uint32_t>> shared_for_;
+  std::vector<Range> sent_, received_;
+  std::vector<std::size_t> send_counts_, receive_counts_;  // by rank
   std::size_t padding_;
   double skin_, widest_skin_, widest_ = 0.0;  // widest: search with the widest skin (m)
   bool adapts_ = false;

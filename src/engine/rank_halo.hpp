@@ -13,9 +13,9 @@ struct RankHalo {
   std::map<std::int32_t, std::size_t> to;  // own particles that another rank has as ghosts, by that rank
 };
 
-/// Blocks whose displacements a rank tells another one, and those that it hears from it; both in ascending order.
-struct ToldBlocks {
-  std::vector<std::size_t> tells, hears;
+/// Blocks whose displacements a rank sends another one, and those that it receives from it; both in ascending order.
+struct SharedBlocks {
+  std::vector<std::size_t> sends, receives;
 };
 
 }  // namespace barchan

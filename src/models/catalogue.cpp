@@ -53,7 +53,7 @@ std::unique_ptr<Model> make(const Scene& scene, const Layout& layout, std::size_
 
 Kind kind_of(const Phase& phase) {
   switch (phase.kind()) {
-    case PhaseKind::fluid: return {declare_air, describe_air, make<FluidPhase>};
+    case PhaseKind::fluid: return {declare_fluid, describe_fluid, make<FluidPhase>};
     case PhaseKind::elastic:
       return {declare_elastic, describe_elastic, is_total(phase) ? make<TotalPhase> : make<ElasticPhase>};
     case PhaseKind::rigid: return {declare_rigid, describe_rigid, make<RigidPhase>};

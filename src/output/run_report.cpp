@@ -23,11 +23,14 @@ double imbalance(const std::vector<double>& seconds) {
 }
 
 nlohmann::ordered_json json_of(const RunReport::Ranks& ranks) {
-  auto seats = nlohmann::ordered_json::array();
-  for (const RunReport::Seat& seat : ranks.seats)
-    seats.push_back({{"ranks", seat.ranks}, {"host", seat.host}, {"cores", seat.cores}, {"threads", seat.threads}});
+  auto placements = nlohmann::ordered_json::array();
+  for (const RunReport::Placement& placement : ranks.placements)
+    placements.push_back({{"ranks", placement.ranks},
+                          {"host", placement.host},
+                          {"cores", placement.cores},
+                          {"threads", placement.threads}});
   return {{"count", ranks.count},
-          {"seats", seats},
+          {"placements", placements},
           {"messages", ranks.messages},
           {"bytes", ranks.bytes},
           {"collectives", ranks.collectives},

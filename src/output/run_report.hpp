@@ -20,7 +20,7 @@ struct RunReport {
   std::vector<ThreadChooser::Use> thread_uses;  // by number of threads
   long thread_switches = 0;                     // how often the number changed
   /// Where ranks compute: so many, one after another, that say the same.
-  struct Seat {
+  struct Placement {
     int ranks = 1;
     std::string host, cores;  // the machine, and the numbers of its cores that they may use: "0-3,8"
     int threads = 1;          // of each
@@ -28,7 +28,7 @@ struct RunReport {
   };
   struct Ranks {
     int count = 1;
-    std::vector<Seat> seats;
+    std::vector<Seat> placements;
     std::int64_t messages = 0, bytes = 0;  // from rank to rank, of all
     std::int64_t collectives = 0;          // reductions, broadcasts and the like, once for all
     std::int64_t ghosts = 0;               // at the end, of all ranks

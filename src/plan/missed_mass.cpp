@@ -14,7 +14,7 @@ std::vector<double> lengths_of_rows(const Scene& scene, const Fill& fill) {
   std::vector<double> lengths;
   const auto* box = std::get_if<BoxShape>(&fill.shape);
   for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
-    if (box || std::holds_alternative<TheRestShape>(fill.shape))
+    if (box || std::holds_alternative<RemainderShape>(fill.shape))
       lengths.push_back(box ? box->max[d] - box->min[d] : scene.domain.size[d]);
   return lengths;
 }
@@ -83,7 +83,8 @@ void warn_of_missed_mass(const Scene& scene, const std::vector<ParticleBlock>& b
     for (std::size_t f = 0; f < scene.fills.size() && known; ++f) {
       const Fill& fill = scene.fills[f];
       if (fill.phase != p.name) continue;
-      const bool is_cut = fill.leave_out == LeaveOut::earlier_fills || std::holds_alternative<TheRestShape>(fill.shape);
+      const bool is_cut =
+          fill.leave_out == LeaveOut::earlier_fills || std::holds_alternative<RemainderShape>(fill.shape);
       for (std::size_t other = 0; is_cut && other < f; ++other) {
         known = known && (scene.fills[other].phase == p.name || has_outline(scene.fills[other]));
         if (!std::holds_alternative<SidesShape>(scene.fills[other].shape)) share = of_what_is_left;

@@ -242,7 +242,7 @@ struct SidesShape {                // layers of wall particles outside the domai
   std::vector<std::string> sides;  // "bottom","top","left","right","front","back"
   int layers{};
 };
-struct TheRestShape {};  // the domain less what earlier fills hold
+struct RemainderShape {};  // the domain less what earlier fills hold
 
 /// Height of the ground above the bed as a function of x (and z in 3D), in metres.
 struct DuneShape {
@@ -260,11 +260,11 @@ struct BedShape {
 };
 
 using Shape = std::variant<BoxShape, DiscShape, SphereShape, RingShape, PolygonShape, CubeShape, PointsShape,
-                           FormulaShape, SidesShape, BedShape, FileShape, TheRestShape, SurfaceShape>;
+                           FormulaShape, SidesShape, BedShape, FileShape, RemainderShape, SurfaceShape>;
 
 struct Fill {
   std::string phase;
-  Shape shape = TheRestShape{};
+  Shape shape = RemainderShape{};
   Packing packing{};
   LeaveOut leave_out{};
   double perturb{};  // spacings of its phase: each coordinate moved by a uniform number in +-perturb

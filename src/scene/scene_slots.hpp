@@ -105,7 +105,7 @@ constexpr Slot fill_shape() {
   return {.accepts = as_word | as_section,
           .otherwise = required,
           .words = rest_of_the_domain,
-          .choose = [](void* fill, int) { static_cast<Fill*>(fill)->shape = TheRestShape{}; },
+          .choose = [](void* fill, int) { static_cast<Fill*>(fill)->shape = RemainderShape{}; },
           .open = [](void* fill) -> void* { return &static_cast<Fill*>(fill)->shape; }};
 }
 

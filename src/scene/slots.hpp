@@ -152,7 +152,7 @@ enum Companion { names, belongs };
 template <class Kind>
 Kind* shape_of(void* object, Companion key) {
   Shape& shape = *static_cast<Shape*>(object);
-  if (key == names && std::holds_alternative<TheRestShape>(shape)) shape.emplace<Kind>();
+  if (key == names && std::holds_alternative<RemainderShape>(shape)) shape.emplace<Kind>();
   return std::get_if<Kind>(&shape);
 }
 template <auto member, Companion key = names, class... Otherwise>

@@ -72,7 +72,7 @@ bool hangs_on_origin(const Shape& shape) {
   return std::holds_alternative<BoxShape>(shape) || std::holds_alternative<PolygonShape>(shape) ||
          std::holds_alternative<SurfaceShape>(shape) || std::holds_alternative<FormulaShape>(shape) ||
          std::holds_alternative<SidesShape>(shape) || std::holds_alternative<BedShape>(shape) ||
-         std::holds_alternative<TheRestShape>(shape);
+         std::holds_alternative<RemainderShape>(shape);
 }
 
 std::string misfit_of_period(const Scene& scene, std::size_t axis) {

@@ -77,7 +77,7 @@ class SolidOf {
 };
 
 bool leaves_out(const Fill& fill) {
-  return std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills;
+  return std::holds_alternative<RemainderShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills;
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ std::function<double(const Vec3&)> depth_with_images(const Scene& scene, const S
 Solid region_of_fill(const Scene& scene, std::size_t k, double reach) {
   const Fill& fill = scene.fills[k];
   const Vec3 low = scene.domain.origin, high = low + scene.domain.size;
-  const bool rest = std::holds_alternative<TheRestShape>(fill.shape);
+  const bool rest = std::holds_alternative<RemainderShape>(fill.shape);
   Solid own = rest ? Solid{[](const Vec3&) { return far; }, {-far, -far, -far}, {far, far, far}}
                    : *solid_of(scene, fill.shape, reach);
   own.depth = depth_with_images(scene, own, reach);
@@ -140,7 +140,7 @@ Solid region_of_fill(const Scene& scene, std::size_t k, double reach) {
 
 std::string misfit_of_region(const Scene& scene, std::size_t k) {
   const Fill& fill = scene.fills[k];
-  const bool rest = std::holds_alternative<TheRestShape>(fill.shape);
+  const bool rest = std::holds_alternative<RemainderShape>(fill.shape);
   if (!rest && !solid_of(scene, fill.shape, 0.0))
     return "relaxed places follow a border; expected a box, disc, sphere, ring, polygon or surface, or \"the-rest\"";
   if (leaves_out(fill))

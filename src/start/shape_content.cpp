@@ -103,7 +103,7 @@ class InShape {
  public:
   InShape(const Scene& scene, std::size_t k, const ShapeRegion& own) : own_(own) {
     const Fill& fill = scene.fills[k];
-    if (!is_cut(fill) && !std::holds_alternative<TheRestShape>(fill.shape)) return;
+    if (!is_cut(fill) && !std::holds_alternative<RemainderShape>(fill.shape)) return;
     for (std::size_t j = 0; j < k; ++j)
       if (!places_by_itself(scene.fills[j].shape)) add_hole(scene, scene.fills[j]);
   }

@@ -80,7 +80,7 @@ class RegionOf {
       return x[1] - bottom < ground.height(x[0], x[2]) - slack && x[1] - bottom > from;
     };
   }
-  void operator()(const TheRestShape&) {}
+  void operator()(const RemainderShape&) {}
   void operator()(const CubeShape&) {}
   void operator()(const PointsShape&) {}
   void operator()(const FileShape&) {}
@@ -156,7 +156,7 @@ void check_room(const Scene& scene, std::size_t k, double cells) {
                      fill.phase + "\"; expected a larger spacing or a smaller shape");
   // Of a shape that fills its bounds: the particle's place, velocity and id, and what a sort writes them into.
   const bool fills_bounds =
-      std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<TheRestShape>(fill.shape);
+      std::holds_alternative<BoxShape>(fill.shape) || std::holds_alternative<RemainderShape>(fill.shape);
   const double least = fills_bounds ? 150.0 : sizeof(Vec3);  // bytes a cell
   const double bytes = cells * least * ranks::share_of_machine();
   if (const AvailableMemory there = available_memory(); bytes > there.bytes)
@@ -301,7 +301,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupie
       std::erase_if(places, [&](const Vec3& x) { return !region.inside(x); });
       if (share) occupied.ask_near(places, reach_of_overlaps(scene, k));
     }
-    if (std::holds_alternative<TheRestShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills)
+    if (std::holds_alternative<RemainderShape>(fill.shape) || fill.leave_out == LeaveOut::earlier_fills)
       keep_the_rest(places, scene, k, dx, occupied);
   }
   const PeriodicSpace space(scene.domain);

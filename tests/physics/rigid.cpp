@@ -14,9 +14,9 @@ using testing::Drive;
 using testing::report;
 
 /// A scene from its text, in progress.
-class Course {
+class RunContext {
  public:
-  explicit Course(const std::string& text) : scene_(parse_scene(text, "rigid.toml")) {
+  explicit RunContext(const std::string& text) : scene_(parse_scene(text, "rigid.toml")) {
     const auto blocks = generate(scene_);
     simulation_ = std::make_unique<Simulation>(scene_, make_plan(scene_, blocks), blocks);
   }
@@ -39,7 +39,7 @@ class Course {
   std::unique_ptr<Simulation> simulation_;
 };
 
-double column(Drive& drive, const std::string& name) { return Course::value(drive.simulation(), name); }
+double column(Drive& drive, const std::string& name) { return RunContext::value(drive.simulation(), name); }
 
 TEST(RigidBodies, AFreeTopKeepsEnergyAndAngularMomentumFor100Turns) {
   Drive drive("verification/free_top");
@@ -95,19 +95,19 @@ TEST(RigidBodies, ABarHasItsPeriodAtAnySpacing) {
 
 /// Its rows of particles have 1.03 of the mass of the shape, and their mean stands beside its centre.
 TEST(RigidBodies, AForcingAcceleratesTheMassOfTheShape) {
-  Course course(
+  RunContext context(
       "spacing = 0.016\n[domain]\nsize = [2, 1]\n[phases.a]\nkind = \"rigid\"\ndensity = "
       "1000\n[interactions]\n[[fill]]\n"
       "phase = \"a\"\nshape = { polygon = [[0.103, 0.2], [0.221, 0.2], [0.103, 0.33]] }\n[[forcing]]\nphase = \"a\"\n"
       "acceleration = [3, 1]\n[time]\nend = 1\nlargest-speed = 3\n");
   const double mass = 0.5 * 0.118 * 0.13 * 1000;
-  course.to(0.1);
-  EXPECT_NEAR(course["a_velocity_x"], 0.3, 1e-12);
-  EXPECT_NEAR(course["a_velocity_y"], 0.1, 1e-12);
-  EXPECT_NEAR(course["a_angular_velocity"], 0.0, 1e-10);
-  EXPECT_NEAR(course["momentum_x"], 0.3 * mass, 1e-9 * mass);
-  EXPECT_NEAR(course["a_kinetic_energy"], 0.5 * mass * 0.1, 1e-9 * mass);
-  EXPECT_NEAR(course["a_work"], 0.5 * mass * 0.1, 1e-9 * mass);
+  context.to(0.1);
+  EXPECT_NEAR(context["a_velocity_x"], 0.3, 1e-12);
+  EXPECT_NEAR(context["a_velocity_y"], 0.1, 1e-12);
+  EXPECT_NEAR(context["a_angular_velocity"], 0.0, 1e-10);
+  EXPECT_NEAR(context["momentum_x"], 0.3 * mass, 1e-9 * mass);
+  EXPECT_NEAR(context["a_kinetic_energy"], 0.5 * mass * 0.1, 1e-9 * mass);
+  EXPECT_NEAR(context["a_work"], 0.5 * mass * 0.1, 1e-9 * mass);
 }
 
 /// Of the way from the start to a time.
@@ -151,14 +151,14 @@ TEST(RigidBodies, KeepTheWrittenShareOfTheirSpeedWhateverTheirMasses) {
   for (const double e : {0.05, 0.3, 0.6, 0.9, 1.0})
     for (const std::string& second : {block, std::string("disc = { centre = [1.65, 1], radius = 0.3 }")})
       for (const std::string& first : {disc, std::string("box = { min = [0.7, 0.8], max = [1.3, 1.2] }")}) {
-        Course course(meeting(first, second, e));
-        const double momentum = course["momentum_x"];
-        course.to(0.2);
-        const double parting = course["b_velocity_x"] - course["a_velocity_x"];
+        RunContext context(meeting(first, second, e));
+        const double momentum = context["momentum_x"];
+        context.to(0.2);
+        const double parting = context["b_velocity_x"] - context["a_velocity_x"];
         worst = std::max(worst, std::abs(parting - e));
-        EXPECT_NEAR(course["momentum_x"], momentum, 1e-12 * momentum);
-        EXPECT_EQ(course["a_b_overlap"], 0.0) << "they have parted";
-        EXPECT_NEAR(course["a_angular_velocity"], 0.0, 1e-6);
+        EXPECT_NEAR(context["momentum_x"], momentum, 1e-12 * momentum);
+        EXPECT_EQ(context["a_b_overlap"], 0.0) << "they have parted";
+        EXPECT_NEAR(context["a_angular_velocity"], 0.0, 1e-6);
       }
   report("restitution of bodies", worst, 0.01);
   EXPECT_LT(worst, 0.01);
@@ -167,50 +167,51 @@ TEST(RigidBodies, KeepTheWrittenShareOfTheirSpeedWhateverTheirMasses) {
 /// Off the centre the bodies turn; momentum, angular momentum and, with e = 1, energy are kept.
 TEST(RigidBodies, AnObliqueCollisionKeepsMomentumAngularMomentumAndEnergy) {
   for (const std::string friction : {"", ", friction = 0.4"}) {
-    Course course(meeting(disc, "polygon = [[1.35, 0.9], [1.8, 1.1], [1.5, 1.6]]", 1.0, friction));
+    RunContext context(meeting(disc, "polygon = [[1.35, 0.9], [1.8, 1.1], [1.5, 1.6]]", 1.0, friction));
     const auto turning = [&] {
       double total = 0.0;
       for (const std::string b : {"a", "b"})
-        total += course[b + "_angular_momentum"] +
-                 (course[b + "_x [m]"] * course[b + "_velocity_y"] - course[b + "_y [m]"] * course[b + "_velocity_x"]) *
-                     course.simulation().plan().phases[b == "a" ? 0 : 1].rigid_bodies[0].mass;
+        total +=
+            context[b + "_angular_momentum"] +
+            (context[b + "_x [m]"] * context[b + "_velocity_y"] - context[b + "_y [m]"] * context[b + "_velocity_x"]) *
+                context.simulation().plan().phases[b == "a" ? 0 : 1].rigid_bodies[0].mass;
       return total;
     };
-    const double momentum = course["momentum_x"], angular = turning(),
-                 energy = course["a_kinetic_energy"] + course["b_kinetic_energy"];
-    course.to(0.3);
-    EXPECT_GT(std::abs(course["b_angular_velocity"]), 0.1) << "it was hit off its centre";
-    EXPECT_NEAR(course["momentum_x"], momentum, 1e-12 * momentum);
-    EXPECT_NEAR(course["momentum_y"], 0.0, 1e-12 * momentum);
+    const double momentum = context["momentum_x"], angular = turning(),
+                 energy = context["a_kinetic_energy"] + context["b_kinetic_energy"];
+    context.to(0.3);
+    EXPECT_GT(std::abs(context["b_angular_velocity"]), 0.1) << "it was hit off its centre";
+    EXPECT_NEAR(context["momentum_x"], momentum, 1e-12 * momentum);
+    EXPECT_NEAR(context["momentum_y"], 0.0, 1e-12 * momentum);
     EXPECT_NEAR(turning(), angular, 1e-9 * momentum);
-    const double left = (course["a_kinetic_energy"] + course["b_kinetic_energy"]) / energy;
+    const double left = (context["a_kinetic_energy"] + context["b_kinetic_energy"]) / energy;
     if (friction.empty()) EXPECT_NEAR(left, 1.0, 1e-3);
     else EXPECT_LT(left, 1.0 - 1e-4) << "friction takes energy";
   }
 }
 
 TEST(RigidBodies, FeelNothingAcrossAGap) {
-  Course course(meeting(disc, "box = { min = [1.302, 0.7], max = [1.7, 1.3] }", 0.5));  // a tenth of a spacing
-  course.to(0.0015);
-  EXPECT_EQ(course["b_force_x"], 0.0);
-  EXPECT_EQ(course["b_velocity_x"], 0.0);
-  course.to(0.004);
-  EXPECT_GT(course["b_velocity_x"], 0.0) << "then they touch";
+  RunContext context(meeting(disc, "box = { min = [1.302, 0.7], max = [1.7, 1.3] }", 0.5));  // a tenth of a spacing
+  context.to(0.0015);
+  EXPECT_EQ(context["b_force_x"], 0.0);
+  EXPECT_EQ(context["b_velocity_x"], 0.0);
+  context.to(0.004);
+  EXPECT_GT(context["b_velocity_x"], 0.0) << "then they touch";
 }
 
 TEST(RigidBodies, StrikeElasticOnesWithTheSameMomentum) {
-  Course course(
+  RunContext context(
       "spacing = 0.02\nprecision = \"double\"\n[domain]\nsize = [2, 1]\n[phases.a]\nkind = \"rigid\"\ndensity = "
       "2000\n[phases.b]\nkind = "
       "\"elastic\"\ndensity = 1000\nyoung = 1e7\npoisson = 0.3\n[interactions]\nb-b = {}\na-b = { restitution = 1 }\n"
       "[[fill]]\nphase = \"a\"\nshape = { box = { min = [0.4, 0.4], max = [0.6, 0.6] } }\nvelocity = [2, 0]\n"
       "[[fill]]\nphase = \"b\"\nshape = { box = { min = [0.6, 0.4], max = [0.8, 0.6] } }\n[time]\nend = 1\n");
-  const double momentum = course["momentum_x"];
-  course.to(0.02);
-  EXPECT_NEAR(course["momentum_x"], momentum, 1e-12 * momentum);
-  EXPECT_GT(course["b_mean_vx"], 2.0) << "the heavy one drives the light one off";
-  EXPECT_LT(course["a_velocity_x"], 1.2);
-  EXPECT_GT(course["a_velocity_x"], 0.5);
+  const double momentum = context["momentum_x"];
+  context.to(0.02);
+  EXPECT_NEAR(context["momentum_x"], momentum, 1e-12 * momentum);
+  EXPECT_GT(context["b_mean_vx"], 2.0) << "the heavy one drives the light one off";
+  EXPECT_LT(context["a_velocity_x"], 1.2);
+  EXPECT_GT(context["a_velocity_x"], 0.5);
 }
 
 std::string wheel(const std::string& motion) {
@@ -221,22 +222,22 @@ std::string wheel(const std::string& motion) {
 }
 
 TEST(RigidBodies, AWheelFollowsItsTorqueItsFrictionAndItsDrive) {
-  const Course at_start(wheel("about = [1, 1]"));
+  const RunContext at_start(wheel("about = [1, 1]"));
   const double inertia = at_start["a_angular_momentum"] / at_start["a_angular_velocity"];
-  Course driven(wheel("about = [1, 1]\ntorque = " + number(0.5 * inertia)));
+  RunContext driven(wheel("about = [1, 1]\ntorque = " + number(0.5 * inertia)));
   driven.to(2.0);
   EXPECT_NEAR(driven["a_angular_velocity"], 3.0, 1e-9);
   EXPECT_NEAR(driven["a_angle"], 2.0 * 2.0 + 0.25 * 4.0, 1e-9);
-  Course slowed(wheel("about = [1, 1]\nfriction = " + number(inertia)));  // it stops at 2 s
+  RunContext slowed(wheel("about = [1, 1]\nfriction = " + number(inertia)));  // it stops at 2 s
   slowed.to(1.0);
   EXPECT_NEAR(slowed["a_angular_velocity"], 1.0, 1e-9);
   slowed.to(3.0);
   EXPECT_NEAR(slowed["a_angular_velocity"], 0.0, 1e-12);
-  Course held(wheel("about = [1, 1]\nfriction = " + number(inertia) + "\ntorque = " + number(0.5 * inertia)));
+  RunContext held(wheel("about = [1, 1]\nfriction = " + number(inertia) + "\ntorque = " + number(0.5 * inertia)));
   held.to(4.0);
   held.to(4.0 + 0.5);
   EXPECT_NEAR(held["a_angular_velocity"], 0.0, 1e-9) << "friction holds half of what it can";
-  Course turned(wheel("about = [1, 1.25]\nangular-velocity = \"2*t\"\nvelocity = [0.1, 0]"));
+  RunContext turned(wheel("about = [1, 1.25]\nangular-velocity = \"2*t\"\nvelocity = [0.1, 0]"));
   turned.to(1.0);
   EXPECT_NEAR(turned["a_angle"], 1.0, 1e-6);
   EXPECT_NEAR(turned["a_x [m]"], 1.1 + 0.25 * std::sin(1.0), 1e-6);
@@ -251,23 +252,23 @@ TEST(RigidBodies, OfOnePhaseHandOnTheirMomentum) {
   for (const char* x : {"0.5", "1.0", "1.5"})
     text += "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [" + std::string(x) + ", 0.5], radius = 0.2 } }\n" +
             (std::string(x) == "0.5" ? "velocity = [1, 0]\n" : "");
-  Course course(text + "[time]\nend = 1\n");
-  course.to(0.4);
-  EXPECT_NEAR(course["a_1_velocity_x"], 0.0, 1e-3);
-  EXPECT_NEAR(course["a_2_velocity_x"], 0.0, 1e-3);
-  EXPECT_NEAR(course["a_3_velocity_x"], 1.0, 1e-3);
+  RunContext context(text + "[time]\nend = 1\n");
+  context.to(0.4);
+  EXPECT_NEAR(context["a_1_velocity_x"], 0.0, 1e-3);
+  EXPECT_NEAR(context["a_2_velocity_x"], 0.0, 1e-3);
+  EXPECT_NEAR(context["a_3_velocity_x"], 1.0, 1e-3);
 }
 
 /// A body on a periodic axis comes out on the other side and strikes what stands there.
 TEST(RigidBodies, GoRoundAPeriodicDomain) {
   std::string text = meeting(disc, "disc = { centre = [0.5, 1], radius = 0.15 }", 1.0);
   text.replace(text.find("size = [4, 2]"), 13, "size = [4, 2]\nperiodic = [\"x\"]");
-  Course course(text);
-  course.to(2.9);  // from 1 m to 3.9 m: they touch when it stands at 4.05 m
-  EXPECT_EQ(course["b_velocity_x"], 0.0);
-  EXPECT_NEAR(course["a_x [m]"], 3.9, 1e-9);
-  course.to(3.2);
-  EXPECT_GT(course["b_velocity_x"], 1.0);
+  RunContext context(text);
+  context.to(2.9);  // from 1 m to 3.9 m: they touch when it stands at 4.05 m
+  EXPECT_EQ(context["b_velocity_x"], 0.0);
+  EXPECT_NEAR(context["a_x [m]"], 3.9, 1e-9);
+  context.to(3.2);
+  EXPECT_GT(context["b_velocity_x"], 1.0);
 }
 
 }  // namespace

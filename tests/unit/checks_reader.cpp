@@ -67,7 +67,7 @@ TEST(SceneReader, ReadsTheDesignsExample) {
   EXPECT_DOUBLE_EQ(bed.dune->height, 0.02);
   EXPECT_DOUBLE_EQ(bed.dune->length, 0.12);
   EXPECT_DOUBLE_EQ(bed.dune->at, 0.15);
-  EXPECT_TRUE(std::holds_alternative<TheRestShape>(scene.fills[1].shape));
+  EXPECT_TRUE(std::holds_alternative<RemainderShape>(scene.fills[1].shape));
   ASSERT_TRUE(scene.fills[1].log_profile.has_value());
   EXPECT_DOUBLE_EQ(scene.fills[1].log_profile->friction_velocity, 0.4);
   EXPECT_DOUBLE_EQ(scene.fills[1].log_profile->roughness, 8.3e-6);

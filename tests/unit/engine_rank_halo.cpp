@@ -110,13 +110,13 @@ TEST_P(RankHalos, TellDisplacementsToTheRanksBeside) {
   const std::vector<std::uint32_t> cells = grid.cells_of_particles();
   for (const std::size_t ranks : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}}) {
     const auto owners = c.neighbours.divided(ranks, {false, true});
-    std::vector<std::map<std::int32_t, ToldBlocks>> told;
+    std::vector<std::map<std::int32_t, SharedBlocks>> told;
     for (std::size_t r = 0; r < ranks; ++r)
-      told.push_back(c.neighbours.told_blocks({&*owners[0], nullptr}, static_cast<std::int32_t>(r)));
+      told.push_back(c.neighbours.shared_blocks({&*owners[0], nullptr}, static_cast<std::int32_t>(r)));
     for (std::size_t r = 0; r < ranks; ++r)
       for (const auto& [other, blocks] : told[r]) {
         ASSERT_NE(other, static_cast<std::int32_t>(r));
-        EXPECT_EQ(blocks.tells, told[static_cast<std::size_t>(other)][static_cast<std::int32_t>(r)].hears);
+        EXPECT_EQ(blocks.sends, told[static_cast<std::size_t>(other)][static_cast<std::int32_t>(r)].receives);
       }
     std::vector<std::size_t> block_of(grid.cells());
     grid.each_block(*owners[0], [&](std::size_t block, std::int32_t, std::uint32_t cell) { block_of[cell] = block; });
@@ -130,7 +130,7 @@ TEST_P(RankHalos, TellDisplacementsToTheRanksBeside) {
         const std::int32_t own = owners[0]->owner[cells[k]], other = owners[0]->owner[cells[q]];
         if (own == other) continue;
         ++apart;
-        const auto& hears = told[static_cast<std::size_t>(own)][other].hears;
+        const auto& hears = told[static_cast<std::size_t>(own)][other].receives;
         ASSERT_TRUE(std::binary_search(hears.begin(), hears.end(), block_of[cells[q]]));
       }
     }

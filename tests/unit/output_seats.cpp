@@ -1,7 +1,7 @@
 // Where the ranks of a run compute: lists of cores, lines, warnings.
 #include <gtest/gtest.h>
 
-#include "output/seats.hpp"
+#include "output/placement.hpp"
 
 namespace barchan {
 namespace {
@@ -15,8 +15,8 @@ TEST(Seats, ListsOfCores) {
 }
 
 TEST(Seats, ALineForRanksThatSayTheSame) {
-  EXPECT_EQ(to_text(std::vector<RunReport::Seat>{}), "");
-  EXPECT_EQ(to_text(std::vector<RunReport::Seat>{{2, "dune1", "0-1", 1}, {1, "dune2", "0-7", 8}}),
+  EXPECT_EQ(to_text(std::vector<RunReport::Placement>{}), "");
+  EXPECT_EQ(to_text(std::vector<RunReport::Placement>{{2, "dune1", "0-1", 1}, {1, "dune2", "0-7", 8}}),
             "ranks\n  2 ranks on dune1, 1 thread each, cores 0-1\n  1 rank on dune2, 8 threads, cores 0-7\n");
 }
 
@@ -30,19 +30,19 @@ TEST(Seats, WarnsOfMoreThreadsThanCores) {
 }
 
 TEST(Seats, ARankTakesItsPartOfTheCoresThatItMayUse) {
-  using Seats = std::vector<RunReport::Seat>;
-  EXPECT_EQ(threads_on_seat(Seats{{2, "dune1", "0-7", 0}}, 1, 8), 4);
-  EXPECT_EQ(threads_on_seat(Seats{{3, "dune1", "0-1", 0}}, 2, 2), 1);
+  using Seats = std::vector<RunReport::Placement>;
+  EXPECT_EQ(threads_of_placement(Seats{{2, "dune1", "0-7", 0}}, 1, 8), 4);
+  EXPECT_EQ(threads_of_placement(Seats{{3, "dune1", "0-1", 0}}, 2, 2), 1);
   // Bound to sockets, four ranks to each.
-  EXPECT_EQ(threads_on_seat(Seats{{4, "dune1", "0-31", 0}, {4, "dune1", "32-63", 0}}, 5, 32), 8);
+  EXPECT_EQ(threads_of_placement(Seats{{4, "dune1", "0-31", 0}, {4, "dune1", "32-63", 0}}, 5, 32), 8);
   // Each has cores of its own.
-  EXPECT_EQ(threads_on_seat(Seats{{1, "dune1", "0-3", 0}, {1, "dune1", "4-7", 0}}, 1, 4), 4);
+  EXPECT_EQ(threads_of_placement(Seats{{1, "dune1", "0-3", 0}, {1, "dune1", "4-7", 0}}, 1, 4), 4);
   // A job has a part of the machine; the same numbers on another machine are other cores.
-  EXPECT_EQ(threads_on_seat(Seats{{4, "dune1", "8-15", 0}, {4, "dune2", "8-15", 0}}, 6, 8), 2);
+  EXPECT_EQ(threads_of_placement(Seats{{4, "dune1", "8-15", 0}, {4, "dune2", "8-15", 0}}, 6, 8), 2);
   // OMP_NUM_THREADS is the most.
-  EXPECT_EQ(threads_on_seat(Seats{{2, "dune1", "0-7", 0}}, 0, 3), 3);
+  EXPECT_EQ(threads_of_placement(Seats{{2, "dune1", "0-7", 0}}, 0, 3), 3);
   // A system that does not say which cores.
-  EXPECT_EQ(threads_on_seat(Seats{{2, "dune1", "", 0}}, 1, 8), 4);
+  EXPECT_EQ(threads_of_placement(Seats{{2, "dune1", "", 0}}, 1, 8), 4);
 }
 
 }  // namespace

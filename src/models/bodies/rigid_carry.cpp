@@ -95,7 +95,7 @@ void RigidPhase::carry_accelerations() {
 
 /// Velocities at the end of the step, for the fluids' energy: carried records.
 template <int Dim>
-void RigidPhase::tell_fluids() {
+void RigidPhase::inform_fluids() {
   using R = CarriedRecord<Dim>;
   constexpr std::size_t axes = Dim == 2 ? 1 : 3, first = Dim == 2 ? 2 : 0;
   const PhaseParticles& p = w_->particles(number_);
@@ -130,8 +130,8 @@ void RigidPhase::tell_fluids() {
     }
   }
 }
-template void RigidPhase::tell_fluids<2>();
-template void RigidPhase::tell_fluids<3>();
+template void RigidPhase::inform_fluids<2>();
+template void RigidPhase::inform_fluids<3>();
 
 void RigidPhase::history(HistoryRow& row) const {
   const bool flat = layout_.dimensions == 2;

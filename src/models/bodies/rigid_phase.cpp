@@ -291,7 +291,7 @@ void RigidPhase::sum_loads() {
     hold_torque(b);
   }
   carry_accelerations();
-  if (plan_.heats) layout_.dimensions == 2 ? tell_fluids<2>() : tell_fluids<3>();
+  if (plan_.heats) layout_.dimensions == 2 ? inform_fluids<2>() : inform_fluids<3>();
 }
 
 void RigidPhase::end_step(RigidBody& body) const {

@@ -61,7 +61,7 @@ class RigidPhase : public Model {
   void carry_velocities();
   void carry_accelerations();
   template <int Dim>
-  void tell_fluids();
+  void inform_fluids();
   std::size_t bodies() const { return plan_.rigid_bodies.size(); }
   RigidBody& body(std::size_t k) const { return w_->state.bodies[first_body_ + k]; }
 

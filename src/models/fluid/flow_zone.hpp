@@ -148,8 +148,8 @@ class FlowZone : public Model {
   // Of a step, until all ranks have added theirs.
   std::array<std::int64_t, 2> passed_{};  // particles that came in past the side, and went out
   double fastest_ = 0.0;                  // m/s, of those beyond the side
-  std::vector<std::int64_t> told_counts_, told_;
-  std::vector<double> told_largest_;
+  std::vector<std::int64_t> counts_of_all_, sums_of_all_;
+  std::vector<double> largest_of_all_;
 };
 
 }  // namespace barchan

@@ -20,34 +20,34 @@ void as_numbers(std::vector<T>& sums, F&& f) {
 
 /// Two calls for all that the zone learns in a step: one for sums, which are whole numbers, one for the largest.
 void FlowZone::gather_ranks() {
-  told_counts_.assign(layer_counts_.begin(), layer_counts_.end());
-  told_counts_.insert(told_counts_.end(), passed_.begin(), passed_.end());
+  counts_of_all_.assign(layer_counts_.begin(), layer_counts_.end());
+  counts_of_all_.insert(counts_of_all_.end(), passed_.begin(), passed_.end());
   const auto each = [this](auto&& f) {
     as_numbers(sums_, f);
     as_numbers(layer_sums_, f);
-    as_numbers(told_counts_, f);
+    as_numbers(counts_of_all_, f);
   };
-  told_.clear();
+  sums_of_all_.clear();
   each([this](const void* from, std::size_t n) {
-    const std::size_t before = told_.size();
-    told_.resize(before + n);
-    std::memcpy(told_.data() + before, from, n * sizeof(std::int64_t));
+    const std::size_t before = sums_of_all_.size();
+    sums_of_all_.resize(before + n);
+    std::memcpy(sums_of_all_.data() + before, from, n * sizeof(std::int64_t));
   });
-  Exchange().reduce(told_.data(), told_.size(), Exchange::Take::sum);
+  Exchange().reduce(sums_of_all_.data(), sums_of_all_.size(), Exchange::Take::sum);
   std::size_t at = 0;
   each([&](void* to, std::size_t n) {
-    std::memcpy(to, told_.data() + at, n * sizeof(std::int64_t));
+    std::memcpy(to, sums_of_all_.data() + at, n * sizeof(std::int64_t));
     at += n;
   });
   const std::size_t cells = layer_counts_.size();
-  for (std::size_t c = 0; c < cells; ++c) layer_counts_[c] = static_cast<std::int32_t>(told_counts_[c]);
-  passed_ = {told_counts_[cells], told_counts_[cells + 1]};
+  for (std::size_t c = 0; c < cells; ++c) layer_counts_[c] = static_cast<std::int32_t>(counts_of_all_[c]);
+  passed_ = {counts_of_all_[cells], counts_of_all_[cells + 1]};
 
-  told_largest_.assign(1, fastest_);
-  for (const Lane& lane : lane_) told_largest_.push_back(lane.outermost);
-  Exchange().reduce(told_largest_.data(), told_largest_.size(), Exchange::Take::largest);
-  fastest_ = told_largest_.front();
-  for (std::size_t k = 0; k < lane_.size(); ++k) lane_[k].outermost = told_largest_[k + 1];
+  largest_of_all_.assign(1, fastest_);
+  for (const Lane& lane : lane_) largest_of_all_.push_back(lane.outermost);
+  Exchange().reduce(largest_of_all_.data(), largest_of_all_.size(), Exchange::Take::largest);
+  fastest_ = largest_of_all_.front();
+  for (std::size_t k = 0; k < lane_.size(); ++k) lane_[k].outermost = largest_of_all_[k + 1];
 }
 
 /// A new particle of the zone, on one of the ranks.

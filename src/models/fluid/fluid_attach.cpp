@@ -97,13 +97,13 @@ PhaseRules rules_of(const PlanPhase& p, const std::string& step_key, const std::
 
 }  // namespace
 
-void declare_air(const Scene&, std::size_t number, Layout& layout) {
+void declare_fluid(const Scene&, std::size_t number, Layout& layout) {
   PlanPhase& p = layout.phases[number];
   p.moves = p.flows = p.kicked = p.yields = true;
 }
 
-void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
-                  std::vector<std::string>& warnings) {
+void describe_fluid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                    std::vector<std::string>& warnings) {
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
   p.friction = Friction::fluid;

@@ -27,11 +27,11 @@
 namespace barchan {
 
 /// What other phases ask of a fluid while they describe themselves.
-void declare_air(const Scene& scene, std::size_t number, Layout& layout);
+void declare_fluid(const Scene& scene, std::size_t number, Layout& layout);
 /// What the plan has to know of a fluid before anything else: mass, sound speed, fields, whether it is shut in.
 /// Throws SceneError when no sound speed can be chosen. `warnings`: what the scene may mean otherwise.
-void describe_air(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
-                  std::vector<std::string>& warnings);
+void describe_fluid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
+                    std::vector<std::string>& warnings);
 
 /// Throws SceneError where a fluid's two equations of turbulence cannot be.
 void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout);

@@ -103,23 +103,23 @@ void SphereShares::meet(std::uint32_t own, std::uint32_t other, std::size_t chun
 }
 
 void SphereShares::count() {
-  tell_counts_.resize(tells_.size());
-  hear_counts_.resize(hears_.size());
+  send_counts_.resize(tells_.size());
+  receive_counts_.resize(hears_.size());
   for (std::size_t r = 0; r < tells_.size(); ++r) {
-    tell_counts_[r] = tells_[r].size();
-    hear_counts_[r] = hears_[r].size();
+    send_counts_[r] = tells_[r].size();
+    receive_counts_[r] = hears_[r].size();
   }
 }
 
-std::vector<std::size_t> SphereShares::told() const { return tell_counts_; }
+std::vector<std::size_t> SphereShares::told() const { return send_counts_; }
 
 void SphereShares::tell(int dimensions, bool turn, double* records) {
   if (!on()) return;
   const std::size_t stride = stride_of(dimensions), each = width(dimensions, turn);
   std::size_t tell = 0, hear = 0;
-  for (std::size_t r = 0; r < tell_counts_.size(); ++r) {
-    tell += tell_counts_[r];
-    hear += hear_counts_[r];
+  for (std::size_t r = 0; r < send_counts_.size(); ++r) {
+    tell += send_counts_[r];
+    hear += receive_counts_[r];
   }
   fit(sent_, tell * each);
   fit(come_, hear * each);
@@ -127,7 +127,7 @@ void SphereShares::tell(int dimensions, bool turn, double* records) {
   for (const auto& spheres : tells_)
     for (const std::uint32_t k : spheres)
       each_told_number(dimensions, turn, false, [&](std::size_t n) { *to++ = records[k * stride + n]; });
-  Exchange().exchange(sent_.data(), tell_counts_, come_.data(), hear_counts_, each * sizeof(double));
+  Exchange().exchange(sent_.data(), send_counts_, come_.data(), receive_counts_, each * sizeof(double));
   const double* from = come_.data();
   each_told([&](std::size_t k) {
     each_told_number(dimensions, turn, false, [&](std::size_t n) { records[k * stride + n] = *from++; });

@@ -84,7 +84,7 @@ class SphereShares {
   std::vector<std::size_t> chunks_{0, 0}, spheres_{0, 0};       // where those of each rank begin; one more
   std::vector<Meeting> meetings_;                               // in order
   std::vector<std::vector<std::uint32_t>> tells_, hears_;       // spheres by rank, in order
-  std::vector<std::size_t> tell_counts_, hear_counts_;          // by rank
+  std::vector<std::size_t> send_counts_, receive_counts_;       // by rank
   std::vector<std::pair<std::uint32_t, std::uint32_t>> found_;  // ranks and own spheres, of find()
   AlignedVector<double> sent_, come_;
 };

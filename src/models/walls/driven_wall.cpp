@@ -105,13 +105,13 @@ void DrivenWall::tell() {
     const Vec3 speed = velocity + cross(rate, axes.to_space(arm[k]));
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) v[d][k] = speed[d];
   }
-  if (reach_ > 0.0) tell_fluids();
+  if (reach_ > 0.0) inform_fluids();
 }
 
 /// Normals, the velocities of the nearest places of the surface in the middle of the step, as those of the fluid are,
 /// and the accelerations. A jump of the velocity is spread over the time in which sound crosses h: the fluid cannot
 /// follow it faster, and rho c U is the largest pressure that it makes.
-void DrivenWall::tell_fluids() {
+void DrivenWall::inform_fluids() {
   PhaseParticles& p = w_->particles(phase_);
   const State& state = w_->state;
   const double middle = state.steps == 0 ? state.time : state.time - 0.5 * state.dt;

@@ -25,7 +25,7 @@ class DrivenWall : public Model {
   void find_faces(PhaseParticles& p, const std::vector<Vec3>& places);
   void go();
   void tell();
-  void tell_fluids();
+  void inform_fluids();
 
   const Scene& scene_;
   const Layout& layout_;

@@ -1,8 +1,8 @@
-#include "app/past.hpp"
+#include "app/earlier_states.hpp"
 
 namespace barchan {
 
-void Past::keep(Simulation& simulation, Measurements* measurements) {
+void EarlierStates::keep(Simulation& simulation, Measurements* measurements) {
   State& state = states_[states_[0].step <= states_[1].step ? 0 : 1];
   state.archive.save([&](Archive& a) {
     simulation.archive(a);
@@ -12,7 +12,7 @@ void Past::keep(Simulation& simulation, Measurements* measurements) {
   if (trusted_ < 0) trusted_ = state.step;
 }
 
-bool Past::go_back(Simulation& simulation, Measurements* measurements, long failed) {
+bool EarlierStates::go_back(Simulation& simulation, Measurements* measurements, long failed) {
   State* best = nullptr;
   for (State& state : states_)
     if (state.step >= 0 && (state.step == trusted_ || state.step <= failed - distance) &&

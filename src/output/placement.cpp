@@ -1,4 +1,4 @@
-#include "output/seats.hpp"
+#include "output/placement.hpp"
 
 #include <sched.h>
 #include <unistd.h>
@@ -57,52 +57,52 @@ std::set<int> cores_of_list(const std::string& list) {
   return cores;
 }
 
-std::vector<RunReport::Seat> seats_of_ranks(int threads) {
-  std::vector<RunReport::Seat> seats;
+std::vector<RunReport::Placement> placements_of_ranks(int threads) {
+  std::vector<RunReport::Placement> placements;
   Communicator* const all = ranks::available();
-  if (!all) return seats;
+  if (!all) return placements;
   const std::string host = host_name(), cores = list_of_cores(cores_of_process());
   for (int r = 0; r < all->size(); ++r) {
-    RunReport::Seat seat{1, ranks::told_by(r, host), ranks::told_by(r, cores), threads};
-    all->broadcast(&seat.threads, sizeof seat.threads, r);
-    if (!seats.empty() && seats.back().is_like(seat)) ++seats.back().ranks;
-    else seats.push_back(seat);
+    RunReport::Placement placement{1, ranks::text_of_rank(r, host), ranks::text_of_rank(r, cores), threads};
+    all->broadcast(&placement.threads, sizeof placement.threads, r);
+    if (!placements.empty() && placements.back().is_like(placement)) ++placements.back().ranks;
+    else placements.push_back(placement);
   }
-  return seats;
+  return placements;
 }
 
-int threads_on_seat(const std::vector<RunReport::Seat>& seats, int rank, int most) {
-  auto own = seats.begin();
+int threads_of_placement(const std::vector<RunReport::Placement>& placements, int rank, int most) {
+  auto own = placements.begin();
   for (int first = own->ranks; first <= rank; first += own->ranks) ++own;
   const std::set<int> cores = cores_of_list(own->cores);
   int sharing = 0;
-  for (const RunReport::Seat& seat : seats) {
-    const std::set<int> theirs = cores_of_list(seat.cores);
+  for (const RunReport::Placement& placement : placements) {
+    const std::set<int> theirs = cores_of_list(placement.cores);
     const bool shares = std::any_of(cores.begin(), cores.end(), [&](int core) { return theirs.count(core) > 0; });
-    if (seat.host == own->host && (shares || cores.empty())) sharing += seat.ranks;
+    if (placement.host == own->host && (shares || cores.empty())) sharing += placement.ranks;
   }
   const int all = cores.empty() ? most : static_cast<int>(cores.size());
   return std::max(1, std::min(most, all / std::max(1, sharing)));
 }
 
-std::string to_text(const std::vector<RunReport::Seat>& seats) {
+std::string to_text(const std::vector<RunReport::Placement>& placements) {
   std::string text;
-  for (const RunReport::Seat& seat : seats)
-    text += "  " + number_of(static_cast<std::size_t>(seat.ranks), "rank") + " on " + seat.host + ", " +
-            number_of(static_cast<std::size_t>(seat.threads), "thread") + (seat.ranks == 1 ? "" : " each") +
-            (seat.cores.empty() ? "" : ", cores " + seat.cores) + "\n";
+  for (const RunReport::Placement& placement : placements)
+    text += "  " + number_of(static_cast<std::size_t>(placement.ranks), "rank") + " on " + placement.host + ", " +
+            number_of(static_cast<std::size_t>(placement.threads), "thread") + (placement.ranks == 1 ? "" : " each") +
+            (placement.cores.empty() ? "" : ", cores " + placement.cores) + "\n";
   return text.empty() ? text : "ranks\n" + text;
 }
 
-std::vector<std::string> warnings_of(const std::vector<RunReport::Seat>& seats) {
+std::vector<std::string> warnings_of(const std::vector<RunReport::Placement>& placements) {
   struct Machine {
     std::set<int> cores;
     long threads = 0;
   };
   std::map<std::string, Machine> machines;
-  for (const RunReport::Seat& seat : seats) {
-    machines[seat.host].cores.merge(cores_of_list(seat.cores));
-    machines[seat.host].threads += long{seat.ranks} * seat.threads;
+  for (const RunReport::Placement& placement : placements) {
+    machines[placement.host].cores.merge(cores_of_list(placement.cores));
+    machines[placement.host].threads += long{placement.ranks} * placement.threads;
   }
   std::vector<std::string> warnings;
   for (const auto& [host, machine] : machines)

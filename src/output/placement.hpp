@@ -19,16 +19,16 @@ std::set<int> cores_of_list(const std::string& list);
 
 /// Of all ranks, one after another; neighbours that say the same are one entry. `threads`: of this rank. Every rank
 /// calls it. Without ranks none.
-std::vector<RunReport::Seat> seats_of_ranks(int threads);
+std::vector<RunReport::Placement> placements_of_ranks(int threads);
 
 /// How many threads a rank takes by itself: an equal part of its cores, which ranks of the same machine may use too,
-/// and no more than `most`, but one. `seats`: of all ranks.
-int threads_on_seat(const std::vector<RunReport::Seat>& seats, int rank, int most);
+/// and no more than `most`, but one. `placements`: of all ranks.
+int threads_of_placement(const std::vector<RunReport::Placement>& placements, int rank, int most);
 
 /// A line for each entry.
-std::string to_text(const std::vector<RunReport::Seat>& seats);
+std::string to_text(const std::vector<RunReport::Placement>& placements);
 
 /// What a user should know of them: more threads than cores on a machine.
-std::vector<std::string> warnings_of(const std::vector<RunReport::Seat>& seats);
+std::vector<std::string> warnings_of(const std::vector<RunReport::Placement>& placements);
 
 }  // namespace barchan

@@ -11,7 +11,7 @@
 namespace barchan {
 
 /// States of the past that a run can go back to, in memory: two, so that one is old enough.
-class Past {
+class EarlierStates {
  public:
   static constexpr long every = steps_between_states;
   /// A particle that is wrong is found within 20 steps of it; states that are not this much older are not trusted.
