@@ -24,11 +24,11 @@ struct RunReport {
     int ranks = 1;
     std::string host, cores;  // the machine, and the numbers of its cores that they may use: "0-3,8"
     int threads = 1;          // of each
-    bool is_like(const Seat& o) const { return host == o.host && cores == o.cores && threads == o.threads; }
+    bool is_like(const Placement& o) const { return host == o.host && cores == o.cores && threads == o.threads; }
   };
   struct Ranks {
     int count = 1;
-    std::vector<Seat> placements;
+    std::vector<Placement> placements;
     std::int64_t messages = 0, bytes = 0;  // from rank to rank, of all
     std::int64_t collectives = 0;          // reductions, broadcasts and the like, once for all
     std::int64_t ghosts = 0;               // at the end, of all ranks
