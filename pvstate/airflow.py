@@ -14,16 +14,14 @@ fluids = series.phases("fluid")
 top = series.top_speed(fluids)
 
 flat = series.two_dimensional
-shown = [figure.particles(phase, radius="whole" if flat else 0.25, array="velocity") for phase in fluids]
-if shown:
-    figure.colours(shown, "velocity", 0.0, top, series.speed_title(fluids), preset="Viridis (matplotlib)")
-for phase in series.phases("grains"):
-    figure.particles(phase, colour=SAND, layer=2)
-for phase in series.phases("elastic", "rigid"):
-    figure.particles(phase, radius="body", colour=BODY, layer=2)
+if fluids:
+    shown = [figure.field(fluids, "velocity", 0.0, top)] if flat else [figure.particles(phase, radius=0.25, array="velocity") for phase in fluids]
+    figure.colours(shown, "smooth" if flat else "velocity", 0.0, top, series.speed_title(fluids), preset="Viridis (matplotlib)")
 if flat:
-    for phase in series.phases("wall"):
-        figure.particles(phase, radius="body", colour=WALL, layer=3)
+    figure.walls(layer=2)
+figure.bodies()
+for phase in series.phases("grains"):
+    figure.particles(phase, colour=SAND, layer=4)
 
 # Vectors where there is fluid, its mean in cells of about a fortieth of the width.
 if flat:

@@ -1,5 +1,6 @@
 """What a figure draws into its view: discs, arrows with their scale, kernels, colours."""
 
+import math
 import os
 
 import numpy as np
@@ -10,6 +11,7 @@ from barchan_numbers import bar_ticks, round_floor
 
 SAND = [0.86, 0.66, 0.34]           # ochre
 WALL = [0.38, 0.38, 0.40]
+GROUND = [0.55, 0.42, 0.25]         # walls of a scene with grains: of one family with the sand
 BODY = [0.55, 0.57, 0.60]
 FAINT_AIR = [0.80, 0.87, 0.93]
 INK = [0.13, 0.13, 0.15]
@@ -20,6 +22,63 @@ SAND_SPEED = [0.0, *SAND, 0.35, 0.84, 0.42, 0.16, 0.7, 0.62, 0.13, 0.16, 1.0, 0.
 SIGNED = [-1.0, 0.08, 0.32, 0.62, -0.5, 0.42, 0.67, 0.85, 0.0, 0.97, 0.97, 0.97,
           0.5, 0.93, 0.52, 0.40, 1.0, 0.68, 0.07, 0.15]
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
+
+SMOOTH = """
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersCore import vtkClipPolyData
+from vtkmodules.vtkFiltersGeometry import vtkImageDataGeometryFilter
+from vtkmodules.util.numpy_support import numpy_to_vtk
+x0, y0, step, columns, rows, array, low, high, z, widths = {x0!r}, {y0!r}, {step!r}, {columns}, {rows}, {array!r}, {low!r}, {high!r}, {z!r}, {widths!r}
+far = {far!r}   # of the upper edges, in steps
+weights, sums = np.zeros(columns * rows), np.zeros(columns * rows)
+for particles, lengths in zip(inputs, widths):
+    if not particles.GetNumberOfPoints():
+        continue
+    x = np.asarray(particles.Points)[:, :2]
+    width = np.asarray(particles.PointData["smoothing_length"]) * lengths
+    value = np.asarray(particles.PointData[array]) if array else np.zeros(len(x))
+    value = np.linalg.norm(value, axis=1) if value.ndim > 1 else value
+    sane = np.isfinite(x).all(axis=1) & np.isfinite(value) & (width > 0)
+    x, width, value = x[sane], width[sane], np.clip(value[sane], low, high)   # one particle that went astray decides nothing
+    place = (x - (x0, y0)) / step
+    reach = np.maximum(1.5 * width / step, 1.2)   # of a particle, in steps
+    for axis in (0, 1):   # what ends at an edge of the picture goes on as in a mirror
+        for edge in (0.0, far[axis]):
+            near = np.abs(place[:, axis] - edge) < reach
+            mirrored = place[near].copy()
+            mirrored[:, axis] = 2 * edge - mirrored[:, axis]
+            place, reach, width, value = np.concatenate([place, mirrored]), *(np.concatenate([a, a[near]]) for a in (reach, width, value))
+    share = 3 / np.pi * (width / step / reach) ** 2   # inside of a fluid the weights sum to one
+    for n in np.unique(np.ceil(reach).astype(int)):
+        chosen = np.ceil(reach).astype(int) == n
+        p, r, s, v = place[chosen], reach[chosen], share[chosen], value[chosen]
+        near = np.round(p).astype(int)
+        for dx in range(-n, n + 1):
+            for dy in range(-n, n + 1):
+                column, row = near[:, 0] + dx, near[:, 1] + dy
+                w = s * np.clip(1 - ((column - p[:, 0]) ** 2 + (row - p[:, 1]) ** 2) / r ** 2, 0, None) ** 2
+                w[(column < 0) | (column >= columns) | (row < 0) | (row >= rows)] = 0.0
+                cell = np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)
+                weights += np.bincount(cell, w, columns * rows)
+                sums += np.bincount(cell, w * v, columns * rows)
+image = vtkImageData()
+image.SetDimensions(columns, rows, 1)
+image.SetOrigin(x0, y0, z)
+image.SetSpacing(step, step, step)
+for name, numbers in (("weight", weights), ("smooth", sums / np.maximum(weights, 1e-9))):
+    made = numpy_to_vtk(numbers, deep=True)
+    made.SetName(name)
+    image.GetPointData().AddArray(made)
+image.GetPointData().SetActiveScalars("weight")
+surface = vtkImageDataGeometryFilter()
+surface.SetInputData(image)
+clip = vtkClipPolyData()
+clip.SetInputConnection(surface.GetOutputPort())
+clip.SetValue(0.25)   # half of it is the outline; a drop alone has 0.42
+clip.Update()
+output.ShallowCopy(clip.GetOutput())
+"""
 
 MEAN_VELOCITY = """
 import numpy as np
@@ -150,6 +209,47 @@ class Marks:
             ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array), separate=True)
         return shown
 
+    def field(self, phases, array=None, low=0.0, high=1.0, colour=None, layer=0, sources=None):
+        """Phases of a 2D scene as one smooth field, whatever their spacings: at each place the mean of the particles within 1.5 spacings, weighted by
+        their distance; the outline is where about half of that neighbourhood is empty. `array` (a vector counts by its size) is drawn by colours from
+        `low` to `high` under the name "smooth", else all in `colour`. `sources`: other filters of these phases. Returns the representation."""
+        x0, x1, y0, y1 = self.box[:4]
+        widths = [self.series.width_in_lengths(p) for p in phases]
+        lengths = (self.series.values("smoothing_length", [p]) for p in phases)
+        finest = min((float(np.percentile(h, 1)) * w for h, w in zip(lengths, widths) if len(h)), default=self.series.spacing)
+        columns = max(int((x1 - x0) / max(finest / 3, 1.5 * self.metres)), 1) + 1
+        step = (x1 - x0) / (columns - 1)
+        smooth = ProgrammableFilter(registrationName=(array or "outline") + " of " + self.series.names_of(phases),
+                                    Input=sources or [self.series.source(p) for p in phases])
+        smooth.OutputDataSetType = "vtkPolyData"
+        smooth.Script = SMOOTH.format(x0=float(x0), y0=float(y0), step=float(step), columns=columns, rows=math.ceil((y1 - y0) / step) + 1, far=(columns - 1.0, float((y1 - y0) / step)),
+                                      array=array or "", low=float(low), high=float(high), z=0.05 * layer * self.series.spacing, widths=widths)
+        shown = Show(smooth, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
+        if array is None:
+            paint(shown, colour)
+        else:
+            ColorBy(shown, ("POINTS", "smooth"), separate=True)
+        return shown
+
+    def walls(self, layer=3, drawn=()):
+        """Walls, in the colour of the ground where the scene has grains."""
+        colour = GROUND if self.series.has_grains else WALL
+        for phase in self.series.phases("wall"):
+            if phase not in drawn and self.series.two_dimensional:
+                self.field([phase], colour=colour, layer=layer)
+            elif phase not in drawn:
+                self.particles(phase, radius=0.12, colour=colour)
+
+    def bodies(self, layer=3, drawn=()):
+        """Elastic and rigid bodies without a value of their own; in 2D their outline is filled."""
+        for phase in self.series.phases("elastic", "rigid"):
+            if phase not in drawn and self.series.two_dimensional:
+                self.field([phase], colour=BODY, layer=layer)
+            elif phase not in drawn:
+                self.particles(phase, radius="body", colour=BODY)
+
     # -- arrows
 
     def arrows(self, source, metres_per_speed, scale_of=None, colour=None, layer=6, thickness=1.0, centred=False,
@@ -226,7 +326,7 @@ class Marks:
         mean = ProgrammableFilter(registrationName="mean velocity", Input=self.series.source(phase))
         mean.OutputDataSetType = "vtkPolyData"
         mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows,
-                                           fastest=float(fastest), least=0.5 * (side / self.series.spacing) ** 2)
+                                           fastest=float(fastest), least=0.6 * (side / self.series.spacing) ** 2)
         return mean, side
 
     def paths(self, ways, speeds):
@@ -271,19 +371,28 @@ class Marks:
         else:
             self.colours(representations, array, low, high, title, preset="Viridis (matplotlib)")
 
+    def fluids(self, phases, array, values, title, sources=None):
+        """Fluids coloured by an array, by_values(): in 2D as a smooth field, in 3D as balls. `sources`: filters of these phases that have the array."""
+        sources = sources or [self.series.source(phase) for phase in phases]
+        if self.series.two_dimensional:
+            low, high, _ = self.series.range_of(values)
+            return self.by_values([self.field(phases, array, low, high, sources=sources)], "smooth", values, title)
+        shown = [self.dots(source, radius=0.5, array=array, component=None, size=self.series.size(phase)) for source, phase in zip(sources, phases)]
+        return self.by_values(shown, array, values, title)
+
     def others(self, drawn):
         """The phases that carry no colour: walls dark, bodies grey, grains in the colour of sand, fluids faint. `drawn` are left out."""
         flat = self.series.two_dimensional
         for phase in self.series.phases("fluid"):
+            if phase not in drawn and flat:
+                self.field([phase], colour=FAINT_AIR)
+            elif phase not in drawn:
+                self.particles(phase, radius=0.12, colour=FAINT_AIR)
+        for phase in self.series.phases("grains"):
             if phase not in drawn:
-                self.particles(phase, radius=0.3 if flat else 0.12, colour=FAINT_AIR)
-        for kind, colour, radius in (("grains", SAND, None), ("elastic", BODY, "body"), ("rigid", BODY, "body")):
-            for phase in self.series.phases(kind):
-                if phase not in drawn:
-                    self.particles(phase, radius=radius, colour=colour, layer=2)
-        for phase in self.series.phases("wall"):
-            if phase not in drawn:
-                self.particles(phase, radius="body" if flat else 0.12, colour=WALL, layer=3)
+                self.particles(phase, colour=SAND, layer=4)
+        self.bodies(drawn=drawn)
+        self.walls(drawn=drawn)
 
     def colours(self, representations, array, low, high, title, preset=None, points=None, bar=True):
         """One colour map for these representations, and its bar."""

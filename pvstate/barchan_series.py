@@ -139,6 +139,8 @@ class Series:
         self.domain = first.get("domain")
         for sample in self._samples:
             self._leave_out_strays(sample)
+        self.has_grains = "grains" in self.phase_kinds
+        self._helpers = self._helper_walls()
         self._thresholds = {}
         self.window = None              # [x0, x1, y0, y1, z0, z1] in metres: only these particles are drawn
         self.title = self._from_run("title") or self.name.replace("_", " ").replace("-", " ").capitalize()
@@ -187,12 +189,28 @@ class Series:
         except (OSError, ValueError, LookupError, TypeError, AttributeError):
             return None
 
+    def _helper_walls(self):
+        """Walls in which grains stand at the start: they are those of another phase, as the ground of the air in which sand lies, and are not drawn."""
+        first, helpers = self._samples[0], set()
+        grains = first["points"][np.isin(first["phase"], [k for k, kind in enumerate(self.phase_kinds) if kind == "grains"])]
+        for phase in [k for k, kind in enumerate(self.phase_kinds) if kind == "wall"]:
+            wall = first["points"][first["phase"] == phase]
+            if not len(grains) or not len(wall):
+                continue
+            width = self._distance(phase)
+            probes = grains[np.linspace(0, len(grains) - 1, min(len(grains), 400)).astype(int)]
+            wall = wall[((wall >= probes.min(axis=0) - width) & (wall <= probes.max(axis=0) + width)).all(axis=1)]
+            inside = [len(wall) and ((wall - probe) ** 2).sum(axis=1).min() < (0.48 * width) ** 2 for probe in probes]
+            if np.mean(inside) > 0.2:
+                helpers.add(phase)
+        return helpers
+
     # -- phases
 
     def phases(self, *kinds):
-        """Numbers of the phases of these kinds that are there and not hidden."""
+        """Numbers of the phases of these kinds that are there and not hidden; walls in which grains stand are left out."""
         return [k for k, (name, kind) in enumerate(zip(self.phase_names, self.phase_kinds))
-                if kind in kinds and name not in self.hidden]
+                if kind in kinds and name not in self.hidden and k not in self._helpers]
 
     def names_of(self, phases):
         """The names of phases in a title."""
@@ -317,6 +335,21 @@ class Series:
         h = h[h > 0]
         return float(2 * h.max()) if len(h) and h.max() < 0.3 * self.spacing else self.spacing
 
+    def _distance(self, phase):
+        """Of the particles of a phase at the start from their three nearest ones, the median of the means (m): its spacing, on a lattice or not."""
+        points = self._samples[0]["points"][self._samples[0]["phase"] == phase]
+        if len(points) < 4:
+            return self.size(phase)
+        squares = (((points - probe) ** 2).sum(axis=1) for probe in points[np.linspace(0, len(points) - 1, min(len(points), 200)).astype(int)])
+        return float(np.median([np.sqrt(np.partition(s, 3)[1:4]).mean() for s in squares]))
+
+    def width_in_lengths(self, phase):
+        """The spacing of a phase, in its smoothing lengths."""
+        h = self._samples[0].get("smoothing_length", np.zeros(0))
+        h = h[self._samples[0]["phase"] == phase] if len(h) else h
+        middle = float(np.median(h)) if len(h) else 0.0
+        return self._distance(phase) / middle if middle > 0 else 1 / 1.3
+
     def moving_at_once(self, phases, speed):
         """The most particles of these phases that are faster than `speed` (m/s) in one of the sampled frames."""
         return max((sum(int((np.linalg.norm(s["velocity"][s["phase"] == p], axis=1) > speed).sum()) for p in phases)
@@ -327,16 +360,20 @@ class Series:
         return nice_ceiling(percentile(self.speeds(phases), share))
 
     def bounds(self, phases):
-        """[x0, x1, y0, y1, z0, z1] in metres with half a spacing around, over the sampled frames; of all phases but walls within
-        the domain."""
+        """[x0, x1, y0, y1, z0, z1] in metres with half a spacing around, over the sampled frames; within the domain, of walls in 2D their
+        first row beyond it."""
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for phase in phases:
             points = self.values("points", [phase])
             if not len(points):
                 continue
             least, most = points.min(axis=0) - self.spacing / 2, points.max(axis=0) + self.spacing / 2
-            if self.domain is not None and self.phase_kinds[phase] != "wall":
-                least, most = np.maximum(least, self.domain[0::2]), np.minimum(most, self.domain[1::2])
+            wall = self.phase_kinds[phase] == "wall"
+            if self.domain is not None and (not wall or self.two_dimensional):
+                beyond = 0.6 * self.spacing if wall else 0.0   # where it stands beyond a side
+                low_side, high_side = self.domain[0::2], self.domain[1::2]
+                least = np.maximum(least, low_side - beyond * (points.min(axis=0) < low_side))
+                most = np.minimum(most, high_side + beyond * (points.max(axis=0) > high_side))
             low, high = np.minimum(low, least), np.maximum(high, most)
         if not (low <= high).all():
             low, high = np.full(3, -self.spacing / 2), np.full(3, self.spacing / 2)

@@ -13,17 +13,17 @@ figure = Figure(series, series.title + ": density")
 fluids = series.phases("fluid")
 if not fluids:
     raise Wrong(f"{series.path} has no fluid, whose density could be shown")
-shown, deviations = [], []
+sources, drawn, deviations = [], [], []
 for phase in fluids:
     density = series.values("density", [phase])
     middle = percentile(density, 50)
     if middle <= 0:
         continue
     deviations.append(100 * (density / middle - 1))
-    source = series.calculated(series.source(phase), "deviation", f"100*(density/{middle!r}-1)")
-    shown.append(figure.dots(source, radius="whole" if series.two_dimensional else 0.5, array="deviation", component=None, size=series.size(phase)))
-if not shown:
+    drawn.append(phase)
+    sources.append(series.calculated(series.source(phase), "deviation", f"100*(density/{middle!r}-1)"))
+if not drawn:
     raise Wrong(f"{series.path}: the fluids have no density above zero")
-figure.by_values(shown, "deviation", np.concatenate(deviations), "density of " + series.names_of(fluids) + " from its middle, %")
+figure.fluids(drawn, "deviation", np.concatenate(deviations), "density of " + series.names_of(fluids) + " from its middle, %", sources)
 figure.others(fluids)
 figure.finish()

@@ -10,10 +10,7 @@ series.need("eddy_viscosity")
 figure = Figure(series, series.title + ": viscosity of the eddies")
 fluids = series.phases("fluid")
 values = 1e6 * series.values("eddy_viscosity", fluids)
-shown = []
-for phase in fluids:   # mm2/s: short numbers at the colour bar
-    source = series.calculated(series.source(phase), "eddies", "1e6*eddy_viscosity")
-    shown.append(figure.dots(source, radius="whole" if series.two_dimensional else 0.5, array="eddies", component=None, size=series.size(phase)))
-figure.by_values(shown, "eddies", values, "viscosity of the eddies, mm²/s")
+sources = [series.calculated(series.source(phase), "eddies", "1e6*eddy_viscosity") for phase in fluids]   # mm2/s: short numbers at the colour bar
+figure.fluids(fluids, "eddies", values, "viscosity of the eddies, mm²/s", sources)
 figure.others(fluids)
 figure.finish()

@@ -58,6 +58,5 @@ elif shown:
 for phase in series.phases("fluid", "grains"):
     if phase not in bodies:
         figure.particles(phase, radius=0.2, colour=FAINT_AIR if series.phase_kinds[phase] == "fluid" else SAND)
-for phase in series.phases("wall"):   # in 3D small dots, through which the bodies are seen
-    figure.particles(phase, radius="body" if flat else 0.12, colour=WALL, layer=2)
+figure.walls(layer=2)   # in 3D small dots, through which the bodies are seen
 figure.finish()

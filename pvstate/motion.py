@@ -10,9 +10,12 @@ figure = Figure(series, series.title + ": speed")
 moving = series.phases("fluid", "grains", "elastic", "rigid")
 if not moving:
     raise Wrong(f"{series.path} has nothing that moves")
-radii = {"fluid": "whole", "grains": None, "elastic": "body", "rigid": "body"}
-shown = [figure.particles(phase, radius=radii[series.phase_kinds[phase]] if series.two_dimensional else 0.5, array="velocity",
-                          layer=0 if series.phase_kinds[phase] == "fluid" else 1) for phase in moving]
-figure.colours(shown, "velocity", 0.0, series.top_speed(moving), series.speed_title(moving), preset="Viridis (matplotlib)")
+flat, top = series.two_dimensional, series.top_speed(moving)
+fluids = series.phases("fluid") if flat else []
+radii = {"fluid": None, "grains": None, "elastic": "body", "rigid": "body"}
+shown = [figure.particles(phase, radius=radii[series.phase_kinds[phase]] if flat else 0.5, array="velocity", layer=4) for phase in moving if phase not in fluids]
+if fluids:
+    figure.colours([figure.field(fluids, "velocity", 0.0, top)], "smooth", 0.0, top, series.speed_title(moving), preset="Viridis (matplotlib)", bar=not shown)
+figure.colours(shown, "velocity", 0.0, top, series.speed_title(moving), preset="Viridis (matplotlib)")
 figure.others(moving)
 figure.finish()

@@ -13,7 +13,6 @@ figure = Figure(series, series.title + ": pressure")
 fluids = series.phases("fluid")
 if not fluids:
     raise Wrong(f"{series.path} has no fluid, whose pressure could be shown")
-shown = [figure.particles(phase, radius="whole" if series.two_dimensional else 0.5, array="pressure", component=None) for phase in fluids]
-figure.by_values(shown, "pressure", series.values("pressure", fluids), "pressure of " + series.names_of(fluids) + ", Pa")
+figure.fluids(fluids, "pressure", series.values("pressure", fluids), "pressure of " + series.names_of(fluids) + ", Pa")
 figure.others(fluids)
 figure.finish()

@@ -24,16 +24,15 @@ if len(moving):
     moving = moving[moving <= 20 * max(lift, np.median(moving))]
 top = nice_ceiling(max(lift, percentile(moving, 98)))
 
-if flat:
-    for phase in series.phases("fluid"):
-        figure.particles(phase, radius=0.22, colour=FAINT_AIR)
-    for phase in series.phases("wall"):
-        figure.particles(phase, radius="body", colour=WALL, layer=1)
-for phase in series.phases("elastic", "rigid"):
-    figure.particles(phase, radius="body", colour=BODY, layer=2)
-
 # Arrows of hundreds of grains much finer than the air hide the grains: then the colour alone tells the speed.
 few = series.moving_at_once(grains, 0.2 * top) <= 100 or all(series.size(phase) == series.spacing for phase in grains)
+
+if flat:
+    if series.phases("fluid"):
+        figure.field(series.phases("fluid"), colour=FAINT_AIR)
+    figure.walls(layer=1)
+figure.bodies(layer=2)
+
 shown = []
 for phase in grains:
     if few:

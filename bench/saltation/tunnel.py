@@ -2,7 +2,7 @@
 """A dune in a wind tunnel (scenes/dune.toml): wind before, over and behind the dune, what drives it, and the flux of sand along x.
 
     /usr/bin/python3 bench/saltation/tunnel.py build/barchan --out /tmp/tunnel               runs the scene four times, two at once, each with other grains that enter (influx.0.seed);
-                                                                                             writes results/tunnel.csv and docs/gallery/dune_tunnel.png
+                                                                                             writes results/tunnel.csv and the pictures docs/gallery/dune_tunnel*.png
     /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --from 0.3 --to 0.6    measures the runs that are there between two times
 
 Means of the frames between two times (the last second, if none are given). Wind at a place: mean of the air's particles within 1 cm of it, by height over the ground. u*: slope of
@@ -24,9 +24,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, page, run, store  # noqa: E402
 from barchan_bench.frame import Frame, series, table  # noqa: E402
 
-SCENE, RESULT, PICTURE = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunnel.csv", ROOT / "docs/gallery/dune_tunnel.png"
+SCENE, RESULT = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunnel.csv"
+PICTURE, PLOTS = ROOT / "docs/gallery/dune_tunnel.png", ROOT / "docs/gallery/dune_tunnel_plots.png"
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
+TOP = 0.13  # m, of the picture
 
 
 class Ground:
@@ -165,28 +167,42 @@ def measure(folder, begin, end):
         "reverse_length_over_H": length / ground.height_of_dune, "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
 
 
-def draw(means, ground, result):
+def picture(means, ground):
+    """The tunnel at one moment: the air as a smooth field, its bubble behind the dune, the sand."""
     plt = page.pyplot()
-    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(11, 10), height_ratios=[2.6, 1, 1.4])
+    from matplotlib.tri import LinearTriInterpolator, Triangulation
+    figure, axes = plt.subplots(figsize=(10, 3.6), layout="constrained")
     x, u = means.last.x, means.last["velocity"]
-    most = float(np.abs(u[:, 0]).max())
-    drawn = top.scatter(x[:, 0], x[:, 1], c=u[:, 0], s=9, cmap="coolwarm", vmin=-most, vmax=most)
-    figure.colorbar(drawn, ax=top, label="air along the wind, m/s; white: 0", orientation="horizontal", shrink=.4, pad=.02, aspect=40)
-    lattice = means.last.x[:, :2]
-    cells = np.unique((lattice / 0.015).astype(int), axis=0, return_index=True)[1]
-    speed = np.hypot(u[cells, 0], u[cells, 1])
-    top.quiver(x[cells, 0], x[cells, 1], u[cells, 0] / speed, u[cells, 1] / speed, scale=75, width=8e-4, color="k")
+    xs = np.linspace(0, ground.length, 661)
+    bed = ground.height(xs)
+    # The ground belongs to the field: there the air is at rest.
+    places, speeds = np.concatenate([x[:, :2], np.column_stack([xs, bed])]), np.concatenate([u[:, 0], np.zeros(len(xs))])
+    ys = np.linspace(0, TOP, 261)
+    grid = np.meshgrid(xs, ys)
+    field = LinearTriInterpolator(Triangulation(*places.T), speeds)(*grid)
+    field = np.ma.masked_where(grid[1] < ground.height(grid[0]), field)
+    drawn = axes.pcolormesh(xs * 100, ys * 100, field, cmap="Blues", vmin=0, vmax=math.ceil(speeds.max()), shading="gouraud", rasterized=True)
+    figure.colorbar(drawn, ax=axes, label="wind along x, m/s", pad=.01, aspect=16)
+    back = axes.contour(xs * 100, ys * 100, field, levels=[0], colors="crimson", linewidths=1.2)
+    axes.clabel(back, fmt="0 m/s", fontsize=8)
+    axes.fill_between(xs * 100, bed * 100, 0, color="#c8a165", lw=0)
     sand = means.sand
-    v = np.hypot(*sand["velocity"][:, :2].T)
-    flies = top.scatter(sand.x[:, 0], sand.x[:, 1], c=v, s=1.5, cmap="YlOrBr", vmin=0, vmax=means.fastest)
-    figure.colorbar(flies, ax=top, label="speed of grains, m/s", orientation="horizontal", shrink=.4, pad=.1, aspect=40)
-    top.set(aspect="equal", xlim=(0, ground.length), ylim=(0, ground.top), ylabel="y, m", title=f"t = {means.times[1]:.2f} s; arrows: direction of the air only")
+    axes.scatter(sand.x[:, 0] * 100, sand.x[:, 1] * 100, s=.9, color="#6b4a1f", lw=0)
+    axes.set(aspect="equal", xlim=(0, ground.length * 100), ylim=(0, TOP * 100), xlabel="x, cm", ylabel="height, cm")
+    figure.savefig(PICTURE, dpi=140)
+    plt.close(figure)
+
+
+def plots(means, ground, result):
+    """Flux along x and the wind at four places."""
+    plt = page.pyplot()
+    figure, (top, bottom) = plt.subplots(2, 1, figsize=(9, 7), height_ratios=[1, 1.4])
     parts = (np.arange(len(result["flux_g_m_s"])) + 0.5) * PART
-    middle.errorbar(parts, result["flux_g_m_s"], result["flux_error"], marker="o")
-    middle.axhline(SATURATED, color="grey", ls="--", label="saturated at u* = 0.5 m/s, Creyssels et al. 2009")
-    middle.fill_between(parts, 60 * (ground.height(parts) - ground.bed) / ground.height_of_dune, color="tan", alpha=.3, label="dune, without scale")
-    middle.set(xlim=(0, ground.length), ylim=(0, None), xlabel="x, m", ylabel="flux, g/m/s", title=f"means of {means.times[0]:.2f} to {means.times[1]:.2f} s")
-    middle.legend()
+    top.errorbar(parts, result["flux_g_m_s"], result["flux_error"], marker="o")
+    top.axhline(SATURATED, color="grey", ls="--", label="saturated at u* = 0.5 m/s, Creyssels et al. 2009")
+    top.fill_between(parts, 60 * (ground.height(parts) - ground.bed) / ground.height_of_dune, color="tan", alpha=.3, label="dune, without scale")
+    top.set(xlim=(0, ground.length), ylim=(0, None), xlabel="x, m", ylabel="flux, g/m/s", title=f"means of {means.times[0]:.2f} to {means.times[1]:.2f} s")
+    top.legend()
     for name, place in (("10 cm before the toe", ground.toe - .1), ("crest", ground.crest), ("5 cm behind the slip face", ground.end + .05), ("far behind", ground.length - .06)):
         height, speeds = means.wind(place)
         bottom.plot(speeds, height, marker=".", label=f"{name}, x = {place:.2f} m")
@@ -196,7 +212,8 @@ def draw(means, ground, result):
     bottom.set(yscale="log", ylim=(1e-3, .26), xlabel="mean wind, m/s", ylabel="height over the ground, m")
     bottom.legend()
     figure.tight_layout()
-    figure.savefig(PICTURE, dpi=90)
+    figure.savefig(PLOTS, dpi=100)
+    plt.close(figure)
 
 
 def main():
@@ -219,7 +236,8 @@ def main():
         runs.append(measured[2])
         shown = shown or measured
     store.keep(RESULT, {"runs": runs})
-    draw(*shown)
+    picture(*shown[:2])
+    plots(*shown)
     for name in runs[0]:
         print(name, *(each[name] if isinstance(each[name], (list, tuple, dict, type(None))) else round(each[name], 4) for each in runs))
 
