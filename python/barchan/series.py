@@ -6,7 +6,7 @@ import pathlib
 import numpy
 
 from . import files
-from .errors import NoSeries, UnknownName, Unreadable, nearest
+from .errors import NoSeries, UnknownName, Unreadable, nearest, package
 from .tables import table
 
 KINDS = ("profile_", "probe_", "wall_shear_", "saltation_")
@@ -112,6 +112,15 @@ class Series:
     def units(self):
         """Units of the fields by name."""
         return self._first.units
+
+    def tracks(self, phase=None, every=1):
+        """The ways of particles as one pandas.DataFrame: a row for each particle and frame, by id and time (s), with the columns of Frame.to_pandas(). `phase`: of one phase
+        only, else of all; `every`: each so many frames. A particle that enters or leaves has the rows of the frames in which it is."""
+        pandas = package("pandas", "python3-pandas", "tracks()")
+        frames = [frame if phase is None else frame.of(phase) for frame in self[::every]]
+        if not frames:
+            raise NoSeries(f"{self.pvd} lists no frame yet")
+        return pandas.concat([frame.to_pandas() for frame in frames], keys=[frame.time for frame in frames], names=["time"]).swaplevel().sort_index()
 
     @functools.cached_property
     def history(self):

@@ -176,6 +176,26 @@ class Reading(Case):
         self.assertIn("velocity_y", frame)
         self.assertEqual(barchan.open(self.out).history.to_pandas().index.name, "time [s]")
 
+    def test_the_package_has_the_version_of_the_program(self):
+        import tomllib
+        self.assertEqual(tomllib.loads((ROOT / "python/pyproject.toml").read_text())["project"]["version"], barchan.version().split()[1])
+
+    def test_tracks(self):
+        try:
+            import pandas  # noqa: F401
+        except ImportError:
+            self.skipTest("python3-pandas is not there")
+        series = barchan.open(self.out)
+        tracks = series.tracks("ball")
+        self.assertEqual(tracks.index.names, ["id", "time"])
+        self.assertEqual(len(tracks), sum(len(frame.of("ball")) for frame in series))
+        first = series[-1].of("ball")
+        one = tracks.loc[first["id"][0]]
+        self.assertEqual(list(one.index), list(series.times))
+        self.assertEqual(one["velocity_y"].iloc[-1], first["velocity"][0, 1])
+        self.assertEqual(len(series.tracks("ball", every=2).loc[first["id"][0]]), (len(series) + 1) // 2)
+        self.assertEqual(len(series.tracks()), sum(len(frame) for frame in series))
+
 
 class Running(Case):
     def test_a_wrong_scene_leaves_nothing(self):
