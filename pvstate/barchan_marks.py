@@ -75,7 +75,7 @@ surface = vtkImageDataGeometryFilter()
 surface.SetInputData(image)
 clip = vtkClipPolyData()
 clip.SetInputConnection(surface.GetOutputPort())
-clip.SetValue(0.25)   # half of it is the outline; a drop alone has 0.42
+clip.SetValue({outline})
 clip.Update()
 output.ShallowCopy(clip.GetOutput())
 """
@@ -209,10 +209,11 @@ class Marks:
             ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array), separate=True)
         return shown
 
-    def field(self, phases, array=None, low=0.0, high=1.0, colour=None, layer=0, sources=None):
+    def field(self, phases, array=None, low=0.0, high=1.0, colour=None, layer=0, sources=None, outline=0.25):
         """Phases of a 2D scene as one smooth field, whatever their spacings: at each place the mean of the particles within 1.5 spacings, weighted by
         their distance; the outline is where about half of that neighbourhood is empty. `array` (a vector counts by its size) is drawn by colours from
-        `low` to `high` under the name "smooth", else all in `colour`. `sources`: other filters of these phases. Returns the representation."""
+        `low` to `high` under the name "smooth", else all in `colour`. `sources`: other filters of these phases. `outline`: the share of a full
+        neighbourhood where the area ends; 0.5 is the outline of a body, a drop alone has 0.42. Returns the representation."""
         x0, x1, y0, y1 = self.box[:4]
         widths = [self.series.width_in_lengths(p) for p in phases]
         lengths = (self.series.values("smoothing_length", [p]) for p in phases)
@@ -223,7 +224,7 @@ class Marks:
                                     Input=sources or [self.series.source(p) for p in phases])
         smooth.OutputDataSetType = "vtkPolyData"
         smooth.Script = SMOOTH.format(x0=float(x0), y0=float(y0), step=float(step), columns=columns, rows=math.ceil((y1 - y0) / step) + 1, far=(columns - 1.0, float((y1 - y0) / step)),
-                                      array=array or "", low=float(low), high=float(high), z=0.05 * layer * self.series.spacing, widths=widths)
+                                      array=array or "", low=float(low), high=float(high), outline=outline, z=0.05 * layer * self.series.spacing, widths=widths)
         shown = Show(smooth, self.view)
         shown.SetRepresentationType("Surface")
         shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
@@ -238,7 +239,7 @@ class Marks:
         colour = GROUND if self.series.has_grains else WALL
         for phase in self.series.phases("wall"):
             if phase not in drawn and self.series.two_dimensional:
-                self.field([phase], colour=colour, layer=layer)
+                self.field([phase], colour=colour, layer=layer, outline=0.5)
             elif phase not in drawn:
                 self.particles(phase, radius=0.12, colour=colour)
 
@@ -246,7 +247,7 @@ class Marks:
         """Elastic and rigid bodies without a value of their own; in 2D their outline is filled."""
         for phase in self.series.phases("elastic", "rigid"):
             if phase not in drawn and self.series.two_dimensional:
-                self.field([phase], colour=BODY, layer=layer)
+                self.field([phase], colour=BODY, layer=layer, outline=0.5)
             elif phase not in drawn:
                 self.particles(phase, radius="body", colour=BODY)
 
@@ -379,6 +380,20 @@ class Marks:
             return self.by_values([self.field(phases, array, low, high, sources=sources)], "smooth", values, title)
         shown = [self.dots(source, radius=0.5, array=array, component=None, size=self.series.size(phase)) for source, phase in zip(sources, phases)]
         return self.by_values(shown, array, values, title)
+
+    def rims(self, phases):
+        """A grey rim about bodies of a 2D scene."""
+        for phase in phases:
+            self.field([phase], colour=BODY, outline=0.3)
+
+    def valued_bodies(self, phases, array, values, title, sources=None, layer=1):
+        """Bodies coloured by an array, by_values(): in 2D each as a smooth area, in 3D as balls. `sources`: filters of these phases that have the array."""
+        sources = sources or [self.series.source(phase) for phase in phases]
+        if self.series.two_dimensional:
+            low, high, _ = self.series.range_of(values)
+            shown = [self.field([phase], array, low, high, layer=layer, sources=[source], outline=0.5) for source, phase in zip(sources, phases)]
+            return self.by_values(shown, "smooth", values, title)
+        return self.by_values([self.dots(source, radius="body", array=array, component=None) for source in sources], array, values, title)
 
     def others(self, drawn):
         """The phases that carry no colour: walls dark, bodies grey, grains in the colour of sand, fluids faint. `drawn` are left out."""

@@ -40,21 +40,21 @@ velocity = series.values("velocity", bodies)
 first = series.first()
 axis = motion_axis(velocity, first["velocity"][np.isin(first["phase"], bodies)])
 if flat:
-    for phase in bodies:   # an outline, without which white discs would vanish on white
-        figure.particles(phase, radius=0.56, colour=BODY)
+    figure.rims(bodies)   # without it white bodies would vanish on white
 shown = []
+top = series.top_speed(bodies) if axis is None else nice_ceiling(percentile(np.abs(velocity @ axis), 99.5))
 for phase in bodies:
     if axis is None:
-        shown.append(figure.particles(phase, radius=0.5, array="velocity", layer=1))
+        shown.append(figure.field([phase], "velocity", 0.0, top, layer=1, outline=0.5) if flat else figure.particles(phase, radius=0.5, array="velocity"))
     else:
         along = "+".join(f"({c!r})*velocity_{'XYZ'[k]}" for k, c in enumerate(map(float, axis)))
         source = series.calculated(series.source(phase), "along", along)
-        shown.append(figure.dots(source, radius=0.5, array="along", component=None, layer=1))
+        shown.append(figure.field([phase], "along", -top, top, layer=1, sources=[source], outline=0.5) if flat
+                     else figure.dots(source, radius=0.5, array="along", component=None))
 if shown and axis is None:
-    figure.colours(shown, "velocity", 0.0, series.top_speed(bodies), series.speed_title(bodies), preset="Viridis (matplotlib)")
+    figure.colours(shown, "smooth" if flat else "velocity", 0.0, top, series.speed_title(bodies), preset="Viridis (matplotlib)")
 elif shown:
-    top = nice_ceiling(percentile(np.abs(velocity @ axis), 99.5))
-    figure.colours(shown, "along", -top, top, f"velocity along {name_of(axis)} (m/s)", points=SIGNED)
+    figure.colours(shown, "smooth" if flat else "along", -top, top, f"velocity along {name_of(axis)} (m/s)", points=SIGNED)
 for phase in series.phases("fluid", "grains"):
     if phase not in bodies:
         figure.particles(phase, radius=0.2, colour=FAINT_AIR if series.phase_kinds[phase] == "fluid" else SAND)

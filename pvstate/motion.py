@@ -12,10 +12,11 @@ if not moving:
     raise Wrong(f"{series.path} has nothing that moves")
 flat, top = series.two_dimensional, series.top_speed(moving)
 fluids = series.phases("fluid") if flat else []
-radii = {"fluid": None, "grains": None, "elastic": "body", "rigid": "body"}
-shown = [figure.particles(phase, radius=radii[series.phase_kinds[phase]] if flat else 0.5, array="velocity", layer=4) for phase in moving if phase not in fluids]
-if fluids:
-    figure.colours([figure.field(fluids, "velocity", 0.0, top)], "smooth", 0.0, top, series.speed_title(moving), preset="Viridis (matplotlib)", bar=not shown)
-figure.colours(shown, "velocity", 0.0, top, series.speed_title(moving), preset="Viridis (matplotlib)")
+bodies = series.phases("elastic", "rigid") if flat else []
+areas = [figure.field(fluids, "velocity", 0.0, top)] if fluids else []
+areas += [figure.field([phase], "velocity", 0.0, top, layer=1, outline=0.5) for phase in bodies]
+balls = [figure.particles(phase, radius=None if flat else 0.5, array="velocity", layer=4) for phase in moving if phase not in fluids + bodies]
+figure.colours(areas, "smooth", 0.0, top, series.speed_title(moving), preset="Viridis (matplotlib)", bar=not balls)
+figure.colours(balls, "velocity", 0.0, top, series.speed_title(moving), preset="Viridis (matplotlib)")
 figure.others(moving)
 figure.finish()

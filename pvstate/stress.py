@@ -16,12 +16,8 @@ if not bodies:
 values = -series.values("pressure", bodies)
 unit, factor = stress_unit(values)
 if series.two_dimensional:   # an outline, without which white discs would vanish on white
-    for phase in bodies:
-        figure.particles(phase, radius=0.85, colour=BODY)
-shown = []
-for phase in bodies:
-    source = series.calculated(series.source(phase), "mean_stress", f"{-1 / factor!r}*pressure")
-    shown.append(figure.dots(source, radius="body", array="mean_stress", component=None, layer=1))
-figure.by_values(shown, "mean_stress", values / factor, f"mean stress, tension positive, {unit}")
+    figure.rims(bodies)
+sources = [series.calculated(series.source(phase), "mean_stress", f"{-1 / factor!r}*pressure") for phase in bodies]
+figure.valued_bodies(bodies, "mean_stress", values / factor, f"mean stress, tension positive, {unit}", sources)
 figure.others(bodies)
 figure.finish()

@@ -22,11 +22,8 @@ if array == "stress":
 else:
     values = series.values(array, bodies)
 unit, factor = stress_unit(values)
-shown = []
-for phase in bodies:
-    formula = MISES if array == "stress" else "von_mises_stress"
-    source = series.calculated(series.source(phase), "mises", f"{1 / factor!r}*{formula}")
-    shown.append(figure.dots(source, radius="body", array="mises", component=None, layer=1))
-figure.by_values(shown, "mises", values / factor, f"von Mises stress, {unit}")
+formula = MISES if array == "stress" else "von_mises_stress"
+sources = [series.calculated(series.source(phase), "mises", f"{1 / factor!r}*{formula}") for phase in bodies]
+figure.valued_bodies(bodies, "mises", values / factor, f"von Mises stress, {unit}", sources)
 figure.others(bodies)
 figure.finish()
