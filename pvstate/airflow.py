@@ -24,9 +24,7 @@ for phase in series.phases("grains"):
     figure.particles(phase, colour=SAND, layer=4)
 
 # Vectors where there is fluid, its mean in cells of about a fortieth of the width.
-if flat:
-    for number, phase in enumerate(fluids):
-        mean, side = figure.mean_velocity(phase, fastest=3 * top)
-        figure.arrows(mean, 0.95 * side / top, scale_of=None if number else top, colour=[1.0, 1.0, 1.0], name="arrow",
-                      thickness=1.7, centred=True)
+if flat and fluids:
+    mean, side = figure.mean_velocity(fluids, fastest=3 * top)
+    figure.arrows(mean, 0.95 * side / top, scale_of=top, colour=[1.0, 1.0, 1.0], name="arrow", thickness=1.7, centred=True)
 figure.finish()

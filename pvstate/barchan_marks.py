@@ -82,27 +82,30 @@ output.ShallowCopy(clip.GetOutput())
 
 MEAN_VELOCITY = """
 import numpy as np
-from vtkmodules.numpy_interface import dataset_adapter as adapter
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.util.numpy_support import numpy_to_vtk
-x0, y0, side, columns, rows, least, fastest = {x0!r}, {y0!r}, {side!r}, {columns}, {rows}, {least!r}, {fastest!r}
-particles = inputs[0]
-if particles.GetNumberOfPoints():
+x0, y0, side, columns, rows, fastest, widths = {x0!r}, {y0!r}, {side!r}, {columns}, {rows}, {fastest!r}, {widths!r}
+areas, sums = np.zeros(columns * rows), np.zeros((columns * rows, 3))
+for particles, lengths in zip(inputs, widths):
+    if not particles.GetNumberOfPoints():
+        continue
     x = np.asarray(particles.Points)
     velocity = np.asarray(particles.PointData["velocity"])
-    column, row = ((x[:, k] - o) / side for k, o in ((0, x0), (1, y0)))
+    area = (np.asarray(particles.PointData["smoothing_length"]) * lengths) ** 2
+    column, row = ((x[:, k] - o) / side + 1e-5 for k, o in ((0, x0), (1, y0)))   # a row of a lattice on an edge is in one cell
     inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
     inside &= (velocity ** 2).sum(axis=1) < fastest ** 2   # not a number is not below
-    velocity = velocity[inside]
+    velocity, area = velocity[inside], area[inside]
     cell = row[inside].astype(int) * columns + column[inside].astype(int)
-    count = np.bincount(cell, minlength=columns * rows)
-    mean = np.stack([np.bincount(cell, velocity[:, k], columns * rows) for k in range(3)], axis=1)
-    full = np.flatnonzero(count > least)
+    areas += np.bincount(cell, area, columns * rows)
+    sums += np.stack([np.bincount(cell, area * velocity[:, k], columns * rows) for k in range(3)], axis=1)
+full = np.flatnonzero(areas > 0.55 * side ** 2)
+if len(full):
     centre = np.stack([x0 + (full % columns + 0.5) * side, y0 + (full // columns + 0.5) * side, 0.0 * full], axis=1)
     points = vtkPoints()
     points.SetData(numpy_to_vtk(centre, deep=True))
     output.SetPoints(points)
-    output.PointData.append(mean[full] / count[full, None], "velocity")
+    output.PointData.append(sums[full] / areas[full, None], "velocity")
 """
 
 REACH = """
@@ -317,17 +320,22 @@ class Marks:
         shown.WindowLocation = "Any Location"
         shown.Position = [x / width, (y + 14 * self.scale) / height]
 
-    def mean_velocity(self, phase, fastest):
-        """The mean velocity of one phase in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in each cell that is
-        at least half full of particles slower than `fastest` (m/s). Returns the filter and the cells' side in metres."""
+    def mean_velocity(self, phases, fastest):
+        """The mean velocity of fluids, whatever their spacings, in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
+        each cell of which they fill more than half, particles faster than `fastest` (m/s) left aside. Returns the filter and the cells' side in metres."""
         x0, x1, y0, y1 = self.box[:4]
         across = max(min(40, (x1 - x0) / self.metres / 32), 4)
         side = max((x1 - x0) / round(across), 3 * self.series.spacing)
         columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)
-        mean = ProgrammableFilter(registrationName="mean velocity", Input=self.series.source(phase))
+        mean = ProgrammableFilter(registrationName="mean velocity", Input=[self.series.source(phase) for phase in phases])
         mean.OutputDataSetType = "vtkPolyData"
+<<<<<<< HEAD
         mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows,
                                            fastest=float(fastest), least=0.6 * (side / self.series.spacing) ** 2)
+=======
+        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows, fastest=float(fastest),
+                                           widths=[self.series.width_in_lengths(phase) for phase in phases])
+>>>>>>> main
         return mean, side
 
     def paths(self, ways, speeds):

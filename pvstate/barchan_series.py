@@ -341,7 +341,7 @@ class Series:
         if len(points) < 4:
             return self.size(phase)
         squares = (((points - probe) ** 2).sum(axis=1) for probe in points[np.linspace(0, len(points) - 1, min(len(points), 200)).astype(int)])
-        return float(np.median([np.sqrt(np.partition(s, 3)[1:4]).mean() for s in squares]))
+        return float(np.median([np.sqrt(np.sort(np.partition(s, 3)[:4])[1:]).mean() for s in squares]))
 
     def width_in_lengths(self, phase):
         """The spacing of a phase, in its smoothing lengths."""

@@ -334,7 +334,7 @@ def tunnel(r):
             "which is too large in a wake.", "",
             "All that drives is more than rho u*^2 because the dune brakes the air too: by its pressure, and by grains over the layers which the faster air over the crest speeds up. Over flat sand the balance would be "
             "that of the lid.", "",
-            "![Wind along x, grains by their speed, flux along x and the wind at four places](gallery/dune_tunnel.png)"]
+            "![Wind and grains after 1 s](gallery/dune_tunnel.png)", "", "![Flux along x and the wind at four places](gallery/dune_tunnel_plots.png)"]
 
 
 PARTS = {"settling": settling, "hop": hop, "splash": splash, "heaps": heaps, "threshold": threshold, "flux": flux, "impact": impact, "resolved": resolved,
