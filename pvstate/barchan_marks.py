@@ -329,13 +329,8 @@ class Marks:
         columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)
         mean = ProgrammableFilter(registrationName="mean velocity", Input=[self.series.source(phase) for phase in phases])
         mean.OutputDataSetType = "vtkPolyData"
-<<<<<<< HEAD
-        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows,
-                                           fastest=float(fastest), least=0.6 * (side / self.series.spacing) ** 2)
-=======
         mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows, fastest=float(fastest),
                                            widths=[self.series.width_in_lengths(phase) for phase in phases])
->>>>>>> main
         return mean, side
 
     def paths(self, ways, speeds):

@@ -28,11 +28,7 @@ SCENE, RESULT = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunne
 PICTURE, PLOTS = ROOT / "docs/gallery/dune_tunnel.png", ROOT / "docs/gallery/dune_tunnel_plots.png"
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
-<<<<<<< HEAD
-TOP = 0.13  # m, of the picture
-=======
 TOP = 0.12  # m, of the picture
->>>>>>> main
 
 
 class Ground:
@@ -175,41 +171,23 @@ def picture(means, ground):
     """The tunnel at one moment: the air as a smooth field, its bubble behind the dune, the sand."""
     plt = page.pyplot()
     from matplotlib.tri import LinearTriInterpolator, Triangulation
-<<<<<<< HEAD
-    figure, axes = plt.subplots(figsize=(10, 3.6), layout="constrained")
-    x, u = means.last.x, means.last["velocity"]
-    xs = np.linspace(0, ground.length, 661)
-    bed = ground.height(xs)
-    # The ground belongs to the field: there the air is at rest.
-    places, speeds = np.concatenate([x[:, :2], np.column_stack([xs, bed])]), np.concatenate([u[:, 0], np.zeros(len(xs))])
-=======
     figure, axes = plt.subplots(figsize=(10, 2.5), layout="constrained")
     x, u, spacing = means.last.x, means.last["velocity"], means.spacing
     xs = np.linspace(0, ground.length, 661)
     bed = ground.height(xs)
     rest = np.arange(0, ground.length + spacing, spacing)   # the ground belongs to the field: there the air is at rest
     places, speeds = np.concatenate([x[:, :2], np.column_stack([rest, ground.height(rest)])]), np.concatenate([u[:, 0], np.zeros(len(rest))])
->>>>>>> main
     ys = np.linspace(0, TOP, 261)
     grid = np.meshgrid(xs, ys)
     field = LinearTriInterpolator(Triangulation(*places.T), speeds)(*grid)
     field = np.ma.masked_where(grid[1] < ground.height(grid[0]), field)
     drawn = axes.pcolormesh(xs * 100, ys * 100, field, cmap="Blues", vmin=0, vmax=math.ceil(speeds.max()), shading="gouraud", rasterized=True)
-<<<<<<< HEAD
-    figure.colorbar(drawn, ax=axes, label="wind along x, m/s", pad=.01, aspect=16)
-    back = axes.contour(xs * 100, ys * 100, field, levels=[0], colors="crimson", linewidths=1.2)
-    axes.clabel(back, fmt="0 m/s", fontsize=8)
-    axes.fill_between(xs * 100, bed * 100, 0, color="#c8a165", lw=0)
-    sand = means.sand
-    axes.scatter(sand.x[:, 0] * 100, sand.x[:, 1] * 100, s=.9, color="#6b4a1f", lw=0)
-=======
     figure.colorbar(drawn, ax=axes, label="wind along x, m/s", pad=.01, aspect=14)
     back = axes.contour(xs * 100, ys * 100, field, levels=[-.1], colors="crimson", linewidths=1.2, linestyles="solid")
     axes.clabel(back, fmt="backward", fontsize=8)
     axes.fill_between(xs * 100, bed * 100, 0, color="#c8a165", lw=0)
     sand = means.sand
     axes.scatter(sand.x[:, 0] * 100, sand.x[:, 1] * 100, s=2.2, color="#5a3a12", lw=0)
->>>>>>> main
     axes.set(aspect="equal", xlim=(0, ground.length * 100), ylim=(0, TOP * 100), xlabel="x, cm", ylabel="height, cm")
     figure.savefig(PICTURE, dpi=140)
     plt.close(figure)
