@@ -360,8 +360,8 @@ class Series:
         return nice_ceiling(percentile(self.speeds(phases), share))
 
     def bounds(self, phases):
-        """[x0, x1, y0, y1, z0, z1] in metres with half a spacing around, over the sampled frames; within the domain, of walls in 2D their
-        first row beyond it."""
+        """[x0, x1, y0, y1, z0, z1] in metres with half a spacing around, over the sampled frames; within the domain, of walls in 2D two
+        spacings beyond it."""
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         for phase in phases:
             points = self.values("points", [phase])
@@ -370,7 +370,7 @@ class Series:
             least, most = points.min(axis=0) - self.spacing / 2, points.max(axis=0) + self.spacing / 2
             wall = self.phase_kinds[phase] == "wall"
             if self.domain is not None and (not wall or self.two_dimensional):
-                beyond = 0.6 * self.spacing if wall else 0.0   # where it stands beyond a side
+                beyond = 2 * self.spacing if wall else 0.0   # where it stands beyond a side
                 low_side, high_side = self.domain[0::2], self.domain[1::2]
                 least = np.maximum(least, low_side - beyond * (points.min(axis=0) < low_side))
                 most = np.minimum(most, high_side + beyond * (points.max(axis=0) > high_side))

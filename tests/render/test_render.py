@@ -179,9 +179,21 @@ class Rendering(unittest.TestCase):
 
     def test_impact_along_a_diagonal_between_walls(self):
         picture = self.render(self.scene("discs", DISCS), ["impact"])["impact"]
-        self.assertGreater(share(picture, WALL), 0.06, "the walls are missing")
+        self.assertGreater(share(picture, WALL), 0.10, "the walls are missing")
         self.assertGreater(share(picture, [0.75, 0.21, 0.20], 0.12), 0.02, "the moving disc is missing")
         self.assertGreater(share(picture, [0.97, 0.97, 0.97], 0.01), 0.02, "the disc at rest is missing")
+
+    def test_a_wall_in_which_grains_stand_is_not_drawn(self):
+        """It is one of another phase: the ground of the air under sand. The floor of this series, moved onto the sand, becomes such a wall."""
+        def onto_sand(data, _, points):
+            floor, sand = of_phase(data, "floor"), of_phase(data, "sand")
+            points[floor] = points[np.resize(sand, len(floor))]
+
+        ground = (0.55, 0.42, 0.25)
+        as_it_is, moved = (self.render(series, ["airflow"], "--hide", "sand,lid")["airflow"]
+                           for series in (self.dune, changed_series(self.dune, self.out / "onto_sand", onto_sand)))
+        self.assertGreater(share(as_it_is, ground), 0.01, "the floor is missing")
+        self.assertLess(share(moved, ground), 0.001, "a wall of another phase lies over the sand")
 
     def test_arrows_of_a_coarse_scene(self):
         series = self.scene("tank", COARSE_TANK)
