@@ -27,7 +27,7 @@ class Maker {
     i.every = measured.every > 0 ? measured.every : history;
     i.start = measured.start;
     i.dimensions = scene_.dimensions;
-    i.has_pressure = layout_.phases[i.phase].flows;
+    i.has_pressure = layout_.phases[i.phase].flows();
     for (const Interaction& pair : scene_.interactions)
       if (pair.a == measured.phase && pair.b == measured.phase) {
         i.kernel = pair.kernel;
@@ -128,9 +128,9 @@ class Maker {
     i.axis = 1;
     i.low = bounds_.low;
     i.high = bounds_.high;
-    i.diameter = layout_.phases[i.phase].size;
+    i.diameter = layout_.phases[i.phase].size();
     i.flight = s.flight * i.diameter;
-    i.hops = layout_.phases[i.phase].own_steps;
+    i.hops = layout_.phases[i.phase].own_steps();
     i.area = scene_.domain.size[0] * (dimensions() == 3 ? scene_.domain.size[2] : 1.0);
     for (const PlanEntry& e : layout_.entries)
       if (e.wind_by_height && e.has(i.phase)) i.air = static_cast<int>(e.partner(i.phase));
@@ -159,9 +159,9 @@ class Maker {
   void say_what_shears(Instrument& i) const {
     const Phase& fluid = scene_.phases[i.phase];
     const PlanPhase& wall = layout_.phases[i.wall];
-    i.roughness = wall.roughness;
+    i.roughness = wall.surface.roughness;
     i.domain = layout_.domain;
-    if (wall.friction == Friction::rough) {
+    if (wall.surface.friction == Friction::rough) {
       i.shear = drags_by_law(scene_, fluid) ? ShearOf::layers : ShearOf::rough;
       for (const PlanEntry& e : layout_.entries) {
         if (e.has(i.phase) && e.has(i.wall)) {  // the particles that feel the wall, by the weights by which they do

@@ -121,7 +121,7 @@ void describe_surroundings(const Scene& scene, std::size_t number, PlanPhase& p)
   if ((phase.kind() == PhaseKind::rigid && meets(scene, phase, PhaseKind::fluid)) || ends_at_border(scene, phase))
     for (const Field f : {Field::wall_normal, Field::wall_depth, Field::surface_velocity, Field::surface_acceleration})
       p.fields.push_back(f);
-  if (p.travels && meets(scene, phase, PhaseKind::fluid))
+  if (p.travels() && meets(scene, phase, PhaseKind::fluid))
     for (const Field f : {Field::surface_velocity, Field::surface_acceleration}) p.fields.push_back(f);
   p.heats = phase.kind() != PhaseKind::fluid && rubs_on_energy(scene, phase);
   if ((phase.kind() == PhaseKind::grains && meets(scene, phase, PhaseKind::column)) || drags_by_law(scene, phase))
@@ -187,7 +187,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
   for (std::size_t k = 0; k < scene.influxes.size(); ++k)
     models.push_back(std::make_unique<GrainSource>(scene, layout, k));
   for (std::size_t k = 0; k < layout.phases.size(); ++k) {
-    if (!layout.phases[k].moves || !layout.is_extended(k)) continue;
+    if (!layout.phases[k].moves() || !layout.is_extended(k)) continue;
     const bool rigid = scene.phases[k].kind() == PhaseKind::rigid, bent = ends_at_border(scene, scene.phases[k]);
     if (bent) models.push_back(std::make_unique<ElasticInFluid>(scene, layout, k));
     if (rigid)  // its surface moves before the fluid is extended into it
@@ -196,7 +196,7 @@ Models make_models(const Scene& scene, const Layout& layout) {
     for (const PlanEntry& e : layout.entries)
       if (rigid && e.extends && e.other == k && e.corrected) models.push_back(make_entry<BorderLoad>(scene, layout, e));
   }
-  if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.own_steps; }))
+  if (std::any_of(layout.phases.begin(), layout.phases.end(), [](const PlanPhase& p) { return p.own_steps(); }))
     models.push_back(std::make_unique<Spheres>(scene, layout));
   for (const auto& e : layout.entries) add_of_entry(scene, layout, e, models);
   if (auto kept = kept_momentum(scene, layout)) models.push_back(std::move(kept));

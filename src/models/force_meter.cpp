@@ -21,7 +21,7 @@ namespace {
 /// A wall goes on beyond sides through which a fluid flows: what is measured is the part beside the domain.
 ForceMeter in_the_domain(ForceMeter meter, const Layout& layout) {
   const bool stays = std::any_of(layout.phases.begin(), layout.phases.end(),
-                                 [&](const PlanPhase& p) { return p.name == meter.phase && !p.moves; });
+                                 [&](const PlanPhase& p) { return p.name == meter.phase && !p.moves(); });
   if (!stays || meter.box || !layout.flows_through()) return meter;
   BoxShape box{{-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}};
   for (const PlanPhase& phase : layout.phases)
@@ -38,7 +38,7 @@ ForceOn::ForceOn(const Scene& scene, const Layout& layout, std::size_t number)
       meter_(in_the_domain(scene.force_meters[number], layout)),
       number_(number),
       set_(layout, meter_),
-      stays_(!layout.phases[set_.phase()].moves) {
+      stays_(!layout.phases[set_.phase()].moves()) {
   phase_ = set_.phase();
 }
 
@@ -54,7 +54,7 @@ void ForceOn::attach(Workspace& w) {
   for (const auto& e : layout_.entries) {
     if (!stays_ || !e.has(phase_) || !(meter_.by.empty() || layout_.phases[e.partner(phase_)].name == meter_.by))
       continue;
-    if (e.own_steps) {
+    if (e.of_spheres()) {
       pushes_.push_back(w.sphere_pushes.size());
       w.sphere_pushes.push_back({phase_, e.partner(phase_), meter_.about});
     }
@@ -77,15 +77,15 @@ void ForceOn::attach(Workspace& w) {
 
 /// A control volume about a wall that stays, if it lies inside the domain and reaches no other wall.
 void ForceOn::make_volume(const State& state) {
-  if (!stays_ || layout_.phases[phase_].travels || scene_.force_meters[number_].box || !pushes_.empty()) return;
+  if (!stays_ || layout_.phases[phase_].travels() || scene_.force_meters[number_].box || !pushes_.empty()) return;
   volume_ = ControlVolume(state.phases[phase_], layout_.phases[phase_].spacing, layout_);
   for (std::size_t other = 0; other < state.phases.size() && volume_.there(); ++other) {
     const PhaseParticles& p = state.phases[other];
-    if (other == phase_ || layout_.phases[other].flows) continue;
+    if (other == phase_ || layout_.phases[other].flows()) continue;
     for (std::size_t k = 0; k < p.size(); ++k) {
       Vec3 x{};
       for (int d = 0; d < layout_.dimensions; ++d) x[static_cast<std::size_t>(d)] = p.column(Field::position, d)[k];
-      if (layout_.phases[other].moves || volume_.near(x)) {
+      if (layout_.phases[other].moves() || volume_.near(x)) {
         volume_ = {};
         break;
       }
@@ -95,7 +95,7 @@ void ForceOn::make_volume(const State& state) {
 
 /// Beside an elastic body at whose border a fluid ends.
 void ForceOn::make_border(const std::vector<ParticleBlock>& blocks) {
-  if (!stays_ || layout_.phases[phase_].travels || scene_.force_meters[number_].box || volume_.there()) return;
+  if (!stays_ || layout_.phases[phase_].travels() || scene_.force_meters[number_].box || volume_.there()) return;
   const PlanEntry* only = nullptr;
   for (const PlanEntry& e : layout_.entries) {
     if (!e.extends || e.other != phase_) continue;
@@ -122,7 +122,7 @@ bool ForceOn::stands_alone(std::size_t number) const {
          !forced && std::all_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
            if (!e.has(number) || e.partner(number) == number) return true;
            const PlanPhase& other = layout_.phases[e.partner(number)];
-           return !other.flows && !other.moves && !other.travels;
+           return !other.flows() && !other.moves() && !other.travels();
          });
 }
 

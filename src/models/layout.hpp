@@ -40,53 +40,53 @@ struct Consistency {
 };
 Consistency lattice_consistency(KernelKind kernel, double radius_in_spacings, int dimensions);
 
+/// Who finds the pairs of an entry, and when they act.
+enum class Pairs {
+  searched,             // the engine makes lists of them
+  own,                  // its model finds them: winds over grains, surfaces of elastic bodies
+  first_shape,          // those of the body's first shape, found once: total Lagrangian
+  outlines,             // outlines of rigid bodies touch, and no particle feels anything by itself
+  spheres,              // models/grains/spheres.hpp, in steps of its own
+  spheres_and_outlines  // the same, of spheres on outlines of walls and bodies
+};
+
 /// An entry of the matrix. Its numbers are those of the scene; its model declares the rest (a `describe_...` function
 /// that models/catalogue.cpp chooses). Where nothing is declared, the defaults hold.
 struct PlanEntry {
-  std::size_t a = 0, b = 0;                 // phase numbers, a <= b
-  std::string name;                         // "air-sand"
-  std::size_t fluid = 0, other = 0;         // of a law between a fluid or a wind and another phase: which is which
-  ContactLaw contact = ContactLaw::kernel;  // of a contact
+  std::size_t a = 0, b = 0;          // phase numbers, a <= b
+  std::string name;                  // "air-sand"
+  std::size_t fluid = 0, other = 0;  // of a law between a fluid or a wind and another phase: which is which
+  Interaction given;                 // the entry of the scene
   KernelKind kernel = KernelKind::cubic_spline;
   double radius = 0;   // m; where sizes decide who touches, the distance at which the largest particles touch
   double spacing = 0;  // m, of its coarser phase
   Consistency consistency;
-  bool corrected = false;            // its law divides by these sums: it is exact to first order all the same
-  double drag = 0;                   // drag coefficient, 0: none
-  DragLaw drag_law = DragLaw::none;  // of grains in a wind
-  double lift = 0.0, gusts = 0.0;    // of grains by such a law in a fluid
-  double coupling_interval = 0.0;    // s, the same; 0: that of the model
-  double restitution = 1;            // of a contact of bodies
-  double friction = 0;               // of a contact of bodies: Coulomb's coefficient
-  int forward = -1, backward = -1;   // directions: a looks for b, b looks for a; -1: not needed
+  bool corrected = false;           // its law divides by these sums: it is exact to first order all the same
+  int forward = -1, backward = -1;  // directions: a looks for b, b looks for a; -1: not needed
 
-  // What the plan prints. The model of every law sets `law` and `meaning`.
-  std::string law;          // its word, "coupling"; of a contact of spheres that of the scene, "hertz"
-  std::string kernel_word;  // the name of the kernel; "none" where a scene can give no kernel (spheres)
-  std::string meaning;      // what its kernel sums mean, or what decides in their place
+  // What the plan prints. The model of every law sets both.
+  std::string law;      // its word, "coupling"; of a contact of spheres that of the scene, "hertz"
+  std::string meaning;  // what its kernel sums mean, or what decides in their place
 
   // What the engine and other models ask. In brackets: which laws set it.
-  bool searched = true;          // the engine makes lists of its pairs; [false: winds, spheres, outlines, first shapes]
+  Pairs pairs = Pairs::searched;
   bool continues_fluid = false;  // a fluid sums its rates over these pairs [fluid, boundary, coupling]
   bool extends = false;          // the fluid is extended into the other phase: extended records [boundary, coupling]
-  bool compact_only = false;     // in mixed precision its law reads compact records and no motion records [fluid]
   bool reads_stress = false;     // its law reads the stress records of both phases [bodies, updated Lagrangian]
-  bool first_shape = false;      // its pairs are those of the body's first shape, found once [bodies, total Lagrangian]
   bool self_contact = false;     // parts of one body touch that are far apart in its first shape [contact of bodies]
-  bool own_steps = false;        // its contacts act in the steps of models/grains/spheres.hpp [spheres]
-  bool by_outlines = false;      // outlines of bodies touch, and no particle feels anything by itself [rigid bodies]
   bool gives_length = false;    // half of its radius is the smoothing length of a phase that has none [grains, spheres]
   bool blows = false;           // `fluid` is a wind over grains: it drives them, and they brake it [winds over grains]
-  bool wind_by_height = false;  // the wind of a grain is that of its height (State::air) [column]
+  bool wind_by_height = false;  // the same by its height (State::air): no other particle loses what it gives [column]
 
   // What the watch, the budget and the warnings ask.
   bool keeps_apart = false;   // two particles never stand in one place: the watch looks at its lists [contacts, bodies]
   double stopping_depth = 0;  // m: it stops grains up to sound speed times this over the distance of two that touch;
                               // 0: the watch has no such bound [contact through a kernel]
-  bool feeds = false;         // it gives its phases momentum and energy that no other particle loses [column]
   bool feels_lattice = false;  // bodies touch the particles of a wall, whose lattice is rough [contact of bodies]
 
   bool has(std::size_t phase) const { return a == phase || b == phase; }
+  bool of_spheres() const { return pairs == Pairs::spheres || pairs == Pairs::spheres_and_outlines; }
+  bool by_outlines() const { return pairs == Pairs::outlines || pairs == Pairs::spheres_and_outlines; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
   int direction(std::size_t phase) const { return a == phase ? forward : backward; }
@@ -117,6 +117,35 @@ struct PhaseRules {
 /// Whether output.fields names the field.
 bool is_output(const Scene& scene, Field field);
 
+/// What moves the particles of a phase.
+enum class Mover {
+  nothing,   // they stay, as those of a wall; or there are none, as in a column
+  motion,    // a [[motion]] carries a wall as a rigid whole, which nothing pushes
+  fluid,     // its pressure: it fills its room and gives way
+  elastic,   // the stress of the body that they are
+  rigid,     // the body that they are, as a whole
+  contacts,  // of grains without a diameter
+  spheres    // models/grains/spheres.hpp, in steps of its own
+};
+
+/// What a phase is to a fluid that flows along it.
+struct Surface {
+  Friction friction = Friction::smooth;  // of a turbulent fluid on it [fluid, grains, wall]
+  double roughness = 0;                  // m, z0 of the logarithmic law; 0: smooth [grains, wall]
+  Vec3 stress{};                         // Pa, with which it pulls a fluid [wall]
+  double speed = 0;                      // m/s, the largest with which the scene lets it slide [wall]
+};
+
+/// What drives a wind over grains.
+struct Wind {
+  bool held = false;            // the bulk speed is held [fluid]
+  bool driven = false;          // the scene says what drives it: the flux of grains is measured [fluid, column]
+  double largest_speed = 0;     // m/s, that a column of air can reach: a bound for the watch [column]
+  std::string beyond_measured;  // the warning of a wind beyond measurements; empty: the wind is within them [column]
+  /// m/s at a time (s), the friction velocity that the scene states; empty: it states none [fluid, column].
+  std::function<double(double time)> friction_velocity;
+};
+
 /// A phase as its model declares it: first what others ask while they describe themselves (`declare_...`), then all
 /// else (`describe_...`). models/catalogue.cpp calls both. Where nothing is declared, the defaults hold.
 struct PlanPhase {
@@ -129,32 +158,15 @@ struct PlanPhase {
   double smoothing_length = 0;  // m
 
   // Declared first. In brackets: which kinds set it.
-  bool moves = false;      // its particles are integrated in time; false: they stay in place [all but wall, column]
-  bool flows = false;      // it has a pressure of its own, by which it fills its room and gives way [fluid]
-  bool own_steps = false;  // models/grains/spheres.hpp moves its particles, in steps of their own [grains: spheres]
+  Mover mover = Mover::nothing;
   bool sphere_records = false;  // its particles have records of contacts of spheres [grains and walls with a diameter]
   double diameter = 0;          // m, mean, that the scene gives grains; 0: it gives none [grains]
-  double size = 0;              // m, across a particle: the mean diameter [grains], else the spacing
   double largest_size = 0;      // m, across the largest particle [grains], else the spacing
   double weight_share = 1.0;    // of gravity, that grains feel: less than 1 with buoyancy [grains]
-  double surface_speed = 0;     // m/s, the largest with which the scene lets the surface slide [wall]
-  bool travels = false;         // a [[motion]] carries it as a rigid whole; `moves` is false: nothing pushes it [wall]
+  Surface surface;
 
-  // Its motion and its contacts.
-  bool kicked = false;  // CommonWork ends its step, v += dt/2 a; false: its own model does [fluid, elastic, grains]
-  bool tells_motion = false;  // its own model fills Workspace::carried, from which a fluid knows its motion [rigid]
-  bool separate = false;  // its particles move one by one: a fluid follows their velocities, not their blows [grains]
-  bool yields = false;    // a contact can push single particles; false: it is as hard as a wall [as kicked, spheres]
-  double contact_restitution = 1;       // of a contact through a kernel [grains]
-  double contact_stiffness = 0;         // N/m, of a contact with another body (2D: N/m a metre) [rigid]
-  std::vector<RigidBody> rigid_bodies;  // at the start [rigid]
-
-  // A fluid, and what a fluid asks of its neighbours.
-  Friction friction = Friction::smooth;  // of a turbulent fluid on it [fluid, grains, wall]
-  double roughness = 0;                  // m, z0 of the logarithmic law; 0: smooth [grains, wall]
-  Vec3 stress{};                         // Pa, with which its surface pulls a fluid [wall]
-  bool held = false;                     // a fluid whose bulk speed is held
-  bool free_surface = false;             // a fluid that does not fill its space
+  // A fluid.
+  bool free_surface = false;  // a fluid that does not fill its space
   std::array<std::array<bool, 2>, 3>
       open{};                      // sides of the domain behind which its particles are gone, by axis: {lower, upper}
   std::vector<FlowEnd> flow_ends;  // sides through which it enters or leaves, with their zones
@@ -163,28 +175,34 @@ struct PlanPhase {
   bool enclosed = false;           // a fluid whose mean density is kept
   std::string enclosure = "";      // why a fluid is enclosed or not; empty: nobody asks
 
-  // A wind over grains.
-  bool driven = false;     // the scene says what drives this wind: the flux of grains is measured [fluid, column]
-  double wind = 0;         // m/s, what a column of air can reach: a bound for the watch [column]
-  std::string too_strong;  // the warning of a wind beyond measurements; empty: the wind is within them [column]
-  /// m/s at a time (s), the friction velocity that the scene states; empty: it states none [fluid, column].
-  std::function<double(double time)> friction_velocity;
+  Wind wind;
+  std::vector<RigidBody> rigid_bodies;  // at the start [rigid]
 
-  // A body.
-  bool deforms = false;           // its entry with itself holds it together, and it bends [elastic]
-  bool fixed_neighbours = false;  // its neighbours are those of its first shape: nobody searches them [elastic]
-  bool stress_records = false;    // its particles have stress records [elastic]
-
-  // What the budget and the warnings ask.
-  bool collides = false;        // its grains pass through each other without an entry of their own [grains: spheres]
-  bool noiseless = false;       // forces of its pairs have no noise, and keep the angular momentum [elastic, rigid]
-  bool counts_drive = false;    // the work of a [[motion]] on it is in Model::budget_energy [elastic]
-  bool takes_momentum = false;  // what pushes it loses momentum that no particle gets [wall]
-  bool gives_energy = false;    // its surface slides or pulls, and so gives energy to the others [wall]
-  std::string physics = "";     // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
+  std::string physics = "";  // its name in the stability atlas (plan/stable_ranges.cpp); none: ""
   std::vector<Field> fields;
   std::vector<void (*)(PhaseParticles&)> derivations;  // of fields that only outputs read, before a frame and a row
   PhaseRules rules;
+
+  /// Whether its particles are integrated in time; false: they stay in place, or a [[motion]] carries them.
+  bool moves() const { return mover >= Mover::fluid; }
+  bool travels() const { return mover == Mover::motion; }
+  bool flows() const { return mover == Mover::fluid; }
+  bool deforms() const { return mover == Mover::elastic; }
+  bool own_steps() const { return mover == Mover::spheres; }
+  /// Its particles move one by one: a fluid follows their velocities, not their blows.
+  bool separate() const { return mover == Mover::contacts || own_steps(); }
+  /// CommonWork ends its step, v += dt/2 a; false: its own model does.
+  bool kicked() const { return flows() || deforms() || mover == Mover::contacts; }
+  /// A contact can push single particles; false: it is as hard as a wall.
+  bool yields() const { return kicked() || own_steps(); }
+  /// What pushes it loses momentum that no particle gets: a wall, a fluid that enters or leaves.
+  bool takes_momentum() const { return !moves() || !flow_ends.empty(); }
+  /// Its surface slides or pulls, or a fluid enters or leaves: the others get energy.
+  bool gives_energy() const {
+    return travels() || surface.friction == Friction::driven || surface.speed > 0.0 || !flow_ends.empty();
+  }
+  /// m, across a particle: the mean diameter, else the spacing.
+  double size() const { return diameter > 0.0 ? diameter : spacing; }
 
   /// Fields that only outputs read: the phase has those that output.fields names, and `derive` makes them from the
   /// others.
@@ -233,8 +251,8 @@ struct Layout {
   /// others look for.
   bool is_whole(std::size_t phase) const {
     const PlanPhase& p = phases[phase];
-    return (p.moves && !p.flows) || std::none_of(directions.begin(), directions.end(),
-                                                 [&](const Direction& d) { return d.a == phase || d.b == phase; });
+    return (p.moves() && !p.flows()) || std::none_of(directions.begin(), directions.end(),
+                                                     [&](const Direction& d) { return d.a == phase || d.b == phase; });
   }
   /// For a task that touches these of all phases.
   Touches of_all(const FieldSet& reads, const FieldSet& writes) const {

@@ -181,7 +181,7 @@ void OpenSides::leave() {
   if (!among.any(any_beyond(p))) return;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < p.size(); ++k) kept += is_beyond(p, k) ? 0 : 1;
-  if (among.total(kept) == 0 && !plan_.own_steps) {
+  if (among.total(kept) == 0 && !plan_.own_steps()) {
     trouble_ = "all particles of \"" + plan_.name + "\" are beyond " + sides_text() +
                ": nothing is left to compute; close a side with a wall, or enlarge domain.size";
     return;

@@ -42,7 +42,7 @@ class ForceEntry : public Model {
 
  private:
   void act_on(std::size_t phase, Schedule& s) {
-    if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves) return;
+    if (entry_.direction(phase) < 0 || !layout_.phases[phase].moves()) return;
     const RecordTouch motion{{}, {Record::motion}, {}};
     Touches touches{{layout_.phases[phase].name, reads_, {Field::acceleration}, motion}};
     if (entry_.a != entry_.b) touches.push_back({layout_.phases[entry_.partner(phase)].name, {}, {}, motion});

@@ -88,7 +88,7 @@ void pack_carried(const PhaseParticles& p, RecordArray& records, double kick) {
 }
 
 /// A solid that a fluid asks how it moves, and whose own model does not tell.
-bool must_be_told(const PlanPhase& p) { return p.heats && !p.tells_motion; }
+bool must_be_told(const PlanPhase& p) { return p.heats && p.mover != Mover::rigid; }
 
 std::vector<double> spacings(const Layout& layout) {
   std::vector<double> all;
@@ -114,7 +114,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
   std::vector<bool> seen(phases, false), read(phases, !mixed);
   for (const auto& e : layout.entries) {
     if (e.extends) seen[e.other] = true;
-    if (!e.compact_only) read[e.a] = read[e.b] = true;
+    if (!e.continues_fluid || e.extends) read[e.a] = read[e.b] = true;
   }
   ground_stress.resize(phases);
   wall_motions.resize(phases, nullptr);
@@ -126,8 +126,8 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     if (seen[k]) need(k, Record::extended);
     if (p.heats) need(k, Record::carried);
     if (p.eddies) need(k, Record::eddies);
-    if (p.flows && scene.phases[k].fluid().turbulence == Turbulence::k_omega) need(k, Record::turbulence);
-    if (mixed && (p.flows || seen[k])) records_[k]->make_compact(layout.bounds);
+    if (p.flows() && scene.phases[k].fluid().turbulence == Turbulence::k_omega) need(k, Record::turbulence);
+    if (mixed && (p.flows() || seen[k])) records_[k]->make_compact(layout.bounds);
   }
 }
 
@@ -226,7 +226,7 @@ void CommonWork::pack() {
     const double volume = std::pow(layout_.phases[k].spacing, layout_.dimensions);
     const PhaseParticles& p = w_->particles(k);
     const MotionPacking& how = w_->packing[k];
-    if (layout_.phases[k].flows && w_->compact(k)) pack_compact(p, *w_->compact_to_write(k), how, volume);
+    if (layout_.phases[k].flows() && w_->compact(k)) pack_compact(p, *w_->compact_to_write(k), how, volume);
     for (const Record record : {Record::motion, Record::extended})
       if (w_->has(k, record)) pack_motion(p, w_->to_write(k, record), how, volume);
     if (w_->has(k, Record::stress)) pack_stress(p, w_->to_write(k, Record::stress));
@@ -250,12 +250,12 @@ void CommonWork::carry() {
   }
 }
 
-double CommonWork::kick_of(std::size_t phase) const { return layout_.phases[phase].kicked ? w_->kick_time : 0.0; }
+double CommonWork::kick_of(std::size_t phase) const { return layout_.phases[phase].kicked() ? w_->kick_time : 0.0; }
 
 void CommonWork::kick() {
   double largest = 0.0;
   for (std::size_t k = 0; k < w_->state.phases.size(); ++k)
-    if (layout_.phases[k].moves) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
+    if (layout_.phases[k].moves()) { largest = std::max(largest, barchan::kick(w_->particles(k), kick_of(k))); }
   const Exchange among;
   if (among.is_shared() && (!std::isfinite(largest) || formula_fault()))
     largest = std::numeric_limits<double>::infinity();  // NaN has no order, and all ranks must know

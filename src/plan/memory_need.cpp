@@ -98,15 +98,17 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     records +=
         all * wide *
         (motion * (plan.is_extended(k) ? 2.0 : 1.0) + (p.heats ? carried : 0.0) +
-         (p.stress_records ? stress + (pulled ? ArtificialStressRecord::size : 0) : 0.0) + (p.eddies ? 4.0 : 0.0));
-    if (p.flows && scene.phases[k].fluid().energy_budget)  // models/fluid/energy_books.hpp
+         (p.deforms() && !is_total(scene.phases[k]) ? stress + (pulled ? ArtificialStressRecord::size : 0) : 0.0) +
+         (p.eddies ? 4.0 : 0.0));
+    if (p.flows() && scene.phases[k].fluid().energy_budget)  // models/fluid/energy_books.hpp
       records += n * wide * (5.0 * dimensions + 10.0);
-    if (p.fixed_neighbours) {  // models/bodies/reference_body.hpp: constants and sums of a particle; the search before
+    if (p.deforms() && is_total(scene.phases[k])) {  // models/bodies/reference_body.hpp: constants and sums of a
+                                                     // particle; the search before
       const double numbers = dimensions == 2 ? 11.0 : 24.0, gradient = dimensions == 2 ? 5.0 : 10.0;
       const double number = scene.precision == Precision::mixed ? index : wide;
       records += n * (numbers * number + (gradient + dimensions) * wide + index);
       for (const auto& e : plan.entries)
-        if (e.first_shape && e.a == k) start += n * 40.0 * (1.0 + e.consistency.neighbours);
+        if (e.pairs == Pairs::first_shape && e.a == k) start += n * 40.0 * (1.0 + e.consistency.neighbours);
       for (const auto& e : plan.entries)  // models/bodies/self_contact.hpp
         if (e.self_contact && e.a == k) records += n * (2.0 * wide + index * (dimensions == 2 ? 25.0 : 93.0));
     }
@@ -120,7 +122,7 @@ MemoryNeed memory_need(const Scene& scene, const Plan& plan, bool retreats) {
     frames += n * (written * wide + id + 3.0 * index);
     start += n * 2.0 * sizeof(Vec3);
     if (p.sphere_records) contacts += n * contacts_of_a_sphere(plan.dimensions);
-    if (p.moves) kept += n * ((2.0 * dimensions + 2.0) * wide + id);
+    if (p.moves()) kept += n * ((2.0 * dimensions + 2.0) * wide + id);
   }
   MemoryNeed need;
   need.parts = {{"fields", fields},  {"records", records},      {"cells", grids}, {"pair lists", lists(plan)},

@@ -71,12 +71,12 @@ void warn_of_missed_mass(const Scene& scene, const std::vector<ParticleBlock>& b
   const auto has_outline = [&](const Fill& fill) {
     return !std::holds_alternative<FormulaShape>(fill.shape) &&
            std::none_of(plan.phases.begin(), plan.phases.end(),
-                        [&](const PlanPhase& other) { return other.name == fill.phase && other.collides; });
+                        [&](const PlanPhase& other) { return other.name == fill.phase && other.own_steps(); });
   };
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
     double share = of_shapes;
-    if (!(p.flows || p.deforms) || p.count == 0 || !flow_ends(scene, scene.phases[k]).empty()) continue;
+    if (!(p.flows() || p.deforms()) || p.count == 0 || !flow_ends(scene, scene.phases[k]).empty()) continue;
     double content = 0.0;
     std::vector<double> lengths;
     bool known = true, boxes = true;

@@ -86,7 +86,7 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   if (speed > 0) return speed;
   for (const auto& b : blocks)
     for (const auto& v : b.velocity) speed = std::max(speed, norm(v));
-  for (const PlanPhase& p : plan.phases) speed = std::max(speed, p.surface_speed);
+  for (const PlanPhase& p : plan.phases) speed = std::max(speed, p.surface.speed);
   for (const auto& motion : scene.motions) speed = std::max(speed, driven_speed(scene, motion, blocks));
   speed = Exchange().largest(std::max({speed, entering_speed(scene, blocks), influx_speed(scene)}));
   double height = 0;
@@ -97,20 +97,14 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
 /// A phase that moves looks for its partner. A phase that stays feels nothing, and looks only for a fluid that is
 /// extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
-  if (!e.searched) return;
+  if (e.pairs != Pairs::searched) return;
   const auto direction = [&](std::size_t from, std::size_t to) {
     plan.directions.push_back({from, to, e.radius});
     return static_cast<int>(plan.directions.size()) - 1;
   };
-  const auto looks = [&](std::size_t k) { return plan.phases[k].moves || e.extends; };
+  const auto looks = [&](std::size_t k) { return plan.phases[k].moves() || e.extends; };
   if (looks(e.a)) e.forward = direction(e.a, e.b);
   if (e.a != e.b && looks(e.b)) e.backward = direction(e.b, e.a);
-}
-
-std::string word_of(KernelKind kernel) {
-  for (const Word& w : words_of<KernelKind>)
-    if (w.meaning == static_cast<int>(kernel)) return std::string(w.word);
-  return "";
 }
 
 void add_entries(const Scene& scene, Plan& plan) {
@@ -125,18 +119,10 @@ void add_entries(const Scene& scene, Plan& plan) {
     e.b = number(i.b);
     if (e.a > e.b) std::swap(e.a, e.b);
     e.name = i.a + "-" + i.b;
+    e.given = i;
     e.kernel = i.kernel;
     e.spacing = spacing_of(scene, i);
     e.radius = i.radius * e.spacing;
-    e.drag = i.drag;
-    e.contact = i.law;
-    e.drag_law = i.drag_law;
-    e.lift = i.lift;
-    e.gusts = i.gusts;
-    e.coupling_interval = i.coupling_interval.value_or(0.0);
-    e.restitution = i.restitution.value_or(1.0);
-    e.friction = i.friction.value_or(0.0);
-    e.kernel_word = word_of(i.kernel);
     describe_entry(scene, i, plan, e);
     add_directions(plan, e);
     plan.entries.push_back(e);
@@ -154,7 +140,7 @@ void add_entries(const Scene& scene, Plan& plan) {
     if (p.smoothing_length == 0)
       for (const auto& e : plan.entries)
         if (e.a == k || e.b == k) p.smoothing_length = std::max(p.smoothing_length, 0.5 * e.radius);
-    if (p.smoothing_length == 0 && p.moves) p.smoothing_length = 0.5 * scene.spacing;  // no search
+    if (p.smoothing_length == 0 && p.moves()) p.smoothing_length = 0.5 * scene.spacing;  // no search
   }
 }
 
@@ -187,7 +173,7 @@ void look_at_output_fields(const Scene& scene, Plan& plan) {
     const auto field = find_field(name);
     if (!field || FieldSet{position, velocity, density, pressure, smoothing_length}.has(*field)) continue;
     if (std::none_of(plan.phases.begin(), plan.phases.end(), [&](const PlanPhase& p) {
-          return (*field == radius && p.own_steps) ||
+          return (*field == radius && p.own_steps()) ||
                  std::find(p.fields.begin(), p.fields.end(), *field) != p.fields.end();
         }))
       plan.warnings.push_back("output.fields: no phase of this scene has \"" + name + "\" (" +
@@ -211,7 +197,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
     PlanPhase q;
     q.name = p.name;
     q.count = blocks[k].count();
-    q.spacing = q.size = q.largest_size = p.spacing;
+    q.spacing = q.largest_size = p.spacing;
     q.mass = (p.density > 0 ? p.density : 1.0) * std::pow(p.spacing, scene.dimensions);
     plan.phases.push_back(q);
   }

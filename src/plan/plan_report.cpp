@@ -23,6 +23,14 @@ std::string calls_of(const RepeatCount& r, double step) {
   return steps > 1.0 ? formatted("one in %.0f steps", steps) : "one in a step";
 }
 
+/// The name of its kernel; "none" where a scene can give no kernel.
+std::string kernel_of(const PlanEntry& e) {
+  if (e.of_spheres()) return "none";
+  for (const Word& w : words_of<KernelKind>)
+    if (w.meaning == static_cast<int>(e.kernel)) return std::string(w.word);
+  return "";
+}
+
 }  // namespace
 
 std::string to_text(const Plan& plan, const Scene& scene) {
@@ -42,8 +50,8 @@ std::string to_text(const Plan& plan, const Scene& scene) {
                  "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
     t += formatted("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), e.law.c_str(),
-                   e.kernel_word == "none" ? "-" : e.kernel_word.c_str(), e.radius / e.spacing,
-                   e.consistency.neighbours, e.consistency.volume_sum, e.consistency.gradient_sum, e.meaning.c_str());
+                   e.of_spheres() ? "-" : kernel_of(e).c_str(), e.radius / e.spacing, e.consistency.neighbours,
+                   e.consistency.volume_sum, e.consistency.gradient_sum, e.meaning.c_str());
   t += "\n";
   for (const auto& p : plan.phases)
     if (!p.enclosure.empty())
@@ -106,7 +114,7 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
   for (const auto& e : plan.entries) {
     nlohmann::ordered_json q;
     q["law"] = e.law;
-    q["kernel"] = e.kernel_word;
+    q["kernel"] = kernel_of(e);
     q["radius"] = e.radius;
     q["neighbours"] = e.consistency.neighbours;
     q["volume_sum"] = e.consistency.volume_sum;

@@ -37,7 +37,7 @@ bool stands_behind_sides(const Scene& scene, const Phase& wall) {
 
 void warn_of_pairing(const Scene& scene, Plan& plan) {
   for (const PlanEntry& e : plan.entries)
-    if (plan.phases[e.a].flows && plan.phases[e.b].flows && e.kernel == KernelKind::cubic_spline &&
+    if (plan.phases[e.a].flows() && plan.phases[e.b].flows() && e.kernel == KernelKind::cubic_spline &&
         e.radius > widest_cubic_spline * e.spacing * (1.0 + 1e-9))
       plan.warnings.push_back(
           "interactions." + e.name +
@@ -52,10 +52,10 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
   };
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& phase = plan.phases[k];
-    for (std::size_t w = 0; w < plan.phases.size() && phase.moves; ++w) {
+    for (std::size_t w = 0; w < plan.phases.size() && phase.moves(); ++w) {
       const PlanPhase& wall = plan.phases[w];
-      if (wall.moves || wall.count == 0 || meet(k, w) || meant_apart(scene, phase.name, wall.name)) continue;
-      if (phase.flows && !stands_behind_sides(scene, scene.phases[w])) continue;  // it may lie under a bed
+      if (wall.moves() || wall.count == 0 || meet(k, w) || meant_apart(scene, phase.name, wall.name)) continue;
+      if (phase.flows() && !stands_behind_sides(scene, scene.phases[w])) continue;  // it may lie under a bed
       plan.warnings.push_back("interactions: no entry " + phase.name + "-" + wall.name + ": the wall \"" + wall.name +
                               "\" does not hold \"" + phase.name + "\", which passes through it; " + phase.name + "-" +
                               wall.name + " = false says that it is meant");
@@ -66,7 +66,7 @@ void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
 void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (p.deforms && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]) &&
+    if (p.deforms() && p.count > 1 && !entry_between(scene, scene.phases[k], scene.phases[k]) &&
         !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
                               p.name + "\" together");
@@ -77,7 +77,7 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
 void warn_of_lattices(Plan& plan) {
   for (const PlanEntry& e : plan.entries)
     for (const std::size_t wall : {e.a, e.b})
-      if (e.feels_lattice && !plan.phases[wall].moves)
+      if (e.feels_lattice && !plan.phases[wall].moves())
         plan.warnings.push_back(
             "interactions." + e.name + ": the shape of \"" + plan.phases[wall].name +
             "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
@@ -91,7 +91,7 @@ void warn_of_prisms_that_move(const Scene& scene, Plan& plan) {
       if (scene.fills[f].phase != plan.phases[w].name) continue;
       if (!moves_as_rows(scene, scene.phases[w], scene.fills[f].shape)) continue;
       for (std::size_t k = 0; k < plan.phases.size(); ++k)
-        if (plan.phases[k].own_steps && entry_between(scene, scene.phases[k], scene.phases[w]))
+        if (plan.phases[k].own_steps() && entry_between(scene, scene.phases[k], scene.phases[w]))
           plan.warnings.push_back("fill." + std::to_string(f) +
                                   ".shape: in 3D a disc, a ring or a polygon that moves " +
                                   "is rows of spheres of one spacing to the grains of \"" + plan.phases[k].name +
@@ -107,7 +107,7 @@ void warn_of_thickness(const Scene& scene, const std::vector<ParticleBlock>& blo
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const auto is_own = [&](const Fill& fill) { return fill.phase == plan.phases[k].name; };
     const auto fill = std::find_if(scene.fills.begin(), scene.fills.end(), is_own);
-    if (!plan.phases[k].deforms || std::count_if(scene.fills.begin(), scene.fills.end(), is_own) != 1) continue;
+    if (!plan.phases[k].deforms() || std::count_if(scene.fills.begin(), scene.fills.end(), is_own) != 1) continue;
     const auto* box = std::get_if<BoxShape>(&fill->shape);
     if (!box || fill->packing != Packing::square || blocks[k].position.size() < 2) continue;
     const double dx = plan.phases[k].spacing;
@@ -142,10 +142,10 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
   std::string refused;
   for (const PlanEntry& e : plan.entries) {
     const PlanPhase& wall = plan.phases[e.other];
-    if (!e.extends || wall.moves || wall.count == 0) continue;
+    if (!e.extends || wall.moves() || wall.count == 0) continue;
     const auto thin = thin_wall(scene, blocks, e.other, e.fluid, e.radius);
     if (!thin) continue;
-    const bool wet = thin->wet[0] && thin->wet[1], both = wet || wall.travels;
+    const bool wet = thin->wet[0] && thin->wet[1], both = wet || wall.travels();
     const double missing = e.radius / wall.spacing * (1.0 - 1e-9) - thin->rows;  // rows, where nothing is behind
     if (!both && missing <= 0.5) continue;                                       // it may be the wall of a vessel
     const double needed = both ? 2.0 * e.radius - e.spacing : e.radius - 0.5 * e.spacing;
@@ -158,7 +158,7 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
                   plan.dimensions == 3 ? ", " : "", plan.dimensions == 3 ? brief(thin->at[2]).c_str() : "",
                   plan.phases[e.fluid].name.c_str(),
                   wet              ? "the fluid on one side presses the fluid on the other"
-                  : wall.travels   ? "a fluid that comes to both sides of a wall that moves acts on itself through it"
+                  : wall.travels() ? "a fluid that comes to both sides of a wall that moves acts on itself through it"
                   : missing > 1.25 ? "the fluid would fall through it"
                                    : "the fluid misses a part of it",
                   needed, both ? "twice the kernel radius less a spacing" : "the kernel radius less half a spacing",
@@ -173,7 +173,7 @@ void look_at_thin_walls(const Scene& scene, const std::vector<ParticleBlock>& bl
 /// Suction takes a fluid of plain sums apart, and a flow that slows down is under suction.
 void warn_of_suction(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
-    if (!plan.phases[k].flows || !flow_changes(scene, scene.phases[k])) continue;
+    if (!plan.phases[k].flows() || !flow_changes(scene, scene.phases[k])) continue;
     const FluidKeys& fluid = scene.phases[k].fluid();
     if (fluid.scheme == FluidScheme::plain && fluid.background_pressure == 0.0)
       plan.warnings.push_back("phases." + plan.phases[k].name +
@@ -200,12 +200,12 @@ void warn_of_background_pressure(const Scene& scene, Plan& plan) {
 void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
   for (std::size_t a = 0; a < plan.phases.size(); ++a) {
     const PlanPhase& p = plan.phases[a];
-    if (p.collides && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
+    if (p.own_steps() && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
         !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": the grains of \"" + p.name +
                               "\" pass through each other");
     for (std::size_t b = 0; b < a; ++b)
-      if (p.flows && plan.phases[b].flows && p.count > 0 && plan.phases[b].count > 0 &&
+      if (p.flows() && plan.phases[b].flows() && p.count > 0 && plan.phases[b].count > 0 &&
           !entry_between(scene, scene.phases[a], scene.phases[b]) && !meant_apart(scene, p.name, plan.phases[b].name))
         plan.warnings.push_back("interactions: no entry " + plan.phases[b].name + "-" + p.name + ": the fluids \"" +
                                 plan.phases[b].name + "\" and \"" + p.name +
@@ -230,7 +230,7 @@ void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
 
 void warn_of_strong_winds(Plan& plan) {
   for (const PlanEntry& e : plan.entries)
-    if (const std::string& told = plan.phases[e.fluid].too_strong; e.blows && !told.empty())
+    if (const std::string& told = plan.phases[e.fluid].wind.beyond_measured; e.blows && !told.empty())
       plan.warnings.push_back(told);
 }
 
@@ -305,7 +305,7 @@ void warn_of_influxes(const Scene& scene, Plan& plan) {
   constexpr double liquid = 100.0;   // kg/m3
   bool is_wind = true;
   for (std::size_t k = 0; k < scene.phases.size(); ++k)
-    is_wind = is_wind && !(plan.phases[k].flows && scene.phases[k].density > liquid);
+    is_wind = is_wind && !(plan.phases[k].flows() && scene.phases[k].density > liquid);
   const double dense = is_wind ? 0.05 : 0.4;  // of the volume at the lowest place; saltation has some 1e-3 there
   for (std::size_t k = 0; k < scene.influxes.size(); ++k) {
     const Influx& influx = scene.influxes[k];
@@ -339,12 +339,12 @@ void warn_of_small_radius(const Scene& scene, Plan& plan) {
     const Interaction& pair = *entry_between(scene, scene.phases[e.a], scene.phases[e.b]);
     const bool presses = std::any_of(plan.entries.begin(), plan.entries.end(),
                                      [&](const PlanEntry& other) { return other.extends && other.has(e.a); });
-    if (e.a == e.b && presses && plan.phases[e.a].flows && scene.phases[e.a].fluid().scheme == FluidScheme::plain &&
+    if (e.a == e.b && presses && plan.phases[e.a].flows() && scene.phases[e.a].fluid().scheme == FluidScheme::plain &&
         e.radius >= e.spacing && e.radius < least_plain_radius * e.spacing * (1.0 - 1e-9))
       plan.warnings.push_back("interactions." + e.name +
                               ": with a radius below 1.8 spacings the plain scheme presses about 11 % less on walls "
                               "than the fluid at rest should; expected 1.8 or more, or scheme = \"consistent\"");
-    if (e.own_steps || e.self_contact || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
+    if (e.of_spheres() || e.self_contact || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
     plan.warnings.push_back(
         "interactions." + pair.a + "-" + pair.b + ": a radius below one spacing meets no neighbour of a lattice; " +
         (pair.radius_in_metres ? "radius says one in spacings" : "radius-in-metres says one in metres"));

@@ -20,7 +20,7 @@ double energy_at(double speed, double mass) { return 0.5 * mass * speed * speed;
 bool drives_uncounted(const Scene& scene, const Plan& plan) {
   return std::any_of(scene.motions.begin(), scene.motions.end(), [&](const Motion& motion) {
     return std::none_of(plan.phases.begin(), plan.phases.end(),
-                        [&](const PlanPhase& p) { return p.name == motion.phase && p.counts_drive; });
+                        [&](const PlanPhase& p) { return p.name == motion.phase && p.deforms(); });
   });
 }
 
@@ -31,14 +31,16 @@ Budget::Budget(const Scene& scene, const Plan& plan, const State& state) : gravi
   noiseless_ = true;
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (p.moves)
-      moving_.push_back({k, p.flows ? p.sound_speed : 0.0, p.flows ? scene.phases[k].density : 0.0, p.weight_share});
-    if (p.moves) noiseless_ = noiseless_ && p.noiseless;
+    if (p.moves())
+      moving_.push_back(
+          {k, p.flows() ? p.sound_speed : 0.0, p.flows() ? scene.phases[k].density : 0.0, p.weight_share});
+    if (p.moves()) noiseless_ = noiseless_ && !p.flows() && !p.separate();
     sound_speed_ = std::max(sound_speed_, p.sound_speed);
-    walls = walls || p.takes_momentum;
-    moving_walls = moving_walls || p.gives_energy;
+    walls = walls || p.takes_momentum();
+    moving_walls = moving_walls || p.gives_energy();
   }
-  const bool blown = std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.feeds; });
+  const bool blown =
+      std::any_of(plan.entries.begin(), plan.entries.end(), [](const PlanEntry& e) { return e.wind_by_height; });
   const bool pushed = !scene.forcings.empty() || blown, forced = pushed || !scene.motions.empty();
   keeps_energy_ = !pushed && !moving_walls && !drives_uncounted(scene, plan);
   noiseless_ = noiseless_ && !moving_.empty();

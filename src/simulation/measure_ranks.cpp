@@ -62,7 +62,7 @@ double RankMeasure::memory_at_start(const MemoryOfOne& memory, double cells) con
   double particles = 0.0, made = 0.0, columns = 0.0, order = 0.0, moving = 0.0;
   for (std::size_t p = 0; p < whole_.size(); ++p) {
     const PhaseParticles& phase = simulation_.phases()[p];
-    const bool in_parts = shared && plan.phases[p].flows;
+    const bool in_parts = shared && plan.phases[p].flows();
     const double n = of(phase.size()), here = in_parts ? n / of(ranks_) : n;
     particles += n;
     made += here;

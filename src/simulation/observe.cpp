@@ -46,7 +46,7 @@ std::size_t Simulation::shown_of(std::size_t phase) const {
 std::vector<std::size_t> Simulation::written_phases() const {
   std::vector<std::size_t> written;
   for (std::size_t k = 0; k < state_.phases.size(); ++k)
-    if (plan_.phases[k].moves || scene_.output.walls) written.push_back(k);
+    if (plan_.phases[k].moves() || scene_.output.walls) written.push_back(k);
   return written;
 }
 
@@ -182,7 +182,7 @@ HistoryRow Simulation::history() const {
   for (const auto& model : models_) {
     if (model->phase() < 0) continue;
     const auto k = static_cast<std::size_t>(model->phase());
-    if (plan_.phases[k].moves) add_phase(k, row);
+    if (plan_.phases[k].moves()) add_phase(k, row);
     model->history(row);
   }
   for (const auto& model : models_)

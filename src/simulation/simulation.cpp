@@ -131,7 +131,7 @@ double Simulation::stable_step() {
     if (const StepLimit* l = model->moving_limit()) rule(l->name, l->value, dt);
   double shortest = 1e300;
   for (const auto& p : plan_.phases)
-    if (p.moves) shortest = std::min(shortest, p.smoothing_length);
+    if (p.moves()) shortest = std::min(shortest, p.smoothing_length);
   if (state_.largest_acceleration > 0)
     rule("force", scene_.time.safety * StepConstants::force * std::sqrt(shortest / state_.largest_acceleration), dt);
   if (dt < 1e-6 * plan_.step())

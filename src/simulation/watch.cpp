@@ -109,7 +109,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
     face *= see_.scene.domain.size[d];
     shortest = std::min(shortest, see_.scene.domain.size[d]);
   }
-  for (const auto& p : see_.plan.phases) pull += norm(p.stress) * face / shortest;
+  for (const auto& p : see_.plan.phases) pull += norm(p.surface.stress) * face / shortest;
   for (const Forcing& f : see_.scene.forcings)
     if (const Phase* fluid = find_phase(see_.scene, f.phase); fluid && f.holds_force())
       pull +=
@@ -127,7 +127,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
         for (int d = 0; d < p.dimensions(); ++d) v2 += std::pow(p.column(Field::velocity, d)[k], 2);
         start_energy_ += 0.5 * p.mass() * v2;
         start_fastest_ = std::max(start_fastest_, std::sqrt(v2));
-        if (plan.flows)  // its pressure may become motion
+        if (plan.flows())  // its pressure may become motion
           start_energy_ +=
               0.5 * p.mass() *
               std::pow(p.column(Field::pressure)[k] / (see_.scene.phases[g.phase].density * plan.sound_speed), 2);
@@ -137,7 +137,7 @@ Watch::Watch(const Sight& sight) : see_(sight), good_(sight.particles, kept_fiel
   }
   drag_ = mass_ > 0 ? pull / mass_ : 0.0;
   start_speed_ = mass_ > 0 ? std::sqrt(2.0 * start_energy_ / mass_) : 0.0;
-  for (const auto& p : see_.plan.phases) start_speed_ += p.wind;
+  for (const auto& p : see_.plan.phases) start_speed_ += p.wind.largest_speed;
   if (!see_.scene.motions.empty() || !see_.scene.inflows.empty() || !see_.scene.influxes.empty())
     start_speed_ += see_.plan.largest_speed;  // what drives or enters feeds energy
   torques_ =
@@ -149,7 +149,7 @@ void Watch::make_guards() {
   const Plan& plan = see_.plan;
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
-    if (!p.moves) continue;
+    if (!p.moves()) continue;
     const PhaseRules& rules = p.rules;
     Guard g;
     g.phase = k;
@@ -167,13 +167,14 @@ void Watch::make_guards() {
     }
     for (const auto& e : plan.entries) {
       if (!e.has(k)) continue;
-      if (p.flows && e.a == e.b) g.own_list = e.forward;
+      if (p.flows() && e.a == e.b) g.own_list = e.forward;
       const std::size_t other = e.partner(k);
       if (by_contacts && e.stopping_depth > 0.0) {
         const double d = 0.5 * (p.spacing + plan.phases[other].spacing);
         g.signal_speed = std::min(g.signal_speed, p.sound_speed * e.stopping_depth / d);
       }
-      if (plan.phases[other].moves || plan.phases[other].travels || Exchange().total(see_.particles[other].size()) == 0)
+      if (plan.phases[other].moves() || plan.phases[other].travels() ||
+          Exchange().total(see_.particles[other].size()) == 0)
         continue;
       Sides sides;
       close_sides(sides, see_.particles[other], plan.bounds, plan.phases[other].spacing);
@@ -200,7 +201,7 @@ void Watch::make_pairs() {
   const auto between = [&](std::size_t a, std::size_t b) {
     return 0.5 * (see_.plan.phases[a].spacing + see_.plan.phases[b].spacing);
   };
-  const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves; };
+  const auto wall = [&](std::size_t k) { return !see_.plan.phases[k].moves(); };
   for (const auto& e : see_.plan.entries) {
     if (!e.keeps_apart || (e.forward < 0 && e.backward < 0)) continue;
     const bool turned = wall(e.a);
@@ -282,7 +283,7 @@ double Watch::look_at_phases(const Moment& now) {
     energy += 0.5 * p.mass() * all.squares;
     fastest_of_[g.phase] = std::sqrt(all.fastest);
     wrong += all.wrong;
-    if (!see_.plan.phases[g.phase].flows) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
+    if (!see_.plan.phases[g.phase].flows()) fastest_solid = std::max(fastest_solid, std::sqrt(all.fastest));
     else if (among.total(p.size()) > 0)
       note_density(g, std::max(all.densest, 2.0 * g.reference_density - all.lightest) / g.reference_density - 1.0, now);
   }

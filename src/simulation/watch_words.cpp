@@ -220,7 +220,7 @@ void Watch::tell_pair(const Apart& pair, const Moment& now) const {
   const double spacing = 0.5 * (see_.plan.phases[pair.a].spacing + see_.plan.phases[pair.b].spacing);
   const std::string near = brief(distance / spacing) + " spacings (bound " + brief(pair.distance / spacing) + ")";
   const std::string stiffer = see_.plan.phases[pair.a].rules.remedy(Fault::too_near, 0.0, 0.0);
-  const std::string what = see_.plan.phases[pair.b].moves
+  const std::string what = see_.plan.phases[pair.b].moves()
                                ? " is in the same place as " + see_.plan.phases[pair.b].rules.one + " " +
                                      std::to_string(b.id()[with]) + " of phase \"" + b.name() + "\": they are " + near +
                                      " apart; the contact could not keep them apart, or "
@@ -306,7 +306,7 @@ void Watch::look_at_energy(const Moment& now) {
   }
   double walls = 0.0;
   for (std::size_t k = 0; k < see_.particles.size(); ++k)
-    if (!see_.plan.phases[k].moves) {
+    if (!see_.plan.phases[k].moves()) {
       const bool here = see_.particles[k].size() > 0;
       walls = std::max(walls, Exchange().of_first(here, here ? size_of(see_.particles[k], 0, Field::velocity) : 0.0));
     }
@@ -354,7 +354,7 @@ void Watch::note_speed(double given, const Moment& now) {
   for (const Guard& g : guards_) {
     const PhaseParticles& p = see_.particles[g.phase];
     const double speed = fastest_of_[g.phase];
-    if (!see_.plan.phases[g.phase].flows || !(speed > WatchBounds::remarkable_speed * given) ||
+    if (!see_.plan.phases[g.phase].flows() || !(speed > WatchBounds::remarkable_speed * given) ||
         speed < 1.01 * fastest_.value)
       continue;
     Extreme found{speed / given, -1.0, now.time, g.phase, 0, {}, now.step};

@@ -60,7 +60,7 @@ TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocations, before + 3);
 }
 
-class Steps : public testing::TestWithParam<small::Named> {};
+class Steps : public ::testing::TestWithParam<small::Named> {};
 
 TEST_P(Steps, AllocateNothing) {
   const auto run = small::simulation(*GetParam().text);
@@ -104,18 +104,18 @@ TEST(StepsWithBooksOfEnergy, AllocateNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Steps,
-    testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},
-                    small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
-                    small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
-                    small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
-                    small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
-                    small::Named{"Spheres", &small::spheres}, small::Named{"Drowned", &small::drowned},
-                    small::Named{"DrownedConsistent", &small::drowned_consistent},
-                    small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
-                    small::Named{"Flag", &small::flag}, small::Named{"Jelly", &small::jelly},
-                    small::Named{"Rigid", &small::rigid}, small::Named{"Paddle", &small::paddle},
-                    small::Named{"Drum", &small::drum}, small::Named{"SpheresOnBlock", &small::spheres_on_block},
-                    small::Named{"HertzianSpheres", &small::hertzian_spheres}),
+    ::testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},
+                      small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
+                      small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
+                      small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
+                      small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
+                      small::Named{"Spheres", &small::spheres}, small::Named{"Drowned", &small::drowned},
+                      small::Named{"DrownedConsistent", &small::drowned_consistent},
+                      small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
+                      small::Named{"Flag", &small::flag}, small::Named{"Jelly", &small::jelly},
+                      small::Named{"Rigid", &small::rigid}, small::Named{"Paddle", &small::paddle},
+                      small::Named{"Drum", &small::drum}, small::Named{"SpheresOnBlock", &small::spheres_on_block},
+                      small::Named{"HertzianSpheres", &small::hertzian_spheres}),
     [](const auto& s) { return std::string(s.param.name); });
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "physics/drive.hpp"
 #include "start/generate.hpp"
 
-namespace barchan {
+namespace barchan::of_bodies_energy {
 namespace {
 
 using testing::Drive;
@@ -202,4 +202,4 @@ TEST(BodyBudget, TellsOfAngularMomentumThatABodyDoesNotKeep) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::of_bodies_energy

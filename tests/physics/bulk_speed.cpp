@@ -12,19 +12,12 @@ namespace barchan {
 namespace {
 
 using testing::report;
+using testing::value;
 
 double mean_velocity(const PhaseParticles& p, int axis) {
   double sum = 0;
   for (std::size_t k = 0; k < p.size(); ++k) sum += p.column(Field::velocity, axis)[k];
   return sum / static_cast<double>(p.size());
-}
-
-/// The column of history.csv with this name, now.
-double history(const Simulation& run, const std::string& name) {
-  const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) throw std::runtime_error("no column " + name);
-  return run.history_row()[static_cast<std::size_t>(at - names.begin())];
 }
 
 const std::string held_channel = small::channel + R"toml(
@@ -96,10 +89,10 @@ TEST(BulkSpeed, TakesTheWallStressOverTheMass) {
     while (run->time() < 2.0) {  // the slowest mode decays in H^2/(pi^2 nu) = 1
       run->step(1.0);
       if (run->time() < 1.5) continue;
-      sum += history(*run, "water_held_acceleration_x [m/s2]");
+      sum += value(*run, "water_held_acceleration_x [m/s2]");
       ++rows;
     }
-    const double bulk = history(*run, "water_mean_vx [m/s]"), expected = 12 * 0.1 * bulk;
+    const double bulk = value(*run, "water_mean_vx [m/s]"), expected = 12 * 0.1 * bulk;
     const double error = sum / rows / expected - 1;
     report("held acceleration over 12 nu U/H^2 less 1, " + scheme, error, 0.01);
     EXPECT_NEAR(error, 0.0, 0.01) << scheme;
@@ -140,7 +133,7 @@ end = 0.1
 )toml";
   const auto run = small::simulation("precision = \"double\"\n" + four);
   ASSERT_EQ(run->phases()[0].size(), 4U);
-  EXPECT_DOUBLE_EQ(history(*run, "body_mean_vx [m/s]"), 0.75);
+  EXPECT_DOUBLE_EQ(value(*run, "body_mean_vx [m/s]"), 0.75);
   const Frame frame = run->frame(0);
   const auto length = std::find_if(frame.fields.begin(), frame.fields.end(),
                                    [](const FrameField& f) { return f.name == "smoothing_length"; });

@@ -3,7 +3,7 @@
 
 #include "physics/drive.hpp"
 
-namespace barchan {
+namespace barchan::of_columns_two_phase {
 namespace {
 
 using testing::Drive;
@@ -63,4 +63,4 @@ TEST(TwoPhaseColumn, OneToTwoThousandStaysStill) { expect_rest(2000, 0); }
 TEST(TwoPhaseColumn, OneToTwoThousandDisturbedStaysStill) { expect_rest(2000, 0.2); }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::of_columns_two_phase

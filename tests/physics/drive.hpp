@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,32 @@ namespace barchan::testing {
 /// Path of a scene of the repository, "verification/couette".
 inline std::string scene_file(const std::string& name) { return BARCHAN_SOURCE_DIR "/scenes/" + name + ".toml"; }
 
+/// Steps up to exactly this time, s.
+inline void run_to(Simulation& run, double time) {
+  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
+}
+
+/// Of the first column of the history that begins so, now. Throws std::out_of_range where there is none.
+inline double value(const Simulation& run, const std::string& column) {
+  const HistoryRow row = run.history();
+  for (std::size_t k = 0; k < row.names.size(); ++k)
+    if (row.names[k].starts_with(column)) return row.values[k];
+  throw std::out_of_range("no column " + column);
+}
+
+/// Mean of a column over a time (s), every step.
+inline double mean_of(Simulation& run, const std::string& column, double from, double to) {
+  run_to(run, from);
+  double sum = 0.0, before = run.time();
+  while (run.time() < to * (1.0 - 1e-12)) {
+    run.begin_row();
+    run.step(to - run.time());
+    sum += value(run, column) * (run.time() - before);
+    before = run.time();
+  }
+  return sum / (to - from);
+}
+
 /// A scene in progress.
 class Drive {
  public:
@@ -29,9 +56,7 @@ class Drive {
   }
 
   /// Steps up to exactly this time, s.
-  void to(double time) {
-    while (simulation_->time() < time * (1.0 - 1e-12)) simulation_->step(time - simulation_->time());
-  }
+  void to(double time) { run_to(*simulation_, time); }
 
   Simulation& simulation() { return *simulation_; }
   const Scene& scene() const { return scene_; }

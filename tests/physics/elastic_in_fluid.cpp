@@ -14,18 +14,8 @@ namespace barchan {
 namespace {
 
 using testing::report;
-
-double value(const Simulation& s, const std::string& column) {
-  const auto columns = s.history_columns();
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
-  if (found == columns.end()) throw std::logic_error("no column " + column);
-  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
-}
-
-void go(Simulation& run, double time) {
-  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
-}
+using testing::run_to;
+using testing::value;
 
 /// Columns of F.
 using Motion = std::array<Vec3, 3>;
@@ -126,9 +116,9 @@ std::string block_in_a_tank(double density, const std::string& more) {
 
 TEST(ElasticInConsistentFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
   const auto run = small::simulation(block_in_a_tank(2.0, "[[motion]]\nphase = \"block\"\n"));
-  go(*run, 0.05);
+  run_to(*run, 0.05);
   run->begin_row();
-  go(*run, 0.2);
+  run_to(*run, 0.2);
   const double error = std::abs(value(*run, "lift_force_y") / displaced - 1.0);
   report("lift over the weight of the liquid displaced", error, 0.01);
   EXPECT_LT(error, 0.01);
@@ -139,7 +129,7 @@ TEST(ElasticInConsistentFluid, ABodyOfTheFluidsDensityStays) {
   const auto run = small::simulation(block_in_a_tank(
       1.0, "[[marker]]\nname = \"place\"\nphase = \"block\"\nbox = { min = [0.5, 0.5], max = [1.2, 1.1] }\n"));
   const double start = value(*run, "place_y");
-  go(*run, 0.3);
+  run_to(*run, 0.3);
   const double way = std::abs(value(*run, "place_y") - start), falls = 0.5 * 0.3 * 0.3;
   report("way over that of a free fall", way / falls, 0.01);
   EXPECT_LT(way / falls, 0.01);
@@ -158,7 +148,7 @@ TEST(ElasticInConsistentFluid, AStiffDiscStartsWithItsAddedMass) {
   const auto run = small::simulation(
       text, {"interactions.water-water=2.1", "interactions.water-disc=2.1", "interactions.water-tank=2.1"});
   const double start = value(*run, "place_y"), time = 0.4;
-  go(*run, time);
+  run_to(*run, time);
   const double added = (1.0 + 0.16) / (1.0 - 0.16), exact = -(2.0 - 1.0) / (2.0 + added);
   const double found = 2.0 * (value(*run, "place_y") - start) / (time * time * exact);
   report("acceleration over that with the added mass", std::abs(found - 1.0), 0.05);
@@ -192,7 +182,7 @@ TEST(ElasticInConsistentFluid, AWaveAlongAPlateKeepsItsEnergy) {
            value(*run, "plate_hourglass_energy") + value(*run, "water_kinetic_energy");
   };
   const double start = energy();
-  go(*run, 0.28);
+  run_to(*run, 0.28);
   report("energy of plate and water over that of the start", energy() / start, 1.01);
   EXPECT_LT(energy() / start, 1.01);
   EXPECT_GT(energy() / start, 0.95);
@@ -211,7 +201,7 @@ TEST(ElasticInConsistentFluid, AShakenPlateComesToRest) {
       "sides = [\"bottom\", \"top\"] }\n[[fill]]\nphase = \"water\"\nshape = \"the-rest\"\n[[motion]]\nphase = "
       "\"plate\"\nbox = { min = [0.2, 0.14], max = [0.24, 0.16] }\n[time]\nend = 1\nlargest-speed = 1\n");
   const double start = value(*run, "plate_kinetic_energy");
-  go(*run, 0.5);
+  run_to(*run, 0.5);
   const double left = (value(*run, "plate_kinetic_energy") + value(*run, "plate_strain_energy")) / start;
   report("energy of the plate over that of the blow", left, 1.0);
   EXPECT_LT(left, 1.0);
@@ -229,7 +219,7 @@ TEST(ElasticInConsistentFluid, ALightPlateKeepsToTheStepOfItsLoad) {
       "= "
       "[\"bottom\", \"top\"] }\n[[fill]]\nphase = \"water\"\nshape = \"the-rest\"\n[time]\nend = 0.03\nlargest-speed = "
       "0.02\n");
-  go(*run, 0.03);
+  run_to(*run, 0.03);
   EXPECT_LT(value(*run, "largest_speed"), 0.01);
 }
 
@@ -290,7 +280,7 @@ largest-speed = 1.7
   // J/m: the weight compresses the water at the start, p^2/(2 rho c^2).
   double given = 0.1 * std::pow(9810.0, 2) * std::pow(0.14, 3) / 3.0 / (2.0 * 1000.0 * 68.0 * 68.0), down = 0.0;
   for (double time = 5e-4; time < 0.0201; time += 5e-4) {
-    go(*run, time);
+    run_to(*run, time);
     const double now = -value(*run, "momentum_y");
     given += 9.81 * 0.5 * (down + now) * 5e-4;
     down = now;

@@ -13,14 +13,7 @@ namespace barchan {
 namespace {
 
 using testing::report;
-
-/// The column of history.csv with this name, now.
-double history(const Simulation& run, const std::string& name) {
-  const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) throw std::runtime_error("no column " + name);
-  return run.history_row()[static_cast<std::size_t>(at - names.begin())];
-}
+using testing::value;
 
 std::string meter(const std::string& name, const std::string& phase, const std::string& more = "") {
   return "\n[[force]]\nname = \"" + name + "\"\nphase = \"" + phase + "\"\n" + more;
@@ -43,7 +36,7 @@ TEST(ForceMeters, ForceOnAWallIsWhatTheFluidLoses) {
         gain += push;
         size += std::abs(push);
       }
-      const double force = history(*run, d == 0 ? "floor_force_x [N]" : "floor_force_y [N]");
+      const double force = value(*run, d == 0 ? "floor_force_x [N]" : "floor_force_y [N]");
       if (step > 10) { EXPECT_GT(std::abs(force), 1e-6 * size) << "there is a force"; }
       double& old = before[static_cast<std::size_t>(d)];
       if (step > 0) worst = std::max(worst, std::abs(0.5 * (gain + old) + force) / size);
@@ -103,10 +96,10 @@ TEST(ForceMeters, HydrostaticForceAndMoment) {
     run->begin_row();
     run->step(1.0);
     if (step < rest) continue;
-    floor += history(*run, "floor_force_y [N]") / mean;
-    left += history(*run, "left_force_x [N]") / mean;
-    right += history(*run, "right_force_x [N]") / mean;
-    moment += history(*run, "right_torque_z [N m]") / mean;
+    floor += value(*run, "floor_force_y [N]") / mean;
+    left += value(*run, "left_force_x [N]") / mean;
+    right += value(*run, "right_force_x [N]") / mean;
+    moment += value(*run, "right_torque_z [N m]") / mean;
   }
   const double weight = 1000.0 * 10.0 * 0.8, side = 0.5 * weight * 0.8;
   report("force on the floor/weight - 1", floor / -weight - 1.0, 0.005);
@@ -155,7 +148,7 @@ double mean_drag(Simulation& run, const std::string& column) {
     run.begin_row();
     run.step(1.0);
     if (run.time() < 1.5) continue;
-    sum += history(run, column);
+    sum += value(run, column);
     ++count;
   }
   return sum / count;
@@ -189,7 +182,7 @@ TEST(ForceMeters, WallsGetTheMomentumThatGrainsLose) {
   const auto forcing = text.find("[[forcing]]");
   text.erase(forcing, text.find("[time]") - forcing);
   const auto run = small::simulation(text);
-  const auto momentum = [&](int d) { return history(*run, d == 0 ? "momentum_x [kg m/s]" : "momentum_y [kg m/s]"); };
+  const auto momentum = [&](int d) { return value(*run, d == 0 ? "momentum_x [kg m/s]" : "momentum_y [kg m/s]"); };
   double mass = 0.0, worst = 0.0, scale = 0.0, on_base = 0.0, by_stones = 0.0;
   for (const PhaseParticles& p : run->phases())
     for (std::size_t k = 0; p.has(Field::contact_acceleration) && k < p.size(); ++k) mass += p.mass_of(k);
@@ -198,18 +191,18 @@ TEST(ForceMeters, WallsGetTheMomentumThatGrainsLose) {
     run->step(1.0);
     for (int d = 0; d < 2; ++d) {
       const std::string axis = d == 0 ? "x [N s]" : "y [N s]";
-      const double base = history(*run, "base_impulse_" + axis), floor = history(*run, "floor_impulse_" + axis);
+      const double base = value(*run, "base_impulse_" + axis), floor = value(*run, "floor_impulse_" + axis);
       const double weight = mass * (d == 0 ? 0.5 : -9.81) * run->time();
       scale = std::max(scale, std::abs(momentum(d) - begun[d]));
       worst = std::max(worst, std::abs(momentum(d) - begun[d] - weight + base + floor));
       on_base = std::max(on_base, std::abs(base));
     }
-    by_stones = history(*run, "stones_on_floor_impulse_y [N s]");
+    by_stones = value(*run, "stones_on_floor_impulse_y [N s]");
   }
   report("momentum of grains and walls, change", worst / scale, 1e-11);
   EXPECT_LT(worst / scale, 1e-11);
   EXPECT_GT(on_base / scale, 0.05) << "grains fall on the base";
-  EXPECT_LE(std::abs(by_stones), std::abs(history(*run, "floor_impulse_y [N s]")));
+  EXPECT_LE(std::abs(by_stones), std::abs(value(*run, "floor_impulse_y [N s]")));
 }
 
 // A grain at rest: its weight, at the place where it touches.
@@ -245,12 +238,12 @@ largest-speed = 0.1
     run->step(0.1 - run->time());
   }
   const double weight = run->phases()[0].mass_of(0) * 9.81;
-  const double force = history(*run, "floor_force_y [N]"), torque = history(*run, "floor_torque_z [N m]");
+  const double force = value(*run, "floor_force_y [N]"), torque = value(*run, "floor_torque_z [N m]");
   report("force on the floor over the weight - 1", force / -weight - 1.0, 1e-3);
   report("its torque over 2 cm times the weight - 1", torque / (-0.02 * weight) - 1.0, 1e-3);
   EXPECT_NEAR(force / -weight, 1.0, 1e-3);
   EXPECT_NEAR(torque / (-0.02 * weight), 1.0, 1e-3);
-  EXPECT_EQ(force, history(*run, "by_sand_force_y [N]"));
+  EXPECT_EQ(force, value(*run, "by_sand_force_y [N]"));
 }
 
 // A body that falls freely feels nothing; one that is pushed feels its push, about any point.
@@ -282,14 +275,14 @@ end = 1
     run->step(1.0);
   }
   const double mass = 2000.0;
-  EXPECT_NEAR(history(*run, "block_force_x [N]"), 3.0 * mass, 1e-6 * mass);
-  EXPECT_NEAR(history(*run, "block_force_y [N]"), 0.0, 1e-6 * mass);
+  EXPECT_NEAR(value(*run, "block_force_x [N]"), 3.0 * mass, 1e-6 * mass);
+  EXPECT_NEAR(value(*run, "block_force_y [N]"), 0.0, 1e-6 * mass);
   const PhaseParticles& block = run->phases()[0];
   double lever = -3.0;
   for (std::size_t k = 0; k < block.size(); ++k)
     lever += block.column(Field::position, 1)[k] / static_cast<double>(block.size());
-  EXPECT_NEAR(history(*run, "block_torque_z [N m]"), -lever * 3.0 * mass, 1e-3 * mass);
-  EXPECT_NEAR(history(*run, "half_force_x [N]"), 1.5 * mass, 0.01 * mass) << "the whole moves as one";
+  EXPECT_NEAR(value(*run, "block_torque_z [N m]"), -lever * 3.0 * mass, 1e-3 * mass);
+  EXPECT_NEAR(value(*run, "half_force_x [N]"), 1.5 * mass, 0.01 * mass) << "the whole moves as one";
 }
 
 TEST(ForceMeters, WhatIsNotMeasuredIsRefused) {

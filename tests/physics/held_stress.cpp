@@ -12,13 +12,7 @@ namespace barchan {
 namespace {
 
 using testing::report;
-
-double column(const Simulation& run, const std::string& name) {
-  const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) throw std::runtime_error("no column " + name);
-  return run.history_row()[static_cast<std::size_t>(at - names.begin())];
-}
+using testing::value;
 
 bool has_column(const Simulation& run, const std::string& name) {
   const auto names = run.history_columns();
@@ -85,15 +79,15 @@ const std::string in_bulk = "hold = \"pressure-gradient\"\nfriction-velocity = 0
 TEST(HeldStress, GivesTheAirWhatItSays) {
   for (const bool lid : {false, true}) {
     const auto run = wind(lid ? pulls : slips, lid ? by_lid : in_bulk);
-    const double before = column(*run, "momentum_x [kg m/s]"), start = run->time();
+    const double before = value(*run, "momentum_x [kg m/s]"), start = run->time();
     while (run->time() < 0.2) run->step(1.0);
-    const double gained = column(*run, "momentum_x [kg m/s]") - before;
+    const double gained = value(*run, "momentum_x [kg m/s]") - before;
     const double error = gained / (0.5 * 0.8 * (run->time() - start)) - 1.0;
     report(lid ? "momentum gained over rho u*^2 A t less 1, lid" : "the same, in the bulk", error, lid ? 0.01 : 1e-3);
     EXPECT_NEAR(error, 0.0, lid ? 0.01 : 1e-3);
-    EXPECT_NEAR(column(*run, "air_pull [Pa]"), 0.5, 1e-12);
-    EXPECT_NEAR(column(*run, "air_equivalent_friction_velocity [m/s]"), 0.5, 1e-12);
-    EXPECT_NEAR(column(*run, "air_held_acceleration_x [m/s2]"), (lid ? 0.3 : 0.5) / 2.0, 1e-12);
+    EXPECT_NEAR(value(*run, "air_pull [Pa]"), 0.5, 1e-12);
+    EXPECT_NEAR(value(*run, "air_equivalent_friction_velocity [m/s]"), 0.5, 1e-12);
+    EXPECT_NEAR(value(*run, "air_held_acceleration_x [m/s2]"), (lid ? 0.3 : 0.5) / 2.0, 1e-12);
   }
 }
 
@@ -101,11 +95,11 @@ TEST(HeldStress, GivesTheAirWhatItSays) {
 TEST(HeldStress, SlowsAsTheGroundTakesMore) {
   const auto run = wind(slips, in_bulk + "\n[[force]]\nname = \"f\"\nphase = \"floor\"", {"phases.floor.slip=no-slip"});
   while (run->time() < 0.05) run->step(1.0);
-  const double before = column(*run, "momentum_x [kg m/s]"), start = run->time();
-  const double taken = column(*run, "f_impulse_x [N s]");
+  const double before = value(*run, "momentum_x [kg m/s]"), start = run->time();
+  const double taken = value(*run, "f_impulse_x [N s]");
   while (run->time() < 0.25) run->step(1.0);
-  const double time = run->time() - start, gained = column(*run, "momentum_x [kg m/s]") - before;
-  const double floor = column(*run, "f_impulse_x [N s]") - taken;
+  const double time = run->time() - start, gained = value(*run, "momentum_x [kg m/s]") - before;
+  const double floor = value(*run, "f_impulse_x [N s]") - taken;
   const double expected = 0.5 * 0.8 * time - floor, error = (gained - expected) / (0.5 * 0.8 * time);
   report("momentum gained less (pull - floor), over the pull", error, 0.02);
   EXPECT_LT(gained, 0.0) << "the floor takes more than is given";
@@ -116,7 +110,7 @@ TEST(HeldStress, SlowsAsTheGroundTakesMore) {
 TEST(HeldStress, FollowsAFormula) {
   const auto run = wind(slips, "hold = \"pressure-gradient\"\nfriction-velocity = \"1 - 2*t\"");
   while (run->time() < 0.75) run->step(0.75 - run->time());
-  EXPECT_NEAR(column(*run, "air_held_acceleration_x [m/s2]"), -0.25, 1e-9) << "rho u*|u*|/(rho 1 m)";
+  EXPECT_NEAR(value(*run, "air_held_acceleration_x [m/s2]"), -0.25, 1e-9) << "rho u*|u*|/(rho 1 m)";
   EXPECT_FALSE(has_column(*wind(slips, in_bulk, {"forcing=[]"}), "air_pull [Pa]"));
 }
 
@@ -128,13 +122,13 @@ TEST(HeldStress, ARowHasAllStepsSinceTheRowBefore) {
     double impulse = 0.0, time = 0.0;
     for (int k = 0; k < steps; ++k) {
       run->step(1.0);
-      impulse += run->last_step() * column(*run, "air_held_acceleration_x [m/s2]");
+      impulse += run->last_step() * value(*run, "air_held_acceleration_x [m/s2]");
       time += run->last_step();
     }
     const double expected = 0.2 + mass * impulse / time;
-    EXPECT_NEAR(column(*run, "air_pull [Pa]"), expected, 1e-12 * std::abs(expected)) << steps;
+    EXPECT_NEAR(value(*run, "air_pull [Pa]"), expected, 1e-12 * std::abs(expected)) << steps;
     run->begin_row();
-    EXPECT_NEAR(column(*run, "air_pull [Pa]"), expected, 1e-12 * std::abs(expected)) << "no step since";
+    EXPECT_NEAR(value(*run, "air_pull [Pa]"), expected, 1e-12 * std::abs(expected)) << "no step since";
   }
 }
 

@@ -1,5 +1,6 @@
 // Hops of grains against parabolas, by size, on any number of threads and from a checkpoint.
 #include "models/grains/hops.hpp"
+#include "physics/drive.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -15,6 +16,8 @@
 
 namespace barchan {
 namespace {
+
+using testing::run_to;
 
 constexpr double gravity = 9.81, height = 0.02, along = 0.7;  // m/s2; m over the place of the bounce; m/s
 
@@ -86,10 +89,6 @@ Rows rows_of(const std::string& text) {
       rows.back()[names[column++]] = std::stod(cell);
   }
   return rows;
-}
-
-void run_to(Simulation& run, double time) {
-  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
 }
 
 class Hops : public ::testing::TestWithParam<bool> {};

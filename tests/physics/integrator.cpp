@@ -8,7 +8,7 @@
 
 #include "physics/small_scenes.hpp"
 
-namespace barchan {
+namespace barchan::of_integrator {
 namespace {
 
 std::string fixed(double step) {
@@ -163,4 +163,4 @@ TEST(Integrator, IsOfSecondOrderForAnElasticBar) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::of_integrator

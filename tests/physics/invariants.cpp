@@ -81,8 +81,8 @@ FluidParameters parameters() {
   return q;
 }
 
-class Invariants : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, Invariants, testing::Values(2, 3));
+class Invariants : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, Invariants, ::testing::Values(2, 3));
 
 /// age: s, of the velocities when the forces act.
 void rate_mixture(Cast& cast, double mu, double age = 0.0) {

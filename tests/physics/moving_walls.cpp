@@ -15,13 +15,7 @@ namespace {
 
 using testing::Drive;
 using testing::report;
-
-double history(const Simulation& run, const std::string& name) {
-  const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) throw std::runtime_error("no column " + name);
-  return run.history_row()[static_cast<std::size_t>(at - names.begin())];
-}
+using testing::value;
 
 const PhaseParticles& phase(const Simulation& run, const std::string& name) {
   for (const PhaseParticles& p : run.phases())
@@ -82,9 +76,9 @@ TEST_P(Piston, MakesThePressureOfItsSpeed) {
   report("pressure ahead of the front/exact", ahead / wanted, 0.01);
   EXPECT_LT(ahead, 0.01 * wanted);
   report("force on the piston/exact, error",
-         std::abs(history(drive.simulation(), "piston_force_x [N]") / (0.1 * wanted) + 1.0), 0.03);
-  EXPECT_NEAR(history(drive.simulation(), "piston_force_x [N]"), -0.1 * wanted, 0.003 * wanted);
-  EXPECT_NEAR(history(drive.simulation(), "motion_0_x [m]"), 0.025 + 0.1 * 0.08, 1e-12);
+         std::abs(value(drive.simulation(), "piston_force_x [N]") / (0.1 * wanted) + 1.0), 0.03);
+  EXPECT_NEAR(value(drive.simulation(), "piston_force_x [N]"), -0.1 * wanted, 0.003 * wanted);
+  EXPECT_NEAR(value(drive.simulation(), "motion_0_x [m]"), 0.025 + 0.1 * 0.08, 1e-12);
   const PhaseParticles& piston = phase(drive.simulation(), "piston");
   for (std::size_t k = 0; k < piston.size(); ++k) EXPECT_EQ(piston.column(Field::velocity, 0)[k], u);
 }
@@ -191,7 +185,7 @@ TEST(Drum, TurnsOilAsAWhole) {
   }
   report("velocity in a vessel that turns/that of the vessel, error", worst, 0.02);
   EXPECT_LT(worst, 0.02);
-  EXPECT_NEAR(history(*run, "motion_0_angle [rad]"), 1.0, 1e-12);
+  EXPECT_NEAR(value(*run, "motion_0_angle [rad]"), 1.0, 1e-12);
 }
 
 // A gate that is pulled out of the water takes no jet along: nothing drives the water upwards but the pressure beside
@@ -218,7 +212,7 @@ TEST(Gate, HoldsTheWaterWhateverItsSpacing) {
   for (const char* spacing : {"spacing=0.015", "spacing=0.0125", "spacing=0.0115384615384615"}) {
     Drive drive("dam_gate", {spacing, "fill.1.shape.box.max=[0.69, 0.45]"});
     drive.to(0.012);
-    const double impulse = history(drive.simulation(), "gate_impulse_x [N s]");
+    const double impulse = value(drive.simulation(), "gate_impulse_x [N s]");
     least = std::min(least, impulse);
     most = std::max(most, impulse);
   }
@@ -295,7 +289,7 @@ TEST(Drum, CarriesGrainsRoundAndLosesNone) {
   // It turns counterclockwise: the bed leans towards +x.
   report("mean place of the grains along x, diameters", centre() / 1e-3, 1.0);
   EXPECT_GT(centre(), 1e-3);
-  EXPECT_LT(history(*run, "drum_torque_z [N m]"), 0.0) << "the grains brake the drum";
+  EXPECT_LT(value(*run, "drum_torque_z [N m]"), 0.0) << "the grains brake the drum";
 }
 
 /// A grain that sleeps on a plate wakes when the plate tilts, and slides off.
@@ -309,7 +303,7 @@ TEST(Plate, WakesTheGrainsThatSleepOnIt) {
   bool slept = false;
   while (run->time() < 0.6 - 1e-12) {
     run->step(0.6 - run->time());
-    slept = slept || (run->time() < 0.3 && history(*run, "asleep") == 1.0);
+    slept = slept || (run->time() < 0.3 && value(*run, "asleep") == 1.0);
   }
   EXPECT_TRUE(slept) << "the test is meant to see it asleep";
   EXPECT_NEAR(run->phases()[0].column(Field::velocity, 0)[0], 0.2 / 7.0, 1e-5) << "it rolls";

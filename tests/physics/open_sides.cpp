@@ -30,7 +30,7 @@ double left_mass(const Simulation& run) {
 
 PhaseParticles& water(Drive& drive) {
   for (std::size_t k = 0;; ++k)
-    if (drive.plan().phases.at(k).flows) return drive.phase(k);
+    if (drive.plan().phases.at(k).flows()) return drive.phase(k);
 }
 
 TEST(OpenSides, WhatSplashesOutIsCountedAndGone) {

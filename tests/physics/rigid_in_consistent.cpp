@@ -15,32 +15,10 @@ namespace {
 
 using std::numbers::pi;
 using testing::Drive;
+using testing::mean_of;
 using testing::report;
-
-double value(const Simulation& s, const std::string& column) {
-  const auto columns = s.history_columns();
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
-  if (found == columns.end()) throw std::logic_error("no column " + column);
-  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
-}
-
-void go(Simulation& run, double time) {
-  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
-}
-
-/// Mean of a column over a time (s), every step.
-double mean(Simulation& run, const std::string& column, double from, double to) {
-  go(run, from);
-  double sum = 0.0, before = run.time();
-  while (run.time() < to * (1.0 - 1e-12)) {
-    run.begin_row();
-    run.step(to - run.time());
-    sum += value(run, column) * (run.time() - before);
-    before = run.time();
-  }
-  return sum / (to - from);
-}
+using testing::run_to;
+using testing::value;
 
 /// A force of pressure that is linear in the place, p = g.x, on a body is -g times what it holds.
 void expect_exact(const Shape& shape, int dimensions, double content, const char* what) {
@@ -80,7 +58,7 @@ TEST(RigidInConsistentFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
   std::ifstream file(testing::scene_file("verification/sinking_disc"));
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const auto run = small::simulation(text + "\n[[motion]]\nphase = \"disc\"\n", {"phases.water.scheme=consistent"});
-  const double lift = mean(*run, "disc_force_y", 0.05, 0.2);
+  const double lift = mean_of(*run, "disc_force_y", 0.05, 0.2);
   const double error = std::abs(lift / displaced - 1.0);
   report("lift over the weight of the liquid displaced", error, 0.01);
   EXPECT_LT(error, 0.01);
@@ -126,7 +104,7 @@ TEST(RigidInConsistentFluid, ALightBodyRises) {
 TEST(RigidInConsistentFluid, ATurningCylinderFeelsTheTorqueOfCouetteFlow) {
   Drive drive("verification/taylor_couette", {"phases.oil.scheme=consistent", "spacing=0.0666666666666667"});
   const double exact = 4.0 * pi * 4.0 / 3.0;
-  const double inner = std::abs(mean(drive.simulation(), "cylinder_torque", 0.9, 1.0) / -exact - 1.0);
+  const double inner = std::abs(mean_of(drive.simulation(), "cylinder_torque", 0.9, 1.0) / -exact - 1.0);
   const double outer = std::abs(value(drive.simulation(), "shell_torque") / exact - 1.0);
   report("torque on the cylinder", inner, 0.02);
   report("torque on the shell", outer, 0.02);
@@ -261,7 +239,7 @@ end = 0.4
     Simulation run(scene, make_plan(scene, blocks), blocks);
     double most = 0.0;
     for (double time = 5e-4; time < 0.4001; time += 5e-4) {
-      go(run, time);
+      run_to(run, time);
       most = std::max(most, value(run, "largest_density_error"));
     }
     report(std::string("density under a disc from ") + height + " m, largest error", most, 0.05);

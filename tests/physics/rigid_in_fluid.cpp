@@ -8,20 +8,15 @@
 #include "physics/drive.hpp"
 #include "physics/small_scenes.hpp"
 
-namespace barchan {
+namespace barchan::of_rigid_in_fluid {
 namespace {
 
 using std::numbers::pi;
 using testing::Drive;
+using testing::mean_of;
 using testing::report;
-
-double value(const Simulation& s, const std::string& column) {
-  const auto columns = s.history_columns();
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
-  if (found == columns.end()) throw std::logic_error("no column " + column);
-  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
-}
+using testing::run_to;
+using testing::value;
 
 /// Momentum of all that moves, the bodies with the mass of their shapes; and mass times speed.
 std::pair<Vec3, double> momentum(Simulation& run) {
@@ -112,27 +107,10 @@ TEST(RigidInFluid, WhatLeavesTheMotionIsHeat) {
   expect_energy("3D", small::drowned_ball, 100, {"water", "ball"}, {}, 0.5);
 }
 
-void go(Simulation& run, double time) {
-  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
-}
-
-/// Mean of a column over a time (s), every step.
-double mean(Simulation& run, const std::string& column, double from, double to) {
-  go(run, from);
-  double sum = 0.0, before = run.time();
-  while (run.time() < to * (1.0 - 1e-12)) {
-    run.begin_row();
-    run.step(to - run.time());
-    sum += value(run, column) * (run.time() - before);
-    before = run.time();
-  }
-  return sum / (to - from);
-}
-
 TEST(RigidInFluid, ATurningCylinderFeelsTheTorqueOfCouetteFlow) {
   Drive drive("verification/taylor_couette", {"spacing=0.0666666666666667"});
   const double exact = 4.0 * pi * 4.0 / 3.0;
-  const double inner = std::abs(mean(drive.simulation(), "cylinder_torque", 0.9, 1.0) / -exact - 1.0);
+  const double inner = std::abs(mean_of(drive.simulation(), "cylinder_torque", 0.9, 1.0) / -exact - 1.0);
   const double outer = std::abs(value(drive.simulation(), "shell_torque") / exact - 1.0);
   report("torque on the cylinder", inner, 0.02);
   report("torque on the shell", outer, 0.02);
@@ -146,7 +124,7 @@ TEST(RigidInFluid, AHeldBodyFeelsTheWeightOfWhatItDisplaces) {
   std::ifstream file(testing::scene_file("verification/sinking_disc"));
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const auto run = small::simulation(text + "\n[[motion]]\nphase = \"disc\"\n");
-  const double lift = mean(*run, "disc_force_y", 0.05, 0.4);
+  const double lift = mean_of(*run, "disc_force_y", 0.05, 0.4);
   const double error = std::abs(lift / displaced - 1.0);
   report("lift over the weight of the liquid displaced", error, 0.02);
   EXPECT_LT(error, 0.02);
@@ -177,10 +155,10 @@ TEST(RigidInFluid, ABodyThatTurnsWithTheFluidFeelsNoTorque) {
   Drive drive("verification/taylor_couette",
               {"motion.1.angular-velocity=1", "fill.2.velocity=[\"-y\", \"x\"]", "spacing=0.1"});
   const double exact = 4.0 * pi * 4.0 / 3.0;
-  const double torque = std::abs(mean(drive.simulation(), "cylinder_torque", 0.1, 0.3)) / exact;
+  const double torque = std::abs(mean_of(drive.simulation(), "cylinder_torque", 0.1, 0.3)) / exact;
   report("torque over that of a shell at rest", torque, 0.01);
   EXPECT_LT(torque, 0.01);
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::of_rigid_in_fluid

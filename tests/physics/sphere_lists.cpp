@@ -11,11 +11,7 @@
 namespace barchan {
 namespace {
 
-double value(const Simulation& run, const std::string& column) {
-  const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), column);
-  return at == names.end() ? NAN : run.history_row()[static_cast<std::size_t>(at - names.begin())];
-}
+using testing::value;
 
 /// Grains in a row across a period; `size`: of the domain, `points` of the grains.
 std::string row_across(const std::string& size, const std::string& points, const std::string& keys = "") {

@@ -10,7 +10,7 @@
 #include "physics/small_scenes.hpp"
 #include "state/archive.hpp"
 
-namespace barchan {
+namespace barchan::of_sphere_strays {
 namespace {
 
 /// A settled bed of 4 diameters under 18 grains that come down on it at 6 to 14 m/s, one by one.
@@ -149,4 +149,4 @@ TEST_F(SphereStrays, AFewFastGrainsDoNotSearchTheBedAnew) {
 }
 
 }  // namespace
-}  // namespace barchan
+}  // namespace barchan::of_sphere_strays

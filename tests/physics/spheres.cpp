@@ -10,12 +10,7 @@ namespace barchan {
 namespace {
 
 using testing::report;
-
-double value(const Simulation& run, const std::string& column) {
-  const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), column);
-  return at == names.end() ? NAN : run.history_row()[static_cast<std::size_t>(at - names.begin())];
-}
+using testing::value;
 
 const std::string pair_of = R"toml(
 dimensions = 3

@@ -11,18 +11,8 @@ namespace barchan {
 namespace {
 
 using testing::report;
-
-double value(const Simulation& s, const std::string& column) {
-  const auto columns = s.history_columns();
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const std::string& name) { return name.starts_with(column); });
-  if (found == columns.end()) throw std::logic_error("no column " + column);
-  return s.history_row()[static_cast<std::size_t>(found - columns.begin())];
-}
-
-void go(Simulation& run, double time) {
-  while (run.time() < time * (1.0 - 1e-12)) run.step(time - run.time());
-}
+using testing::run_to;
+using testing::value;
 
 Vec3 vector(const PhaseParticles& p, Field field, std::size_t k) {
   Vec3 x{};
@@ -110,9 +100,9 @@ double acceleration(double angle, const std::string& more) {
   const auto run = small::simulation(ball_on_plate(
       plate, at(-0.4, 0.01), more, clamped,
       "[" + std::to_string(9.81 * std::sin(angle)) + ", " + std::to_string(-9.81 * std::cos(angle)) + "]"));
-  go(*run, 0.1);
+  run_to(*run, 0.1);
   const double before = run->phases()[0].column(Field::velocity, 0)[0];
-  go(*run, 0.3);
+  run_to(*run, 0.3);
   return (run->phases()[0].column(Field::velocity, 0)[0] - before) / 0.2;
 }
 
@@ -149,7 +139,7 @@ TEST(SpheresOnBodies, BouncesHaveTheRestitutionOfTheBall) {
   const auto run = small::simulation(ball_on_plate("shape = { disc = { centre = [0, 0], radius = 0.05 } }\n",
                                                    at(-0.08, 0.0) + "velocity = [1, 0]\n",
                                                    "restitution = 0.5\nfriction = 0.3\n", "", "[0, 0]"));
-  go(*run, 0.1);
+  run_to(*run, 0.1);
   const double parts = value(*run, "plate_velocity_x") - run->phases()[0].column(Field::velocity, 0)[0];
   report("restitution", std::abs(parts / 0.5 - 1.0), 0.01);
   EXPECT_NEAR(parts, 0.5, 0.005);
@@ -159,7 +149,7 @@ TEST(SpheresOnBodies, ABallTakesTheSpeedOfABelt) {
   const auto run =
       small::simulation(ball_on_plate(plate, at(0.3, 0.01), "restitution = 0.3\nfriction = 0.3\nrolling-friction = 1\n",
                                       "[[motion]]\nphase = \"plate\"\nvelocity = [-0.2, 0]\n", "[0, -9.81]"));
-  go(*run, 0.3);
+  run_to(*run, 0.3);
   const double speed = run->phases()[0].column(Field::velocity, 0)[0];
   report("speed over that of the plate", std::abs(speed / -0.2 - 1.0), 1e-3);
   EXPECT_NEAR(speed, -0.2, 2e-4);

@@ -52,7 +52,7 @@ void expect_same_bits(const State& a, const State& b) {
   EXPECT_EQ(std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(double)), 0);
 }
 
-class Threads : public testing::TestWithParam<small::Named> {};
+class Threads : public ::testing::TestWithParam<small::Named> {};
 
 TEST_P(Threads, DoNotChangeABit) {
   const std::string& text = *GetParam().text;
@@ -95,18 +95,18 @@ const std::string mixed_channel = "precision = \"mixed\"\n" + small::channel;
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Threads,
-    testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},
-                    small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
-                    small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
-                    small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
-                    small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
-                    small::Named{"Spheres", &small::spheres}, small::Named{"Drowned", &small::drowned},
-                    small::Named{"DrownedConsistent", &small::drowned_consistent},
-                    small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
-                    small::Named{"DrownedBall", &small::drowned_ball}, small::Named{"Paddle", &small::paddle},
-                    small::Named{"Drum", &small::drum}, small::Named{"HertzianSpheres", &small::hertzian_spheres},
-                    small::Named{"Flag", &small::flag}, small::Named{"Jelly", &small::jelly},
-                    small::Named{"MixedDune", &mixed_dune}, small::Named{"MixedChannel", &mixed_channel}),
+    ::testing::Values(small::Named{"Dune", &small::dune}, small::Named{"TurbulentDune", &small::turbulent_dune},
+                      small::Named{"HeldDune", &small::held_dune}, small::Named{"Dam", &small::dam},
+                      small::Named{"PlainDam", &small::plain_dam}, small::Named{"TwoFluids", &small::two_fluids},
+                      small::Named{"Channel", &small::channel}, small::Named{"Squares", &small::squares},
+                      small::Named{"Grains", &small::grains}, small::Named{"BlownGrains", &small::blown_grains},
+                      small::Named{"Spheres", &small::spheres}, small::Named{"Drowned", &small::drowned},
+                      small::Named{"DrownedConsistent", &small::drowned_consistent},
+                      small::Named{"DrownedBallConsistent", &small::drowned_ball_consistent},
+                      small::Named{"DrownedBall", &small::drowned_ball}, small::Named{"Paddle", &small::paddle},
+                      small::Named{"Drum", &small::drum}, small::Named{"HertzianSpheres", &small::hertzian_spheres},
+                      small::Named{"Flag", &small::flag}, small::Named{"Jelly", &small::jelly},
+                      small::Named{"MixedDune", &mixed_dune}, small::Named{"MixedChannel", &mixed_channel}),
     [](const auto& s) { return std::string(s.param.name); });
 
 }  // namespace

@@ -10,10 +10,7 @@ namespace barchan {
 namespace {
 
 using testing::report;
-
-void run_to(Simulation& run, double time) {
-  while (run.time() < time) run.step(time - run.time());
-}
+using testing::run_to;
 
 /// Water in a tank of 0.5 m behind a gate, four spacings thick, 0.25 m deep over a slot of five.
 const std::string gate = R"toml(

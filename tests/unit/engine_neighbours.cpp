@@ -92,7 +92,7 @@ std::vector<SearchCase> cases() {
   };
 }
 
-class Search : public testing::TestWithParam<SearchCase> {
+class Search : public ::testing::TestWithParam<SearchCase> {
  protected:
   Bounds bounds() const { return box(GetParam().dimensions, GetParam().size, GetParam().periodic, GetParam().low); }
   int dimensions() const { return GetParam().dimensions; }
@@ -221,7 +221,7 @@ TEST_P(Search, ListsStayCompleteWhileParticlesMove) {
   EXPECT_LT(rebuilt, 12) << "not every step needs new lists";
 }
 
-INSTANTIATE_TEST_SUITE_P(Boxes, Search, testing::ValuesIn(cases()), [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(Boxes, Search, ::testing::ValuesIn(cases()), [](const auto& c) { return c.param.name; });
 
 // A list holds eight times an index in 32 bits (PairList::stride): the last that fits is 2^29 - 1.
 TEST(PairLists, RefuseMoreRecordsThanTheirIndicesCount) {

@@ -24,7 +24,7 @@ struct HaloCase {
 };
 void PrintTo(const HaloCase& c, std::ostream* out) { *out << c.name; }
 
-class RankHalos : public testing::TestWithParam<HaloCase> {
+class RankHalos : public ::testing::TestWithParam<HaloCase> {
  protected:
   static constexpr double radius = 2.1;
   /// A phase that is shared out, and one that is whole and looks for it.
@@ -173,11 +173,11 @@ TEST(ParticlesOfARank, AreThoseThatItKeepsInTheirNewOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, RankHalos,
-                         testing::Values(HaloCase{"Open2D", 2, {40, 17, 0}, {false, false, false}},
-                                         HaloCase{"PeriodicX", 2, {36, 20, 0}, {true, false, false}},
-                                         HaloCase{"PeriodicXY", 2, {40, 36, 0}, {true, true, false}},
-                                         HaloCase{"Open3D", 3, {12, 8, 9}, {false, false, false}},
-                                         HaloCase{"PeriodicXYZ", 3, {10, 9, 11}, {true, true, true}}),
+                         ::testing::Values(HaloCase{"Open2D", 2, {40, 17, 0}, {false, false, false}},
+                                           HaloCase{"PeriodicX", 2, {36, 20, 0}, {true, false, false}},
+                                           HaloCase{"PeriodicXY", 2, {40, 36, 0}, {true, true, false}},
+                                           HaloCase{"Open3D", 3, {12, 8, 9}, {false, false, false}},
+                                           HaloCase{"PeriodicXYZ", 3, {10, 9, 11}, {true, true, true}}),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace barchan {
 namespace {
 
-class Threads : public testing::TestWithParam<int> {
+class Threads : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override { omp_set_num_threads(GetParam()); }
   void TearDown() override { omp_set_num_threads(before_); }
@@ -19,7 +19,7 @@ class Threads : public testing::TestWithParam<int> {
  private:
   int before_ = omp_get_max_threads();
 };
-INSTANTIATE_TEST_SUITE_P(Numbers, Threads, testing::Values(1, 2, 3, 7));
+INSTANTIATE_TEST_SUITE_P(Numbers, Threads, ::testing::Values(1, 2, 3, 7));
 
 /// By cell in the order of the blocks' runs; in a cell, particles keep the order that they had.
 TEST_P(Threads, SortKeepsTheOrderWithinACell) {

@@ -27,8 +27,8 @@ double integral(double low, double high, int pieces, F&& f) {
 }
 
 template <class Kernel>
-class Kernels : public testing::Test {};
-using Both = testing::Types<CubicSpline<double>, WendlandC2<double>>;
+class Kernels : public ::testing::Test {};
+using Both = ::testing::Types<CubicSpline<double>, WendlandC2<double>>;
 TYPED_TEST_SUITE(Kernels, Both);
 
 TYPED_TEST(Kernels, IntegrateToOne) {

@@ -31,7 +31,7 @@ Hertz hertzian() {
           {0.0}};
 }
 
-constexpr double mass = 1e-5, radius = 1e-3;  // kg, m, of each of two spheres
+constexpr double sphere_mass = 1e-5, sphere_radius = 1e-3;  // kg, m, of each of two spheres
 
 /// Two equal spheres that overlap by so much (m) and rest but for what the caller gives them.
 template <std::size_t Dim>
@@ -43,10 +43,10 @@ TouchingSpheres<V, Dim> spheres(double overlap) {
   }
   for (std::size_t d = 0; d < s.spin; ++d) s.spin_a[d] = s.spin_b[d] = V(0.0);
   s.overlap = V(overlap);
-  s.lever_a = s.lever_b = V(radius - 0.5 * overlap);
-  s.reduced_mass = V(0.5 * mass);
-  s.inverse_mass = V(2.0 / mass);
-  s.reduced_radius = V(0.5 * radius);
+  s.lever_a = s.lever_b = V(sphere_radius - 0.5 * overlap);
+  s.reduced_mass = V(0.5 * sphere_mass);
+  s.inverse_mass = V(2.0 / sphere_mass);
+  s.reduced_radius = V(0.5 * sphere_radius);
   return s;
 }
 
@@ -95,7 +95,7 @@ TEST(LawsByHand, TangentialDashpotIsHalfOfTheNormalOne) {
   std::array<V, Law::numbers<2>> memory;
   memory.fill(V(0.0));
   const auto f = Law::touch(Law::Constants<V>(law, dt), s, memory);
-  const double expected = -NormalDashpot::damping_ratio(0.5) * std::sqrt(0.5 * mass * 500.0) * speed;
+  const double expected = -NormalDashpot::damping_ratio(0.5) * std::sqrt(0.5 * sphere_mass * 500.0) * speed;
   EXPECT_NEAR(f.force[1][0], expected, 1e-3 * std::abs(expected));
 }
 
@@ -105,24 +105,25 @@ TEST(LawsByHand, TangentialDashpotIsHalfOfTheNormalOne) {
 template <bool Rolls>
 void expect_force_knows_its_own_work() {
   const Linear law = linear(0.3, 1e6, 1e6);
-  const double overlap = 1e-5, dt = 4e-5, inertia = 0.4 * mass * radius * radius;
+  const double overlap = 1e-5, dt = 4e-5, inertia = 0.4 * sphere_mass * sphere_radius * sphere_radius;
   auto s = spheres<2>(overlap);
-  s.lever_a = s.lever_b = V(radius);
+  s.lever_a = s.lever_b = V(sphere_radius);
   if (Rolls) {
     s.spin_a[0] = V(100.0);
     s.spin_b[0] = V(-100.0);
   } else {
     s.velocity[1] = V(0.1);
   }
-  const double speed = Rolls ? 0.5 * radius * 200.0 : 0.1;
+  const double speed = Rolls ? 0.5 * sphere_radius * 200.0 : 0.1;
   std::array<V, Linear::numbers<2>> memory;
   memory.fill(V(0.0));
   const auto f = Linear::touch(Linear::Constants<V>(law, dt), s, memory);
-  const double force = Rolls ? f.torque_a[0][0] / (0.5 * radius) : f.force[1][0];
-  const double gain = Rolls ? 0.25 * radius * radius * 2.0 / inertia : 2.0 / mass + radius * radius * 2.0 / inertia;
+  const double force = Rolls ? f.torque_a[0][0] / (0.5 * sphere_radius) : f.force[1][0];
+  const double gain = Rolls ? 0.25 * sphere_radius * sphere_radius * 2.0 / inertia
+                            : 2.0 / sphere_mass + sphere_radius * sphere_radius * 2.0 / inertia;
   // The dashpot as the exact step has it (head of laws/sphere_contact.hpp).
-  const double turn2 = 500.0 * dt * dt * 2.0 / mass, d = 2.0 * NormalDashpot::damping_ratio(0.3);
-  const double dashpot = 0.5 * d * std::sqrt(0.5 * mass * 500.0) * (1.0 - turn2 * d * d / 12.0);
+  const double turn2 = 500.0 * dt * dt * 2.0 / sphere_mass, d = 2.0 * NormalDashpot::damping_ratio(0.3);
+  const double dashpot = 0.5 * d * std::sqrt(0.5 * sphere_mass * 500.0) * (1.0 - turn2 * d * d / 12.0);
   const double slip = speed * dt, stiffness = 2.0 / 7.0 * 500.0;
   EXPECT_NEAR(force, -stiffness * slip - dashpot * (speed + 0.5 * dt * gain * force), 1e-9 * std::abs(force));
 }

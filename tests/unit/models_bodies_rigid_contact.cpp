@@ -9,6 +9,7 @@
 
 #include "checks/reader.hpp"
 #include "laws/surface_contact.hpp"
+#include "models/bodies/rigid_contact.hpp"
 #include "plan/plan.hpp"
 #include "simulation/simulation.hpp"
 #include "start/generate.hpp"
@@ -70,7 +71,7 @@ double moment(const Vec3& arm, const Vec3& force) { return arm[0] * force[1] - a
 std::vector<Load> naive(const ContactRun& run, double period, double& deepest, std::size_t& beyond) {
   const auto& bodies = run.simulation->state().bodies;
   const double dt = run.simulation->state().dt;
-  const SurfaceContactLaw law{run.simulation->plan().phases[0].contact_stiffness, restitution_of_discs,
+  const SurfaceContactLaw law{contact_stiffness(run.scene, run.simulation->plan(), 0), restitution_of_discs,
                               friction_of_discs};
   std::vector<Load> loads(bodies.size());
   deepest = 0.0;
@@ -160,7 +161,7 @@ TEST(RigidContact, ABlockTouchesTheFloorWithTwoCorners) {
     mass = block.mass;
     // As deep as its place has come down since the gap of 0.01 m was gone.
     const double overlap = block.first_place[1] - 0.01 - block.now.place[1], dt = run.simulation->state().dt;
-    const SurfaceContactLaw law{run.simulation->plan().phases[0].contact_stiffness, 0.5, 0.0};
+    const SurfaceContactLaw law{contact_stiffness(run.scene, run.simulation->plan(), 0), 0.5, 0.0};
     const double speed = Motion(block, dt).velocity[1];
     const double force =
         overlap > 0.0 ? 2.0 * law.push(overlap, speed, 1.0 / mass + 0.2 * 0.2 / block.inertia[2], dt) : 0.0;
@@ -233,7 +234,7 @@ TEST(RigidContact, LimitsTheStepByTheLightest) {
                       "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [0.5, 0.5], radius = 0.2 } }\n"
                       "[[fill]]\nphase = \"a\"\nshape = { disc = { centre = [1.5, 0.5], radius = 0.1 } }\n"));
   const Plan& plan = run.simulation->plan();
-  const double mass = run.simulation->state().bodies[1].mass, stiffness = plan.phases[0].contact_stiffness;
+  const double mass = run.simulation->state().bodies[1].mass, stiffness = contact_stiffness(run.scene, plan, 0);
   EXPECT_NEAR(mass / (1000.0 * std::acos(-1.0) * 0.1 * 0.1), 1.0, 0.1) << "of its particles";
   double limit = 0.0;
   for (const auto& l : plan.limits)

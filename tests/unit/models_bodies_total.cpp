@@ -106,11 +106,11 @@ Bounds bounds_of(const Shape& s) {
                            : box(3, {7, 6, 5}, {s.periodic, false, s.periodic});
 }
 
-class TotalLagrangian : public testing::TestWithParam<Shape> {};
+class TotalLagrangian : public ::testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, TotalLagrangian,
-                         testing::Values(Shape{"Lattice2D", 2, 0.0, false}, Shape{"Disordered2D", 2, 0.2, false},
-                                         Shape{"Periodic2D", 2, 0.0, true}, Shape{"Lattice3D", 3, 0.0, false},
-                                         Shape{"Disordered3D", 3, 0.2, false}, Shape{"Periodic3D", 3, 0.1, true}));
+                         ::testing::Values(Shape{"Lattice2D", 2, 0.0, false}, Shape{"Disordered2D", 2, 0.2, false},
+                                           Shape{"Periodic2D", 2, 0.0, true}, Shape{"Lattice3D", 3, 0.0, false},
+                                           Shape{"Disordered3D", 3, 0.2, false}, Shape{"Periodic3D", 3, 0.1, true}));
 
 /// Calls f(b, X_ab, w) for the neighbours of a, all images looked at.
 template <class T, class F>
@@ -279,7 +279,7 @@ TEST_P(TotalLagrangian, AnAffineMotionIsSeenExactlyAndStraysNowhere) {
 
 /// The largest difference of two bodies' accelerations, over the largest of the second.
 template <class A, class B>
-double difference(const Stage<A>& a, const Stage<B>& b) {
+double difference_of(const Stage<A>& a, const Stage<B>& b) {
   double most = 0.0, scale = 0.0;
   for (std::size_t k = 0; k < a.start.size(); ++k) {
     most = std::max(most, norm(a.acceleration(k) - b.acceleration(k)));
@@ -311,7 +311,7 @@ TEST_P(TotalLagrangian, SinglePrecisionKeepsTheDigitsOfABodyThatTurns) {
     s.load();
     exact.load();
     EXPECT_TRUE(s.work.turns.any());
-    EXPECT_LT(difference(s, exact), 1e-6);
+    EXPECT_LT(difference_of(s, exact), 1e-6);
     EXPECT_NEAR(s.energy() / exact.energy(), 1.0, 1e-6);
 
     // What follows from the places follows after a restart as well.
@@ -326,7 +326,7 @@ TEST_P(TotalLagrangian, SinglePrecisionKeepsTheDigitsOfABodyThatTurns) {
         std::copy_n(exact.p.column(f, d), start.size(), again.p.column(f, d));
     again.load();
     EXPECT_TRUE(again.work.turns.any());
-    EXPECT_LT(difference(again, exact), 1e-6);
+    EXPECT_LT(difference_of(again, exact), 1e-6);
   }
 }
 

@@ -119,8 +119,8 @@ struct ElasticStage {
   }
 };
 
-class ElasticPasses : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, ElasticPasses, testing::Values(2, 3));
+class ElasticPasses : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, ElasticPasses, ::testing::Values(2, 3));
 
 TEST_P(ElasticPasses, StrainEqualsTheNaiveSums) {
   const int dimensions = GetParam();
@@ -261,8 +261,8 @@ TEST_P(ElasticPasses, ArtificialStressIsOfWhatPulls) {
             << k;
 }
 
-class SolidPasses : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, SolidPasses, testing::Values(2, 3));
+class SolidPasses : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, SolidPasses, ::testing::Values(2, 3));
 
 TEST_P(SolidPasses, ContactsEqualTheNaiveSums) {
   const int dimensions = GetParam();

@@ -12,7 +12,7 @@
 namespace barchan {
 namespace {
 
-constexpr double dx = 0.1, radius = 0.55, viscosity = 0.3, density = 2.0;
+constexpr double dx = 0.1, radius = 0.55, mu = 0.3, density = 2.0;
 
 Layout room(int dimensions, double half) {
   Layout layout;
@@ -60,7 +60,7 @@ Vec3 force(int dimensions, double disturbed, F&& fields) {
           x[static_cast<std::size_t>(d)] += disturbed * dx * random.uniform(-1.0, 1.0);
         if (!volume.near(x)) continue;
         const Fields f = fields(x);
-        shares.push_back(volume.share(x, f.v, f.a, density * std::pow(dx, dimensions), density, f.p, viscosity));
+        shares.push_back(volume.share(x, f.v, f.a, density * std::pow(dx, dimensions), density, f.p, mu));
       }
   return ControlVolume::force(shares);
 }
@@ -83,7 +83,7 @@ TEST(ControlVolume, AFluidAtRestLifts) {
 /// p = F.x/(2 pi r2). What the fluid does to any body about the place is -F. Pressure and friction give half each.
 TEST(ControlVolume, AStokesletHasItsForce) {
   const auto flow = [](const Vec3& x) {
-    const double r2 = dot(x, x), factor = 1.0 / (4.0 * std::numbers::pi * viscosity);
+    const double r2 = dot(x, x), factor = 1.0 / (4.0 * std::numbers::pi * mu);
     return Fields{
         factor * (Vec3{-0.5 * std::log(r2), 0.0, 0.0} + (x[0] / r2) * x), {}, x[0] / (2.0 * std::numbers::pi * r2)};
   };
@@ -96,7 +96,7 @@ TEST(ControlVolume, AStokesletHasItsForce) {
 /// In space: v = [F/r + (F.x) x/r3]/(8 pi mu), p = F.x/(4 pi r3).
 TEST(ControlVolume, AStokesletInSpaceHasItsForce) {
   const Vec3 found = force(3, 0.0, [](const Vec3& x) {
-    const double r = norm(x), factor = 1.0 / (8.0 * std::numbers::pi * viscosity);
+    const double r = norm(x), factor = 1.0 / (8.0 * std::numbers::pi * mu);
     return Fields{
         factor * (Vec3{1.0 / r, 0.0, 0.0} + (x[0] / (r * r * r)) * x), {}, x[0] / (4.0 * std::numbers::pi * r * r * r)};
   });

@@ -148,8 +148,8 @@ TEST(EddyRates, WithoutEddiesAreTheLaminarOnes) {
   for (const int dimensions : {2, 3})
     for (const bool mixed : {false, true})
       for (const bool roots : {false, true}) {
-        SCOPED_TRACE(testing::Message() << dimensions << "D, " << (mixed ? "mixed" : "double") << ", roots of "
-                                        << (roots ? "each" : "the entry"));
+        SCOPED_TRACE(::testing::Message() << dimensions << "D, " << (mixed ? "mixed" : "double") << ", roots of "
+                                          << (roots ? "each" : "the entry"));
         const auto laminar = rated(dimensions, mixed, false, roots), turbulent = rated(dimensions, mixed, true, roots);
         const double rounding = mixed ? 1e-6 : 1e-13;
         for (int d = 0; d < dimensions; ++d)

@@ -8,7 +8,7 @@
 namespace barchan {
 namespace {
 
-constexpr double density = 1.2;
+constexpr double air_density = 1.2;
 
 Fluctuations given(double shear) {
   Fluctuations f;
@@ -22,7 +22,7 @@ Fluctuations given(double shear) {
 TEST(InflowFluctuations, HaveTheStressThatIsAsked) {
   for (const int dimensions : {2, 3}) {
     const Fluctuations f = given(0.1);
-    const InflowFluctuations field(f, density, dimensions, {});
+    const InflowFluctuations field(f, air_density, dimensions, {});
     double uu = 0.0, vv = 0.0, ww = 0.0, uv = 0.0, mean = 0.0;
     const int n = 40000;
     for (int k = 0; k < n; ++k) {
@@ -36,14 +36,14 @@ TEST(InflowFluctuations, HaveTheStressThatIsAsked) {
     EXPECT_NEAR(uu, 0.25, 0.03 * 0.25) << dimensions;
     EXPECT_NEAR(vv, 0.09, 0.03 * 0.09) << dimensions;
     EXPECT_NEAR(ww, dimensions == 3 ? 0.16 : 0.0, 0.03 * 0.16) << dimensions;
-    EXPECT_NEAR(-density * uv, 0.1, 0.01) << dimensions;
+    EXPECT_NEAR(-air_density * uv, 0.1, 0.01) << dimensions;
     EXPECT_NEAR(mean, 0.0, 0.02) << dimensions;
   }
 }
 
 TEST(InflowFluctuations, HaveNoDivergence) {
   for (const int dimensions : {2, 3}) {
-    const InflowFluctuations field(given(0.1), density, dimensions, {});
+    const InflowFluctuations field(given(0.1), air_density, dimensions, {});
     const double h = 1e-4;
     for (int k = 0; k < 50; ++k) {
       const Vec3 x{0.31 * k, 0.17 * k, 0.23 * k};
@@ -72,7 +72,7 @@ TEST(InflowFluctuations, HaveTheLengthThatIsAsked) {
     const double step = 0.005;
     for (int seed = 1; seed <= seeds; ++seed) {
       f.seed = static_cast<unsigned>(seed);
-      const InflowFluctuations field(f, density, dimensions, {});
+      const InflowFluctuations field(f, air_density, dimensions, {});
       const double here = field({0.0, 0.0, 0.0})[0];
       for (int k = -80; k <= 80; ++k) integral += 0.5 * step * here * field({k * step, 0.0, 0.0})[0] / seeds;
     }
@@ -82,7 +82,7 @@ TEST(InflowFluctuations, HaveTheLengthThatIsAsked) {
 
 /// Across a periodic axis the field repeats.
 TEST(InflowFluctuations, RepeatAcrossAPeriod) {
-  const InflowFluctuations field(given(0.0), density, 2, {0.0, 0.7, 0.0});
+  const InflowFluctuations field(given(0.0), air_density, 2, {0.0, 0.7, 0.0});
   for (int k = 0; k < 10; ++k) {
     const Vec3 a = field({0.1 * k, 0.2, 0.0}), b = field({0.1 * k, 0.9, 0.0});
     EXPECT_NEAR(a[0], b[0], 1e-10);

@@ -25,13 +25,13 @@ struct PartsCase {
 };
 void PrintTo(const PartsCase& c, std::ostream* out) { *out << c.name(); }
 
-class RatePartsOf : public testing::TestWithParam<PartsCase> {};
+class RatePartsOf : public ::testing::TestWithParam<PartsCase> {};
 INSTANTIATE_TEST_SUITE_P(
     Schemes, RatePartsOf,
-    testing::Values(PartsCase{FluidScheme::plain, 2, false}, PartsCase{FluidScheme::plain, 2, true},
-                    PartsCase{FluidScheme::plain, 3, false}, PartsCase{FluidScheme::plain, 3, true},
-                    PartsCase{FluidScheme::consistent, 2, false}, PartsCase{FluidScheme::consistent, 2, true},
-                    PartsCase{FluidScheme::consistent, 3, false}, PartsCase{FluidScheme::consistent, 3, true}),
+    ::testing::Values(PartsCase{FluidScheme::plain, 2, false}, PartsCase{FluidScheme::plain, 2, true},
+                      PartsCase{FluidScheme::plain, 3, false}, PartsCase{FluidScheme::plain, 3, true},
+                      PartsCase{FluidScheme::consistent, 2, false}, PartsCase{FluidScheme::consistent, 2, true},
+                      PartsCase{FluidScheme::consistent, 3, false}, PartsCase{FluidScheme::consistent, 3, true}),
     [](const auto& c) { return c.param.name(); });
 
 /// Random fields; with a surface: holes, and spray above.

@@ -25,7 +25,7 @@ struct RatesCase {
 };
 void PrintTo(const RatesCase& c, std::ostream* out) { *out << c.name(); }
 
-class FluidPass : public testing::TestWithParam<RatesCase> {};
+class FluidPass : public ::testing::TestWithParam<RatesCase> {};
 
 /// A perturbed periodic fluid (phase 0) and a wall (phase 1) within reach of some of it, all fields random.
 Cast fluid_and_wall(int dimensions, Uniform& random, std::size_t padding = simd::width_in_use<double>()) {
@@ -159,11 +159,11 @@ TEST_P(FluidPass, MixedPrecisionEqualsTheNaiveSumsToSinglePrecision) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, FluidPass,
-                         testing::Values(RatesCase{2, FluidScheme::plain, KernelKind::cubic_spline},
-                                         RatesCase{3, FluidScheme::plain, KernelKind::wendland_c2},
-                                         RatesCase{2, FluidScheme::consistent, KernelKind::wendland_c2},
-                                         RatesCase{2, FluidScheme::consistent, KernelKind::cubic_spline},
-                                         RatesCase{3, FluidScheme::consistent, KernelKind::wendland_c2}),
+                         ::testing::Values(RatesCase{2, FluidScheme::plain, KernelKind::cubic_spline},
+                                           RatesCase{3, FluidScheme::plain, KernelKind::wendland_c2},
+                                           RatesCase{2, FluidScheme::consistent, KernelKind::wendland_c2},
+                                           RatesCase{2, FluidScheme::consistent, KernelKind::cubic_spline},
+                                           RatesCase{3, FluidScheme::consistent, KernelKind::wendland_c2}),
                          [](const auto& c) { return c.param.name(); });
 
 // A few particles in the open, as air among flying grains: the gradient cannot be corrected, and nothing blows up.

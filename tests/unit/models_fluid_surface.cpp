@@ -66,10 +66,10 @@ struct Where {
 };
 void PrintTo(const Where& w, std::ostream* out) { *out << w.name(); }
 
-class FluidThatEnds : public testing::TestWithParam<Where> {};
+class FluidThatEnds : public ::testing::TestWithParam<Where> {};
 INSTANTIATE_TEST_SUITE_P(Schemes, FluidThatEnds,
-                         testing::Values(Where{FluidScheme::plain, 2}, Where{FluidScheme::plain, 3},
-                                         Where{FluidScheme::consistent, 2}, Where{FluidScheme::consistent, 3}),
+                         ::testing::Values(Where{FluidScheme::plain, 2}, Where{FluidScheme::plain, 3},
+                                           Where{FluidScheme::consistent, 2}, Where{FluidScheme::consistent, 3}),
                          [](const auto& w) { return w.param.name(); });
 
 // A slab with two surfaces, holes in it and spray over it; random fields, a pressure of the void, loose fluid.
@@ -167,8 +167,8 @@ std::size_t beside_voids(Cast& cast, const FluidParameters& q, LooseParticles& l
   return beside_voids(cast, q, loose, finder);
 }
 
-class Voids : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, Voids, testing::Values(2, 3));
+class Voids : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, Voids, ::testing::Values(2, 3));
 
 // Disorder of a quarter of a spacing: a hundred particles are loose, none stands beside a void.
 TEST_P(Voids, DisorderIsNone) {
@@ -280,10 +280,10 @@ struct Set {
 };
 void PrintTo(const Set& s, std::ostream* out) { *out << s.name(); }
 
-class Finder : public testing::TestWithParam<Set> {};
+class Finder : public ::testing::TestWithParam<Set> {};
 INSTANTIATE_TEST_SUITE_P(Sets, Finder,
-                         testing::Values(Set{2, 0.0, false}, Set{2, 0.25, false}, Set{2, 0.25, true},
-                                         Set{3, 0.0, false}, Set{3, 0.25, false}, Set{3, 0.25, true}),
+                         ::testing::Values(Set{2, 0.0, false}, Set{2, 0.25, false}, Set{2, 0.25, true},
+                                           Set{3, 0.0, false}, Set{3, 0.25, false}, Set{3, 0.25, true}),
                          [](const auto& s) { return s.param.name(); });
 
 // One particle in twenty is of the surface; B is random. Of every particle nearer than 0.7 kernel radii to one of the

@@ -109,7 +109,7 @@ TEST(Arrivals, OfAFileAreDrawnBySpeedThroughTheSide) {
     frame.fields[0].values.insert(frame.fields[0].values.end(), {x[k][1], x[k][2], 0.0});
     frame.fields[1].values.push_back(x[k][3]);
   }
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "barchan_flight.vtp";
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "barchan_flight.vtp";
   write_frame(file, frame, FrameFormat::vtp, true);
   const Scene scene = scene_with("side = \"left\"\nflux = 0.03\nabove = 0.1\nfile = \"" + file.string() + "\"");
   const Arrivals arrivals(scene, 0, 1e-3);

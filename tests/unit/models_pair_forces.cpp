@@ -10,8 +10,8 @@ namespace {
 
 using namespace sets;
 
-class DragPass : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, DragPass, testing::Values(2, 3));
+class DragPass : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, DragPass, ::testing::Values(2, 3));
 
 // -K V_f W |v_ab| v_ab, V_f the volume of the fluid particle, seen from the grains and from the fluid.
 TEST_P(DragPass, EqualsTheNaiveSumsAndActsBack) {

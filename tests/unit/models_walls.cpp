@@ -64,8 +64,8 @@ std::vector<Solid> every_solid() {
   return solids;
 }
 
-class Extension : public testing::TestWithParam<Solid> {};
-INSTANTIATE_TEST_SUITE_P(Walls, Extension, testing::ValuesIn(every_solid()),
+class Extension : public ::testing::TestWithParam<Solid> {};
+INSTANTIATE_TEST_SUITE_P(Walls, Extension, ::testing::ValuesIn(every_solid()),
                          [](const auto& solid) { return solid.param.name(); });
 
 TEST_P(Extension, EqualsTheNaiveSums) {

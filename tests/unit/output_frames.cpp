@@ -35,7 +35,7 @@ struct Way {
 };
 void PrintTo(const Way& way, std::ostream* out) { *out << way.name(); }
 
-class RoundTrip : public testing::TestWithParam<Way> {};
+class RoundTrip : public ::testing::TestWithParam<Way> {};
 
 TEST_P(RoundTrip, ReturnsEveryBit) {
   const auto& [format, compress, particles] = GetParam();
@@ -55,7 +55,7 @@ std::vector<Way> every_way() {
   return ways;
 }
 
-INSTANTIATE_TEST_SUITE_P(Frames, RoundTrip, testing::ValuesIn(every_way()),
+INSTANTIATE_TEST_SUITE_P(Frames, RoundTrip, ::testing::ValuesIn(every_way()),
                          [](const auto& way) { return way.param.name(); });
 
 TEST(Frames, CompressionMakesThemSmaller) {

@@ -24,10 +24,10 @@ struct Of {
 };
 
 template <class Type>
-class Vectors : public testing::Test {};
+class Vectors : public ::testing::Test {};
 
-using Types = testing::Types<Of<double, 1>, Of<double, 2>, Of<double, 4>, Of<double, 8>, Of<double, 16>, Of<float, 1>,
-                             Of<float, 2>, Of<float, 4>, Of<float, 8>, Of<float, 16>>;
+using Types = ::testing::Types<Of<double, 1>, Of<double, 2>, Of<double, 4>, Of<double, 8>, Of<double, 16>, Of<float, 1>,
+                               Of<float, 2>, Of<float, 4>, Of<float, 8>, Of<float, 16>>;
 TYPED_TEST_SUITE(Vectors, Types);
 
 #define IN_TYPED_TEST                                   \

@@ -31,7 +31,7 @@ std::string file_with(const std::string& name, const std::string& text) {
 }
 
 /// A ball of radius 1 as OBJ, in `rows` rings of 2 `rows` quadrilaterals; without its first `missing` ones.
-std::string ball(int rows, int missing = 0) {
+std::string ball_shape(int rows, int missing = 0) {
   std::ostringstream text;
   const double pi = std::numbers::pi;
   const int around = 2 * rows;
@@ -105,7 +105,7 @@ TEST(Outline, RaysThroughCornersAreCountedOnce) {
 }
 
 TEST(Surfaces, AFileFillsWhatItHolds) {
-  const std::string path = file_with("ball.obj", ball(24));
+  const std::string path = file_with("ball.obj", ball_shape(24));
   const Scene scene = with_shape("{ surface = \"" + path + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3);
   const auto x = generate(scene)[0].position;
   const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(0.4, 3);
@@ -157,9 +157,9 @@ TEST(Surfaces, WhatCannotBeFilledIsRefused) {
   says(surface_refusal("{ surface = \"" + file_with("empty.stl", "solid a\nendsolid a\n") + "\" }", 3),
        "neither triangles nor lines");
   says(surface_refusal(
-           "{ surface = \"" + file_with("open.obj", ball(8, 3)) + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3),
+           "{ surface = \"" + file_with("open.obj", ball_shape(8, 3)) + "\", scale = 0.4, move = [0.5, 0.5, 0.5] }", 3),
        "the surface is open: 1 triangle has the edge");
-  says(surface_refusal("{ surface = \"" + file_with("flat.obj", ball(8)) + "\" }"),
+  says(surface_refusal("{ surface = \"" + file_with("flat.obj", ball_shape(8)) + "\" }"),
        "a surface of triangles in two dimensions");
   says(surface_refusal("{ disc = { centre = [0.5, 0.5], radius = 0.2 }, turn = 3 }"),
        "fill.0.shape.turn: this shape says itself");

@@ -34,7 +34,7 @@ bool by_surfaces(const Scene& scene, const PlanEntry& e) {
 bool carry_short_waves(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   return std::none_of(layout.phases.begin(), layout.phases.end(), [&](const PlanPhase& p) {
     const auto k = static_cast<std::size_t>(&p - layout.phases.data());
-    return e.has(k) && p.yields && !scene.phases[k].elastic().wave_correction;
+    return e.has(k) && p.yields() && !scene.phases[k].elastic().wave_correction;
   });
 }
 
@@ -44,7 +44,7 @@ BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry&
   double softest = 1e300, compliance = 0.0, inverse_mass = 0.0;
   for (const std::size_t k : {e.a, e.b}) {  // of a body with itself twice
     const PlanPhase& p = layout.phases[k];
-    if (!p.yields) continue;
+    if (!p.yields()) continue;
     const double modulus = scene.phases[k].density * p.sound_speed * p.sound_speed;
     const double continued = modulus * std::pow(p.spacing, layout.dimensions - 2);
     softest = std::min(softest, share * continued);
@@ -53,7 +53,8 @@ BodyContactLaw law_of(const Scene& scene, const Layout& layout, const PlanEntry&
   }
   const double distance = 0.5 * (layout.phases[e.a].spacing + layout.phases[e.b].spacing);
   const double stiffness = carry_short_waves(scene, layout, e) ? side / compliance : softest;
-  return BodyContactLaw::of(distance, stiffness, 1.0 / inverse_mass, e.restitution, e.friction);
+  return BodyContactLaw::of(distance, stiffness, 1.0 / inverse_mass, e.given.restitution.value_or(1.0),
+                            e.given.friction.value_or(0.0));
 }
 
 }  // namespace
@@ -79,10 +80,10 @@ void describe_body_contact(const Scene& scene, const Interaction& pair, const La
   const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
   e.law = "contact";
   e.meaning = "bodies: touching decides";
-  const bool many = (a.deforms && a.count > 1) || (b.deforms && b.count > 1);
-  if (e.restitution < 1.0 && many) {
+  const bool many = (a.deforms() && a.count > 1) || (b.deforms() && b.count > 1);
+  if (const double restitution = pair.restitution.value_or(1.0); restitution < 1.0 && many) {
     char number[32];
-    std::snprintf(number, sizeof number, "%.3g", e.restitution);
+    std::snprintf(number, sizeof number, "%.3g", restitution);
     e.meaning += "; restitution " + std::string(number) +
                  " is of two particles, bodies of many keep more (0.91 to 0.93 measured)";
   }
@@ -90,20 +91,20 @@ void describe_body_contact(const Scene& scene, const Interaction& pair, const La
   e.radius = layout.touching_distance(e) * (pair.surfaces ? SmoothContactLaw::reach : 1.0);
   e.keeps_apart = true;
   const bool surfaces = has_surfaces(scene, scene.phases[e.a]) || has_surfaces(scene, scene.phases[e.b]);
-  e.searched = !surfaces;
-  e.feels_lattice = !surfaces && !(a.moves && b.moves);
+  e.pairs = surfaces ? Pairs::own : Pairs::searched;
+  e.feels_lattice = !surfaces && !(a.moves() && b.moves());
 }
 
 PlanEntry self_contact_of(const Scene& scene, const Interaction& pair, const Layout& layout, const PlanEntry& held) {
   PlanEntry e = held;
   e.name += " contact";
-  e.first_shape = e.corrected = e.reads_stress = false;
+  e.corrected = e.reads_stress = false;
   e.self_contact = true;
   e.consistency = {};
   describe_body_contact(scene, pair, layout, e);
   // Lists of another radius would be sorted at other moments, which changes the order of all sums.
   e.forward = e.backward = -1;
-  if (held.reads_stress) e.searched = false;
+  if (held.reads_stress) e.pairs = Pairs::own;
   return e;
 }
 
@@ -120,7 +121,7 @@ BodyContact::BodyContact(const Scene& scene, const Layout& layout, const PlanEnt
 /// m, the radius in which a particle of a body finds those that it was made with.
 double BodyContact::held_within(std::size_t phase) const {
   for (const PlanEntry& e : layout_.entries)
-    if ((e.first_shape || e.reads_stress) && e.a == phase && e.b == phase) return e.radius;
+    if ((e.pairs == Pairs::first_shape || e.reads_stress) && e.a == phase && e.b == phase) return e.radius;
   return 2.0 * layout_.phases[phase].spacing;
 }
 
@@ -140,7 +141,7 @@ void BodyContact::begin(State&, const std::vector<ParticleBlock>& blocks) {
     }
   if (!itself()) return;
   const auto held = std::find_if(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& e) {
-    return (e.first_shape || e.reads_stress) && e.a == entry_.a && e.b == entry_.a;
+    return (e.pairs == Pairs::first_shape || e.reads_stress) && e.a == entry_.a && e.b == entry_.a;
   });
   list_ = held->reads_stress ? held->forward : entry_.forward;
   far_ = FarPairs(blocks[entry_.a].position, layout_.bounds, layout_.phases[entry_.a].spacing, held->radius);
@@ -175,7 +176,7 @@ void BodyContact::schedule(Schedule& s) {
   }
   if (smooth_) return schedule_surfaces(s);
   for (const std::size_t phase : {entry_.a, entry_.b}) {
-    if (!layout_.phases[phase].moves) continue;
+    if (!layout_.phases[phase].moves()) continue;
     if (!sides_.empty())
       s.add({stage::contacts, entry_.name, touched(phase), [this, phase] { push_from_sides(phase); }});
     if (surfaces_ && !surfaces_->empty())
@@ -216,7 +217,7 @@ void BodyContact::push_surface(std::size_t phase) {
 bool BodyContact::of_single_particles() const {
   return std::any_of(layout_.phases.begin(), layout_.phases.end(), [&](const PlanPhase& p) {
     const auto k = static_cast<std::size_t>(&p - layout_.phases.data());
-    if (!entry_.has(k) || !p.yields) return false;
+    if (!entry_.has(k) || !p.yields()) return false;
     return p.count == 1 || std::none_of(layout_.entries.begin(), layout_.entries.end(),
                                         [&](const PlanEntry& e) { return e.a == k && e.b == k; });
   });

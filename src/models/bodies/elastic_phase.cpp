@@ -32,15 +32,14 @@ double compression_speed(const ElasticKeys& p, double density) {
   return std::sqrt((lame + 2 * shear) / density);
 }
 
-PhaseRules elastic_rules(const PlanPhase& p, double spacing, const std::string& step_key) {
+PhaseRules elastic_rules(const PlanPhase& p, bool can_turn, const std::string& step_key) {
   PhaseRules r;
-  r.way = 0.5 * spacing;
+  r.way = 0.5 * p.spacing;
   r.signal_speed = p.sound_speed;
   r.idle = 0.01;
   r.stops_at_sides = true;
   r.one = "particle of a body";
-  r.remedy = [key = "phases." + p.name + ".", c = p.sound_speed, can_turn = p.fixed_neighbours, step_key](
-                 Fault fault, double, double) {
+  r.remedy = [key = "phases." + p.name + ".", c = p.sound_speed, can_turn, step_key](Fault fault, double, double) {
     switch (fault) {
       case Fault::not_finite: return key + "artificial-viscosity";
       case Fault::passed_wall: return "raise " + key + "young, lower its speed, or lower " + step_key;
@@ -91,10 +90,7 @@ void refuse_turning(const Scene& scene, const ParticleBlock& block) {
   }
 }
 
-void declare_elastic(const Scene&, std::size_t number, Layout& layout) {
-  PlanPhase& p = layout.phases[number];
-  p.moves = p.kicked = p.yields = true;
-}
+void declare_elastic(const Scene&, std::size_t number, Layout& layout) { layout.phases[number].mover = Mover::elastic; }
 
 void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                       std::vector<std::string>&) {
@@ -105,14 +101,12 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
     if (!is_total(phase)) refuse_turning(scene, blocks[number]);
   }
   PlanPhase& p = layout.phases[number];
-  p.deforms = p.noiseless = p.counts_drive = true;
-  p.fixed_neighbours = phase.elastic().formulation == Formulation::total_lagrangian;
-  p.stress_records = !p.fixed_neighbours;
-  if (!p.fixed_neighbours) p.physics = "elastic";
+  const bool total = is_total(phase);
+  if (!total) p.physics = "elastic";
   p.fields = {position, velocity, density, pressure, acceleration};
-  if (!p.fixed_neighbours || is_output(scene, stress)) p.fields.push_back(stress);
-  if (!p.fixed_neighbours && phase.elastic().energy) p.fields.insert(p.fields.end(), {energy, energy_rate});
-  if (p.fixed_neighbours) {  // TotalPhase::derive
+  if (!total || is_output(scene, stress)) p.fields.push_back(stress);
+  if (!total && phase.elastic().energy) p.fields.insert(p.fields.end(), {energy, energy_rate});
+  if (total) {  // TotalPhase::derive
     for (const Field field : {von_mises_stress, principal_stress, strain})
       if (is_output(scene, field)) p.fields.push_back(field);
   } else {
@@ -120,7 +114,7 @@ void describe_elastic(const Scene& scene, const std::vector<ParticleBlock>& bloc
   }
   if (is_output(scene, contact_force) && touches_as_body(scene, phase)) p.fields.push_back(contact_force);
   p.sound_speed = compression_speed(phase.elastic(), phase.density);
-  p.rules = elastic_rules(p, p.spacing, scene.time.fixed_step ? "time.step" : "time.safety");
+  p.rules = elastic_rules(p, total, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
 void describe_elastic_pairs(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {

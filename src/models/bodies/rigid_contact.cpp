@@ -39,29 +39,40 @@ double reach_of(const std::vector<ContactSurface>& surfaces, const Vec3& place) 
 
 }  // namespace
 
+double contact_stiffness(const Scene& scene, const Layout& layout, std::size_t phase) {
+  const RigidKeys& keys = scene.phases[phase].rigid();
+  const PlanPhase& p = layout.phases[phase];
+  double heaviest = 0.0;
+  for (const RigidBody& body : p.rigid_bodies) heaviest = std::max(heaviest, body.mass);
+  // K d^2 = M v^2
+  return keys.stiffness.value_or(
+      heaviest *
+      std::pow(layout.largest_speed / (keys.largest_overlap.value_or(RigidKeys::dry_overlap) * p.spacing), 2));
+}
+
 void describe_rigid_contact(const Scene&, const Interaction&, const Layout& layout, PlanEntry& e) {
   e.law = "contact";
   e.meaning = "bodies: touching decides";
   e.radius = layout.touching_distance(e);
-  e.searched = false;
-  e.by_outlines = true;
+  e.pairs = Pairs::outlines;
 }
 
 RigidContact::RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry)
     : scene_(scene), layout_(layout), entry_(entry), room_(room_of_water()) {
   double stiffness = 1e300;
   for (const std::size_t k : {entry.a, entry.b}) {
-    if (!layout.phases[k].moves) continue;
+    if (!layout.phases[k].moves()) continue;
     const RigidKeys& keys = scene.phases[k].rigid();
     const bool softer = room_ > 0.0 && !keys.stiffness && !keys.largest_overlap;
     const double ratio = softer ? RigidKeys::dry_overlap / RigidKeys::wet_overlap : 1.0;
-    stiffness = std::min(stiffness, layout.phases[k].contact_stiffness * ratio * ratio);
+    const double own = contact_stiffness(scene, layout, k);
+    stiffness = std::min(stiffness, own * ratio * ratio);
   }
   if (!(stiffness > 0.0))
     throw SceneError(located(scene, "interactions." + entry.name) +
                      ": nothing in the scene moves or weighs, from which the stiffness of the contact could follow; "
                      "expected time.largest-speed, or stiffness of both phases");
-  law_ = {stiffness, entry.restitution, entry.friction};
+  law_ = {stiffness, entry.given.restitution.value_or(1.0), entry.given.friction.value_or(0.0)};
 }
 
 void RigidContact::schedule(Schedule& s) {
@@ -84,7 +95,7 @@ void RigidContact::attach(Workspace& w) {
           for (const TouchPoint& probe : surface.probes()) widest = std::max(widest, probe.radius);
   const double reach = widest + std::max({layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing, room_});
   const auto add = [&](std::size_t phase, std::vector<Side>& sides) {
-    if (layout_.phases[phase].moves) add_bodies(phase, reach, sides);
+    if (layout_.phases[phase].moves()) add_bodies(phase, reach, sides);
     else add_wall(phase, reach, sides);
   };
   add(entry_.a, a_);
@@ -104,7 +115,7 @@ double RigidContact::room_of_water() const {
     });
   };
   for (std::size_t k = 0; k < layout_.phases.size(); ++k)
-    if (layout_.phases[k].flows && wets(k, entry_.a) && wets(k, entry_.b))
+    if (layout_.phases[k].flows() && wets(k, entry_.a) && wets(k, entry_.b))
       room = std::max(room, layout_.phases[k].spacing);
   return room;
 }
@@ -302,7 +313,7 @@ std::optional<std::string> RigidContact::trouble() const {
   const double spacing = std::min(layout_.phases[entry_.a].spacing, layout_.phases[entry_.b].spacing);
   const double bound = std::max(deepest_overlap * spacing, room_);
   if (!(overlap_ > bound)) return std::nullopt;
-  const std::string& name = layout_.phases[layout_.phases[entry_.a].moves ? entry_.a : entry_.b].name;
+  const std::string& name = layout_.phases[layout_.phases[entry_.a].moves() ? entry_.a : entry_.b].name;
   return "the outlines of " + entry_.name + " overlap by " + brief(overlap_) + " m (bound " + brief(bound) + " m" +
          (room_ > 0.0 ? ", a spacing of the fluid between included" : "") +
          "); the contact could not keep them apart, or the fills overlap: raise phases." + name +

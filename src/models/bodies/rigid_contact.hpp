@@ -12,6 +12,10 @@ namespace barchan {
 /// An entry of rigid bodies, or of rigid bodies with a wall.
 void describe_rigid_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e);
 
+/// N/m (2D: N/m a metre), of a contact of the bodies of a phase: one that comes with the largest speed of the scene is
+/// stopped within the overlap that the scene says.
+double contact_stiffness(const Scene& scene, const Layout& layout, std::size_t phase);
+
 class RigidContact : public Model {
  public:
   RigidContact(const Scene& scene, const Layout& layout, const PlanEntry& entry);

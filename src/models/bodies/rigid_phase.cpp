@@ -54,21 +54,13 @@ PhaseRules rigid_rules(const PlanPhase& p, double largest_speed, const std::stri
 
 }  // namespace
 
-void declare_rigid(const Scene&, std::size_t number, Layout& layout) { layout.phases[number].moves = true; }
+void declare_rigid(const Scene&, std::size_t number, Layout& layout) { layout.phases[number].mover = Mover::rigid; }
 
 void describe_rigid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                     std::vector<std::string>&) {
   PlanPhase& p = layout.phases[number];
-  const RigidKeys& keys = scene.phases[number].rigid();
-  p.tells_motion = p.noiseless = true;
   p.fields = {Field::position, Field::velocity, Field::acceleration};
   p.rigid_bodies = rigid_bodies(scene, blocks[number], number, layout);
-  double heaviest = 0.0;
-  for (const RigidBody& body : p.rigid_bodies) heaviest = std::max(heaviest, body.mass);
-  // A body that comes with the largest speed v is stopped within the overlap d: K d^2 = M v^2.
-  p.contact_stiffness = keys.stiffness.value_or(
-      heaviest *
-      std::pow(layout.largest_speed / (keys.largest_overlap.value_or(RigidKeys::dry_overlap) * p.spacing), 2));
   p.rules = rigid_rules(p, layout.largest_speed, scene.time.fixed_step ? "time.step" : "time.safety");
 }
 
@@ -87,9 +79,9 @@ RigidPhase::RigidPhase(const Scene& scene, const Layout& layout, std::size_t num
       limit_{"motion " + plan_.name, 1e300, "a tenth of a radian, a fifth of a spacing"} {
   for (const Motion& motion : scene.motions) holds_.emplace_back(motion);
   touches_spheres_ = std::any_of(layout.entries.begin(), layout.entries.end(),
-                                 [&](const PlanEntry& e) { return e.has(number) && e.own_steps; });
+                                 [&](const PlanEntry& e) { return e.has(number) && e.of_spheres(); });
   felt_ = forces_.any() || std::any_of(layout.entries.begin(), layout.entries.end(),
-                                       [&](const PlanEntry& e) { return e.has(number) && !e.by_outlines; });
+                                       [&](const PlanEntry& e) { return e.has(number) && !e.by_outlines(); });
 }
 
 void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {

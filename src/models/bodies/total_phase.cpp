@@ -102,8 +102,7 @@ template struct TotalWork<double>;
 
 void describe_total_body(const Scene& scene, const Interaction& pair, const Layout&, PlanEntry& e) {
   e.law = "elastic";
-  e.searched = false;
-  e.first_shape = true;
+  e.pairs = Pairs::first_shape;
   describe_approximation(pair, scene.dimensions, "in the body's first shape", e);
 }
 
@@ -116,7 +115,7 @@ TotalPhase::TotalPhase(const Scene& scene, const Layout& layout, std::size_t num
       forces_(scene, phase_.name),
       limit_{"stretch " + phase_.name, 1e300, "its stiffest vibration, as deformed"} {
   for (const auto& e : layout.entries)
-    if (e.first_shape && e.a == number) own_ = &e;
+    if (e.pairs == Pairs::first_shape && e.a == number) own_ = &e;
   const ElasticKeys& keys = phase_.elastic();
   parameters_.law = keys.elasticity;
   parameters_.moduli = ElasticModuli::of(keys.young, keys.poisson, keys.retardation);

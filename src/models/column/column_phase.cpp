@@ -48,9 +48,9 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
     if (!e.has(number)) continue;
     const std::size_t grains = e.partner(number);
     const PlanPhase& plan = layout.phases[grains];
-    feeling_.push_back({grains, e.drag_law, scene.phases[grains].density, plan.size, plan.own_steps, {}, {}});
-    diameter_ = std::max(diameter_, plan.size);
-    crowded_ = crowded_ || e.drag_law == DragLaw::di_felice;
+    feeling_.push_back({grains, e.given.drag_law, scene.phases[grains].density, plan.size(), plan.own_steps(), {}, {}});
+    diameter_ = std::max(diameter_, plan.size());
+    crowded_ = crowded_ || e.given.drag_law == DragLaw::di_felice;
   }
   const double g = std::abs(scene.domain.gravity[1]);
   interval_ = interval_share * std::sqrt(diameter_ / (g > 0.0 ? g : 9.81));
@@ -353,7 +353,7 @@ void ColumnPhase::find_voidage() {
 }
 
 void ColumnPhase::report(Warnings& warnings) const {
-  const std::string& told = layout_.phases[number_].too_strong;
+  const std::string& told = layout_.phases[number_].wind.beyond_measured;
   if (!feeling_.empty() && !told.empty()) warnings.add("wind of " + scene_.phases[number_].name, told);
 }
 

@@ -31,27 +31,27 @@ void declare_column(const Scene&, std::size_t, Layout&) {}  // the defaults: not
 void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                      std::vector<std::string>&) {
   const ColumnKeys& keys = scene.phases[number].column();
-  layout.phases[number].physics = "column";
-  layout.phases[number].driven = !keys.held;
-  layout.phases[number].too_strong = beyond_measured_winds(scene, scene.phases[number], keys);
+  PlanPhase& p = layout.phases[number];
+  p.physics = "column";
+  p.wind.driven = !keys.held;
+  p.wind.beyond_measured = beyond_measured_winds(scene, scene.phases[number], keys);
   if (!keys.held)
-    layout.phases[number].friction_velocity = [u = keys.friction_velocity](double time) {
-      return std::abs(Formula(u)({}, time));
-    };
+    p.wind.friction_velocity = [u = keys.friction_velocity](double time) { return std::abs(Formula(u)({}, time)); };
   const Formula friction_velocity(keys.friction_velocity);
   constexpr int moments = 64;
-  double& wind = layout.phases[number].wind;
+  double& largest = p.wind.largest_speed;
   for (int k = 0; k <= moments; ++k)
-    wind = std::max(wind, most_over_friction_velocity * std::abs(friction_velocity({}, scene.time.end * k / moments)));
-  if (keys.speed) wind = std::max(wind, std::abs(*keys.speed));
-  if (keys.log_profile) wind = std::max(wind, std::abs(log_wind(*keys.log_profile, scene.domain.size[1])));
+    largest =
+        std::max(largest, most_over_friction_velocity * std::abs(friction_velocity({}, scene.time.end * k / moments)));
+  if (keys.speed) largest = std::max(largest, std::abs(*keys.speed));
+  if (keys.log_profile) largest = std::max(largest, std::abs(log_wind(*keys.log_profile, scene.domain.size[1])));
 }
 
 void describe_grains_in_column(const Scene&, const Interaction&, const Layout&, PlanEntry& e) {
   e.law = "column";
   e.meaning = "no kernel: the wind of the grain's height";
-  e.searched = false;  // by height
-  e.blows = e.wind_by_height = e.feeds = true;
+  e.pairs = Pairs::own;  // by height
+  e.blows = e.wind_by_height = true;
 }
 
 }  // namespace barchan

@@ -8,7 +8,7 @@ namespace barchan {
 std::vector<std::size_t> airs_about(const Layout& layout, std::size_t grains) {
   std::vector<std::size_t> airs;
   for (const PlanEntry& e : layout.entries)
-    if (e.blows && !e.wind_by_height && e.drag_law != DragLaw::none && e.other == grains) airs.push_back(e.fluid);
+    if (e.blows && !e.wind_by_height && e.given.drag_law != DragLaw::none && e.other == grains) airs.push_back(e.fluid);
   std::sort(airs.begin(), airs.end(),
             [&](std::size_t a, std::size_t b) { return layout.phases[a].spacing < layout.phases[b].spacing; });
   return airs;

@@ -21,7 +21,7 @@ BorderNeighbours::BorderNeighbours(const Layout& layout, std::size_t fluid, doub
     : fluid_(fluid), radius_(radius), reach_(radius) {
   double widest = 0.0;
   for (const PlanEntry& e : layout.entries)
-    if (e.searched) widest = std::max(widest, layout.skin * e.radius);
+    if (e.pairs == Pairs::searched) widest = std::max(widest, layout.skin * e.radius);
   reach_ += widest;
 }
 

@@ -13,7 +13,7 @@ namespace barchan {
 void describe_sand_layer(const Scene&, const Interaction&, const Layout&, PlanEntry& e) {
   e.law = "drag";
   e.meaning = "no kernel: the mean wind about the grain, in layers near the ground";
-  e.searched = false;  // by place
+  e.pairs = Pairs::own;  // by place
   e.blows = true;
 }
 
@@ -27,23 +27,23 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       layout_(layout),
       fluid_(entry.fluid),
       grains_(entry.other),
-      law_(entry.drag_law),
+      law_(entry.given.drag_law),
       name_(entry.name),
       density_(scene.phases[fluid_].density),
       viscosity_(scene.phases[fluid_].fluid().viscosity),
       diameter_(layout.phases[grains_].diameter),
       top_(reach * layout.phases[fluid_].spacing),
-      lift_(entry.lift),
-      interval_(entry.coupling_interval > 0.0
-                    ? entry.coupling_interval
+      lift_(entry.given.lift),
+      interval_(entry.given.coupling_interval.value_or(0.0) > 0.0
+                    ? *entry.given.coupling_interval
                     : interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
       grid_(layout, airs_about(layout, grains_)),
       may_rest_(scene.phases[grains_].grains().sleep) {
-  if (!(entry.gusts > 0.0)) return;
+  if (!(entry.given.gusts > 0.0)) return;
   const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
   const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
   const double low = layout.domain.low[0], size = layout.domain.high[0] - low;
-  gusts_.emplace(entry.gusts, viscosity_, bagnold, low, size,
+  gusts_.emplace(entry.given.gusts, viscosity_, bagnold, low, size,
                  static_cast<std::size_t>(std::max(1.0, std::round(size / layout.phases[fluid_].spacing))));
 }
 

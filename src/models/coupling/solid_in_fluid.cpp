@@ -7,7 +7,7 @@ namespace barchan {
 
 void describe_coupling(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
   e.law = "coupling";
-  e.blows = layout.phases[e.other].separate;
+  e.blows = layout.phases[e.other].separate();
   describe_extension(scene, pair, e);
 }
 
@@ -21,7 +21,7 @@ SolidInFluid::SolidInFluid(const Scene& scene, const Layout& layout, std::size_t
       layout_(layout),
       solid_(solid),
       by_borders_(by_borders),
-      separate_(layout.phases[solid].separate),
+      separate_(layout.phases[solid].separate()),
       rule_{Slip::no_slip, !separate_, separate_} {
   if (separate_) return;
   rule_.rub = wall_rub(scene, layout, solid);

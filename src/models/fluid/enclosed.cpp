@@ -168,15 +168,15 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
   std::string piston;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     if (!entry_between(scene, phase, scene.phases[k])) continue;
-    walled = walled || !layout.phases[k].moves;
-    if (layout.phases[k].travels) piston = layout.phases[k].name;
-    if (layout.phases[k].flows && k != fluid) return result.why = layout.phases[k].name + " can give way", result;
+    walled = walled || !layout.phases[k].moves();
+    if (layout.phases[k].travels()) piston = layout.phases[k].name;
+    if (layout.phases[k].flows() && k != fluid) return result.why = layout.phases[k].name + " can give way", result;
   }
   if (!result.free_space.empty()) return result.why = "free space at " + result.free_space, result;
 
   Cells walls(scene);
   for (std::size_t k = 0; k < blocks.size(); ++k)
-    if (!layout.phases[k].moves && entry_between(scene, phase, scene.phases[k]))
+    if (!layout.phases[k].moves() && entry_between(scene, phase, scene.phases[k]))
       for (const Vec3& x : blocks[k].position) walls.take(walls.cell_of(x));
   struct Found {
     bool any = false;

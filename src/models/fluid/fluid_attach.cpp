@@ -36,7 +36,6 @@ void enclose(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::
   p.free_surface = !p.enclosed && seen.open;
   p.open = open_sides(scene, fluid, p.free_surface);
   p.flow_ends = flow_ends(scene, scene.phases[fluid]);
-  p.takes_momentum = p.gives_energy = !p.flow_ends.empty();
   for (const FlowEnd& end : p.flow_ends) {
     const auto& places = blocks[fluid].position;
     if (Exchange().any(
@@ -97,21 +96,18 @@ PhaseRules rules_of(const PlanPhase& p, const std::string& step_key, const std::
 
 }  // namespace
 
-void declare_fluid(const Scene&, std::size_t number, Layout& layout) {
-  PlanPhase& p = layout.phases[number];
-  p.moves = p.flows = p.kicked = p.yields = true;
-}
+void declare_fluid(const Scene&, std::size_t number, Layout& layout) { layout.phases[number].mover = Mover::fluid; }
 
 void describe_fluid(const Scene& scene, const std::vector<ParticleBlock>& blocks, std::size_t number, Layout& layout,
                     std::vector<std::string>& warnings) {
   const Phase& phase = scene.phases[number];
   PlanPhase& p = layout.phases[number];
-  p.friction = Friction::fluid;
+  p.surface.friction = Friction::fluid;
   p.physics = phase.fluid().scheme == FluidScheme::plain ? "plain fluid" : "consistent fluid";
   p.eddies = has_eddies(scene, phase);
-  for (const auto& f : scene.forcings) p.held = p.held || (f.hold != Hold::none && f.phase == phase.name);
-  p.driven = Drive::exists(scene, phase);
-  p.friction_velocity = stated_friction_velocity(scene, phase);
+  for (const auto& f : scene.forcings) p.wind.held = p.wind.held || (f.hold != Hold::none && f.phase == phase.name);
+  p.wind.driven = Drive::exists(scene, phase);
+  p.wind.friction_velocity = stated_friction_velocity(scene, phase);
   enclose(scene, blocks, number, layout, warnings);
   check_k_omega(scene, number, layout);
   p.fields = fields_of(scene, phase, p);
@@ -122,7 +118,7 @@ void describe_fluid(const Scene& scene, const std::vector<ParticleBlock>& blocks
                      "can be chosen; give sound-speed or time.largest-speed");
   std::string movers;
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
-    if (layout.phases[k].travels && entry_between(scene, phase, scene.phases[k]))
+    if (layout.phases[k].travels() && entry_between(scene, phase, scene.phases[k]))
       movers += "; or \"" + layout.phases[k].name + "\", which moves, leaves it too little or too much room";
   p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety", movers);
 }
@@ -134,7 +130,7 @@ std::string correction_of(const Scene& scene, std::size_t fluid) {
 void describe_fluids(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
   if (e.a == e.b) check_energy_budget(scene, e.a, layout);
   e.law = "fluid";
-  e.continues_fluid = e.compact_only = true;
+  e.continues_fluid = true;
   describe_approximation(pair, scene.dimensions, correction_of(scene, e.fluid), e);
 }
 
@@ -159,7 +155,7 @@ double viscosity_of(const Scene& scene, const Layout& layout, std::size_t fluid)
 }  // namespace
 
 double pair_viscosity(const Scene& scene, const Layout& layout, std::size_t a, std::size_t b) {
-  const bool a_fluid = layout.phases[a].flows, b_fluid = layout.phases[b].flows;
+  const bool a_fluid = layout.phases[a].flows(), b_fluid = layout.phases[b].flows();
   if (!a_fluid || !b_fluid || a == b) return viscosity_of(scene, layout, a_fluid ? a : b);
   const double mu_a = viscosity_of(scene, layout, a), mu_b = viscosity_of(scene, layout, b);
   return 2.0 * mu_a * mu_b / std::max(mu_a + mu_b, 1e-300);
@@ -171,7 +167,7 @@ double viscosity_of_sums(const Scene& scene, const Layout& layout, const PlanEnt
 
 bool has_interface(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   const auto laminar = [&](std::size_t k) {
-    return layout.phases[k].flows && !layout.phases[k].eddies &&
+    return layout.phases[k].flows() && !layout.phases[k].eddies &&
            scene.phases[k].fluid().scheme == FluidScheme::consistent;
   };
   if (e.a == e.b || !e.continues_fluid || !laminar(e.a) || !laminar(e.b)) return false;
@@ -210,7 +206,7 @@ void FluidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
 /// The ground of fitted rows, if the fluid feels the wall that it is of.
 Relief FluidPhase::relief() const {
   for (const auto& e : layout_.entries) {
-    if (!e.extends || e.fluid != number_ || layout_.phases[e.other].moves) continue;
+    if (!e.extends || e.fluid != number_ || layout_.phases[e.other].moves()) continue;
     const std::string& wall = scene_.phases[e.other].name;
     for (const auto& fill : scene_.fills) {
       if (fill.phase != wall || fill.packing != Packing::fitted) continue;
@@ -316,7 +312,7 @@ void FluidPhase::attach(Workspace& w) {
     w.largest_of_ranks.push_back(&largest_viscosity_);
   }
   if (keys_.energy_budget) open_books();
-  if (plan_.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
+  if (plan_.wind.held && !(drive_ && drive_->holds_force())) hold_as_it_is(hold_, *particles_, layout_.bounds);
 }
 
 void FluidPhase::bind_entries() {
@@ -343,7 +339,7 @@ void FluidPhase::bind_entries() {
     else fluids_.push_back(n);
   }
   for (const auto& e : layout_.entries)
-    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves && !layout_.phases[e.other].travels)
+    if (e.extends && e.fluid == number_ && !layout_.phases[e.other].moves() && !layout_.phases[e.other].travels())
       close_sides(held_, w_->particles(e.other), layout_.bounds, layout_.phases[e.other].spacing);
 }
 
@@ -428,29 +424,29 @@ void FluidPhase::bind_eddies() {
 /// How this fluid rubs on another phase, and whether that is ground.
 void FluidPhase::bind_friction(EddyNeighbour& e, std::size_t other, Sides& sides, bool& particles) {
   const PlanPhase& o = layout_.phases[other];
-  e.friction = o.friction;
+  e.friction = o.surface.friction;
   if (e.friction == Friction::fluid) {
     if (o.eddies) e.eddies = &w_->eddies(other);
     e.root = std::sqrt(e.pair.viscosity);
   }
-  if (!o.moves) {
-    if (o.surface_speed > 0.0 || o.travels) e.wall = &w_->particles(other);
-    e.stress = o.stress;
-    e.roughness = o.roughness;
+  if (!o.moves()) {
+    if (o.surface.speed > 0.0 || o.travels()) e.wall = &w_->particles(other);
+    e.stress = o.surface.stress;
+    e.roughness = o.surface.roughness;
     if (e.friction == Friction::rough && drags_by_law(scene_, phase_)) e.given = &w_->ground_stress[number_];
   }
   if (e.friction == Friction::grains) {
     // A form drag is the whole friction of the grains. The logarithmic law of rough ground beside it would take the
     // same momentum twice.
     const bool drag = std::any_of(layout_.entries.begin(), layout_.entries.end(), [&](const PlanEntry& entry) {
-      return entry.drag > 0 && entry.has(number_) && entry.has(other);
+      return entry.given.drag > 0 && entry.has(number_) && entry.has(other);
     });
-    e.roughness = eddies_.roughness = drag ? 0.0 : o.roughness;
+    e.roughness = eddies_.roughness = drag ? 0.0 : o.surface.roughness;
     eddies_.grain_reach = std::max(eddies_.grain_reach, e.pair.radius);
   }
   if (e.friction != Friction::rough && e.friction != Friction::smooth && e.friction != Friction::grains) return;
-  ground_phases_.push_back({&w_->particles(other), o.spacing, o.moves || o.travels});
-  if (o.moves) {
+  ground_phases_.push_back({&w_->particles(other), o.spacing, o.moves() || o.travels()});
+  if (o.moves()) {
     particles = true;
     return;
   }

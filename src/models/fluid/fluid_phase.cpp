@@ -99,7 +99,7 @@ void FluidPhase::schedule(Schedule& s) {
     s.add({stage::kick, plan_.name, own({energy_rate}, {Field::energy}),
            [this] { advance_energy(*particles_, w_->kick_time); }});
   }
-  if (plan_.held) s.add({stage::hold, plan_.name, own({velocity}, {acceleration}), [this] { hold(); }});
+  if (plan_.wind.held) s.add({stage::hold, plan_.name, own({velocity}, {acceleration}), [this] { hold(); }});
   if (keys_.energy_budget) schedule_books(s);
   if (derives_gradient())
     s.add({stage::energy, plan_.name, beside(own({}, {}), {}, {Record::motion, Record::extended}),
@@ -267,7 +267,7 @@ void FluidPhase::history(HistoryRow& row) const {
             particles_->mass() * reproducible_sum(n, [&](std::size_t i) { return e[i]; }));
   }
   if (books_) books_->history(row);
-  if (plan_.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
+  if (plan_.wind.held) row.add(plan_.name + "_held_acceleration_x [m/s2]", hold_.acceleration[0]);
   if (drive_)
     drive_->history(row, *particles_, forces_.sum(*particles_, w_->state.time, w_->state.dt)[0], hold_.acceleration[0]);
 }

@@ -72,7 +72,7 @@ HeldShapes held_shapes(const Scene& scene, const Layout& layout, std::size_t flu
     const Phase* wall = find_phase(scene, fill.phase);
     if (!wall || !entry_between(scene, scene.phases[fluid], *wall)) continue;
     const PlanPhase& plan = layout.phases[static_cast<std::size_t>(wall - scene.phases.data())];
-    if (plan.moves || plan.travels) continue;
+    if (plan.moves() || plan.travels()) continue;
     if (const auto* box = std::get_if<BoxShape>(&fill.shape)) {
       const HeldBox held{box->min, box->max};
       if (!stands_in([&](const Vec3& x) { return is_in(held, x, layout.dimensions); })) shapes.boxes.push_back(held);

@@ -37,7 +37,7 @@ Column column_of(const Scene& scene, const Layout& layout, const ParticleBlock& 
     column.hydrostatic = column.hydrostatic || f.hydrostatic;
     perturbed = perturbed || f.perturb > 0;
   }
-  if (!layout.phases[k].flows || block.count() == 0) column.hydrostatic = false;
+  if (!layout.phases[k].flows() || block.count() == 0) column.hydrostatic = false;
   if (!column.hydrostatic) return column;
   column.density = s.density;
   column.sound_speed = layout.phases[k].sound_speed;

@@ -13,7 +13,7 @@ namespace {
 /// Sides of the domain along which fluids slip: they take no momentum along periodic axes.
 bool is_slippery_side(const Scene& scene, const Layout& layout, std::size_t wall) {
   const PlanPhase& p = layout.phases[wall];
-  return p.takes_momentum && p.friction == Friction::slip && !p.gives_energy &&
+  return p.takes_momentum() && p.surface.friction == Friction::slip && !p.gives_energy() &&
          std::all_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
            return fill.phase != p.name || std::holds_alternative<SidesShape>(fill.shape);
          });
@@ -30,8 +30,8 @@ std::vector<std::size_t> fluids_alone(const Scene& scene, const Layout& layout, 
     for (const PlanEntry& e : layout.entries) {
       if (!e.has(fluids[k]) || e.a == e.b) continue;
       const std::size_t other = e.partner(fluids[k]);
-      if (!layout.phases[other].flows && !is_slippery_side(scene, layout, other)) return {};
-      if (layout.phases[other].flows && std::find(fluids.begin(), fluids.end(), other) == fluids.end())
+      if (!layout.phases[other].flows() && !is_slippery_side(scene, layout, other)) return {};
+      if (layout.phases[other].flows() && std::find(fluids.begin(), fluids.end(), other) == fluids.end())
         fluids.push_back(other);
     }
   }

@@ -31,14 +31,15 @@ void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) 
   const std::string key = scene.file + ": phases." + plan.name + ".turbulence: \"k-omega\" ";
   if (plan.free_surface)
     throw SceneError(key + "knows no free surface, and \"" + plan.name + "\" has one; expected no turbulence");
-  if (!(plan.friction_velocity(0.0) > 0.0))
+  if (!(plan.wind.friction_velocity(0.0) > 0.0))
     throw SceneError(key +
                      "begins as the logarithmic layer of a friction velocity, and the scene states none; expected "
                      "a log-profile as velocity of a fill, or a lid with shear-stress");
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& other = scene.phases[k];
     if (k == fluid || !entry_between(scene, phase, other)) continue;
-    if (layout.phases[k].separate || layout.phases[k].travels || layout.phases[k].moves != layout.phases[k].flows)
+    if (layout.phases[k].separate() || layout.phases[k].travels() ||
+        layout.phases[k].moves() != layout.phases[k].flows())
       throw SceneError(key + "knows no grains, bodies or walls that move, and \"" + other.name +
                        "\" is such a phase; expected \"mixing-length\", or no entry of the two");
   }
@@ -49,7 +50,7 @@ void FluidPhase::bind_k_omega() {
   const std::string key = scene_.file + ": phases." + plan_.name + ".turbulence";
   k_omega_.viscosity = eddies_.viscosity;
   k_omega_.spacing = plan_.spacing;
-  k_omega_.begins = plan_.friction_velocity(0.0);
+  k_omega_.begins = plan_.wind.friction_velocity(0.0);
   for (const EddyNeighbour& e : eddy_neighbours_) {
     KOmegaNeighbour n;
     n.pair = e.pair;

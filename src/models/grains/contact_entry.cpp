@@ -12,13 +12,16 @@ namespace barchan {
 namespace {
 
 /// Kernel contact for an entry: stiffness of the softer of the phases that move, damping from the restitution.
-KernelContact contact_law(const Layout& layout, const PlanEntry& e) {
+KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   const PlanPhase &a = layout.phases[e.a], &b = layout.phases[e.b];
   const auto stiffness_of = [](const PlanPhase& p) { return p.mass * std::pow(p.sound_speed, 2); };
-  const PlanPhase& soft = !b.yields || (a.yields && stiffness_of(a) <= stiffness_of(b)) ? a : b;
+  const PlanPhase& soft = !b.yields() || (a.yields() && stiffness_of(a) <= stiffness_of(b)) ? a : b;
   const double d = 0.5 * (a.spacing + b.spacing);  // m, of two that touch
-  const double reduced = a.yields && b.yields ? a.mass * b.mass / (a.mass + b.mass) : (a.yields ? a.mass : b.mass);
-  const double restitution = std::min(a.contact_restitution, b.contact_restitution);
+  const double reduced =
+      a.yields() && b.yields() ? a.mass * b.mass / (a.mass + b.mass) : (a.yields() ? a.mass : b.mass);
+  double restitution = 1.0;
+  for (const std::size_t k : {e.a, e.b})
+    if (layout.phases[k].separate()) restitution = std::min(restitution, scene.phases[k].grains().restitution);
   KernelContact law{};
   with_kernel<double>(e.kernel, e.radius, layout.dimensions, [&](const auto& kernel) {
     law.rest_value = kernel.value(d);
@@ -48,8 +51,8 @@ void describe_kernel_contact(const Scene& scene, const Interaction& pair, const 
   });
 }
 
-std::unique_ptr<Model> make_contact_entry(const Scene&, const Layout& layout, const PlanEntry& entry) {
-  const KernelContacts law{{}, contact_law(layout, entry)};
+std::unique_ptr<Model> make_contact_entry(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
+  const KernelContacts law{{}, contact_law(scene, layout, entry)};
   return std::make_unique<ForceEntry<KernelContacts>>(layout, entry, law, stage::contacts,
                                                       FieldSet{Field::position, Field::velocity});
 }
@@ -59,8 +62,8 @@ void describe_ghosts(const Scene& scene, const Interaction& pair, const Layout&,
   describe_kernel_sums(pair, scene.dimensions, e);
 }
 
-std::unique_ptr<Model> make_ghosts(const Scene&, const Layout& layout, const PlanEntry& entry) {
-  KernelContacts law{{}, contact_law(layout, entry)};
+std::unique_ptr<Model> make_ghosts(const Scene& scene, const Layout& layout, const PlanEntry& entry) {
+  KernelContacts law{{}, contact_law(scene, layout, entry)};
   // Ghosts push a fluid without damping, K = m c u / d^2 with u = c/10: the largest speed where the sound speed is
   // automatic.
   const PlanPhase& p = layout.phases[entry.fluid];

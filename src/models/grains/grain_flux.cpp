@@ -50,7 +50,7 @@ void GrainFlux::history(HistoryRow& row) const {
 }
 
 void GrainFlux::report(Warnings& warnings) const {
-  const double u = wind_.friction_velocity(w_->state.time);
+  const double u = wind_.wind.friction_velocity(w_->state.time);
   if (!mean_.any() || u < weakest || u > strongest) return;
   const double mean = std::abs(mean_.recent(tenth_)), law = creyssels_flux(u);
   const std::string& name = scene_.phases[grains_].name;
@@ -73,7 +73,7 @@ void GrainFlux::archive(Archive& a) {
 void add_grain_fluxes(const Scene& scene, const Layout& layout, Models& models) {
   std::vector<bool> done(scene.phases.size(), false);
   for (const PlanEntry& e : layout.entries) {
-    if (!e.blows || !layout.phases[e.fluid].driven || done[e.other]) continue;
+    if (!e.blows || !layout.phases[e.fluid].wind.driven || done[e.other]) continue;
     done[e.other] = true;
     models.push_back(std::make_unique<GrainFlux>(scene, layout, e.fluid, e.other));
   }

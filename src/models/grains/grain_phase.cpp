@@ -75,7 +75,6 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, st
   using enum Field;
   PlanPhase& p = layout.phases[number];
   p.mass = scene.phases[number].density * std::numbers::pi / 6.0 * std::pow(p.diameter, 3) / layout.slab;
-  p.collides = true;
   p.physics = "spheres";
   p.smoothing_length = 0.5 * p.diameter;
   p.fields = {position, velocity, acceleration, contact_acceleration};
@@ -108,26 +107,24 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, st
 void declare_grains(const Scene& scene, std::size_t number, Layout& layout) {
   PlanPhase& p = layout.phases[number];
   const Phase& phase = scene.phases[number];
-  p.moves = p.yields = p.separate = true;
+  p.mover = phase.grains().diameter ? Mover::spheres : Mover::contacts;
   p.weight_share = weight_share(scene, phase);
   if (const std::optional<SphereSize>& size = phase.grains().diameter) {
-    p.diameter = p.size = size->mean;
+    p.diameter = size->mean;
     p.largest_size = size->largest();
-    p.own_steps = p.sphere_records = true;
+    p.sphere_records = true;
     p.open = open_sides_of_spheres(scene, number);
   }
-  p.kicked = !p.own_steps;
 }
 
 void describe_grains(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
                      std::vector<std::string>& warnings) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
-  p.friction = Friction::grains;
-  p.roughness = scene.phases[number].grains().roughness.value_or(p.spacing / 30.0);
-  if (p.own_steps) return describe_spheres(scene, number, layout, warnings);
+  p.surface.friction = Friction::grains;
+  p.surface.roughness = scene.phases[number].grains().roughness.value_or(p.spacing / 30.0);
+  if (p.own_steps()) return describe_spheres(scene, number, layout, warnings);
   p.physics = "grains";
-  p.contact_restitution = scene.phases[number].grains().restitution;
   p.fields = {position, velocity, acceleration};
   // c^2 = 1000 g H: a bed as deep as the domain (H) is compressed by a thousandth at its bottom. At least 1 m/s. The
   // speed of the grains is not looked at: `contact-speed` is there for fast ones.
@@ -146,7 +143,7 @@ GrainPhase::GrainPhase(const Scene& scene, const Layout& layout, std::size_t num
 
 void GrainPhase::schedule(Schedule& s) {
   using enum Field;
-  if (!plan_.own_steps)  // else models/grains/spheres.hpp
+  if (!plan_.own_steps())  // else models/grains/spheres.hpp
     s.add({stage::kick_and_drift, plan_.name, {{plan_.name, {acceleration}, {position, velocity}}}, [this] {
              kick_and_drift();
            }});
@@ -154,7 +151,7 @@ void GrainPhase::schedule(Schedule& s) {
 }
 
 void GrainPhase::limits(std::vector<StepLimit>& limits) const {
-  if (plan_.count == 0 || plan_.own_steps) return;
+  if (plan_.count == 0 || plan_.own_steps()) return;
   limits.push_back({"contact " + plan_.name,
                     scene_.time.safety * (StepConstants::contact * plan_.spacing / plan_.sound_speed),
                     "0.1 sqrt(m/K): a contact lasts about thirty steps"});

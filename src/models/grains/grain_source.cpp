@@ -157,7 +157,7 @@ GrainSource::GrainSource(const Scene& scene, const Layout& layout, std::size_t i
       by_particles_(scene.phases.size(), 0) {
   for (const Fill& fill : scene.fills) {
     const std::size_t wall = number_of(scene, fill.phase);
-    if (!layout.phases[wall].moves && touch_as_spheres(layout, phase_, wall) &&
+    if (!layout.phases[wall].moves() && touch_as_spheres(layout, phase_, wall) &&
         !std::holds_alternative<SidesShape>(fill.shape) && !touched_by_surface(scene, scene.phases[wall], fill.shape))
       by_particles_[wall] = 1;
   }
@@ -247,7 +247,7 @@ bool GrainSource::overlaps(std::size_t phase, std::size_t k, const Vec3& x, doub
     if (layout_.domain.periodic[d]) apart -= period * std::round(apart / period);
     squared += apart * apart;
   }
-  if (!other.moves && is_behind_side(at, k)) return false;
+  if (!other.moves() && is_behind_side(at, k)) return false;
   const double touching = radius + (p.has(Field::radius) ? p.column(Field::radius)[k] : 0.5 * other.largest_size);
   return squared < touching * touching;
 }

@@ -170,7 +170,7 @@ void HopStatistics::write(const std::string& folder, double time) const {
 void add_hop_statistics(const Scene& scene, const Layout& layout, Models& models) {
   for (const SaltationLayer& layer : scene.measuring.saltation)
     for (std::size_t k = 0; k < layout.phases.size(); ++k)
-      if (layout.phases[k].name == layer.phase && layout.phases[k].own_steps)
+      if (layout.phases[k].name == layer.phase && layout.phases[k].own_steps())
         models.push_back(std::make_unique<HopStatistics>(scene, layout, layer, k));
 }
 

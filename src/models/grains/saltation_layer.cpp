@@ -5,7 +5,7 @@
 
 namespace barchan {
 
-double mean_diameter(const Layout& layout, std::size_t phase) { return layout.phases[phase].size; }
+double mean_diameter(const Layout& layout, std::size_t phase) { return layout.phases[phase].size(); }
 
 double ground_area(const Scene& scene) {
   return scene.domain.size[0] * (scene.dimensions == 3 ? scene.domain.size[2] : 1.0);

@@ -34,7 +34,7 @@ void SolidWalls::attach(const Layout& layout, const std::vector<std::uint32_t>& 
   laws_.assign(n * walls_.size(), SphereCells::none);
   for (std::size_t p = 0; p < n; ++p) {
     for (std::size_t k = 0; k < walls_.size(); ++k)
-      if (layout.phases[p].own_steps) laws_[p * walls_.size() + k] = laws[p * n + walls_[k].phase];
+      if (layout.phases[p].own_steps()) laws_[p * walls_.size() + k] = laws[p * n + walls_[k].phase];
     for (std::size_t s = 0; s < surfaces_.size(); ++s)
       if (laws_[p * walls_.size() + surfaces_.solid_of(s)] != SphereCells::none)
         of_phase_[p].push_back(static_cast<std::uint16_t>(s));

@@ -30,7 +30,7 @@ bool by_surfaces(const Scene& scene, const Phase& wall) {
 std::vector<std::size_t> grains_of(const Layout& layout, const PlanEntry& e) {
   std::vector<std::size_t> grains;
   for (const std::size_t k : {e.a, e.b})
-    if (layout.phases[k].own_steps) grains.push_back(k);
+    if (layout.phases[k].own_steps()) grains.push_back(k);
   return grains;
 }
 
@@ -51,16 +51,15 @@ typename Row::Law law_of(const Scene& scene, const Layout& layout, const std::ve
 void describe_sphere_contact(const Scene& scene, const Interaction& pair, const Layout& layout, PlanEntry& e) {
   for (const Word& w : words_of<ContactLaw>)
     if (w.meaning == static_cast<int>(pair.law)) e.law = w.word;
-  e.kernel_word = "none";
   e.meaning = "spheres: touching decides";
+  e.pairs = Pairs::spheres;  // by SphereSearch
   for (const std::size_t k : {e.a, e.b})
     if (by_surfaces(scene, scene.phases[k])) {
-      e.by_outlines = true;
+      e.pairs = Pairs::spheres_and_outlines;
       e.meaning = "spheres and surfaces of shapes: touching decides";
     }
   e.radius = layout.touching_distance(e);
-  e.searched = false;  // by SphereSearch
-  e.own_steps = e.gives_length = true;
+  e.gives_length = true;
 }
 
 SphereImpact impact_of(const Layout& layout, std::size_t phase, double speed) {
@@ -82,7 +81,7 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
   const std::size_t n = layout.phases.size();
   table_.assign(n * n, SphereSearch::none);
   for (const auto& e : layout.entries) {
-    if (!e.own_steps) continue;
+    if (!e.of_spheres()) continue;
     const std::vector<std::size_t> grains = grains_of(layout, e);
     double restitution = 1.0;
     for (const std::size_t k : grains) restitution = std::min(restitution, scene.phases[k].grains().restitution);
@@ -90,7 +89,7 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
     const SphereImpact hardest = shortest_impact(scene, layout, e);
     each_sphere_law([&](auto row) {
       using Row = decltype(row);
-      if (e.contact != Row::word) return;
+      if (e.given.law != Row::word) return;
       const auto law = law_of<Row>(scene, layout, grains);
       const double steps = restitution < 1.0 ? NormalDashpot::steps(restitution) : Row::Law::Normal::steps_without_loss;
       step_ = std::min(step_, law.normal.duration(hardest) / steps);
@@ -99,11 +98,11 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
       has_.rubs = has_.rubs || law.friction.friction > 0.0 || has_.rolls;
       laws_.emplace_back(law);
     });
-    const bool stays = !layout.phases[e.a].moves || !layout.phases[e.b].moves;
-    if (!stays || !e.by_outlines) reach_ = std::max(reach_, e.radius);
+    const bool stays = !layout.phases[e.a].moves() || !layout.phases[e.b].moves();
+    if (!stays || !e.by_outlines()) reach_ = std::max(reach_, e.radius);
   }
   for (const auto& p : layout.phases)
-    if (p.own_steps) reach_ = std::max(reach_, p.largest_size);
+    if (p.own_steps()) reach_ = std::max(reach_, p.largest_size);
 }
 
 std::size_t SphereLaws::numbers(int dimensions) const {
@@ -120,10 +119,10 @@ std::size_t SphereLaws::numbers(int dimensions) const {
 SphereImpact SphereLaws::shortest_impact(const Scene& scene, const Layout& layout, const PlanEntry& e) {
   double inverse_mass = 0.0, curvature = 0.0;
   // Walls are the second of all pairs.
-  const bool turned = !layout.phases[e.a].own_steps;
+  const bool turned = !layout.phases[e.a].own_steps();
   for (const std::size_t k : {turned ? e.b : e.a, turned ? e.a : e.b}) {
     const PlanPhase& p = layout.phases[k];
-    const bool moves = p.own_steps;
+    const bool moves = p.own_steps();
     inverse_densities_.push_back(moves ? std::pow(0.5 * p.diameter, 3) / mass_of(layout, k) : 0.0);
     const auto size = scene.phases[k].diameter();
     const double least = size ? 1.0 - size->spread : 1.0;

@@ -23,7 +23,7 @@ constexpr double most_at_start = 0.049, most_of_settled = 0.1;
 
 bool touch_as_spheres(const Layout& layout, std::size_t a, std::size_t b) {
   return std::any_of(layout.entries.begin(), layout.entries.end(),
-                     [&](const PlanEntry& e) { return e.own_steps && e.has(a) && e.partner(a) == b; });
+                     [&](const PlanEntry& e) { return e.of_spheres() && e.has(a) && e.partner(a) == b; });
 }
 
 SphereRoom::SphereRoom(const Scene& scene, const Layout& layout, std::size_t phase, double reach)
@@ -175,7 +175,7 @@ class StartChecker {
     for (const Placed& a : all_) widest = std::max(widest, a.radius);
     std::vector<std::optional<SphereRoom>> rooms(layout_.phases.size());
     for (const Placed& a : all_) {
-      if (!layout_.phases[a.phase].own_steps) continue;
+      if (!layout_.phases[a.phase].own_steps()) continue;
       auto& room = rooms[a.phase];
       if (!room) room.emplace(scene_, layout_, a.phase, widest);
       const SphereRoom::Nearest there = room->nearest(a.x);
@@ -198,10 +198,10 @@ class StartChecker {
     }
     for (StartGrid& grid : grids) grid.sort();
     for (std::uint32_t a = 0; a < all_.size(); ++a) {
-      if (!layout_.phases[all_[a].phase].own_steps) continue;
+      if (!layout_.phases[all_[a].phase].own_steps()) continue;
       for (const StartGrid& grid : grids)
         grid.each_near(all_[a], [&](std::uint32_t b) {
-          if (b < a || !layout_.phases[all_[b].phase].own_steps) pair(all_[a], all_[b]);
+          if (b < a || !layout_.phases[all_[b].phase].own_steps()) pair(all_[a], all_[b]);
         });
     }
   }
@@ -214,13 +214,13 @@ class StartChecker {
     if (std::all_of(row, row + static_cast<std::ptrdiff_t>(n), [](auto law) { return law == SphereCells::none; }))
       return;
     const Phase& own = scene_.phases[phase];
-    if (!plan.own_steps && plan.moves) return;
+    if (!plan.own_steps() && plan.moves()) return;
     for (std::size_t k = 0; k < block.parts.size(); ++k) {
       const Fill& fill = scene_.fills[block.parts[k].fill];
-      if (!plan.own_steps && touched_by_surface(scene_, own, fill.shape)) continue;
+      if (!plan.own_steps() && touched_by_surface(scene_, own, fill.shape)) continue;
       const std::size_t end = k + 1 < block.parts.size() ? block.parts[k + 1].first : block.position.size();
       for (std::size_t i = block.parts[k].first; i < end; ++i) {
-        bool inside = plan.own_steps;
+        bool inside = plan.own_steps();
         for (std::size_t d = 0; !inside && d < static_cast<std::size_t>(layout_.dimensions); ++d)
           if (!layout_.bounds.periodic[d] &&
               !(block.position[i][d] >= layout_.bounds.low[d] && block.position[i][d] <= layout_.bounds.high[d]))
@@ -228,7 +228,7 @@ class StartChecker {
           else inside = d + 1 == static_cast<std::size_t>(layout_.dimensions);
         if (!inside) continue;
         const double radius =
-            block.radius.empty() ? 0.5 * (plan.own_steps ? plan.diameter : plan.spacing) : block.radius[i];
+            block.radius.empty() ? 0.5 * (plan.own_steps() ? plan.diameter : plan.spacing) : block.radius[i];
         all_.push_back({block.position[i], radius, static_cast<std::uint32_t>(phase),
                         static_cast<std::uint32_t>(block.parts[k].fill), static_cast<std::uint32_t>(i)});
       }
@@ -252,7 +252,7 @@ class StartChecker {
       r2 += apart * apart;
     }
     const double overlap = a.radius + b.radius - std::sqrt(r2), diameter = 2.0 * std::min(a.radius, b.radius);
-    const bool moves = layout_.phases[b.phase].own_steps;
+    const bool moves = layout_.phases[b.phase].own_steps();
     const double share = moves && a.fill != b.fill ? std::min(most(a), most(b)) : most(a);
     if (overlap > share * diameter) refuse(a, b.fill, overlap, diameter);
   }

@@ -18,7 +18,7 @@ Spheres::Spheres(const Scene& scene, const Layout& layout) : scene_(scene), layo
 void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   for (std::size_t k = 0; k < layout_.phases.size(); ++k) {
     const PlanPhase& plan = layout_.phases[k];
-    if (plan.own_steps) {
+    if (plan.own_steps()) {
       parts_.push_back({k, moving_, plan.count, 0.5 * plan.diameter});
       moving_ += plan.count;
       PhaseParticles& p = state.phases[k];
@@ -30,14 +30,14 @@ void Spheres::begin(State& state, const std::vector<ParticleBlock>& blocks) {
   }
   const std::size_t n = layout_.phases.size();
   for (std::size_t k = 0; k < n; ++k) {
-    if (const auto size = scene_.phases[k].diameter(); size && !layout_.phases[k].own_steps) {
+    if (const auto size = scene_.phases[k].diameter(); size && !layout_.phases[k].own_steps()) {
       PhaseParticles& wall = state.phases[k];
       wall.set_mean_radius(0.5 * size->mean);
       if (wall.has(Field::radius))
         std::copy(blocks[k].radius.begin(), blocks[k].radius.end(), wall.column(Field::radius));
     }
     const auto row = laws_.table().begin() + static_cast<std::ptrdiff_t>(k * n);
-    if (layout_.phases[k].moves ||
+    if (layout_.phases[k].moves() ||
         std::all_of(row, row + static_cast<std::ptrdiff_t>(n), [](auto law) { return law == SphereSearch::none; }))
       continue;
     add_wall(k, blocks[k]);
@@ -106,7 +106,7 @@ void Spheres::schedule(Schedule& s) {
   const FieldSet moved{position, velocity, contact_acceleration, angular_velocity, angular_acceleration};
   Touches sorted, stepped;
   for (const auto& p : layout_.phases)
-    if (p.own_steps) {
+    if (p.own_steps()) {
       owners += (owners.empty() ? "" : ", ") + p.name;
       sorted.push_back(p.all_fields());
       stepped.push_back({p.name, {acceleration, radius}, moved});
@@ -118,7 +118,7 @@ void Spheres::schedule(Schedule& s) {
 
 void Spheres::limits(std::vector<StepLimit>& limits) const {
   // Sound in a fluid limits the step besides.
-  const bool sound = std::any_of(layout_.phases.begin(), layout_.phases.end(), [](const auto& p) { return p.flows; });
+  const bool sound = std::any_of(layout_.phases.begin(), layout_.phases.end(), [](const auto& p) { return p.flows(); });
   if (laws_.laws().empty() || sound) return;
   limits.push_back({"contacts", 8.0 * scene_.time.safety * laws_.step(),
                     "eight steps of the grains, each a twelfth of a contact's duration or less"});

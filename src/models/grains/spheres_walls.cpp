@@ -30,12 +30,12 @@ void Spheres::add_wall(std::size_t phase, const ParticleBlock& block) {
     bool inside = true;
     for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d)
       inside = inside && (bounds.periodic[d] || (x[d] >= bounds.low[d] && x[d] <= bounds.high[d]));
-    if (!inside && !plan.travels) continue;
+    if (!inside && !plan.travels()) continue;
     const double radius = block.radius.empty() ? 0.5 * plan.spacing : block.radius[i];
     fixed_.insert(fixed_.end(), {x[0], x[1], x[2], radius});
     fixed_kind_.push_back(static_cast<std::uint8_t>(phase));
   }
-  if (plan.travels && fixed_kind_.size() > before)
+  if (plan.travels() && fixed_kind_.size() > before)
     walls_.push_back({phase, before, fixed_kind_.size() - before, nullptr});
 }
 

@@ -12,7 +12,7 @@ namespace barchan {
 /// The entries of a wall at rest with fluids that have a free surface.
 static std::vector<const PlanEntry*> entries_of(const Layout& layout, std::size_t wall) {
   std::vector<const PlanEntry*> entries;
-  if (layout.phases[wall].travels) return entries;
+  if (layout.phases[wall].travels()) return entries;
   for (const PlanEntry& e : layout.entries)
     if (e.extends && e.other == wall && layout.phases[e.fluid].free_surface) entries.push_back(&e);
   return entries;

@@ -23,7 +23,7 @@ constexpr double held_off_by_bodies = 0.25;
 /// Whether a fluid touches bodies that move.
 bool carries_bodies(const Layout& layout, std::size_t fluid) {
   return std::any_of(layout.entries.begin(), layout.entries.end(), [&](const PlanEntry& e) {
-    return e.extends && e.fluid == fluid && layout.phases[e.other].moves && !layout.phases[e.other].separate;
+    return e.extends && e.fluid == fluid && layout.phases[e.other].moves() && !layout.phases[e.other].separate();
   });
 }
 
@@ -38,19 +38,14 @@ double largest_in_time(const Scene& scene, const VectorExpression& velocity) {
   return speed;
 }
 
-bool slides(const WallKeys& wall) {
-  return std::any_of(wall.velocity.begin(), wall.velocity.end(),
-                     [](const Expression& e) { return e.is_formula() || e.value != 0.0; });
-}
-
 }  // namespace
 
 void declare_wall(const Scene& scene, std::size_t number, Layout& layout) {
   const WallKeys& keys = scene.phases[number].wall();
-  layout.phases[number].surface_speed = largest_in_time(scene, keys.velocity);
+  layout.phases[number].surface.speed = largest_in_time(scene, keys.velocity);
   layout.phases[number].sphere_records = keys.diameter.has_value();
   if (keys.diameter) layout.phases[number].largest_size = keys.diameter->largest();
-  layout.phases[number].travels = motion_of(scene, scene.phases[number]) != nullptr;
+  if (motion_of(scene, scene.phases[number])) layout.phases[number].mover = Mover::motion;
 }
 
 void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
@@ -58,14 +53,12 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
   using enum Field;
   const WallKeys& keys = scene.phases[number].wall();
   PlanPhase& p = layout.phases[number];
-  p.friction = keys.shear_stress              ? Friction::driven
-               : keys.slip == Slip::free_slip ? Friction::slip
-               : keys.roughness               ? Friction::rough
-                                              : Friction::smooth;
-  p.roughness = keys.roughness.value_or(0.0);
-  p.stress = keys.shear_stress.value_or(Vec3{});
-  p.takes_momentum = true;
-  p.gives_energy = keys.shear_stress || slides(keys) || p.travels;
+  p.surface.friction = keys.shear_stress              ? Friction::driven
+                       : keys.slip == Slip::free_slip ? Friction::slip
+                       : keys.roughness               ? Friction::rough
+                                                      : Friction::smooth;
+  p.surface.roughness = keys.roughness.value_or(0.0);
+  p.surface.stress = keys.shear_stress.value_or(Vec3{});
   p.fields = {position, velocity, wall_normal, wall_depth};
   if (keys.diameter && keys.diameter->spread > 0.0) p.fields.push_back(radius);
   if (std::any_of(scene.force_meters.begin(), scene.force_meters.end(),
@@ -94,11 +87,11 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
   // A wall whose stress is given leaves the fluid's velocity along it alone.
   const WallKeys& keys = phase_.wall();
   rule_.slip = keys.roughness || keys.shear_stress ? Slip::free_slip : keys.slip;
-  rule_.accelerates = plan_.travels;
+  rule_.accelerates = plan_.travels();
   rule_.rub = wall_rub(scene, layout, number);
   for (const auto& e : layout.entries)
     if (e.extends && e.other == number && layout.phases[e.fluid].free_surface) {
-      rule_.lets_go = plan_.travels;
+      rule_.lets_go = plan_.travels();
       rule_.least_phi = (carries_bodies(layout, e.fluid) ? held_off_by_bodies : held_off) * plan_.spacing;
     }
 }
@@ -144,7 +137,7 @@ std::vector<WallFace> Wall::faces_in_the_domain(const std::vector<Vec3>& places)
 /// Distance to the surface and the direction to it: given for fitted walls; behind the domain's sides for a wall
 /// particle outside the domain; from the outline inside it. Of a wall that travels DrivenWall knows them.
 void Wall::begin(State& state, const std::vector<ParticleBlock>& blocks) {
-  if (plan_.travels) return;
+  if (plan_.travels()) return;
   PhaseParticles& wall = state.phases[number_];
   const ParticleBlock& block = blocks[number_];
   const Bounds& bounds = layout_.bounds;
@@ -197,9 +190,9 @@ void Wall::attach(Workspace& w) {
 
 void Wall::schedule(Schedule& s) {
   using enum Field;
-  if (!plan_.travels) s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
+  if (!plan_.travels()) s.add({stage::walls, plan_.name, {{plan_.name, {}, {velocity}}}, [this] { slide(); }});
   FieldSet reads{position, velocity, wall_depth, wall_normal};
-  if (plan_.travels) reads = reads | FieldSet{surface_velocity, surface_acceleration};
+  if (plan_.travels()) reads = reads | FieldSet{surface_velocity, surface_acceleration};
   if (!extended_) return;
   Touches touches = extension_touches(layout_, number_, reads);
   add_contact_touches(scene_, layout_, number_, touches);
@@ -266,7 +259,7 @@ std::vector<ExtensionSource> extension_sources(Workspace& w, std::size_t solid) 
   for (const auto& e : w.layout.entries)
     if (e.extends && e.other == solid)
       sources.push_back({&w.list(e.direction(solid)), &w.records(e.fluid, Record::motion), e.kernel, e.radius,
-                         w.scene.phases[e.fluid].density, e.drag > 0 ? weight_about_a_lone_particle(e) : 0.0,
+                         w.scene.phases[e.fluid].density, e.given.drag > 0 ? weight_about_a_lone_particle(e) : 0.0,
                          compression_of(w, e.fluid)});
   return sources;
 }
@@ -293,9 +286,9 @@ void face_walls(const Layout& layout, State& state) {
   bool needed = false;
   for (std::size_t k = 0; k < state.phases.size(); ++k) {
     const PlanPhase& p = layout.phases[k];
-    if (p.moves || p.travels || !state.phases[k].has(Field::wall_normal)) continue;
+    if (p.moves() || p.travels() || !state.phases[k].has(Field::wall_normal)) continue;
     walls.push_back(k);
-    needed = needed || p.friction != Friction::smooth || is_ventilated(layout, k);
+    needed = needed || p.surface.friction != Friction::smooth || is_ventilated(layout, k);
   }
   if (!needed) return;
   for (const std::size_t wall : walls) {
