@@ -91,7 +91,7 @@ int list(const std::string& what, const std::string& scene, bool names, bool jso
     return 0;
   }
   if (data_folder().empty())
-    throw OutputError("there are no scenes beside this program; expected them in " BARCHAN_DATA_FROM_BIN
+    throw OutputError("there are no scenes next to this program; expected them in " BARCHAN_DATA_FROM_BIN
                       " of its folder, or the program in the build folder of its source tree");
   const auto scenes = what == "states" ? std::vector<Row>{} : rows_of_scenes();
   const auto states = what == "scenes" ? std::vector<Row>{} : rows_of_states();

@@ -25,7 +25,7 @@ fs::path package_folder(const fs::path& program) {
   std::error_code ignored;
   for (const fs::path& place : places)
     if (fs::is_regular_file(place / "barchan/__main__.py", ignored)) return place;
-  throw OutputError("the Python package of Barchan is not beside the program: neither in " + places[0].string() +
+  throw OutputError("the Python package of Barchan is not next to the program: neither in " + places[0].string() +
                     " nor in " + places[1].string());
 }
 

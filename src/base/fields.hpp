@@ -26,7 +26,7 @@ namespace barchan {
   row(anisotropy, "A", "1", deviator, "weights that make the last step's Laplacian isotropic; 2D: xx xy, 3D: xx yy zz xy yz xz") \
   row(wholeness, "chi", "1", scalar, "of a fluid with a free surface: about 1 inside, below 0.33 (plain scheme 0.55) at its surface") \
   row(surface_normal, "n", "1/m", vector, "of a fluid with a free surface: direction inwards near the surface, zero elsewhere") \
-  row(near_void, "n_v", "1", scalar, "of a fluid of the consistent scheme that fills its space: steps for which the particle counts as beside a void, 0 in whole fluid") \
+  row(near_void, "n_v", "1", scalar, "of a fluid of the consistent scheme that fills its space: steps for which the particle counts as next to a void, 0 in whole fluid") \
   row(eddy_viscosity, "nu_t", "m2/s", scalar, "kinematic viscosity of the unresolved turbulence") \
   row(turbulent_kinetic_energy, "k", "m2/s2", scalar, "of a fluid with turbulence = \"k-omega\": kinetic energy of the unresolved turbulence") \
   row(specific_dissipation_rate, "omega", "1/s", scalar, "of a fluid with turbulence = \"k-omega\": dissipation of its turbulence over 0.09 k") \

@@ -13,7 +13,7 @@ void check_formulation(const Phase& phase, const Report& report) {
   const bool total = is_total(phase);
   const auto refuse = [&](const char* key, const char* other) {
     if (report.has(dotted + "." + key) && !report.touched(dotted + "." + key))
-      report(dotted + "." + key, std::string("nothing reads it; expected formulation = \"") + other + "\" beside it");
+      report(dotted + "." + key, std::string("nothing reads it; expected formulation = \"") + other + "\" too");
   };
   for (const char* key : {"elasticity", "hourglass", "retardation", "wave-correction"})
     if (!total) refuse(key, "total-lagrangian");
@@ -27,27 +27,27 @@ void check_contact(const Interaction& pair, const Phase& a, const Phase& b, cons
   const auto elastic = [](const Phase& p) { return p.kind() == PhaseKind::elastic; };
   if (pair.surfaces && (a.name == b.name || !elastic(a) || !elastic(b) || !touch_as_bodies(pair, a, b)))
     report(dotted + ".surfaces", a.name != b.name && elastic(a) && elastic(b)
-                                     ? "nothing reads it without restitution; expected restitution beside it"
+                                     ? "nothing reads it without restitution; expected restitution too"
                                      : "only two elastic bodies touch so; expected no such key here");
   if (touches_itself(pair, a, b)) return;
   if (a.name == b.name && a.kind() == PhaseKind::elastic) {
     for (const char* key : {".restitution", ".friction"})
       if (report.has(dotted + key))
-        report(dotted + key, "nothing reads it without restitution; expected restitution beside it");
+        report(dotted + key, "nothing reads it without restitution; expected restitution too");
     return;
   }
   if (!touch_as_bodies(pair, a, b)) {
     for (const char* key : {".restitution", ".friction"})
       if (report.has(dotted + key))
         report(dotted + key, bodies_may_touch(a, b)
-                                 ? "nothing reads it without restitution; expected restitution beside it"
+                                 ? "nothing reads it without restitution; expected restitution too"
                                  : "only a body with another body or a wall has it; expected no such key here");
     return;
   }
   for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
     if (report.has(dotted + key))
       report(dotted + key,
-             "bodies touch where the spacings of their particles end; expected no such key beside "
+             "bodies touch where the spacings of their particles end; expected no such key with "
              "restitution or a total Lagrangian body");
 }
 

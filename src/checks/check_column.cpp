@@ -24,7 +24,7 @@ void check_wind(const Phase& column, const std::string& dotted, const Report& re
   if (!report.touched(dotted + ".viscosity") && !(own.viscosity > 0.0))
     report(dotted + ".viscosity", "missing or 0: the drag of grains needs it; expected a number > 0 (m2/s)");
   if (own.speed && own.log_profile)
-    report(dotted + ".log-profile", "a second wind at the start, beside speed; expected one of them");
+    report(dotted + ".log-profile", "a second wind at the start, after speed; expected one of them");
   if (own.held && !own.speed && !own.log_profile && !given(own.friction_velocity) &&
       !report.touched(dotted + ".friction-velocity"))
     report(dotted + ".held", "no wind to hold; expected log-profile, speed (0 of still air) or friction-velocity");
@@ -35,7 +35,7 @@ void check_wind(const Phase& column, const std::string& dotted, const Report& re
            "air without inertia does not remember the wind of the start; expected no such key, or no "
            "speed and no log-profile");
   if (own.averaging && own.held && !own.speed && !own.log_profile)
-    report(dotted + ".averaging", "a wind that is held does not feel the grains; expected no such key");
+    report(dotted + ".averaging", "grains do not brake a wind that is held; expected no such key");
   if (own.held && (own.speed || own.log_profile)) {
     const std::string why = "a wind that is held at its start needs none; expected no such key";
     for (const char* key : {".friction-velocity", ".mixing-length", ".slip", ".averaging"})
@@ -92,7 +92,7 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
                "\" is one along y, over the bottom of the domain; expected gravity along -y, or none");
   if (!column.column().held && !report.touched("domain.periodic") &&
       !(scene.domain.periodic[0] && (scene.dimensions == 2 || scene.domain.periodic[2])))
-    report(dotted + ".held", std::string("a wind that feels the grains is their mean along ") +
+    report(dotted + ".held", std::string("a wind that grains brake is a mean along ") +
                                  (scene.dimensions == 2 ? "x" : "x and z") + "; expected domain.periodic = [" +
                                  (scene.dimensions == 2 ? "\"x\"" : "\"x\", \"z\"") + "], or held = true");
   if (report.misread("interactions")) return;
@@ -112,16 +112,17 @@ void check_column(const Scene& scene, const Phase& column, const Report& report)
     for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
       if (report.has(entry + key))
         report(entry + key,
-               "a column of air has no kernel: a grain feels the wind of its height; expected no such key");
+               "a column of air has no kernel: on a grain acts the wind of its height; expected no such key");
     if (!report.is_section(entry)) report(entry, "a column of air has no radius; expected {} or { drag = LAW }");
     if (report.is_section(entry) && report.has(entry + ".drag") && pair.drag != 0.0)
       report(entry + ".drag", "a number; expected the name of a law, as \"duran\"");
     if (const Phase* air = other_air(scene, column, *other))
-      report(entry, "\"" + other->name + "\" feels \"" + air->name + "\" already; expected one kind of air for it");
+      report(entry,
+             "\"" + other->name + "\" interacts with \"" + air->name + "\" already; expected one kind of air for it");
   }
   if (!felt)
-    report(dotted,
-           "nothing feels this air; expected an entry of [interactions] with \"" + column.name + "\" and grains");
+    report(dotted, "nothing interacts with this air; expected an entry of [interactions] with \"" + column.name +
+                       "\" and grains");
 }
 
 }  // namespace

@@ -21,19 +21,19 @@ void check_shape_keys(const std::string& shape, bool fitted, const Report& repor
   for (const char* name : shape_names) {
     if (!report.has(shape + "." + name)) continue;
     if (!first.empty()) {
-      report(shape + "." + name, "a second shape beside \"" + first + "\"; expected one shape a fill");
+      report(shape + "." + name, "a second shape after \"" + first + "\"; expected one shape a fill");
       continue;
     }
     first = name;
   }
   if (report.has(shape + ".dune") && first != "bed")
-    report(shape + ".dune", "a dune without a bed; expected bed = DEPTH beside it");
+    report(shape + ".dune", "a dune without a bed; expected bed = DEPTH too");
   if (report.has(shape + ".from") && first != "bed")
-    report(shape + ".from", "a lower bound without a bed; expected bed = DEPTH beside it");
+    report(shape + ".from", "a lower bound without a bed; expected bed = DEPTH too");
   if (report.has(shape + ".layers") && first != "sides" && !(first == "bed" && fitted))
     report(shape + ".layers", first == "bed"
                                   ? "a bed of rows is as deep as it is; expected packing = \"fitted\" or no layers"
-                                  : "layers without sides; expected sides = [...] beside it");
+                                  : "layers without sides; expected sides = [...] too");
   if (report.has(shape + ".from") && first == "bed" && fitted)
     report(shape + ".from", "fitted rows are as deep as their layers; expected layers = NUMBER");
   const bool nothing =
@@ -49,11 +49,11 @@ void check_outline(const Fill& fill, double spacing, const std::string& shape, c
                    const Report& report) {
   const auto* surface = std::get_if<SurfaceShape>(&fill.shape);
   if (!surface && report.has(shape + ".part") && report.is_section(shape))
-    report(shape + ".part", "only the mesh of a file has parts; expected surface beside it");
+    report(shape + ".part", "only the mesh of a file has parts; expected surface too");
   if (!surface && !std::holds_alternative<PolygonShape>(fill.shape)) {
     for (const char* key : {"scale", "turn", "move"})
       if (report.has(shape + "." + key) && report.is_section(shape))
-        report(shape + "." + key, "this shape says itself where it is; expected polygon or surface beside it");
+        report(shape + "." + key, "this shape says itself where it is; expected polygon or surface too");
     return;
   }
   const std::string key = shape + (surface ? ".surface" : ".polygon");
@@ -87,7 +87,7 @@ void check_dune(const DuneShape& dune, const std::string& dotted, const Scene& s
   if (by_formula && !report.has(dotted + ".formula"))
     report(dotted + ".formula", "missing; expected a number (m) or a formula in x, z");
   if (!by_formula && report.has(dotted + ".formula"))
-    report(dotted + ".formula", "a formula beside another form; expected form = \"formula\"");
+    report(dotted + ".formula", "a formula and another form; expected form = \"formula\"");
   if (dune.form != DuneShape::Form::asymmetric && report.has(dotted + ".slip-face-angle"))
     report(dotted + ".slip-face-angle", "only the asymmetric dune has a slip face; expected form = \"asymmetric\"");
   for (const char* name : {"height", "length", "at"}) {
@@ -155,7 +155,7 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   const bool sizes = phase.diameter() && phase.diameter()->spread > 0.0;
   if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random && !sizes)
     report(dotted + ".seed",
-           "nothing here is random; expected perturb above 0 or packing = \"random\" beside it, or diameters with a "
+           "nothing here is random; expected perturb above 0 or packing = \"random\" too, or diameters with a "
            "spread");
   if (phase.kind() != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
@@ -222,7 +222,7 @@ void check_along_ground(const Fill& fill, const std::string& profile, const Scen
                                [](const Fill& f) { return std::holds_alternative<BedShape>(f.shape); });
   if (!bed) report(key, "no ground to follow; expected a fill with shape = { bed = ... }");
   else if (!fill.log_profile->over_ground)
-    report(key, "beside over-ground = false, which counts heights from the bottom; expected one of the two");
+    report(key, "not with over-ground = false, which counts heights from the bottom; expected one of the two");
 }
 
 }  // namespace

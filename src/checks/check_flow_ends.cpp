@@ -98,8 +98,7 @@ void check_joined_layers(const Scene& scene, const std::vector<Section>& section
       if (std::abs(difference) < std::max(a->spacing, b->spacing)) continue;
       report(report.has(at + ".layer") ? at + ".layer" : at + ".phase",
              "\"" + a->name + "\" and \"" + b->name +
-                 "\" are joined and need layers of one length, beside each other; expected the same layer (m) in " +
-                 one.dotted);
+                 "\" are joined and need layers of one length; expected the same layer (m) in " + one.dotted);
     }
 }
 
@@ -149,10 +148,10 @@ void check_flow_ends(const Scene& scene, const Report& report) {
       if (!report.has(log) && !report.has(profile))
         report(dotted + ".velocity", "no velocity; expected { log-profile = ... } or { profile = ... }");
       if (report.has(log) && report.has(profile))
-        report(profile, "a second wind beside log-profile; expected one of the two");
+        report(profile, "a second wind after log-profile; expected one of the two");
       if (report.has(profile) && axis_of(scene.inflows[k].side) == 1)
         report(profile, "a profile is by height, and \"" + word_of(scene.inflows[k].side) +
-                            "\" has one height; expected a side beside the ground, or formulas");
+                            "\" has one height; expected a side that cuts the ground, or formulas");
     }
     if (scene.inflows[k].log_profile && scene.inflows[k].side != Side::left && !report.touched(dotted))
       report(dotted + ".velocity", "a logarithmic wind blows along x; expected side = \"left\", or formulas");

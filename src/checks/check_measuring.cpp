@@ -61,9 +61,9 @@ class Checker {
   void profile(const Profile& p, const std::string& dotted) {
     const bool ends = report_.has(dotted + ".from") || report_.has(dotted + ".to");
     if (ends && report_.has(dotted + ".box"))
-      return report_(dotted + ".box", "a box beside a line; expected either from and to, or box");
+      return report_(dotted + ".box", "a box and a line; expected either from and to, or box");
     if (report_.has(dotted + ".box")) return slices(p, dotted);
-    if (report_.has(dotted + ".along")) report_(dotted + ".along", "an axis without a box; expected box beside it");
+    if (report_.has(dotted + ".along")) report_(dotted + ".along", "an axis without a box; expected box too");
     if (!ends) return report_(dotted, "neither a line nor a box; expected from and to, or box = { min, max }");
     for (const char* end : {".from", ".to"})
       if (!report_.has(dotted + end))

@@ -27,13 +27,13 @@ std::string what_knows_no_motion(const Scene& scene, const Interaction& pair, co
   switch (other.kind()) {
     case PhaseKind::fluid:
       if (wall.wall().law == WallLaw::repulsive)
-        return name + "a repulsive wall does not tell the fluid; expected law = \"adami\"";
+        return name + "the fluid does not follow a repulsive wall; expected law = \"adami\"";
       if (has_eddies(scene, other))
         return name + "the turbulent fluid \"" + other.name +
-               "\" does not know how far its ground is then; expected a laminar one";
+               "\" has no distance to its ground then; expected a laminar one";
       if (other.fluid().energy && motion.angular_velocity)
         return name + "the internal energy of \"" + other.name +
-               "\" beside a wall that turns is not computed; expected no angular-velocity, or no energy";
+               "\" next to a wall that turns is not computed; expected no angular-velocity, or no energy";
       return {};
     case PhaseKind::grains:
       if (!of_spheres(pair))
@@ -62,7 +62,7 @@ void check_keys(const Motion& motion, const std::string& dotted, const Phase& wa
            "acts on rigid bodies that turn freely; a wall goes as the scene says: expected velocity or "
            "angular-velocity, or a phase of kind rigid");
   if (motion.about && !motion.angular_velocity)
-    refuse(".about", "a wall does not turn by itself; expected angular-velocity beside it, or a phase of kind rigid");
+    refuse(".about", "a wall does not turn by itself; expected angular-velocity too, or a phase of kind rigid");
   if (!report.has(dotted + ".velocity") && !motion.angular_velocity && !motion.about)
     report(dotted, "nothing moves the wall \"" + wall.name + "\"; expected velocity or angular-velocity");
   for (const char* key : {".velocity", ".roughness", ".shear-stress"})

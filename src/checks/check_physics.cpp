@@ -30,9 +30,9 @@ class PhysicsChecker {
     const std::string dotted = place(fluid);
     if (report_.has(dotted + ".tait-exponent") && own.equation_of_state != EquationOfState::tait)
       tell(dotted + ".tait-exponent",
-           "the linear equation of state has no exponent; expected equation-of-state = \"tait\" beside it");
+           "the linear equation of state has no exponent; expected equation-of-state = \"tait\" too");
     if (report_.has(dotted + ".smagorinsky") && own.turbulence != Turbulence::smagorinsky)
-      tell(dotted + ".smagorinsky", "nothing reads it; expected turbulence = \"smagorinsky\" beside it");
+      tell(dotted + ".smagorinsky", "nothing reads it; expected turbulence = \"smagorinsky\" too");
     if (!sound_speed_known_ && !own.sound_speed)
       tell(dotted + ".sound-speed",
            "missing: nothing in the scene moves or weighs, so that none can be chosen; expected sound-speed or "
@@ -44,7 +44,7 @@ class PhysicsChecker {
     if (own.energy && (!plain || eddies))
       tell(dotted + ".energy",
            "the internal energy of a fluid is computed with the plain sums only; expected scheme = \"plain\" and no "
-           "turbulence beside it, or no such key");
+           "turbulence too, or no such key");
     if (!pairs_known_) return;
     if (!entry_between(scene_, fluid, fluid))
       tell("interactions." + fluid.name + "-" + fluid.name,
@@ -64,7 +64,7 @@ class PhysicsChecker {
     });
     if (pairs_known_ && report_.has(dotted + ".roughness") && !read)
       tell(dotted + ".roughness",
-           "only a turbulent fluid whose entry has no drag feels how rough grains are; expected turbulence in a fluid "
+           "roughness of grains acts only on a turbulent fluid whose entry has no drag; expected turbulence in a fluid "
            "that has an entry with "
            "\"" +
                grains.name + "\"");
@@ -86,9 +86,8 @@ class PhysicsChecker {
       if (report_.has(dotted + "." + key)) tell(dotted + "." + key, "nothing reads it; expected " + needs);
     };
     if (!phase.diameter()) {
-      for (const char* key : {"friction", "rolling-friction", "largest-overlap", "sleep"})
-        without(key, "diameter beside it");
-      for (const std::string& key : keys_of_some_laws(phase)) without(key, "diameter beside it");
+      for (const char* key : {"friction", "rolling-friction", "largest-overlap", "sleep"}) without(key, "diameter too");
+      for (const std::string& key : keys_of_some_laws(phase)) without(key, "diameter too");
       return;
     }
     if (!pairs_known_) return;
@@ -137,9 +136,9 @@ class PhysicsChecker {
       return tell(dotted + ".law",
                   "only grains touch as spheres, each other, walls and rigid bodies; expected no such key here");
     if (report_.has(dotted + ".radius"))
-      tell(dotted + ".radius", "spheres feel each other when they touch; expected no such key beside law");
+      tell(dotted + ".radius", "spheres interact when they touch; expected no such key with law");
     if (report_.has(dotted + ".kernel"))
-      tell(dotted + ".kernel", "a contact of spheres has no kernel; expected no such key beside law");
+      tell(dotted + ".kernel", "a contact of spheres has no kernel; expected no such key with law");
     for (const Phase* p : {&a, &b})
       if (p->if_grains() && !p->diameter())
         tell(place(*p) + ".diameter", "missing: the contacts " + pair.a + "-" + pair.b +
@@ -156,7 +155,7 @@ class PhysicsChecker {
     };
     for (const char* key : {".radius", ".radius-in-metres", ".kernel"})
       if (report_.has(dotted + key))
-        tell(dotted + key, "beside a law of drag by name a grain feels the mean wind about it; expected no such key");
+        tell(dotted + key, "with a law of drag by name the mean wind about a grain acts on it; expected no such key");
     if (pair.drag_law == DragLaw::di_felice)
       tell(drag, "crowded drag acts in air of kind column; expected stokes, schiller-naumann, cheng or duran");
     if (scene_.dimensions != 2) needs("two dimensions, with a fluid of particles; expected those, or a number");
@@ -180,7 +179,7 @@ class PhysicsChecker {
     several_airs(pair, fluid, grains, dotted);
     if (!ground)
       needs("ground under the wind; expected a wall that \"" + fluid.name +
-            "\" feels, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
+            "\" interacts with, with a roughness, shape = { bed = ... } and packing = \"fitted\"");
   }
 
   /// Grains that fly from one phase of an air into another feel both by one law (models/coupling/airs.hpp).
@@ -191,14 +190,15 @@ class PhysicsChecker {
       const bool drags = its && its->drag_law != DragLaw::none;
       if (joint && !drags) {
         tell(dotted + ".drag", "grains that fly from \"" + fluid.name + "\" into \"" + other.name +
-                                   "\", which is joined to it, would feel no air; expected an entry " + other.name +
+                                   "\", which is joined to it, would not be driven; expected an entry " + other.name +
                                    "-" + grains.name + " with the same drag");
         continue;
       }
       if (!drags) continue;
       if (other.spacing == fluid.spacing || fluid.density != other.density ||
           fluid.fluid().viscosity != other.fluid().viscosity)
-        tell(dotted + ".drag", "\"" + grains.name + "\" feels two airs, \"" + fluid.name + "\" and \"" + other.name +
+        tell(dotted + ".drag", "\"" + grains.name + "\" interacts with two airs, \"" + fluid.name + "\" and \"" +
+                                   other.name +
                                    "\"; expected phases of one air, with the same density and viscosity and spacings "
                                    "that differ");
       if (its->drag_law != pair.drag_law)
@@ -220,7 +220,7 @@ class PhysicsChecker {
         report_.touched(place(grains) + ".density"))
       return;
     tell(dotted,
-         "a kernel lets grains feel a fluid that is much lighter than they are (at most " + number_text(most) +
+         "a kernel couples grains to a fluid that is much lighter than they are (at most " + number_text(most) +
              " times as dense); \"" + fluid.name + "\" is " + number_text(fluid.density / grains.density) +
              " times as dense as \"" + grains.name +
              "\"; expected a fluid of kind column with drag by name and buoyancy = true, or bodies of kind rigid");
@@ -261,7 +261,7 @@ class PhysicsChecker {
     };
     for (const Phase* fluid : {&a, &b})
       if (fluid->fluid().scheme == FluidScheme::plain)
-        tell(at, "plain sums know no two spacings; expected scheme = \"consistent\" of \"" + fluid->name + "\"");
+        tell(at, "plain sums have no two spacings; expected scheme = \"consistent\" of \"" + fluid->name + "\"");
     alike("density", a.density == b.density);
     alike("viscosity", p.viscosity == q.viscosity);
     alike("sound-speed", p.sound_speed == q.sound_speed);
@@ -300,7 +300,7 @@ class PhysicsChecker {
     if (a.kind() == column || b.kind() == column) return;  // check_column.cpp
     if (is(fluid, grains)) heavy_fluid(a.kind() == fluid ? a : b, a.kind() == fluid ? b : a, dotted);
     if (report_.has(dotted + ".radius") && report_.has(dotted + ".radius-in-metres"))
-      tell(dotted + ".radius-in-metres", "a radius in metres beside one in spacings; expected one of the two");
+      tell(dotted + ".radius-in-metres", "a radius in metres and one in spacings; expected one of the two");
     if (pair.radius_in_metres && !(pair.radius <= 8.0))
       tell(dotted + ".radius-in-metres", number_text(*pair.radius_in_metres) + " m is " + number_text(pair.radius) +
                                              " spacings of the coarser phase; expected at most 8");
@@ -309,10 +309,9 @@ class PhysicsChecker {
                                    (touches ? "repulsive walls" : "elastic bodies") +
                                    "; expected a number > 0 and <= 8 (spacings)");
     else if (touches && pair.radius <= 1.0)
-      tell(
-          report_.has(dotted + ".radius") ? dotted + ".radius" : dotted,
-          "a contact needs a radius beyond one spacing, so that touching particles feel each other; expected more than "
-          "1, as 1.1 (eq. 16 of Halik et al. 2015)");
+      tell(report_.has(dotted + ".radius") ? dotted + ".radius" : dotted,
+           "a contact needs a radius beyond one spacing, so that particles that touch interact; expected more than "
+           "1, as 1.1 (eq. 16 of Halik et al. 2015)");
     if (is(fluid, fluid)) fluids(pair, a, b, dotted);
   }
 

@@ -23,12 +23,11 @@ void check_turning(const Motion& motion, const std::string& dotted, const Scene&
   for (const char* key : {".torque", ".friction"})
     if (!free && report.has(dotted + key))
       report(dotted + key,
-             "acts on bodies that turn freely about a place; expected about = [...] and no angular-velocity beside it");
+             "acts on bodies that turn freely about a place; expected about = [...] and no angular-velocity");
   if (free && report.has(dotted + ".velocity"))
-    report(
-        dotted + ".velocity",
-        "the place about which bodies turn freely stays where it is; expected angular-velocity beside it, or no such "
-        "key");
+    report(dotted + ".velocity",
+           "the place about which bodies turn freely stays where it is; expected angular-velocity too, or no such "
+           "key");
 }
 
 /// A fluid of the consistent scheme acts on the surfaces of bodies.
@@ -66,14 +65,15 @@ void check_partner(const Scene& scene, const Interaction& pair, const Phase& a, 
   const Phase& other = rigid(a) ? b : a;
   if (other.kind() == PhaseKind::column)
     report(dotted,
-           "a rigid body feels no column of air; expected an entry with fluids, bodies, walls or grains without a "
+           "a column of air does not act on a rigid body; expected an entry with fluids, bodies, walls or grains "
+           "without a "
            "diameter");
   if (other.kind() == PhaseKind::fluid && other.fluid().scheme == FluidScheme::consistent)
     check_fluid(scene, pair, rigid(a) ? a : b, other, report);
   if (other.if_grains() && other.diameter() && of_spheres(pair)) {
     if (other.if_grains()->sleep && !report.touched("phases." + other.name + ".sleep"))
       report("phases." + other.name + ".sleep",
-             "grains that sleep do not feel rigid bodies that come; expected no such key beside the entry " + pair.a +
+             "a rigid body that comes does not wake grains that sleep; expected no such key with the entry " + pair.a +
                  "-" + pair.b);
     for (std::size_t k = 0; k < scene.fills.size(); ++k) {
       const Fill& fill = scene.fills[k];
@@ -147,7 +147,7 @@ void check_stiffness(const Scene& scene, const Phase& phase, const Report& repor
       report(dotted + key, "nothing reads it; expected an entry with a rigid phase or a wall");
   if (report.has(dotted + ".stiffness") && report.has(dotted + ".largest-overlap") &&
       !report.touched(dotted + ".largest-overlap"))
-    report(dotted + ".largest-overlap", "stiffness says how stiff contacts are; expected no such key beside it");
+    report(dotted + ".largest-overlap", "stiffness says how stiff contacts are; expected no such key with it");
 }
 
 }  // namespace

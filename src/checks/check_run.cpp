@@ -85,7 +85,7 @@ void check_origin(const Scene& scene, const Report& report) {
     if (far > most * scene.spacing)
       return report("domain.origin", "a place " + number_text(far) + " m from zero is " +
                                          number_text(far / scene.spacing) +
-                                         " spacings away, and numbers do not tell such places apart well; expected at "
+                                         " spacings away, and numbers do not resolve such places; expected at "
                                          "most 10^8 spacings");
   }
 }

@@ -74,8 +74,8 @@ void check_keys(const Scene& scene, const Phase& wall, const Report& report) {
   if (!meets(scene, wall, PhaseKind::fluid)) {
     if (!report.misread("interactions"))
       refuse({".law", ".slip", ".velocity", ".roughness", ".shear-stress"},
-             "only a fluid feels it, and no fluid feels this wall; expected an entry of a fluid with \"" + wall.name +
-                 "\" in [interactions], or no such key");
+             "it acts on fluids only, and no fluid interacts with this wall; expected an entry of a fluid with \"" +
+                 wall.name + "\" in [interactions], or no such key");
   } else if (wall.wall().law == WallLaw::repulsive) {
     refuse({".slip", ".velocity", ".roughness", ".shear-stress"},
            "a repulsive wall only pushes; expected law = \"adami\", or no such key");
@@ -84,7 +84,7 @@ void check_keys(const Scene& scene, const Phase& wall, const Report& report) {
            "the friction of this wall is its shear-stress; expected either the one or the other");
   } else if (wall.wall().slip == Slip::free_slip) {
     refuse({".velocity", ".roughness"},
-           "a fluid that slips does not feel it; expected slip = \"no-slip\", or no such key");
+           "it does not act on a fluid that slips; expected slip = \"no-slip\", or no such key");
   }
 }
 

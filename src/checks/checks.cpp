@@ -135,7 +135,7 @@ void check_interactions(const Scene& scene, const Report& report) {
     seen.push_back(&pair);
     const bool walls =
         find_phase(scene, pair.a)->kind() == PhaseKind::wall && find_phase(scene, pair.b)->kind() == PhaseKind::wall;
-    if (walls) report(dotted, "walls do not feel each other; expected at least one phase of another kind");
+    if (walls) report(dotted, "walls do not interact; expected at least one phase of another kind");
   }
   for (const auto& pair : scene.apart) {
     const std::string dotted = "interactions." + pair[0] + "-" + pair[1];
@@ -153,7 +153,7 @@ void check_interactions(const Scene& scene, const Report& report) {
     if (phase.kind() == PhaseKind::wall && alone && !report.touched("interactions") &&
         !report.touched("phases." + phase.name + ".kind"))
       report("phases." + phase.name,
-             "nothing feels this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
+             "nothing interacts with this wall; expected an entry of [interactions] with \"" + phase.name + "\"");
   }
 }
 
@@ -161,7 +161,7 @@ void check_open(const Scene& scene, const Report& report) {
   if (report.touched("domain.open")) return;
   const auto& open = scene.domain.open;
   if (std::find(open.begin(), open.end(), "none") == open.end()) check_side_names(open, "domain.open", scene, report);
-  else if (open.size() > 1) report("domain.open", "\"none\" stands beside a side; expected it alone, or sides only");
+  else if (open.size() > 1) report("domain.open", "\"none\" with a side; expected it alone, or sides only");
 }
 
 /// On a periodic axis a sphere may touch another one on both sides, but not itself.
@@ -236,7 +236,7 @@ void check_held_force(const Scene& scene, const Report& report, std::size_t numb
   };
   const bool by_walls = forcing.hold == Hold::stress;
   if (!report.has(dotted + ".friction-velocity") && !report.touched(dotted + ".friction-velocity"))
-    report(dotted + ".friction-velocity", "missing; expected a number (m/s) or a formula in t beside such a hold");
+    report(dotted + ".friction-velocity", "missing; expected a number (m/s) or a formula in t with such a hold");
   if (!report.touched("domain.periodic") && !scene.domain.periodic[0])
     tell("the force is held along x, and x is not periodic; expected domain.periodic = [\"x\"]");
   if (!report.touched("domain.gravity") && scene.domain.gravity[0] != 0.0)
@@ -244,7 +244,7 @@ void check_held_force(const Scene& scene, const Report& report, std::size_t numb
   for (std::size_t other = 0; other < scene.forcings.size(); ++other)
     if (other != number && scene.forcings[other].phase == fluid.name && scene.forcings[other].hold == Hold::none)
       tell("forcing." + std::to_string(other) + " drives \"" + fluid.name +
-           "\" too; expected nothing else beside a force that is held");
+           "\" too; expected nothing else with a force that is held");
   if (report.misread("interactions") || report.misread("phases")) return;
   bool pulls = false;
   for (const Phase& wall : scene.phases) {
@@ -292,9 +292,9 @@ void check_hold(const Scene& scene, const Report& report, std::size_t number) {
   for (const char* key : {".hold", ".acceleration", ".rate"}) ways += report.has(dotted + key);
   if (ways != 1) report(dotted, "expected one of acceleration, hold and rate");
   if (report.has(dotted + ".velocity") && !report.has(dotted + ".rate"))
-    report(dotted + ".velocity", "nothing brings the fluid to it; expected rate beside it");
+    report(dotted + ".velocity", "nothing brings the fluid to it; expected rate too");
   if (report.has(dotted + ".box") && report.has(dotted + ".hold"))
-    report(dotted + ".box", "what is held is that of the whole fluid; expected no such key beside hold");
+    report(dotted + ".box", "what is held is that of the whole fluid; expected no such key with hold");
   if (const Phase* phase = find_phase(scene, forcing.phase);
       phase && report.has(dotted + ".rate") && phase->kind() != PhaseKind::fluid)
     report(dotted + ".rate", "\"" + phase->name + "\" is no fluid; expected a phase of kind fluid");
@@ -335,7 +335,7 @@ void check_forcings(const Scene& scene, const Report& report) {
     const Phase* phase = find_phase(scene, scene.forcings[k].phase);
     if (!phase) report(dotted, unknown_phase(scene.forcings[k].phase, scene));
     else if (phase->kind() == PhaseKind::wall)
-      report(dotted, "a wall feels no force; expected a phase of another kind");
+      report(dotted, "a force does not act on a wall; expected a phase of another kind");
   }
 }
 

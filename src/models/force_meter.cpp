@@ -54,7 +54,7 @@ void ForceOn::attach(Workspace& w) {
   for (const auto& e : layout_.entries) {
     if (!stays_ || !e.has(phase_) || !(meter_.by.empty() || layout_.phases[e.partner(phase_)].name == meter_.by))
       continue;
-    if (e.of_spheres()) {
+    if (e.own_steps()) {
       pushes_.push_back(w.sphere_pushes.size());
       w.sphere_pushes.push_back({phase_, e.partner(phase_), meter_.about});
     }

@@ -85,7 +85,7 @@ struct PlanEntry {
   bool feels_lattice = false;  // bodies touch the particles of a wall, whose lattice is rough [contact of bodies]
 
   bool has(std::size_t phase) const { return a == phase || b == phase; }
-  bool of_spheres() const { return pairs == Pairs::spheres || pairs == Pairs::spheres_and_outlines; }
+  bool own_steps() const { return pairs == Pairs::spheres || pairs == Pairs::spheres_and_outlines; }
   bool by_outlines() const { return pairs == Pairs::outlines || pairs == Pairs::spheres_and_outlines; }
   std::size_t partner(std::size_t phase) const { return a == phase ? b : a; }
   /// The direction in which this phase looks for its partner.
@@ -193,6 +193,8 @@ struct PlanPhase {
   bool separate() const { return mover == Mover::contacts || own_steps(); }
   /// CommonWork ends its step, v += dt/2 a; false: its own model does.
   bool kicked() const { return flows() || deforms() || mover == Mover::contacts; }
+  /// Its own model fills Workspace::carried, from which a fluid knows its motion.
+  bool tells_motion() const { return mover == Mover::rigid; }
   /// A contact can push single particles; false: it is as hard as a wall.
   bool yields() const { return kicked() || own_steps(); }
   /// What pushes it loses momentum that no particle gets: a wall, a fluid that enters or leaves.

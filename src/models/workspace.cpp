@@ -88,7 +88,7 @@ void pack_carried(const PhaseParticles& p, RecordArray& records, double kick) {
 }
 
 /// A solid that a fluid asks how it moves, and whose own model does not tell.
-bool must_be_told(const PlanPhase& p) { return p.heats && p.mover != Mover::rigid; }
+bool must_be_told(const PlanPhase& p) { return p.heats && !p.tells_motion(); }
 
 std::vector<double> spacings(const Layout& layout) {
   std::vector<double> all;

@@ -23,7 +23,7 @@ std::string why_wrong(const CheckpointIndex& index) {
   const std::size_t pieces = index.pieces.size(), items = index.places.size();
   const fs::path folder(index.folder);
   if (index.folder.empty() || folder.filename() != folder || index.folder == "." || index.folder == "..")
-    return "its folder of pieces is not beside it";
+    return "its folder of pieces is not in the same folder";
   if (pieces == 0 || index.sizes.size() % pieces != 0 || index.sizes.size() / pieces != items)
     return "its pieces have other rows than it says";
   if (!std::is_sorted(index.places.begin(), index.places.end()) || (items > 0 && index.places.back() > index.items))

@@ -25,7 +25,7 @@ std::string calls_of(const RepeatCount& r, double step) {
 
 /// The name of its kernel; "none" where a scene can give no kernel.
 std::string kernel_of(const PlanEntry& e) {
-  if (e.of_spheres()) return "none";
+  if (e.own_steps()) return "none";
   for (const Word& w : words_of<KernelKind>)
     if (w.meaning == static_cast<int>(e.kernel)) return std::string(w.word);
   return "";
@@ -50,7 +50,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
                  "gradient", "(on a lattice; the truth is 1 and 1)");
   for (const auto& e : plan.entries)
     t += formatted("%-16s %-10s %-13s %6.3g %11d %8.4f %8.4f  %s\n", e.name.c_str(), e.law.c_str(),
-                   e.of_spheres() ? "-" : kernel_of(e).c_str(), e.radius / e.spacing, e.consistency.neighbours,
+                   e.own_steps() ? "-" : kernel_of(e).c_str(), e.radius / e.spacing, e.consistency.neighbours,
                    e.consistency.volume_sum, e.consistency.gradient_sum, e.meaning.c_str());
   t += "\n";
   for (const auto& p : plan.phases)

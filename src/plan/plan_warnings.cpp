@@ -80,7 +80,7 @@ void warn_of_lattices(Plan& plan) {
       if (e.feels_lattice && !plan.phases[wall].moves())
         plan.warnings.push_back(
             "interactions." + e.name + ": the shape of \"" + plan.phases[wall].name +
-            "\" has no outline that contacts know, and bodies feel the lattice of its particles; a "
+            "\" has no outline for contacts, and bodies touch the lattice of its particles; a "
             "shape with one: sides, box, cube, polygon, surface of lines, in 2D also disc, ring, in 3D sphere");
 }
 
@@ -209,7 +209,7 @@ void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
           !entry_between(scene, scene.phases[a], scene.phases[b]) && !meant_apart(scene, p.name, plan.phases[b].name))
         plan.warnings.push_back("interactions: no entry " + plan.phases[b].name + "-" + p.name + ": the fluids \"" +
                                 plan.phases[b].name + "\" and \"" + p.name +
-                                "\" do not feel each other and pass through each other");
+                                "\" do not interact and pass through each other");
   }
 }
 
@@ -223,7 +223,7 @@ void warn_of_held_speed_over_grains(const Scene& scene, Plan& plan) {
         plan.warnings.push_back(
             "forcing." + std::to_string(k) +
             ".hold: a wind whose bulk speed is held is pulled as hard as the grains of \"" + plan.phases[e.other].name +
-            "\" brake it: its friction velocity u* is a result, which history.csv tells (" + f.phase +
+            "\" brake it: its friction velocity u* is a result, which history.csv reports (" + f.phase +
             "_equivalent_friction_velocity); hold = \"stress\" or \"pressure-gradient\" keeps u*");
   }
 }
@@ -344,7 +344,7 @@ void warn_of_small_radius(const Scene& scene, Plan& plan) {
       plan.warnings.push_back("interactions." + e.name +
                               ": with a radius below 1.8 spacings the plain scheme presses about 11 % less on walls "
                               "than the fluid at rest should; expected 1.8 or more, or scheme = \"consistent\"");
-    if (e.of_spheres() || e.self_contact || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
+    if (e.own_steps() || e.self_contact || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
     plan.warnings.push_back(
         "interactions." + pair.a + "-" + pair.b + ": a radius below one spacing meets no neighbour of a lattice; " +
         (pair.radius_in_metres ? "radius says one in spacings" : "radius-in-metres says one in metres"));

@@ -117,7 +117,7 @@ constexpr Key rows_of_keys[] = {
     {"phases", "slip", of<&WallKeys::slip, &ColumnKeys::slip>(Slip::no_slip), "",
      "Whether the fluid sticks to the wall (only with law = \"adami\"), or a column's air to the bottom of the domain."},
     {"phases", "velocity", of<&WallKeys::velocity>("zero"), "m/s",
-     "Velocity at which the surface of a no-slip wall slides along itself, a function of time. Only fluids feel it; the wall stays where it is ([[motion]] moves walls).", {}, "t"},
+     "Velocity at which the surface of a no-slip wall slides along itself, a function of time. It acts on fluids only; the wall stays where it is ([[motion]] moves walls).", {}, "t"},
     {"phases", "roughness", of<&WallKeys::roughness, &GrainsKeys::roughness>("smooth; of grains in turbulent air: a thirtieth of the spacing"), "m",
      "Roughness length z0: the wall's shear stress is that of the logarithmic law at the particles next to it.", positive},
     {"phases", "shear-stress", of<&WallKeys::shear_stress>("none").like("[0.196, 0]"), "Pa",
@@ -132,7 +132,7 @@ constexpr Key rows_of_keys[] = {
     {"phases", "averaging", of<&ColumnKeys::averaging>("none: the air has inertia").like("0.02"), "s",
      "The wind is at every moment the steady one for the grains' drag averaged over this time: it follows a storm at once, where air with "
      "inertia takes a second or more.", positive},
-    {"phases", "held", of<&ColumnKeys::held>(false), "", "The wind of the start stays as it is: the air does not feel the grains."},
+    {"phases", "held", of<&ColumnKeys::held>(false), "", "The wind of the start stays as it is: the grains do not brake the air."},
     {"phases", "speed", of<&ColumnKeys::speed>("that of the steady wind over the grains at rest"), "m/s", "Speed of the air at the start, the same at all heights."},
     {"phases", "log-profile", of<&ColumnKeys::log_profile>("none"), "",
      "Wind at the start: Halik et al. 2015 eq. (18), from the bottom of the domain."},
@@ -167,7 +167,7 @@ constexpr Key rows_of_keys[] = {
     {"interactions.pair", "restitution", at<&Interaction::restitution>("1 of bodies that need it"), "",
      "Bodies with bodies and walls: the particles touch where their spacings end, and two that meet head-on keep this share of their relative speed (docs/method.md). Of rigid bodies: share of the speed at the place where they touch, for any mass. Between two updated Lagrangian bodies it takes the place of the kernel's contact.", {.at_least = 0.05, .at_most = 1.0}},
     {"interactions.pair", "friction", at<&Interaction::friction>("0").like("0.3"), "", "Coulomb's coefficient of friction of such a contact.", {.at_least = 0.0, .at_most = 10.0}},
-    {"interactions.pair", "surfaces", at<&Interaction::surfaces>(false), "", "Two elastic bodies touch by their surfaces: a particle feels the mean of those of the other body that face it, along the normals of both surfaces (docs/method.md). false: by their particles, one by one."},
+    {"interactions.pair", "surfaces", at<&Interaction::surfaces>(false), "", "Two elastic bodies touch by their surfaces: on a particle acts the mean of those of the other body that face it, along the normals of both surfaces (docs/method.md). false: by their particles, one by one."},
     {"interactions.pair", "kernel", at<&Interaction::kernel>("that of [interactions]"), "", "Kernel of this pair."},
     {"fill", "phase", at<&Fill::phase>(required).like("\"sand\""), "", "Phase of the particles."},
     {"fill", "shape", fill_shape().like("{ bed = 0.01 }"), "", "Where: one shape, or \"the-rest\" for what earlier fills left free (above the ground, if there is a bed)."},
@@ -184,7 +184,7 @@ constexpr Key rows_of_keys[] = {
      "Seed of the random numbers, of perturb and of the random packing.", {.at_least = 0, .at_most = 4294967295.0}},
     {"fill", "velocity", velocity_or_profile<&Fill::velocity>("zero"), "m/s", "Initial velocity: components, or { log-profile = ... }.", {}, "x y z"},
     {"fill", "angular-velocity", at<&Fill::angular_velocity>("zero"), "1/s",
-     "Initial angular velocity of a rigid body about its centre, beside velocity; in 2D a number, about z; in 3D an array of three."},
+     "Initial angular velocity of a rigid body about its centre, in addition to velocity; in 2D a number, about z; in 3D an array of three."},
     {"fill", "mass", at<&Fill::mass>("density times what the shape holds").like("2.5"), "kg",
      "Mass of a rigid body, in 2D per metre of depth. Its inertia follows in proportion.", positive},
     {"fill", "centre", at<&Fill::centre>("that of the shape").like("[0.1, 0.2]"), "m", "Centre of mass of a rigid body; inertia stands next to it."},
@@ -244,7 +244,7 @@ constexpr Key rows_of_keys[] = {
      "Only over a bed: the wind follows the ground, along streamlines that divide the height between ground and top of the domain as over the flat bed, and no air is "
      "pressed together: faster over a dune, with a component along y."},
 
-    {"forcing", "phase", at<&Forcing::phase>(required), "", "Phase that feels the force."},
+    {"forcing", "phase", at<&Forcing::phase>(required), "", "Phase on which the force acts."},
     {"forcing", "acceleration", at<&Forcing::acceleration>("none").like("[0.5, 0]"), "m/s2", "Acceleration; this, hold or rate.", {}, "x y z t"},
     {"forcing", "hold", hold("none"), "",
      "bulk-speed: the uniform acceleration that keeps the fluid's initial mean velocity along the periodic axes, as in a channel of "
@@ -256,7 +256,7 @@ constexpr Key rows_of_keys[] = {
     {"forcing", "velocity", at<&Forcing::velocity>("zero").like("[\"0.2*y\", 0]"), "m/s", "Only with rate: the velocity that a fluid is brought to.", {}, "x y z t"},
     {"forcing", "rate", at<&Forcing::rate>("none").like("\"x > 0.9 ? 50 : 0\""), "1/s",
      "A fluid of velocity v gets the acceleration rate (velocity - v); at most half of the difference a step.", not_negative, "x y z t"},
-    {"forcing", "box", at<&Forcing::box>("everywhere"), "", "Where the phase feels the force; not with hold."},
+    {"forcing", "box", at<&Forcing::box>("everywhere"), "", "Where the force acts; not with hold."},
     {"forcing.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
     {"forcing.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
 
@@ -268,7 +268,7 @@ constexpr Key rows_of_keys[] = {
     {"inflow.velocity", "log-profile", at<&Inflow::log_profile>("required without profile"), "", "Logarithmic wind along x, Halik et al. 2015 eq. (18); on the left side."},
     {"inflow.velocity", "profile", at<&Inflow::profile>("none: log-profile"), "",
      "File with the velocity by height, as profile_NAME.csv of a [[profile]] of an earlier run: columns y [m] and velocity_mean_x (y, z) or velocity_x [m/s], or in another unit that the heading names; linear between its "
-     "rows, below and above them as in the first and last. On a side beside the ground. A path from the folder of the scene."},
+     "rows, below and above them as in the first and last. On a side that cuts the ground. A path from the folder of the scene."},
     {"inflow.velocity.log-profile", "friction-velocity", at<&LogProfile::friction_velocity>(required), "m/s", "Friction velocity u*.", not_negative},
     {"inflow.velocity.log-profile", "roughness", at<&LogProfile::roughness>(required), "m", "Roughness length; no wind below it.", positive},
     {"inflow.velocity.log-profile", "over-ground", at<&LogProfile::over_ground>(true), "",
@@ -290,7 +290,7 @@ constexpr Key rows_of_keys[] = {
      "Length of the layer beyond the side in which sound is absorbed; the fluid flows on in it. Short sound needs a short layer.", not_negative},
 
     {"influx", "phase", at<&Influx::phase>(required).like("\"sand\""), "", "Grains with a diameter that enter."},
-    {"influx", "side", at<&Influx::side>(required), "", "Side of the domain beside the ground. Grains enter at its plane."},
+    {"influx", "side", at<&Influx::side>(required), "", "Side of the domain that cuts the ground. Grains enter at its plane."},
     {"influx", "flux", at<&Influx::flux>(required).like("0.02"), "kg/m/s",
      "Mass that enters by second and by metre of width: the mean; the times are those of a Poisson process.", positive},
     {"influx", "file", at<&Influx::file>("none: the distributions below"), "",
@@ -305,7 +305,7 @@ constexpr Key rows_of_keys[] = {
     {"influx", "seed", at<&Influx::seed>(1), "", "Of the random numbers.", not_negative},
 
     {"motion", "phase", at<&Motion::phase, Motion>(required).like("\"plate\""), "",
-     "Elastic or rigid phase. Or a wall, which moves as a rigid whole: a piston, a gate, a drum. Laminar fluids and spheres feel it; sides of the domain stay."},
+     "Elastic or rigid phase. Or a wall, which moves as a rigid whole: a piston, a gate, a drum. It acts on laminar fluids and on spheres; sides of the domain stay."},
     {"motion", "box", at<&Motion::box, Motion>("all of it"), "", "Particles that stand in this box at the start; rigid bodies whose centre stands there. Not of a wall."},
     {"motion", "velocity", at<&Motion::velocity>("zero: clamped").like("[\"0.1*cos(2*t)\", 0]"), "m/s",
      "Velocity of the set, a function of time; of a rigid body or a wall with about: of that place. history.csv has the force on a body, and the place of a wall.", {}, "t"},
@@ -390,7 +390,7 @@ constexpr Key rows_of_keys[] = {
      "Time between rows of history.csv.", not_negative},
     {"output", "checkpoint-every", at<&OutputControl::checkpoint_every>(600.0), "s",
      "Wall time between checkpoints; 0: at the end and at signals only.", not_negative},
-    {"output", "fields", fields("none"), "", "Fields beside id, phase, velocity, smoothing_length, density and pressure."},
+    {"output", "fields", fields("none"), "", "Fields in addition to id, phase, velocity, smoothing_length, density and pressure."},
     {"output", "format", at<&OutputControl::format>(FrameFormat::vtp), "", "File format of the frames."},
     {"output", "compress", at<&OutputControl::compress>(true), "", "Compress the frames."},
     {"output", "walls", at<&OutputControl::walls>(true), "", "Write wall particles too."},

@@ -55,7 +55,7 @@ std::string why_start_is_whole(const Scene& scene) {
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     const Fill& fill = scene.fills[k];
     if (fluid_before && fill.packing == Packing::random)
-      return "fill." + std::to_string(k) + " has random places beside a fluid";
+      return "fill." + std::to_string(k) + " has random places next to a fluid";
     fluid_before = fluid_before || is_fluid(scene, fill);
   }
   return "";

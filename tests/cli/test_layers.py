@@ -47,9 +47,12 @@ QUESTIONS = {
     "a pair of kinds": r"\b(touch_as_bodies|touch_by_surfaces|bodies_may_touch|touches_itself|meets)\(",
     "grains by their friction": r"[!=]=\s*Friction::grains\b",
     "a body": r"\bplan_?\.body\b",
+    "what moves a phase": r"\bmover\s*([!=]=|[<>])",
 }
 # (file, question): the reason why it may stand there.
 ALLOWED = {
+    ("models/layout.hpp", "what moves a phase"): "its facts follow from it",
+    ("models/layout.hpp", "a diameter"): "the size of a particle follows from it",
     ("models/fluid/fluid_attach.cpp", "grains by their friction"): "the fluid applies this law",
     ("models/fluid/eddy_rates.cpp", "grains by their friction"): "the same",
 }
@@ -69,9 +72,9 @@ def kinds(src):
 
 
 def assigned(src):
-    """Files that say of a phase who moves and who flows: models, each of its own kind."""
+    """Files that say of a phase what moves it: models, each of its own kind."""
     return {str(f.relative_to(src)) for f in src.rglob("*.?pp")
-            if re.search(r"(\.|->)(moves|flows)\s*=[^=]", re.sub(r"//.*", "", f.read_text()))}
+            if re.search(r"(\.|->)mover\s*=[^=]", re.sub(r"//.*", "", f.read_text()))}
 
 
 def twins(src):
@@ -207,6 +210,7 @@ class Layers(unittest.TestCase):
             "the word of a law": ['if (e.law == "coupling")'],
             "the keys of one kind": ["if (p.if_wall())", "phase->if_grains()", "p.if_column()", "p.if_rigid()",
                                      "std::get_if<WallKeys>(&p.own)", "std::holds_alternative<FluidKeys>(p.own)"],
+            "what moves a phase": ["if (p.mover == Mover::rigid)", "plan_.mover >= Mover::fluid"],
             "a diameter": ["p.diameter > 0", "p.diameter > 0.0", "plan_.diameter == 0", "p.diameter() > 0",
                            "if (scene.phases[k].diameter()) n += 1;"],
             "rigid bodies": ["p.rigid_bodies.empty()", "p.rigid_bodies.size() > 0", "p.rigid_bodies.size() != 0"],
@@ -231,7 +235,7 @@ class Layers(unittest.TestCase):
                 "// e.of_spheres() is gone, and p.diameter > 0 too\nsize(p.diameter); p.rigid_bodies.size();\n"
                 "std::get_if<BoxShape>(&shape);\nmeets_sound();\nif (i.kind == InstrumentKind::probe) e.law = \"x\";\n")
             self.assertEqual(kinds(pathlib.Path(scratch)), [])
-            (pathlib.Path(scratch) / "plan/x.cpp").write_text("p.moves = true;\nif (p.flows == q.flows) {}\n")
+            (pathlib.Path(scratch) / "plan/x.cpp").write_text("p.mover = Mover::fluid;\nif (p.mover_ == q.mover_) {}\n")
             self.assertEqual(assigned(pathlib.Path(scratch)), {"plan/x.cpp"})
 
     def test_a_planted_include_is_found(self):

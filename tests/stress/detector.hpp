@@ -20,7 +20,7 @@ class Detector {
         if (std::string w = wrong_alone(k, i); !w.empty()) return w;
     }
     for (const auto& e : s_.plan().entries) {
-      if (e.keeps_apart || e.pairs == Pairs::first_shape || e.by_outlines() || e.of_spheres())
+      if (e.keeps_apart || e.pairs == Pairs::first_shape || e.by_outlines() || e.own_steps())
         if (least_distance(e.a, e.b) < (wall(e.a) || wall(e.b) ? 0.6 : 0.2)) return "two in one place";
       if (e.a == e.b && s_.plan().phases[e.a].flows() && paired(e.a) > 0.05) return "pairs";
     }

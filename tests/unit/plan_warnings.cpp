@@ -68,7 +68,7 @@ TEST(PlanSees, AFluidThatIsNotShutIn) {
   EXPECT_FALSE(box("max = [1,", "max = [0.4,").phases[0].enclosed) << "a dam";
   const Plan open = box("\"bottom\", \"top\"", "\"bottom\"");
   EXPECT_FALSE(open.phases[0].enclosed) << "no lid";
-  EXPECT_NE(open.phases[0].enclosure.find("no wall that it feels beyond"), std::string::npos)
+  EXPECT_NE(open.phases[0].enclosure.find("no wall that it interacts with beyond"), std::string::npos)
       << open.phases[0].enclosure;
   const Plan oil = box("[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [1, 1] } }",
                        "[[fill]]\nphase = \"water\"\nshape = { box = { min = [0, 0], max = [1, 0.5] } }\n"

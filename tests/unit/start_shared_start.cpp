@@ -181,7 +181,7 @@ TEST(SharedStart, WhatEveryRankMakesWhole) {
   const auto why = [](const std::string& text) { return why_start_is_whole(parse_scene(text, "tank.toml")); };
   EXPECT_EQ(why(tank(2, "", disc + rest)), "");
   const std::string random = "[[fill]]\nphase = \"sand\"\nshape = \"the-rest\"\npacking = \"random\"\n";
-  EXPECT_EQ(why(tank(2, "", disc + random)), "fill.1 has random places beside a fluid");
+  EXPECT_EQ(why(tank(2, "", disc + random)), "fill.1 has random places next to a fluid");
   EXPECT_EQ(why(tank(2, "", random + disc)), "");
   EXPECT_EQ(why(tank(2, "", random)), "there is no fluid");
 }

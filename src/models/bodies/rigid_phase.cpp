@@ -79,7 +79,7 @@ RigidPhase::RigidPhase(const Scene& scene, const Layout& layout, std::size_t num
       limit_{"motion " + plan_.name, 1e300, "a tenth of a radian, a fifth of a spacing"} {
   for (const Motion& motion : scene.motions) holds_.emplace_back(motion);
   touches_spheres_ = std::any_of(layout.entries.begin(), layout.entries.end(),
-                                 [&](const PlanEntry& e) { return e.has(number) && e.of_spheres(); });
+                                 [&](const PlanEntry& e) { return e.has(number) && e.own_steps(); });
   felt_ = forces_.any() || std::any_of(layout.entries.begin(), layout.entries.end(),
                                        [&](const PlanEntry& e) { return e.has(number) && !e.by_outlines(); });
 }

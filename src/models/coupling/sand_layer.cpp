@@ -63,7 +63,7 @@ void SandLayer::attach(Workspace& w) {
   if (ground_.empty())
     throw SceneError(scene_.file + ": interactions." + name_ +
                      ".drag: no ground under the air; expected a wall with "
-                     "roughness and shape = { bed = ... }, packing = \"fitted\" that the fluid feels");
+                     "roughness and shape = { bed = ... }, packing = \"fitted\" that interacts with the fluid");
   place_ = w.state.air.size();
   const AirProfile one =
       AirColumn::grid(-(deep + 2.0) * diameter_, std::min(fine * diameter_, top_), top_, diameter_ / cells);

@@ -185,7 +185,7 @@ Enclosure find_enclosure(const Scene& scene, const Layout& layout, const std::ve
   if (const auto x = find_open_side(scene, phase, blocks[fluid].position, walls)) found = {true, *x};
   found = Exchange().of_first(found.any, found);
   if (found.any) {
-    result.why = "no wall that it feels beyond " + place_text(found.at, scene.dimensions);
+    result.why = "no wall that it interacts with beyond " + place_text(found.at, scene.dimensions);
     result.open = true;
     return result;
   }

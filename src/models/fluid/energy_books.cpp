@@ -72,11 +72,11 @@ void check_energy_budget(const Scene& scene, std::size_t fluid, const Layout& la
     if (k == fluid || !entry_between(scene, phase, scene.phases[k])) continue;
     const PlanPhase& other = layout.phases[k];
     const std::string name = "\"" + other.name + "\"";
-    if (other.flows()) refuse("beside another fluid (" + name + ")");
-    if (other.moves()) refuse("beside a phase of kind \"" + other.kind + "\" (" + name + ")");
-    if (other.travels()) refuse("beside a wall that a [[motion]] moves (" + name + ")");
-    if (other.gives_energy()) refuse("beside a wall whose surface slides (" + name + ")");
-    if (scene.phases[k].wall().law != WallLaw::adami) refuse("beside a wall with law = \"repulsive\" (" + name + ")");
+    if (other.flows()) refuse("next to another fluid (" + name + ")");
+    if (other.moves()) refuse("next to a phase of kind \"" + other.kind + "\" (" + name + ")");
+    if (other.travels()) refuse("next to a wall that a [[motion]] moves (" + name + ")");
+    if (other.gives_energy()) refuse("next to a wall whose surface slides (" + name + ")");
+    if (scene.phases[k].wall().law != WallLaw::adami) refuse("next to a wall with law = \"repulsive\" (" + name + ")");
   }
 }
 

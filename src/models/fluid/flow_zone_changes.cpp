@@ -143,7 +143,7 @@ void FlowZone::report(Warnings& warnings) const {
   const std::string what = end_.inflow ? "velocity" : "pressure";
   const double rate = squeezed * c_ * c_ / whole_ * (end_.inflow ? 1.0 : rho_ * c_);
   warnings.add("turned " + name_, "the " + what + " that the scene gives \"" + plan_.name + "\" at \"" +
-                                      word_of(end_.side) + "\" changed faster than sound can tell the fluid: for " +
+                                      word_of(end_.side) + "\" changed faster than sound crosses the fluid: for " +
                                       brief(late_) + " s the side followed it by " + brief(rate) +
                                       (end_.inflow ? " m/s" : " Pa") + " a second; raise phases." + plan_.name +
                                       ".sound-speed, or change it more slowly");

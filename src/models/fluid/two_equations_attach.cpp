@@ -30,7 +30,8 @@ void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) 
   if (phase.fluid().turbulence != Turbulence::k_omega) return;
   const std::string key = scene.file + ": phases." + plan.name + ".turbulence: \"k-omega\" ";
   if (plan.free_surface)
-    throw SceneError(key + "knows no free surface, and \"" + plan.name + "\" has one; expected no turbulence");
+    throw SceneError(key + "does not support a free surface, and \"" + plan.name +
+                     "\" has one; expected no turbulence");
   if (!(plan.wind.friction_velocity(0.0) > 0.0))
     throw SceneError(key +
                      "begins as the logarithmic layer of a friction velocity, and the scene states none; expected "
@@ -40,7 +41,7 @@ void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) 
     if (k == fluid || !entry_between(scene, phase, other)) continue;
     if (layout.phases[k].separate() || layout.phases[k].travels() ||
         layout.phases[k].moves() != layout.phases[k].flows())
-      throw SceneError(key + "knows no grains, bodies or walls that move, and \"" + other.name +
+      throw SceneError(key + "does not support grains, bodies or walls that move, and \"" + other.name +
                        "\" is such a phase; expected \"mixing-length\", or no entry of the two");
   }
 }

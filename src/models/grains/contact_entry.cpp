@@ -29,7 +29,7 @@ KernelContact contact_law(const Scene& scene, const Layout& layout, const PlanEn
     if (slope <= 0)
       throw SceneError("interactions." + e.name +
                        ": a contact needs a radius beyond one spacing (1.1 in eq. 16 of "
-                       "Halik et al. 2015), so that touching grains feel each other");
+                       "Halik et al. 2015), so that grains that touch interact");
     law.inverse_slope = 1.0 / slope;
   });
   law.stiffness = 1.0 * soft.mass / (d * d) * soft.sound_speed * soft.sound_speed;

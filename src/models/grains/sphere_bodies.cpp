@@ -45,7 +45,7 @@ void SphereBodies::begin(const Layout& layout, State& state) {
   memory_.resize(layout.phases.size());
   remembers_.assign(layout.phases.size(), 0);
   for (const PlanEntry& e : layout.entries) {
-    if (!e.of_spheres() || !e.by_outlines()) continue;
+    if (!e.own_steps() || !e.by_outlines()) continue;
     const std::size_t grains = layout.phases[e.a].own_steps() ? e.a : e.b;
     if (remembers_[grains] != 0 || !layout.phases[e.partner(grains)].moves()) continue;
     memory_[grains] = state.phases[grains].add_own<SolidTouches>("bodies that it touches");
@@ -70,7 +70,7 @@ void SphereBodies::attach(const Scene& scene, const Layout& layout, const Sphere
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const std::size_t phase = state.bodies[b].phase;
     const bool touches = std::any_of(layout.entries.begin(), layout.entries.end(), [&](const PlanEntry& e) {
-      return e.of_spheres() && e.by_outlines() && e.has(phase);
+      return e.own_steps() && e.by_outlines() && e.has(phase);
     });
     if (!touches) continue;
     const auto& own = layout.phases[phase].rigid_bodies;

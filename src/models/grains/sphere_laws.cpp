@@ -81,7 +81,7 @@ SphereLaws::SphereLaws(const Scene& scene, const Layout& layout) {
   const std::size_t n = layout.phases.size();
   table_.assign(n * n, SphereSearch::none);
   for (const auto& e : layout.entries) {
-    if (!e.of_spheres()) continue;
+    if (!e.own_steps()) continue;
     const std::vector<std::size_t> grains = grains_of(layout, e);
     double restitution = 1.0;
     for (const std::size_t k : grains) restitution = std::min(restitution, scene.phases[k].grains().restitution);

@@ -23,7 +23,7 @@ constexpr double most_at_start = 0.049, most_of_settled = 0.1;
 
 bool touch_as_spheres(const Layout& layout, std::size_t a, std::size_t b) {
   return std::any_of(layout.entries.begin(), layout.entries.end(),
-                     [&](const PlanEntry& e) { return e.of_spheres() && e.has(a) && e.partner(a) == b; });
+                     [&](const PlanEntry& e) { return e.own_steps() && e.has(a) && e.partner(a) == b; });
 }
 
 SphereRoom::SphereRoom(const Scene& scene, const Layout& layout, std::size_t phase, double reach)

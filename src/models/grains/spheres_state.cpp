@@ -60,7 +60,7 @@ std::optional<std::string> Spheres::trouble() const {
 
 std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
   const std::uint32_t law = laws_.table()[entry.a * layout_.phases.size() + entry.b];
-  if (!entry.of_spheres() || law == SphereSearch::none) return 0;
+  if (!entry.own_steps() || law == SphereSearch::none) return 0;
   const auto far = static_cast<std::uint32_t>(all());
   std::uint64_t n = 0;
   for (const SphereChunk& chunk : own_chunks()) {
