@@ -44,7 +44,7 @@ class PhysicsChecker {
     if (own.energy && (!plain || eddies))
       tell(dotted + ".energy",
            "the internal energy of a fluid is computed with the plain sums only; expected scheme = \"plain\" and no "
-           "turbulence too, or no such key");
+           "turbulence with it, or no such key");
     if (!pairs_known_) return;
     if (!entry_between(scene_, fluid, fluid))
       tell("interactions." + fluid.name + "-" + fluid.name,

@@ -25,7 +25,7 @@ double of_profile(const Scene& scene, const Phase& fluid) {
   return u;
 }
 
-constexpr double most_pull = 2.0;  // times what a scene says
+constexpr double most_pull = 1.5;  // times what a scene says
 
 }  // namespace
 
@@ -118,8 +118,11 @@ std::function<double(double time)> stated_friction_velocity(const Scene& scene, 
   for (const Forcing& f : scene.forcings)
     if (f.phase == fluid.name && f.holds_force())
       return [u = f.friction_velocity](double time) { return std::abs(Formula(u)({}, time)); };
-  const double of_start = of_profile(scene, fluid);
-  const double u = of_start > 0.0 ? of_start : std::sqrt(std::abs(wall_pull(scene, fluid)) / fluid.density);
+  double u = of_profile(scene, fluid);
+  for (const Inflow& inflow : scene.inflows)
+    if (!(u > 0.0) && inflow.phase == fluid.name && inflow.log_profile)
+      u = std::abs(inflow.log_profile->friction_velocity);
+  if (!(u > 0.0)) u = std::sqrt(std::abs(wall_pull(scene, fluid)) / fluid.density);
   return [u](double) { return u; };
 }
 

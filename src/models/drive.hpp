@@ -64,7 +64,7 @@ class Drive {
   void history(HistoryRow& row, const PhaseParticles& p, double given, double held) const;
   /// The force on the ground (Pa).
   double pull(double mass, double given, double held) const;
-  /// A hold that pulls with more than twice what the profile of the start or the walls say.
+  /// A hold that pulls with more than 1.5 times what the profile of the start or the walls say.
   void report(double mass, Warnings& warnings) const;
   void archive(Archive& a);
 
@@ -79,7 +79,7 @@ class Drive {
 };
 
 /// What wind a scene states over grains, m/s at a time (s): the friction velocity of a held force, of the profile of
-/// the start or of the walls' stress, the first that is there. 0: none.
+/// the start, of that of an inflow or of the walls' stress, the first that is there. 0: none.
 std::function<double(double time)> stated_friction_velocity(const Scene& scene, const Phase& fluid);
 
 /// The largest |u*| (m/s) of a force that is held, at 65 times of the run.

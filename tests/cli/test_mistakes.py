@@ -109,7 +109,7 @@ SCENES = [
     ("viscosity = 1e-3", "viscosity = -1", "expected a number >= 0 (m2/s)"),
     ("[[fill]]\nphase = \"ground\"", "[fill]\nphase = \"ground\"", "expected [[fill]] in place of [fill]"),
     ("[time]\nend = 0.01\n", "", "time: missing; expected a section"),
-    ("water-ground = 2.1\n", "", "ground: nothing feels this wall"),
+    ("water-ground = 2.1\n", "", "ground: nothing interacts with this wall"),
     ("water-ground = 2.1", "water-gruond = 2.1", 'did you mean "ground"?'),
     ("[domain]", "gravity = [0, -9.81]\n[domain]", 'did you mean "domain.gravity"?'),
     ("[domain]", "[constants]\nd = 1\n[domain]", "nothing uses it"),

@@ -93,7 +93,7 @@ TEST(SceneColumn, RefusesWhatCannotWork) {
                         "grains only");
   expect_column_refused(with("air-sand = {}", "air-sand = {}\nair-air = {}"), "interactions.air-air", "grains only");
   expect_column_refused(with("air-sand = {}", "air-sand = {}\nwater-sand = {}"), "interactions.air-sand", "already");
-  expect_column_refused(with("air-sand = {}\n", ""), "phases.air", "nothing feels this air");
+  expect_column_refused(with("air-sand = {}\n", ""), "phases.air", "nothing interacts with this air");
   expect_column_refused(with("phase = \"water\"", "phase = \"air\"") +
                             "[[fill]]\nphase = \"water\"\nshape = { points = [[0.05, 0.045]] }\n",
                         "fill.2.phase", "no particles");

@@ -314,9 +314,9 @@ shape = { box = { min = [0, 0], max = [1, 0.5] } }
     const Scene scene = parse_scene(text, "box.toml");
     return make_plan(scene, generate(scene));
   };
-  EXPECT_TRUE(warns(plan(""), "the fluids \"water\" and \"oil\" do not feel each other"));
-  EXPECT_FALSE(warns(plan("water-oil = false\n"), "do not feel each other"));
-  EXPECT_FALSE(warns(plan("water-oil = 2.1\n"), "do not feel each other"));
+  EXPECT_TRUE(warns(plan(""), "the fluids \"water\" and \"oil\" do not interact"));
+  EXPECT_FALSE(warns(plan("water-oil = false\n"), "do not interact"));
+  EXPECT_FALSE(warns(plan("water-oil = 2.1\n"), "do not interact"));
 }
 
 TEST(PlanWarns, OfFramesBeyondTheEndOfWeightUpwardsAndOfRadiiInMetres) {
@@ -404,9 +404,9 @@ TEST(PlanWarns, OfWallsWithoutAnOutline) {
     const Scene scene = block_on(floor);
     return make_plan(scene, generate(scene));
   };
-  EXPECT_TRUE(warns(plan("{ formula = \"0.05 + 0.1*x - y\" }"), "bodies feel the lattice of its particles"));
-  EXPECT_FALSE(warns(plan("{ polygon = [[0, 0], [0.2, 0], [0.2, 0.07], [0, 0.05]] }"), "feel the lattice"));
-  EXPECT_FALSE(warns(plan("{ box = { min = [0, 0, 0], max = [0.2, 0.05, 0.2] } }"), "feel the lattice"));
+  EXPECT_TRUE(warns(plan("{ formula = \"0.05 + 0.1*x - y\" }"), "bodies touch the lattice of its particles"));
+  EXPECT_FALSE(warns(plan("{ polygon = [[0, 0], [0.2, 0], [0.2, 0.07], [0, 0.05]] }"), "touch the lattice"));
+  EXPECT_FALSE(warns(plan("{ box = { min = [0, 0, 0], max = [0.2, 0.05, 0.2] } }"), "touch the lattice"));
 }
 
 TEST(PlanWarns, OfPrismsThatMoveAmongGrains) {

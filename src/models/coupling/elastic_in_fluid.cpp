@@ -224,8 +224,7 @@ void ElasticInFluid::find_stress(std::size_t fluid) {
     const auto q = static_cast<std::size_t>(i);
     if (!near.is_own(q)) continue;
     const BorderMotion border{pieces[q].normal, pieces[q].velocity, pieces[q].spin};
-    stress_[q] = layout_.dimensions == 2 ? border_stress<2>(scene_.domain.gravity, fluids_[fluid], near.of(q), border)
-                                         : border_stress<3>(scene_.domain.gravity, fluids_[fluid], near.of(q), border);
+    stress_[q] = border_stress(layout_.dimensions, scene_.domain.gravity, fluids_[fluid], near.of(q), border);
   }
   near.share(stress_);
 }

@@ -50,8 +50,7 @@ WallBorder::Load WallBorder::load(const Workspace& w, const Vec3& about) {
   for (std::size_t q = 0; q < pieces_.size(); ++q) {
     if (!neighbours_->is_own(q)) continue;
     const BorderMotion border{pieces_[q].normal, {}, {}};
-    stress_[q] = w.layout.dimensions == 2 ? border_stress<2>(gravity, fluid_, neighbours_->of(q), border)
-                                          : border_stress<3>(gravity, fluid_, neighbours_->of(q), border);
+    stress_[q] = border_stress(w.layout.dimensions, gravity, fluid_, neighbours_->of(q), border);
   }
   neighbours_->share(stress_);
   Load sum;
