@@ -42,6 +42,30 @@ TEST(WindOverSand, KeepsTheLogarithmicProfile) {
   EXPECT_LE(share, 2.0);
 }
 
+/// Warnings of the bed in an open wind: grains at rest but those before the outflow, and what enters.
+std::vector<std::string> warnings_of_an_open_wind(const std::string& roughness, const std::string& speed) {
+  const std::string wind = "log-profile = { friction-velocity = 0.4, roughness = " + roughness + " }";
+  Drive drive("wind_over_sand",
+              {"domain.periodic=[]", "domain.open=[\"right\"]", "forcing=[]", "phases.lid.shear-stress=[0, 0]",
+               "inflow=[{ phase = \"air\", side = \"left\", velocity = { " + wind + " } }]",
+               "outflow=[{ phase = \"air\", side = \"right\" }]", "fill.4.velocity={ " + wind + " }",
+               "fill.3.velocity=[\"x < 0.09 ? 0 : " + speed + "\", 0]", "time.end=2e-4"});
+  drive.to(2e-4);
+  return drive.simulation().warnings().texts();
+}
+
+TEST(WindOverSand, AnOpenWindIsWarnedOfWhereItIsNotTheStatedOne) {
+  const auto any = [](const std::vector<std::string>& texts, const std::string& words) {
+    return std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.find(words) != std::string::npos; });
+  };
+  const auto calm = warnings_of_an_open_wind("8.3e-6", "0");
+  EXPECT_FALSE(any(calm, "the ground took")) << calm.front();
+  EXPECT_FALSE(any(calm, "still grows at the outflow"));
+  EXPECT_TRUE(any(warnings_of_an_open_wind("8.3e-6", "0.1"), "still grows at the outflow"));
+  // The same u* over a ground that is said to be much smoother: the speeds are those of a larger u*.
+  EXPECT_TRUE(any(warnings_of_an_open_wind("8.3e-9", "0"), "the ground took"));
+}
+
 /// Without grains in flight nothing but the bed takes the wind's momentum: that of a smooth sheet would be less.
 TEST(WindOverSand, AHeavyBedIsAsRoughAsItsGrains) {
   Drive drive("wind_over_sand", {"phases.sand.density=2.65e6", "time.end=0.004"});
