@@ -129,8 +129,7 @@ int dispatch(int argc, char** argv) {
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   int ranks = 0;
-  c_plan
-      ->add_option("--ranks", ranks, "particles, ghosts, memory, messages and speed of a run on N ranks (mpirun -n N)")
+  c_plan->add_option("--ranks", ranks, "particles, ghosts and memory of a run on N ranks (mpirun -n N)")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   c_plan->add_flag("--json", json, "as JSON");
