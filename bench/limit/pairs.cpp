@@ -6,8 +6,6 @@
 //
 // Particles sit on a jittered lattice, inserted in random order and sorted into cells. Pairs are counted from both
 // sides, within the kernel radius only; rates are per second of CPU time (all threads), medians over the repetitions.
-//
-// Build: g++ -std=c++20 -O3 -march=native -fopenmp -fno-math-errno -fno-trapping-math -I../../src pairs.cpp -o pairs
 #include <time.h>
 
 #include <algorithm>

@@ -58,6 +58,7 @@ struct From {
   std::optional<Archive> state;    // nothing: a start at the beginning
   bool newest_is_damaged = false;  // then it is the state of the one before
   bool newest_is_another = false;  // than that of the folder
+  bool has_ended = false;          // the run of the folder is at its end: there is nothing to do
 };
 
 /// The state that --restart asks for. "latest" is the checkpoint of this folder, or the beginning where no run was;
@@ -80,7 +81,13 @@ From find_checkpoint(const std::string& restart, const fs::path& directory, cons
   if (const std::string lines = difference(c.scene, scene.identity); !lines.empty())
     throw SceneError("--restart " + restart + ": the checkpoint is of another scene; only title, state, time.end and " +
                      "[output] but its format may change; what differs:\n" + lines);
-  if (c.time >= scene.time.end * (1.0 - 1e-12))
+  const bool has_ended = c.time >= scene.time.end * (1.0 - 1e-12);
+  if (has_ended && restart == "latest") {  // a job of a chain that is one too many
+    std::cerr << "barchan: the run of " << directory.string() << " has ended, at t = " << brief(c.time)
+              << " s; a later time.end continues it\n";
+    return {{}, false, false, true};
+  }
+  if (has_ended)
     throw SceneError("--restart " + restart + ": the checkpoint is at t = " + brief(c.time) +
                      " s, and the scene ends at " + brief(scene.time.end) + " s; expected a larger time.end");
   if (!damage.empty())
@@ -260,6 +267,7 @@ int run_scene(const RunOptions& options, const Launch& launch) {
   std::error_code unseen;
   if (first && fs::is_directory(directory, unseen)) hold(lock, directory, launch);
   From from = find_checkpoint(options.restart, directory, scene);
+  if (from.has_ended) return 0;
   SettledBeds beds;
   if (from.state) beds.archive(*from.state, scene);
   auto blocks = make_particles(scene, quiet ? nullptr : &std::cout, &beds);
