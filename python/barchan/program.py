@@ -191,7 +191,10 @@ def generate(scene, file, set=None, name="scene", program=None):
 
 
 def compare(a, b, tolerance=0., program=None):
-    """Compares two frames or two series (files, or barchan.Series), particle by particle. Returns a Difference, which is true when they are the same."""
+    """Compares two frames, series or folders of runs (paths, or barchan.Series), particle by particle.
+
+    Returns a Difference, which is true when they are the same.
+    """
     a, b = (getattr(each, "pvd", each) for each in (a, b))
     status, said, complained = start(["compare", a, b, "--json", "--tolerance", repr(float(tolerance))], program)
     if status not in (0, 1):

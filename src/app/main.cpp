@@ -142,9 +142,14 @@ int dispatch(int argc, char** argv) {
   add_set(c_generate);
   c_generate->callback([&] { status = barchan::generate(barchan::scene_file(scene), file_a, overrides); });
 
-  auto* c_compare = app.add_subcommand("compare", "compare two frames or two series, particle by particle");
-  c_compare->add_option("a", file_a, ".vtp, .vtu, .pvtp, .pvtu or .pvd")->type_name("FILE")->required();
-  c_compare->add_option("b", file_b, ".vtp, .vtu, .pvtp, .pvtu or .pvd")->type_name("FILE")->required();
+  auto* c_compare =
+      app.add_subcommand("compare", "compare two frames, series or folders of runs, particle by particle");
+  c_compare->add_option("a", file_a, ".vtp, .vtu, .pvtp, .pvtu, .pvd or the folder of a run")
+      ->type_name("FILE")
+      ->required();
+  c_compare->add_option("b", file_b, ".vtp, .vtu, .pvtp, .pvtu, .pvd or the folder of a run")
+      ->type_name("FILE")
+      ->required();
   c_compare->add_option("--tolerance", tolerance, "relative difference that still counts as the same (default 0)")
       ->type_name("NUMBER")
       ->check([](const std::string& text) {

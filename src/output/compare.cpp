@@ -112,14 +112,41 @@ bool above_tolerance(const FieldDifference& d) { return d.first_id >= 0; }
 
 bool is_series(const std::filesystem::path& file) { return file.extension() == ".pvd"; }
 
+/// A folder stands for the series in it. Throws OutputError where it has none or several.
+std::filesystem::path series_of(const std::filesystem::path& file) {
+  std::error_code unseen;
+  if (!std::filesystem::is_directory(file, unseen)) return file;
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(file, unseen))
+    if (is_series(entry.path())) found.push_back(entry.path());
+  if (found.size() == 1) return found.front();
+  throw OutputError("'" + file.string() + "' has " + std::to_string(found.size()) +
+                    " series (.pvd); expected a folder with one, or the series itself");
+}
+
+using Entries = std::vector<SeriesWriter::Entry>;
+
+/// Frames of the same time, by their numbers in both lists, which ascend in time.
+std::vector<std::pair<std::size_t, std::size_t>> of_one_time(const Entries& a, const Entries& b) {
+  constexpr double same = 1e-9;  // of the longer series
+  const double longest = std::max(a.empty() ? 0.0 : a.back().time, b.empty() ? 0.0 : b.back().time);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t k = 0, l = 0; k < a.size() && l < b.size();) {
+    if (std::abs(a[k].time - b[l].time) <= same * longest) pairs.emplace_back(k++, l++);
+    else if (a[k].time < b[l].time) ++k;
+    else ++l;
+  }
+  return pairs;
+}
+
 std::vector<FrameDifference> compare_series(const std::filesystem::path& a, const std::filesystem::path& b,
                                             double tolerance) {
-  const auto entries_a = read_pvd(a), entries_b = read_pvd(b);
-  const std::size_t common = std::min(entries_a.size(), entries_b.size());
+  const Entries entries_a = read_pvd(a), entries_b = read_pvd(b);
+  const auto pairs = of_one_time(entries_a, entries_b);
   std::vector<FrameDifference> differences;
-  for (std::size_t k = 0; k < common; ++k) {
+  for (const auto& [k, l] : pairs) {
     const Frame frame_a = read_frame(a.parent_path() / entries_a[k].file);
-    const Frame frame_b = read_frame(b.parent_path() / entries_b[k].file);
+    const Frame frame_b = read_frame(b.parent_path() / entries_b[l].file);
     differences.push_back(compare(frame_a, frame_b, tolerance));
     const auto check_entry = [&](const SeriesWriter::Entry& entry, const Frame& frame, const char* which) {
       if (distance(entry.time, frame.time) == 0) return;
@@ -128,15 +155,15 @@ std::vector<FrameDifference> compare_series(const std::filesystem::path& a, cons
                                            exact(entry.time) + " s, the frame says " + exact(frame.time) + " s");
     };
     check_entry(entries_a[k], frame_a, "A");
-    check_entry(entries_b[k], frame_b, "B");
+    check_entry(entries_b[l], frame_b, "B");
   }
-  if (entries_a.size() != entries_b.size()) {
+  if (entries_a.size() != pairs.size() || entries_b.size() != pairs.size()) {
     FrameDifference rest;
     rest.same = false;
     rest.remarks.push_back("A has " + std::to_string(entries_a.size()) + " frames, B has " +
-                           std::to_string(entries_b.size()) + "; the first " + std::to_string(common) +
-                           " are compared");
-    if (common > 0) rest.time_a = differences.back().time_a, rest.time_b = differences.back().time_b;
+                           std::to_string(entries_b.size()) + "; the " + std::to_string(pairs.size()) +
+                           " of the same times are compared");
+    if (!pairs.empty()) rest.time_a = differences.back().time_a, rest.time_b = differences.back().time_b;
     differences.push_back(rest);
   }
   return differences;
@@ -228,11 +255,12 @@ FrameDifference compare(const Frame& a, const Frame& b, double tolerance) {
 
 std::vector<FrameDifference> compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
                                            double tolerance) {
-  if (is_series(a) != is_series(b))
+  const std::filesystem::path one = series_of(a), other = series_of(b);
+  if (is_series(one) != is_series(other))
     throw OutputError("cannot compare '" + a.string() + "' with '" + b.string() +
                       "': one is a series, the other a frame");
-  if (is_series(a)) return compare_series(a, b, tolerance);
-  return {compare(read_frame(a), read_frame(b), tolerance)};
+  if (is_series(one)) return compare_series(one, other, tolerance);
+  return {compare(read_frame(one), read_frame(other), tolerance)};
 }
 
 std::string to_text(const std::vector<FrameDifference>& differences) {

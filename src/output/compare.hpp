@@ -1,4 +1,4 @@
-// `barchan compare`: two frames or two series, matched by particle id.
+// `barchan compare`: two frames, series or runs, matched by particle id.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct FrameDifference {
 /// Compares particle by particle. Positions count as a field "position".
 FrameDifference compare(const Frame& a, const Frame& b, double tolerance);
 
-/// The same for files: two frames, or two .pvd (frame by frame; a different number of frames is a remark).
+/// The same for files: two frames, or two .pvd or folders with one (frames of the same time; others are a remark).
 /// Throws OutputError when a file cannot be read.
 std::vector<FrameDifference> compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
                                            double tolerance);

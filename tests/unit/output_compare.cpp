@@ -189,6 +189,19 @@ TEST(Compare, ReadsFramesAndSeries) {
   EXPECT_FALSE(differences.back().same);
   EXPECT_NE(to_text(differences).find("A has 1 frames, B has 3"), std::string::npos);
 
+  // Every second frame of the one is one of the other: those of one time are compared. A folder stands for its series.
+  {
+    SeriesWriter c(directory / "c", "rare", FrameFormat::vtp, true);
+    for (const int k : {0, 2}) c.write(frame(20, k));
+    c.finish();
+  }
+  differences = compare_files(directory / "b", directory / "c", 0.0);
+  ASSERT_EQ(differences.size(), 3u);
+  EXPECT_TRUE(differences[0].same && differences[1].same);
+  EXPECT_EQ(differences[1].time_a, differences[1].time_b);
+  EXPECT_NE(to_text(differences).find("A has 3 frames, B has 2; the 2 of the same times"), std::string::npos);
+  expect_output_error([&] { compare_files(directory.path, b, 0.0); }, {"has 0 series"});
+
   expect_output_error([&] { compare_files(a, directory / "b" / "sand_000001.vtu", 0.0); }, {"one is a series"});
   expect_output_error([&] { compare_files(a, directory / "none.pvd", 0.0); }, {"none.pvd"});
 }
