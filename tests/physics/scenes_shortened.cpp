@@ -79,8 +79,9 @@ int run_program(const std::string& scene, const fs::path& out, const std::vector
 nlohmann::json report_of(const fs::path& out) { return nlohmann::json::parse(std::ifstream(out / "run.json")); }
 
 /// A wind whose bulk speed is held is pulled as hard as it takes: plan says so beforehand, and the run when it is more
-/// than its profile says.
+/// than its profile says. In a few steps the flux of grains along an open ground is not yet the same everywhere.
 bool is_meant(const Scene& scene, const std::string& warning) {
+  if (warning.find("still grows at the outflow") != warning.npos) return !scene.domain.periodic[0];
   return (warning.find("under hold = \"bulk-speed\" u* is a result") != warning.npos ||
           warning.find("a wind whose bulk speed is held is pulled as hard as the grains") != warning.npos) &&
          std::any_of(scene.forcings.begin(), scene.forcings.end(),

@@ -76,13 +76,14 @@ void GrainFlux::report_growth(Warnings& warnings) const {
                "the flux of \"" + name + "\" still grows at the outflow: " + brief(1e3 * last) +
                    " g/m/s in the last quarter of the ground, " + brief(1e3 * third) +
                    " in the third, means over the last tenth of the run: this flux is not saturated; expected a longer "
-                   "domain, or an [[influx]]");
+                   "domain or run, or an [[influx]]");
 }
 
 void GrainFlux::report_stress(Warnings& warnings) const {
   const Phase& wind = scene_.phases[wind_];
-  const double u = layout_.phases[wind_].wind.friction_velocity(w_->state.time), said = wind.density * u * u;
-  if (!stress_.any() || !(said > 0.0)) return;
+  const PlanPhase& plan = layout_.phases[wind_];
+  const double u = plan.wind.friction_velocity(w_->state.time), said = wind.density * u * u;
+  if (plan.wind.held || !stress_.any() || !(said > 0.0)) return;
   const double takes = std::abs(stress_.recent(tenth_));
   if (!(takes > most_stress * said)) return;
   warnings.add(

@@ -38,7 +38,7 @@ class GrainFlux : public Model {
   double flux(double from = -1e300, double to = 1e300) const;
   void sample();
   void report_growth(Warnings& warnings) const;
-  void report_stress(Warnings& warnings) const;
+  void report_stress(Warnings& warnings) const;  // a held wind's: Drive's
 
   const Scene& scene_;
   const Layout& layout_;
