@@ -120,8 +120,8 @@ std::filesystem::path series_of(const std::filesystem::path& file) {
   for (const auto& entry : std::filesystem::directory_iterator(file, unseen))
     if (is_series(entry.path())) found.push_back(entry.path());
   if (found.size() == 1) return found.front();
-  throw OutputError("'" + file.string() + "' has " + std::to_string(found.size()) +
-                    " series (.pvd); expected a folder with one, or the series itself");
+  throw OutputError("'" + file.string() + "' is a directory with " + std::to_string(found.size()) +
+                    " series (.pvd); expected a directory with one, or the series itself");
 }
 
 using Entries = std::vector<SeriesWriter::Entry>;

@@ -200,7 +200,7 @@ TEST(Compare, ReadsFramesAndSeries) {
   EXPECT_TRUE(differences[0].same && differences[1].same);
   EXPECT_EQ(differences[1].time_a, differences[1].time_b);
   EXPECT_NE(to_text(differences).find("A has 3 frames, B has 2; the 2 of the same times"), std::string::npos);
-  expect_output_error([&] { compare_files(directory.path, b, 0.0); }, {"has 0 series"});
+  expect_output_error([&] { compare_files(directory.path, b, 0.0); }, {"with 0 series"});
 
   expect_output_error([&] { compare_files(a, directory / "b" / "sand_000001.vtu", 0.0); }, {"one is a series"});
   expect_output_error([&] { compare_files(a, directory / "none.pvd", 0.0); }, {"none.pvd"});
