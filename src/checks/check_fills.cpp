@@ -152,11 +152,11 @@ void check_phase_of(const Fill& fill, const Phase& phase, const std::string& dot
   if (wall && report.has(dotted + ".velocity"))
     report(dotted + ".velocity", "a wall has no initial velocity; expected no such key (phases." + phase.name +
                                      ".velocity lets the wall's surface slide)");
-  const bool sizes = phase.diameter() && phase.diameter()->spread > 0.0;
+  const bool sizes = phase.diameter() && phase.diameter()->differ();
   if (report.has(dotted + ".seed") && !(fill.perturb > 0.0) && fill.packing != Packing::random && !sizes)
     report(dotted + ".seed",
-           "nothing here is random; expected perturb above 0 or packing = \"random\" too, or diameters with a "
-           "spread");
+           "nothing here is random; expected perturb above 0 or packing = \"random\" too, or diameters that "
+           "differ");
   if (phase.kind() != PhaseKind::fluid && report.has(dotted + ".pressure"))
     report(dotted + ".pressure", "only fluids have an initial pressure; expected a phase of kind fluid");
   const bool body = phase.kind() == PhaseKind::elastic || phase.kind() == PhaseKind::rigid;

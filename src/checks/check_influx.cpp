@@ -18,7 +18,7 @@ void check_phase(const Scene& scene, const Influx& influx, const std::string& at
 
 void check_side(const Scene& scene, const Influx& influx, const std::string& at, const Report& report) {
   if (report.touched(at) || !report.has(at) || report.touched("domain") || report.touched("dimensions")) return;
-  const std::string word = word_of(side_of(influx.side));
+  const std::string word = word_of(side_of(*influx.side));
   check_side_names({word}, at, scene, report);
   const Phase* grains = find_phase(scene, influx.phase);
   if (report.touched(at) || !grains) return;
@@ -50,6 +50,24 @@ void check_flux(const Scene& scene, const Influx& influx, const std::string& dot
                                  number_text(most) + " kg/m/s");
 }
 
+/// Grains that are poured: a box in the domain that has room for one of them.
+void check_box(const Scene& scene, const Influx& influx, const std::string& dotted, const Report& report) {
+  for (const char* key : {"file", "above", "decay-height", "speed", "speed-spread", "angle", "angle-spread"})
+    if (report.has(dotted + "." + key))
+      report(dotted + "." + key, "of grains that enter through a side; expected side in place of box, or no such key");
+  const Phase* grains = find_phase(scene, influx.phase);
+  if (report.touched(dotted + ".box") || report.touched("domain") || report.touched("dimensions")) return;
+  const double least = grains && grains->diameter() ? grains->diameter()->largest() : 0.0;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) {
+    const double low = influx.box->min[d], high = influx.box->max[d], rounding = 1e-9 * scene.domain.size[d];
+    if (low < scene.domain.origin[d] - rounding || high > scene.domain.origin[d] + scene.domain.size[d] + rounding)
+      return report(dotted + ".box", "reaches out of the domain; expected a box in it");
+    if (!(high - low >= least) || !(high > low))
+      return report(dotted + ".box", "a grain of \"" + influx.phase + "\", " + number_text(least) +
+                                         " m across, has no room in it; expected a larger box");
+  }
+}
+
 }  // namespace
 
 void check_influxes(const Scene& scene, const Report& report) {
@@ -57,6 +75,20 @@ void check_influxes(const Scene& scene, const Report& report) {
     const Influx& influx = scene.influxes[k];
     const std::string dotted = "influx." + std::to_string(k);
     check_phase(scene, influx, dotted + ".phase", report);
+    if (influx.end && !(*influx.end > influx.start) && !report.touched(dotted + ".end"))
+      report(dotted + ".end", "it ends before it starts; expected a time after influx." + std::to_string(k) + ".start");
+    if (influx.box && report.has(dotted + ".side"))
+      report(dotted + ".side", "grains are poured into the box; expected one of the two");
+    if (influx.box) {
+      check_box(scene, influx, dotted, report);
+      continue;
+    }
+    if (report.has(dotted + ".velocity"))
+      report(dotted + ".velocity", "only of grains that are poured into a box; expected box too, or speed and angle");
+    if (!influx.side) {
+      if (!report.has(dotted + ".side")) report(dotted + ".side", "missing; expected it, or a box");
+      continue;
+    }
     check_side(scene, influx, dotted + ".side", report);
     const bool file = report.has(dotted + ".file");
     for (const char* key : {"decay-height", "speed"})

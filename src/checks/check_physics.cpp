@@ -79,6 +79,31 @@ class PhysicsChecker {
     return keys;
   }
 
+  /// A distribution of diameters: one, and one that can be.
+  void sizes(const SphereSize& size, const std::string& dotted) {
+    if (report_.touched(dotted + ".sieve") || report_.touched(dotted + ".mean")) return;
+    std::vector<std::string> given;
+    for (const char* key : {"spread", "log-normal", "sieve"})
+      if (report_.has(dotted + "." + key)) given.emplace_back(key);
+    if (given.size() > 1)
+      tell(dotted + "." + given[1], given[0] + " says how the diameters differ; expected one of the two");
+    if (size.sieve.empty()) {
+      if (!(size.mean > 0.0) && report_.has(dotted)) tell(dotted + ".mean", "missing; expected it, or a sieve curve");
+      return;
+    }
+    constexpr double widest = 20.0;  // largest over smallest diameter
+    bool rises = size.sieve.front()[0] > 0.0;
+    for (std::size_t k = 1; k < size.sieve.size(); ++k)
+      rises = rises && size.sieve[k][0] > size.sieve[k - 1][0] && size.sieve[k][1] >= size.sieve[k - 1][1];
+    if (!rises || size.sieve.front()[1] != 0.0 || size.sieve.back()[1] != 1.0)
+      tell(dotted + ".sieve", "not a sieve curve; expected rising diameters above 0, and shares that go from 0 to 1");
+    else if (size.largest() > widest * size.least())
+      tell(dotted + ".sieve", "the largest grain is " + number_text(size.largest() / size.least()) +
+                                  " times as wide as the smallest; expected at most " + number_text(widest));
+    else if (!(size.mean >= size.least() && size.mean <= size.largest()))
+      tell(dotted + ".mean", "no diameter of the sieve curve; expected one, or no such key");
+  }
+
   /// Spheres and what only they have.
   void spheres(const Phase& phase) {
     const std::string dotted = place(phase);
@@ -86,10 +111,12 @@ class PhysicsChecker {
       if (report_.has(dotted + "." + key)) tell(dotted + "." + key, "nothing reads it; expected " + needs);
     };
     if (!phase.diameter()) {
-      for (const char* key : {"friction", "rolling-friction", "largest-overlap", "sleep"}) without(key, "diameter too");
+      for (const char* key : {"material", "friction", "rolling-friction", "largest-overlap", "sleep"})
+        without(key, "diameter too");
       for (const std::string& key : keys_of_some_laws(phase)) without(key, "diameter too");
       return;
     }
+    sizes(*phase.diameter(), dotted + ".diameter");
     if (!pairs_known_) return;
     const bool touches = touches_as_spheres(scene_, phase);
     if (phase.kind() == PhaseKind::wall) {
@@ -107,7 +134,7 @@ class PhysicsChecker {
       if (std::none_of(laws.begin(), laws.end(), [&](const SphereLawKeys* row) { return row->reads(key); }))
         without(key, "an entry with " + sphere_laws_that_read(key));
     if (!touches)
-      for (const char* key : {"friction", "rolling-friction", "largest-overlap", "restitution"})
+      for (const char* key : {"material", "friction", "rolling-friction", "largest-overlap", "restitution"})
         without(key, "an entry with " + sphere_laws_that_read(""));
     const GrainsKeys& own = *phase.if_grains();
     if (all_stiff)
@@ -115,6 +142,7 @@ class PhysicsChecker {
     if (own.sleep && norm(scene_.domain.gravity) == 0.0)
       tell(dotted + ".sleep", "nothing holds grains in place without weight; expected gravity, or no such key");
     without("contact-speed", "stiffness, young or largest-overlap, which spheres have");
+    if (!(own.friction > 0.0)) without("tangential-stiffness", "friction above 0");
     if (own.restitution < 0.05 && !report_.touched(dotted + ".restitution"))
       tell(dotted + ".restitution", "the dashpot of spheres cannot take that much; expected at least 0.05");
   }

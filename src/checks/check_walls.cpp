@@ -120,7 +120,7 @@ double opening_of(const Fill& fill, int dimensions, double spacing, double diame
 
 /// A wall that grains touch by its particles, as spheres, must not let them through.
 void check_openings(const Scene& scene, const Phase& wall, const Report& report) {
-  const double diameter = wall.diameter() ? wall.diameter()->mean * (1.0 - wall.diameter()->spread) : wall.spacing;
+  const double diameter = wall.diameter() ? wall.diameter()->least() : wall.spacing;
   const std::string dotted = "phases." + wall.name + (wall.diameter() ? ".diameter" : ".spacing");
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
     const Fill& fill = scene.fills[k];
@@ -131,7 +131,7 @@ void check_openings(const Scene& scene, const Phase& wall, const Report& report)
     for (const Phase& grains : scene.phases) {
       const Interaction* pair = entry_between(scene, wall, grains);
       if (!grains.if_grains() || !grains.diameter() || !pair || !of_spheres(*pair) || report.touched(dotted)) continue;
-      const double smallest = grains.diameter()->mean * (1.0 - grains.diameter()->spread);
+      const double smallest = grains.diameter()->least();
       if (!(opening > 0.0) || !(opening >= smallest * (1.0 - 1e-6))) continue;
       report(
           dotted,

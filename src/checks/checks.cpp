@@ -101,8 +101,9 @@ void check_phases(const Scene& scene, const Report& report) {
       report(here, "not a key of a phase of kind " + kind + "; expected in a phase of kind " +
                        kinds_text(*key, " or ") + " only");
     }
-    const bool filled =
-        std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& f) { return f.phase == phase.name; });
+    const auto mentions = [&](const auto& section) { return section.phase == phase.name; };
+    const bool filled = std::any_of(scene.fills.begin(), scene.fills.end(), mentions) ||
+                        std::any_of(scene.influxes.begin(), scene.influxes.end(), mentions);
     if (!filled && phase.has_particles() && !report.touched("fill"))
       report(dotted, "no particle; expected a [[fill]] with phase = \"" + phase.name + "\"");
   }

@@ -1,6 +1,7 @@
 // Tangential stiffness of two spheres over the normal one, k_t/k.
 //
-//   constant   k_t = 2/7 k: spheres that stick turn and part in the same time (Schaefer, Dippel and Wolf 1996)
+//   constant   k_t = 2/7 k: spheres that stick turn and part in the same time (Schaefer, Dippel and Wolf 1996), so that
+//              nearly all of the speed along their surfaces is turned back; a softer spring turns less back
 //   Mindlin    k_t = 3 (1 - nu)/(2 - nu) k, k = F/delta of Hertz (Mindlin 1949)
 //
 // Where a Hertzian contact is loaded, its slip shrinks as k_t grows (new surface carries no strain); unloaded, the
@@ -18,7 +19,11 @@ namespace barchan {
 struct ConstantSlipStiffness {
   double ratio = 2.0 / 7.0;
 
-  static ConstantSlipStiffness between(std::span<const SphereMaterial* const>) { return {}; }
+  static ConstantSlipStiffness between(std::span<const SphereMaterial* const> grains) {
+    std::vector<double> ratios;
+    for (const SphereMaterial* g : grains) ratios.push_back(g->tangential_stiffness.value_or(2.0 / 7.0));
+    return {mean_of(ratios)};
+  }
   template <class V>
   static BARCHAN_SIMD_INLINE SlipStiffness<V> of(V ratio, const NormalForce<V>& n, V, const ContactStep<V>&) {
     const V k_t = ratio * n.stiffness;

@@ -291,7 +291,8 @@ void warn_of_another_up(const Scene& scene, Plan& plan) {
       for (const std::string& side : sides->sides)
         if (side == "bottom" || side == "top") add(dotted + ".shape.sides = \"" + side + "\"");
   }
-  for (std::size_t k = 0; k < scene.influxes.size(); ++k) add("influx." + std::to_string(k));
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k)
+    if (!scene.influxes[k].box) add("influx." + std::to_string(k));
   if (!uses.empty())
     plan.warnings.push_back("domain.gravity: it points along z, and the heights of " + uses +
                             " are along y: \"bottom\" and \"top\" are the sides across y, a bed lies on the first; "

@@ -1,4 +1,6 @@
 // Defaults that depend on other keys. All other defaults stand in the rows of the table of keys.
+#include <algorithm>
+
 #include "scene/couplings.hpp"
 #include "scene/read.hpp"
 
@@ -20,6 +22,13 @@ void complete_wall_densities(Scene& scene) {
       if (pair.b == phase.name) phase.density = density_of(pair.a);
     }
   }
+}
+
+/// A sieve curve without a mean has that which half of the mass passes.
+void complete_size(SphereSize& size) {
+  for (std::size_t k = 1; k < size.sieve.size() && !(size.mean > 0.0); ++k)
+    if (const auto& a = size.sieve[k - 1], &b = size.sieve[k]; b[1] >= 0.5 && b[1] > a[1])
+      size.mean = a[0] + (b[0] - a[0]) * std::max(0.5 - a[1], 0.0) / (b[1] - a[1]);
 }
 
 /// A fitted bed has one layer more than a plain wall, because its rows bend.
@@ -62,6 +71,13 @@ Interaction recommended(const std::vector<Phase>& phases, const std::string& a, 
 }
 
 void complete(Scene& scene) {
+  for (Phase& phase : scene.phases)
+    std::visit(
+        [](auto& keys) {
+          if constexpr (requires { keys.diameter->sieve; })
+            if (keys.diameter) complete_size(*keys.diameter);
+        },
+        phase.own);
   for (Phase& phase : scene.phases)
     if (!(phase.spacing > 0.0)) phase.spacing = phase.diameter() ? phase.diameter()->largest() : scene.spacing;
   for (Interaction& pair : scene.interactions)

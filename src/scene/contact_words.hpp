@@ -28,7 +28,7 @@ struct SphereLawKeys {
   constexpr bool reads(std::string_view key) const { return key == stiffness || key == others[0] || key == others[1]; }
 };
 inline constexpr std::array sphere_laws{
-    SphereLawKeys{ContactLaw::linear, "stiffness"},
+    SphereLawKeys{ContactLaw::linear, "stiffness", {"tangential-stiffness"}},
     SphereLawKeys{ContactLaw::hertz, "young", {"poisson"}},
 };
 
@@ -41,14 +41,22 @@ constexpr const SphereLawKeys* sphere_keys_of(ContactLaw law) {
 /// Whether it is a contact of spheres: their radii decide when they touch, and no radius of the entry is read.
 constexpr bool of_spheres(ContactLaw law) { return sphere_keys_of(law) != nullptr; }
 
+enum class Material { none, quartz_sand, glass_beads, cellulose_acetate };  // scene/materials.hpp
+template <>
+inline constexpr std::array words_of<Material>{word("none", Material::none), word("quartz-sand", Material::quartz_sand),
+                                               word("glass-beads", Material::glass_beads),
+                                               word("cellulose-acetate", Material::cellulose_acetate)};
+
 /// What a phase of grains says of its contacts: the keys from which laws of spheres take their constants.
 struct SphereMaterial {
-  double restitution{};                   // of quartz on quartz; of a head-on collision of two grains, 0 < e <= 1
-  double friction{};                      // Coulomb's coefficient, of spheres
-  double rolling_friction{};              // largest rolling torque over normal force and reduced radius, of spheres
-  std::optional<double> stiffness;        // N/m, of a linear contact of two grains of the phase
-  std::optional<double> largest_overlap;  // of the mean diameter, at the largest speed of the scene
-  double young{};                         // Pa, of a Hertzian contact; 0: from largest_overlap
+  Material material{};        // gives the numbers that the document leaves out
+  double restitution{};       // of a head-on collision of two grains, 0 < e <= 1
+  double friction{};          // Coulomb's coefficient, of spheres
+  double rolling_friction{};  // largest rolling torque over normal force and reduced radius, of spheres
+  std::optional<double> tangential_stiffness;  // over the normal one, of a linear contact; empty: 2/7
+  std::optional<double> stiffness;             // N/m, of a linear contact of two grains of the phase
+  std::optional<double> largest_overlap;       // of the mean diameter, at the largest speed of the scene
+  double young{};                              // Pa, of a Hertzian contact; 0: from largest_overlap
   double poisson{};
 };
 

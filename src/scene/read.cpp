@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "scene/keys.hpp"
+#include "scene/materials.hpp"
 #include "scene/validate.hpp"
 
 namespace barchan {
@@ -112,6 +113,21 @@ struct Assign {
   void operator()(const Other&) const {}  // no value tells it: slots.hpp
 };
 
+/// What the material of grains says where the document does not.
+void take_material(const toml::table& table, Phase& phase) {
+  auto* const grains = std::get_if<GrainsKeys>(&phase.own);
+  if (!grains || grains->material == Material::none) return;
+  const MaterialConstants& m = constants_of(grains->material);
+  const auto take = [&](std::string_view key, auto& member, double value) {
+    if (!table.contains(key)) member = value;
+  };
+  take("density", phase.density, m.density);
+  take("restitution", grains->restitution, m.restitution);
+  take("friction", grains->friction, m.friction);
+  take("rolling-friction", grains->rolling_friction, m.rolling_friction);
+  take("tangential-stiffness", grains->tangential_stiffness, m.tangential_stiffness);
+}
+
 /// Reads one section of the document into its object, a key at a time in the order of the table.
 class Reader {
  public:
@@ -169,6 +185,7 @@ class Reader {
       void* opened = key.slot.open(object);
       static_cast<Phase*>(opened)->name = name;
       section(*entry, path_of(key), opened);
+      take_material(*entry, *static_cast<Phase*>(opened));
     }
     return true;
   }

@@ -43,11 +43,23 @@ struct LogProfile {
   bool along_ground{};  // on streamlines that divide the height over the ground evenly
 };
 
-/// Sizes of the spheres of a phase: diameters spread evenly over mean (1 - spread) .. mean (1 + spread).
+/// Sizes of the spheres of a phase, by number or by mass. At most one of spread, log_normal and sieve is given.
 struct SphereSize {
-  double mean{};    // m
-  double spread{};  // fraction of the mean
-  double largest() const { return mean * (1.0 + spread); }
+  double mean{};        // m; of a sieve curve without it the diameter that half of the mass passes
+  double spread{};      // diameters spread evenly, by number, over mean (1 - spread) .. mean (1 + spread)
+  double log_normal{};  // standard deviation of ln d, by number, about ln(mean); cut at two of them
+  std::vector<std::array<double, 2>> sieve;  // diameters (m), ascending, and the share of the mass that is smaller
+
+  /// Whether a sphere of the distribution may have a diameter (m).
+  bool has(double diameter) const { return diameter >= least() - 1e-6 * mean && diameter <= largest() + 1e-6 * mean; }
+  bool differ() const { return spread > 0.0 || log_normal > 0.0 || !sieve.empty(); }
+  double least() const { return mean * least_share(); }      ///< m
+  double largest() const { return mean * largest_share(); }  ///< m
+  double least_share() const;                                ///< of the mean
+  double largest_share() const;
+  double mean_cube() const;  ///< mean of (d/mean)^3, by number
+  /// d/mean below which a share (0 to 1) of all spheres are, by number.
+  double quantile(double share) const;
 };
 
 // The keys of each kind of phase: a key that a kind does not have does not exist in its type. `word` is what a document
@@ -337,8 +349,12 @@ struct Outflow {
 /// A side through which grains with a diameter enter (models/grains/grain_source.hpp).
 struct Influx {
   std::string phase;
-  Flank side{};
-  double flux{};     // kg/(m s), mass that enters by metre of width and second
+  std::optional<Flank> side;    // through which they enter; empty: they are poured into the box
+  std::optional<BoxShape> box;  // in which they begin
+  Vec3 velocity;                // m/s, with which they begin in the box
+  double start{};               // s, when the first may come
+  std::optional<double> end;    // s, when the last may; empty: the end of the run
+  double flux{};                // kg/(m s), mass that enters by metre of width and second; into a box in 3D kg/s
   std::string file;  // frame of another run, from whose grains in flight those that enter are drawn; empty: none
   std::optional<double> above;         // m, y from which on grains enter; empty: the bottom of the domain
   std::optional<double> decay_height;  // m, over which the flux falls by a factor e

@@ -95,7 +95,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
   s.output.fields.clear();
   s.time.fixed_step.reset();
   const ContactLaw law = add_walls(scene, k, s);
-  const double height = (c.high[1] - c.from) * loose_lattice_height * std::pow(1.0 + size.spread, scene.dimensions) +
+  const double height = (c.high[1] - c.from) * loose_lattice_height * std::pow(size.largest_share(), scene.dimensions) +
                         3.0 * size.largest();
   s.domain.origin = c.low;
   s.domain.size = c.high - c.low;

@@ -56,7 +56,9 @@ class Validator {
     for (const Key* key : keys_of(section)) {
       if (!key->required() || table.contains(key->name)) continue;
       const bool of_this_kind = key->slot.kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
-      const bool spared = !kind.empty() && key->spared == kind;
+      const bool from_material = key->name == "density" && table.contains("material") &&
+                                 table["material"].value_or(std::string_view()) != words_of<Material>[0].word;
+      const bool spared = from_material || (!kind.empty() && key->spared == kind);
       const bool meant = std::find(misspelt.begin(), misspelt.end(), key->name) != misspelt.end();
       if (of_this_kind && !spared && !meant)
         problems_.add(table.source(), dotted.empty() ? std::string(key->name) : dotted + "." + std::string(key->name),

@@ -110,7 +110,7 @@ SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
   const FrameField* radii = nullptr;
   for (const FrameField& field : frame.fields)
     if (field.name == "radius" && field.components == 1) radii = &field;
-  if (size.spread > 0.0 && !radii)
+  if (size.differ() && !radii)
     refuse("has no field radius, and the grains of \"" + f.phase +
            "\" differ; expected a frame with output.fields = [\"radius\"]");
   SettledGrains grains;
@@ -123,10 +123,9 @@ SettledGrains grains_of_file(const Scene& scene, std::size_t fill) {
     if (!std::isfinite(x[0] + x[1] + x[2])) refuse(which + " at no finite place");
     if (scene.dimensions == 2 && x[2] != 0.0)
       refuse(which + " at z = " + brief(x[2]) + " m; expected z = 0 in two dimensions");
-    if (!(std::abs(2.0 * radius - size.mean) <= size.mean * (size.spread + 1e-6)))
-      refuse(which + " with the diameter " + brief(2.0 * radius) + " m; expected " +
-             brief(size.mean * (1.0 - size.spread)) + " to " + brief(size.mean * (1.0 + size.spread)) +
-             " m, the diameters of the phase");
+    if (!size.has(2.0 * radius))
+      refuse(which + " with the diameter " + brief(2.0 * radius) + " m; expected " + brief(size.least()) + " to " +
+             brief(size.largest()) + " m, the diameters of the phase");
     grains.position.push_back(x);
     grains.radius.push_back(radius);
     ids.push_back(frame.id[i]);

@@ -66,7 +66,7 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
   Scene alone = s;
   alone.fills = {loose_lattice(s, fill, c, size)};
   std::vector<ParticleBlock> blocks = generate(s), grains = generate(alone);
-  const double stretch = loose_lattice_height * std::pow(1.0 + size.spread, s.dimensions),
+  const double stretch = loose_lattice_height * std::pow(size.largest_share(), s.dimensions),
                bottom = scene.domain.origin[1];
   // Fixed spheres: those of walls whose particles lie in the domain.
   const PeriodicSpace space(s.domain);

@@ -19,6 +19,7 @@
 #include "start/shape_content.hpp"
 #include "start/shapes.hpp"
 #include "start/shared_start.hpp"
+#include "start/sphere_sizes.hpp"
 
 namespace barchan {
 namespace {
@@ -200,8 +201,7 @@ void turn(ParticleBlock& block, std::size_t first, const AxialExpression& rate, 
 void append_radii(ParticleBlock& block, const SphereSize& size, unsigned seed) {
   Random random(0x5eed00000000ull + seed);
   while (block.radius.size() < block.position.size())
-    block.radius.push_back(0.5 * size.mean *
-                           (size.spread > 0.0 ? random.uniform(1.0 - size.spread, 1.0 + size.spread) : 1.0));
+    block.radius.push_back(0.5 * size.mean * (size.differ() ? relative_diameter(size, random) : 1.0));
 }
 
 /// Radii and contacts of spheres that settled.

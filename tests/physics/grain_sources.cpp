@@ -121,6 +121,73 @@ TEST(GrainSources, AGrainIsWhereItIsDue) {
   EXPECT_GT(between, 10);
 }
 
+/// An empty box of walls into which grains are poured.
+std::string poured(int dimensions, const std::string& more) {
+  const bool flat = dimensions == 2;
+  return "dimensions = " + std::to_string(dimensions) + R"toml(
+spacing = 2e-3
+[domain]
+size = )toml" +
+         (flat ? "[0.06, 0.08]" : "[0.03, 0.06, 0.03]") + "\ngravity = " + (flat ? "[0, -9.81]" : "[0, -9.81, 0]") +
+         R"toml(
+[phases.sand]
+kind = "grains"
+material = "quartz-sand"
+diameter = { mean = 2e-3, log-normal = 0.2 }
+[phases.floor]
+kind = "wall"
+[interactions]
+sand-sand = { law = "linear" }
+sand-floor = { law = "linear" }
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom", "left", "right")toml" +
+         (flat ? "" : ", \"front\", \"back\"") + R"toml(] }
+[[influx]]
+phase = "sand"
+box = )toml" +
+         (flat ? "{ min = [0.02, 0.05], max = [0.04, 0.07] }"
+               : "{ min = [0.01, 0.04, 0.01], max = [0.02, 0.055, 0.02] }") +
+         "\n" + more + R"toml(
+[time]
+end = 1
+largest-speed = 2
+)toml";
+}
+
+TEST(GrainSources, PourFromAnEmptyStartWithinTheirTimes) {
+  for (const int dimensions : {2, 3}) {
+    const double flux = dimensions == 2 ? 4.0 : 0.008;  // kg/m/s; kg/s
+    Blown run(poured(dimensions, "flux = " + std::to_string(flux) + "\nstart = 0.02\nend = 0.22"));
+    EXPECT_EQ(run.sand().size(), 0u);
+    run.run(0.015);
+    EXPECT_EQ(run.sand().size(), 0u) << "before it starts";
+    run.run(0.24);
+    const double mass = run.mass();
+    run.run(0.4);
+    EXPECT_NEAR(run.mass(), mass, 1e-12 * mass) << "after it ended";
+    EXPECT_NEAR(mass, 0.2 * flux, 0.25 * 0.2 * flux) << dimensions;
+    EXPECT_GT(run.sand().size(), 40u * (dimensions == 2 ? 2u : 1u));
+    EXPECT_NEAR(run.column("sand_poured_in"), mass, 1e-12 * mass);
+    for (std::size_t k = 0; k < run.sand().size(); ++k) {
+      EXPECT_GT(run.sand().column(Field::position, 1)[k], 0.0);
+      EXPECT_LT(run.sand().column(Field::position, 1)[k], 0.05) << "it fell";
+    }
+    EXPECT_LT(run.column("contacts_deepest"), 0.1);
+  }
+}
+
+TEST(GrainSources, PourNoMoreThanTheBoxLetsFall) {
+  Blown run(poured(2, "flux = 400\nvelocity = [0, -0.2]"));
+  run.run(0.15);
+  EXPECT_LT(run.mass(), 0.5 * 400.0 * 0.15);
+  EXPECT_LT(run.column("contacts_deepest"), 0.1) << "none begins in another";
+  bool said = false;
+  for (const std::string& warning : run.simulation->warnings().texts())
+    said = said || warning.find("into the box of influx.0") != std::string::npos;
+  EXPECT_TRUE(said);
+}
+
 TEST(GrainSources, NoneEntersWhereOthersAre) {
   // The bed reaches the side and over all heights at which grains enter.
   std::string text = blown("flux = 5\nabove = 1e-3\ndecay-height = 2e-4\nspeed = 1", "[\"right\"]", "[0, 0]");

@@ -404,6 +404,7 @@ TEST(SceneReader, ReadsTheKeysOfSpheres) {
   EXPECT_EQ(sand.diameter->spread, 0.2);
   EXPECT_EQ(sand.friction, 0.5);
   EXPECT_EQ(sand.rolling_friction, 0.1);
+  EXPECT_FALSE(sand.tangential_stiffness);
   EXPECT_TRUE(sand.sleep);
   EXPECT_FALSE(stones.sleep);
   EXPECT_EQ(sand.stiffness, 300);
@@ -414,6 +415,21 @@ TEST(SceneReader, ReadsTheKeysOfSpheres) {
   EXPECT_EQ(scene.interactions.at(0).law, ContactLaw::linear);
   EXPECT_EQ(scene.interactions.at(2).law, ContactLaw::hertz);
   EXPECT_EQ(scene.fills.at(1).packing, Packing::settled);
+}
+
+TEST(SceneReader, AMaterialGivesWhatTheSceneLeavesOut) {
+  std::string text = sphere_keys;
+  text.replace(text.find("density = 2650\n"), 15, "material = \"glass-beads\"\n");
+  const Scene scene = parse_scene(text, "s.toml", {"phases.sand.restitution=0.8"});
+  const Phase& phase = scene.phases.at(0);
+  EXPECT_EQ(phase.density, 2500.0);
+  EXPECT_EQ(phase.grains().restitution, 0.8) << "the scene says it";
+  EXPECT_EQ(phase.grains().friction, 0.5) << "the scene says it";
+  EXPECT_EQ(phase.grains().rolling_friction, 0.1) << "the scene says it";
+  ASSERT_TRUE(phase.grains().tangential_stiffness);
+  EXPECT_LT(*phase.grains().tangential_stiffness, 0.2);
+  text.replace(text.find("glass-beads"), 11, "none");
+  EXPECT_THROW(parse_scene(text, "s.toml"), SceneError) << "nobody says the density";
 }
 
 /// The keys that only a column of air and what measures sand in flight have.

@@ -15,6 +15,7 @@
 #include "start/ball_surfaces.hpp"
 #include "start/flow_ends.hpp"
 #include "start/random.hpp"
+#include "start/sphere_sizes.hpp"
 
 namespace barchan {
 
@@ -40,6 +41,18 @@ const FrameField* field_of(const Frame& frame, const char* name, int components)
 
 constexpr double slowest = 0.1;  // of the mean speed of a distribution
 
+/// That of the side; of a box the vertical one.
+std::size_t axis_of_influx(const Influx& influx) { return influx.box ? 1 : axis_of(side_of(*influx.side)); }
+
+std::string name_of(const Scene& scene, std::size_t influx) {
+  const Influx& own = scene.influxes[influx];
+  if (!own.box) return own.phase + "_" + word_of(side_of(*own.side));
+  const auto before =
+      std::count_if(scene.influxes.begin(), scene.influxes.begin() + static_cast<std::ptrdiff_t>(influx),
+                    [&](const Influx& other) { return other.box && other.phase == own.phase; });
+  return own.phase + "_poured" + (before > 0 ? "_" + std::to_string(before + 1) : "");
+}
+
 }  // namespace
 
 Arrivals::Arrivals(const Scene& scene, std::size_t influx, double slab)
@@ -49,9 +62,11 @@ Arrivals::Arrivals(const Scene& scene, std::size_t influx, double slab)
       slab_(slab),
       ground_(influx_.above.value_or(scene.domain.origin[1])),
       top_(scene.domain.origin[1] + scene.domain.size[1]),
-      axis_(axis_of(side_of(influx_.side))),
-      inwards_(is_upper(side_of(influx_.side)) ? -1.0 : 1.0) {
-  double mass = mass_of(0.5 * size_.mean) * (1.0 + size_.spread * size_.spread);  // mean of (d/mean)^3
+      axis_(axis_of_influx(influx_)),
+      inwards_(influx_.box                        ? 0.0
+               : is_upper(side_of(*influx_.side)) ? -1.0
+                                                  : 1.0) {
+  double mass = mass_of(0.5 * size_.mean) * size_.mean_cube();
   if (!influx_.file.empty()) {
     read_patterns(scene, influx);
     double sum = 0.0, before = 0.0;
@@ -61,12 +76,14 @@ Arrivals::Arrivals(const Scene& scene, std::size_t influx, double slab)
       fastest_ = std::max(fastest_, norm(p.velocity));
     }
     mass = sum / patterns_.back().weight;
+  } else if (influx_.box) {
+    fastest_ = norm(influx_.velocity);
   } else {
     const double steep = std::min(std::abs(influx_.angle) + 4.0 * influx_.angle_spread, 80.0);
     fastest_ = (*influx_.speed + 4.0 * influx_.speed_spread) / std::cos(steep * std::numbers::pi / 180.0);
   }
   const std::size_t across = axis_ == 0 ? 2 : 0;
-  const double width = scene.dimensions == 2 ? 1.0 : scene.domain.size[across];
+  const double width = scene.dimensions == 2 || influx_.box ? 1.0 : scene.domain.size[across];
   mean_wait_ = mass / (influx_.flux * width);
 }
 
@@ -92,7 +109,7 @@ void Arrivals::read_patterns(const Scene& scene, std::size_t influx) {
   const auto number = static_cast<std::int32_t>(name - frame.phase_names.begin());
   const FrameField *radii = field_of(frame, "radius", 1), *velocity = field_of(frame, "velocity", 3);
   if (!velocity) refuse("has no field velocity; expected a frame of a run");
-  if (size_.spread > 0.0 && !radii)
+  if (size_.differ() && !radii)
     refuse("has no field radius, and the grains of \"" + influx_.phase +
            "\" differ; expected a frame with output.fields = [\"radius\"]");
   double sum = 0.0;
@@ -102,10 +119,9 @@ void Arrivals::read_patterns(const Scene& scene, std::size_t influx) {
     const Vec3 v{velocity->values[3 * i], velocity->values[3 * i + 1], velocity->values[3 * i + 2]};
     const std::string which = "has particle " + std::to_string(frame.id[i]);
     if (!std::isfinite(y + v[0] + v[1] + v[2])) refuse(which + " at no finite place or velocity");
-    if (!(std::abs(2.0 * radius - size_.mean) <= size_.mean * (size_.spread + 1e-6)))
-      refuse(which + " with the diameter " + brief(2.0 * radius) + " m; expected " +
-             brief(size_.mean * (1.0 - size_.spread)) + " to " + brief(size_.largest()) +
-             " m, the diameters of the phase");
+    if (!size_.has(2.0 * radius))
+      refuse(which + " with the diameter " + brief(2.0 * radius) + " m; expected " + brief(size_.least()) + " to " +
+             brief(size_.largest()) + " m, the diameters of the phase");
     const double through = inwards_ * v[axis_];
     if (!(through > 0.0) || y < ground_ || y > top_) continue;
     sum += through;
@@ -121,7 +137,7 @@ Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
   Random random(seeds.next() ^ (0x9e3779b97f4a7c15ull * static_cast<std::uint64_t>(n + 1)));
   Grain grain;
   grain.wait = -mean_wait_ * std::log(1.0 - random.uniform(0.0, 1.0));
-  grain.across = random.uniform(0.0, 1.0);
+  grain.shares[0] = random.uniform(0.0, 1.0);
   if (!patterns_.empty()) {
     const double at = random.uniform(0.0, patterns_.back().weight);
     const auto found = std::upper_bound(patterns_.begin(), patterns_.end(), at,
@@ -132,7 +148,12 @@ Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
     grain.velocity = pattern.velocity;
     return grain;
   }
-  grain.radius = 0.5 * size_.mean * random.uniform(1.0 - size_.spread, 1.0 + size_.spread);
+  grain.radius = 0.5 * size_.mean * relative_diameter(size_, random);
+  if (influx_.box) {
+    for (const std::size_t d : {1u, 2u}) grain.shares[d] = random.uniform(0.0, 1.0);
+    grain.velocity = influx_.velocity;
+    return grain;
+  }
   // Heights are exponentially distributed between the ground and the top, where
   // the centre has room.
   const double low = ground_ + grain.radius, room = std::max(top_ - grain.radius - low, 0.0), h = *influx_.decay_height;
@@ -144,16 +165,28 @@ Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
   return grain;
 }
 
+Vec3 Arrivals::again(std::int64_t n, std::int64_t attempt) const {
+  Random seeds(0xa9a1full + influx_.seed);
+  Random random(seeds.next() ^ (0x9e3779b97f4a7c15ull * static_cast<std::uint64_t>(n + 1)));
+  random.skip(3 * static_cast<std::uint64_t>(attempt));
+  Vec3 shares;
+  for (double& share : shares) share = random.uniform(0.0, 1.0);
+  return shares;
+}
+
 GrainSource::GrainSource(const Scene& scene, const Layout& layout, std::size_t influx)
     : scene_(scene),
       layout_(layout),
       influx_(scene.influxes[influx]),
       phase_(number_of(scene, influx_.phase)),
-      axis_(axis_of(side_of(influx_.side))),
-      side_(is_upper(side_of(influx_.side)) ? layout.domain.high[axis_] : layout.domain.low[axis_]),
-      inwards_(is_upper(side_of(influx_.side)) ? -1.0 : 1.0),
+      axis_(axis_of_influx(influx_)),
+      side_(influx_.box                        ? 0.5 * (influx_.box->min[axis_] + influx_.box->max[axis_])
+            : is_upper(side_of(*influx_.side)) ? layout.domain.high[axis_]
+                                               : layout.domain.low[axis_]),
       arrivals_(scene, influx, layout.dimensions == 2 ? layout.slab : 1.0),
-      name_(influx_.phase + "_" + word_of(side_of(influx_.side))),
+      name_(name_of(scene, influx)),
+      where_(influx_.box ? "into the box of influx." + std::to_string(influx)
+                         : "through " + word_of(side_of(*influx_.side))),
       by_particles_(scene.phases.size(), 0) {
   for (const Fill& fill : scene.fills) {
     const std::size_t wall = number_of(scene, fill.phase);
@@ -168,7 +201,7 @@ void GrainSource::begin(State& state, const std::vector<ParticleBlock>&) {
   state.departed.emplace_back();
   state.departed.back().phase = static_cast<std::int64_t>(phase_);
   state.phases[phase_].number_may_change();
-  next_ = arrivals_(0).wait;
+  next_ = influx_.start + arrivals_(0).wait;
 }
 
 void GrainSource::attach(Workspace& w) {
@@ -183,8 +216,7 @@ void GrainSource::schedule(Schedule& s) {
     if (k == phase_) touches.push_back(p.all_fields());
     else if (p.sphere_records || by_particles_[k] != 0) touches.push_back({p.name, FieldSet(p.fields), {}});
   }
-  s.add({stage::walls, influx_.phase + ", influx through " + word_of(side_of(influx_.side)), touches,
-         [this] { enter(); }});
+  s.add({stage::walls, influx_.phase + ", influx " + where_, touches, [this] { enter(); }});
 }
 
 /// Whether a sphere at a place would overlap no other one, those of walls on
@@ -267,14 +299,35 @@ bool GrainSource::is_taken(const Vec3& x, double radius) {
   return false;
 }
 
-/// Puts a grain where it is `age` (s) after it passed the side; false: its
-/// place is taken.
-bool GrainSource::place(const Arrivals::Grain& grain, double age) {
+/// Where a grain is `age` (s) after it passed the side.
+Vec3 GrainSource::place_at_side(const Arrivals::Grain& grain, double age) const {
   Vec3 x{};
   x[axis_] = side_ + age * grain.velocity[axis_];
   x[1] = grain.height + age * grain.velocity[1];
   const std::size_t axis = axis_ == 0 ? 2 : 0;
-  if (layout_.dimensions == 3) x[axis] = across(grain.across, grain.radius) + age * grain.velocity[axis];
+  if (layout_.dimensions == 3) x[axis] = across(grain.shares[0], grain.radius) + age * grain.velocity[axis];
+  return x;
+}
+
+Vec3 GrainSource::place_in_box(const Arrivals::Grain& grain) const {
+  Vec3 x{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(layout_.dimensions); ++d) {
+    const double low = influx_.box->min[d] + grain.radius, high = influx_.box->max[d] - grain.radius;
+    x[d] = low + grain.shares[d] * std::max(high - low, 0.0);
+  }
+  return x;
+}
+
+/// s, in which a grain goes its diameter: by its speed, or as it falls.
+double GrainSource::passage(const Arrivals::Grain& grain) const {
+  const double d = 2.0 * grain.radius;
+  if (!influx_.box) return d / std::abs(grain.velocity[axis_]);
+  return d / std::max(norm(grain.velocity), std::sqrt(2.0 * norm(scene_.domain.gravity) * d));
+}
+
+/// Puts a grain where it is `age` (s) after it was due; false: its place is taken.
+bool GrainSource::place(const Arrivals::Grain& grain, double age) {
+  const Vec3 x = influx_.box ? place_in_box(grain) : place_at_side(grain, age);
   if (!has_room(x, grain.radius)) return false;
   PhaseParticles& p = w_->particles(phase_);
   const std::size_t k = p.create(1, w_->state.ids);
@@ -304,24 +357,31 @@ void GrainSource::enter() {
   const double now = w_->state.time;
   gathered_ = 0.0;
   room_->move(w_->state, w_->wall_motions);
-  while (next_ <= now) {
+  while (next_ <= std::min(now, influx_.end.value_or(now))) {
     waiting_.push_back({drawn_, next_, next_});
     next_ += arrivals_(++drawn_).wait;
   }
+  if (influx_.end && now > *influx_.end) {
+    given_up_ += static_cast<std::int64_t>(waiting_.size());
+    waiting_.clear();
+  }
   std::size_t kept = 0;
-  for (const Waiting& one : waiting_) {
-    const Arrivals::Grain grain = arrivals_(one.number);
-    const double passage = 2.0 * grain.radius / std::abs(grain.velocity[axis_]);
-    // One that finds its place taken enters later, at the side.
-    const bool first = one.again == one.since;
-    if (one.again <= now && place(grain, first ? now - one.since : 0.0)) continue;
-    if (now > one.since + patience * passage) {
+  for (Waiting one : waiting_) {
+    Arrivals::Grain grain = arrivals_(one.number);
+    const double pause = passage(grain);
+    // One that finds its place taken enters later, at the side or elsewhere in the box.
+    const bool first = one.attempts == 0;
+    if (influx_.box && !first) grain.shares = arrivals_.again(one.number, one.attempts);
+    if (one.again <= now) {
+      if (place(grain, first ? now - one.since : 0.0)) continue;
+      one.again = now + 0.5 * pause;
+      ++one.attempts;
+    }
+    if (now > one.since + patience * pause) {
       ++given_up_;
       continue;
     }
-    waiting_[kept] = one;
-    if (one.again <= now) waiting_[kept].again = now + 0.5 * passage;
-    ++kept;
+    waiting_[kept++] = one;
   }
   waiting_.resize(kept);
 }
@@ -331,11 +391,11 @@ void GrainSource::history(HistoryRow& row) const { add_passed(row, name_ + "_in"
 void GrainSource::report(Warnings& warnings) const {
   if (given_up_ == 0) return;
   warnings.add("no room " + name_, brief(static_cast<double>(given_up_)) + " of " + brief(static_cast<double>(drawn_)) +
-                                       " grains of \"" + influx_.phase + "\" found no room to enter through " +
-                                       word_of(side_of(influx_.side)) +
-                                       ": others are in their places, and the flux is so much less; raise "
-                                       "influx.above "
-                                       "over the bed that stands at the side, or lower influx.flux");
+                                       " grains of \"" + influx_.phase + "\" found no room to enter " + where_ +
+                                       ": others are in their places, and the flux is so much less; " +
+                                       (influx_.box ? "make the box larger or the velocity higher"
+                                                    : "raise influx.above over the bed that stands at the side") +
+                                       ", or lower influx.flux");
 }
 
 void GrainSource::archive(Archive& a) {

@@ -1,4 +1,4 @@
-// Grains that enter through a side of the domain: [[influx]].
+// Grains that enter through a side of the domain, or are poured into a box: [[influx]].
 //
 // Their number follows from the flux: the times between two of them are exponentially distributed, with the mean that
 // gives the flux (a Poisson process). A grain that enters is drawn by its number alone, from the distributions of the
@@ -22,7 +22,7 @@ class Arrivals {
  public:
   struct Grain {
     double height = 0.0;  // m, y of its centre
-    double across = 0.0;  // of the width of the side, 0 to 1
+    Vec3 shares{};        // 0 to 1: along x of a box or across a side; in a box along y and z
     double radius = 0.0;  // m
     Vec3 velocity{};      // m/s
     double wait = 0.0;    // s, after the one before it
@@ -32,6 +32,8 @@ class Arrivals {
   Arrivals(const Scene& scene, std::size_t influx, double slab);
   /// The n-th grain, the same whenever it is asked for.
   Grain operator()(std::int64_t n) const;
+  /// Where in the box the n-th grain begins when it is tried again.
+  Vec3 again(std::int64_t n, std::int64_t attempt) const;
   double fastest() const { return fastest_; }      ///< m/s; of a distribution: the mean and four times the spread
   double mean_wait() const { return mean_wait_; }  ///< s
   double mass_of(double radius) const;             ///< kg; kg/m in 2D
@@ -48,7 +50,7 @@ class Arrivals {
   double density_, slab_;  // kg/m3, m
   double ground_, top_;    // m, between which grains enter
   std::size_t axis_;
-  double inwards_;  // 1 or -1
+  double inwards_;  // 1 or -1; 0: into a box
   double mean_wait_ = 0.0, fastest_ = 0.0;
   std::vector<Pattern> patterns_;
 };
@@ -71,9 +73,13 @@ class GrainSource : public Model {
   struct Waiting {
     std::int64_t number = 0;          // of the arrival
     double since = 0.0, again = 0.0;  // s, when it was due; when it is tried again
+    std::int64_t attempts = 0;
   };
   void enter();
   bool place(const Arrivals::Grain& grain, double age);
+  Vec3 place_at_side(const Arrivals::Grain& grain, double age) const;
+  Vec3 place_in_box(const Arrivals::Grain& grain) const;
+  double passage(const Arrivals::Grain& grain) const;
   bool has_room(const Vec3& x, double radius);
   double across(double share, double radius) const;
   bool is_taken(const Vec3& x, double radius);
@@ -85,9 +91,10 @@ class GrainSource : public Model {
   const Layout& layout_;
   const Influx& influx_;
   std::size_t phase_, axis_;
-  double side_, inwards_;  // m; 1 or -1
+  double side_;  // m; of a box its middle
   Arrivals arrivals_;
-  std::string name_;   // "sand_left"
+  std::string name_;   // "sand_left", "sand_poured"
+  std::string where_;  // "through left", "into the box of influx.0"
   double next_ = 0.0;  // s, when the next one is due
   std::int64_t drawn_ = 0, given_up_ = 0;
   std::vector<Waiting> waiting_;

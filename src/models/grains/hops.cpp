@@ -55,9 +55,9 @@ HopStatistics::HopStatistics(const Scene& scene, const Layout& layout, const Sal
       rise_(layer.flight * layout.phases[phase].diameter),
       period_(layout.bounds.periodic[0] ? layout.bounds.high[0] - layout.bounds.low[0] : 0.0) {
   const SphereSize size = *scene.phases[phase].diameter();
-  const double step = 2.0 / 3.0 * size.spread;  // diameters are spread evenly: thirds of the range are thirds of them
-  bounds_ = {size.mean * (1.0 - size.spread)};
-  for (int k = 1; k <= 3 && size.spread > 0.0; ++k) bounds_.push_back(size.mean * (1.0 - size.spread + k * step));
+  // Thirds of the number of grains.
+  bounds_ = {size.least()};
+  for (int k = 1; k <= 3 && size.differ(); ++k) bounds_.push_back(size.mean * size.quantile(k / 3.0));
   means_.resize(std::max<std::size_t>(bounds_.size(), 1));
   landed_.reserve(256);
 }

@@ -63,7 +63,7 @@ void SphereBodies::attach(const Scene& scene, const Layout& layout, const Sphere
   for (std::size_t k = 0; k < n; ++k) {
     if (remembers_[k] == 0) continue;
     const auto size = scene.phases[k].diameter();
-    const double share = size ? 1.0 - size->spread : 1.0;
+    const double share = size ? size->least_share() : 1.0;
     least = std::min(least, layout.phases[k].mass * layout.slab * share * share * share);
     widest = std::max(widest, layout.phases[k].largest_size);
   }

@@ -125,7 +125,7 @@ SphereImpact SphereLaws::shortest_impact(const Scene& scene, const Layout& layou
     const bool moves = p.own_steps();
     inverse_densities_.push_back(moves ? std::pow(0.5 * p.diameter, 3) / mass_of(layout, k) : 0.0);
     const auto size = scene.phases[k].diameter();
-    const double least = size ? 1.0 - size->spread : 1.0;
+    const double least = size ? size->least_share() : 1.0;
     inverse_mass += moves ? 1.0 / mass_of(layout, k, least) : 0.0;
     curvature += moves ? 2.0 / (p.diameter * least) : 0.0;
   }

@@ -60,7 +60,7 @@ void describe_wall(const Scene& scene, const std::vector<ParticleBlock>&, std::s
   p.surface.roughness = keys.roughness.value_or(0.0);
   p.surface.stress = keys.shear_stress.value_or(Vec3{});
   p.fields = {position, velocity, wall_normal, wall_depth};
-  if (keys.diameter && keys.diameter->spread > 0.0) p.fields.push_back(radius);
+  if (keys.diameter && keys.diameter->differ()) p.fields.push_back(radius);
   if (std::any_of(scene.force_meters.begin(), scene.force_meters.end(),
                   [&](const ForceMeter& meter) { return meter.phase == scene.phases[number].name; }))
     p.fields.push_back(acceleration);
