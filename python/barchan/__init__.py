@@ -4,7 +4,7 @@
     velocity = barchan.open("out/dune")[-1]["velocity"]     # (particles, 3), m/s, of the last frame
 
 Plain Python over NumPy, for Debian's /usr/bin/python3. There are no bindings to the C++ code (pybind11, for example): the package reads the files that the program
-writes, and starts the program. So it needs no compiler, it fits every build of the program, and a run that crashes or takes all memory does not end the interpreter.
+writes, starts the program, and steps it through a pipe (Simulation). So it needs no compiler, it fits every build of the program, and a run that crashes or takes all memory does not end the interpreter.
 docs/python.md describes it.
 
 Each name is loaded from its file when it is first used: scenes do without NumPy.
@@ -21,6 +21,7 @@ if typing.TYPE_CHECKING:  # for editors; __getattr__ does it
     from .program import Difference, RunWarning, compare, find_program, generate, plan, run, schema, version  # noqa: F401
     from .series import Series, open  # noqa: F401
     from .shapes import write_grains, write_outline, write_surface  # noqa: F401
+    from .simulation import Simulation  # noqa: F401
     from .tables import Table, table  # noqa: F401
 
 _NAMES = {
@@ -28,6 +29,7 @@ _NAMES = {
     "frame": "Frame Grid",
     "program": "Difference RunWarning compare find_program generate plan run schema version",
     "series": "Series open",
+    "simulation": "Simulation",
     "shapes": "write_grains write_outline write_surface",
     "tables": "Table table",
 }

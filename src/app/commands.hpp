@@ -19,6 +19,7 @@ struct RunOptions {
   int retreats = 10;                   // how often a run may go back after a failed step
   Division division = Division::time;  // of cells among ranks
   bool quiet = false;
+  std::vector<int> steering;  // open files of requests and answers (app/steering.hpp); empty: nobody steers it
 };
 
 /// Sets the number of threads: `wanted`, or for 0 one for every two thousand particles, as far as the machine has them.

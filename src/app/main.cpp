@@ -108,6 +108,10 @@ int dispatch(int argc, char** argv) {
       ->check([](const std::string& text) {
         return text == "time" || text == "particles" ? "" : text + " not in {time,particles}";
       });
+  c_run->add_option("--steering", run.steering, "open files of requests and answers, for the Python package")
+      ->delimiter(',')
+      ->expected(2)
+      ->group("");
   c_run->add_flag("--quiet", run.quiet, "print warnings and errors only");
   bool dry = false;
   c_run->add_flag("--dry", dry, "run nothing: the same as barchan plan");

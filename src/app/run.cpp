@@ -300,7 +300,11 @@ int run_scene(const RunOptions& options, const Launch& launch) {
                      std::move(placements),
                      std::move(checksum)};
   context.lock = lock ? &*lock : nullptr;
-  return run_to_the_end(context, std::move(from), options.retreats);
+  std::optional<Steering> steering;
+  if (options.steering.empty()) return run_to_the_end(context, std::move(from), options.retreats);
+  if (ranks::available()) throw SceneError("--steering: one process only; expected no mpirun");
+  context.steering = &steering.emplace(options.steering[0], options.steering[1]);
+  return run_to_the_end(context, std::move(from), 0);  // who steers would see the time go back
 }
 
 }  // namespace

@@ -130,6 +130,10 @@ int Run::loop(EarlierStates* past) {
     write_row();
   }
   while (simulation_.time() < end * (1.0 - 1e-12)) {
+    if (context_.steering && !context_.steering->goes_on(simulation_, false)) {
+      const int signal = stop_signal();
+      return stop(signal != 0 ? signal_name(signal) : "the program that steers it", signal != 0 ? 128 + signal : 0);
+    }
     if (past && past->due(simulation_.steps())) past->keep(simulation_, measurements());
     const double next_frame = std::min(end, static_cast<double>(frames_due) * frame_every);
     const double next_row = std::min(end, static_cast<double>(rows_due) * row_every);
@@ -150,6 +154,7 @@ int Run::loop(EarlierStates* past) {
     context_.progress.step(simulation_);
     if (int status = 0; asked_to_stop(status)) return status;
   }
+  if (context_.steering) context_.steering->goes_on(simulation_, true);
   reason_ = "end";
   return 0;
 }

@@ -8,6 +8,7 @@
 
 #include "app/earlier_states.hpp"
 #include "app/progress.hpp"
+#include "app/steering.hpp"
 #include "engine/team.hpp"
 #include "measure/measurements.hpp"
 #include "output/folder_lock.hpp"
@@ -39,6 +40,7 @@ struct RunContext {
     bool checkpoint = false, terminate = false;
   } agreed{};
   const FolderLock* lock = nullptr;  // of the first rank
+  Steering* steering = nullptr;      // null: nobody steers the run
 };
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& directory, const Scene& scene);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/errors.hpp"
+#include "scene/controls.hpp"
 #include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
@@ -72,7 +73,8 @@ class Constants {
   void read(const toml::table& table) {
     std::map<std::string, Definition> definitions;
     for (const auto& [name, node] : table)
-      if (is_name(std::string(name.str()), name.source())) definitions[std::string(name.str())].node = &node;
+      if (is_name("constants", std::string(name.str()), name.source()))
+        definitions[std::string(name.str())].node = &node;
     tell_names(definitions);
     for (auto& [first, definition] : definitions) {
       if (definition.state != Definition::untouched) continue;
@@ -92,6 +94,19 @@ class Constants {
     }
   }
 
+  /// Numbers that stay names: formulas of time call them.
+  void read_controls(const toml::table& table) {
+    for (const auto& [name, node] : table) {
+      const std::string word(name.str()), here = "controls." + word;
+      if (!is_name("controls", word, name.source())) continue;
+      if (values_.contains(word)) problems_.add(name.source(), here, "a constant has this name; expected another one");
+      else if (!node.is_number()) problems_.add(name.source(), here, "expected a number: its value at the start");
+      else controls_[word] = node.value_or(0.0);
+    }
+    controls().clear();
+    for (const auto& [name, value] : controls_) controls().push_back({name, value});
+  }
+
   void section(toml::table& table, const std::string& section, const std::string& dotted) {
     for (auto&& [name, node] : table) {
       const std::string here = dotted + std::string(name.str());
@@ -109,19 +124,21 @@ class Constants {
   }
 
   /// Every constant was used; a misspelt one of --set would change nothing in silence.
-  void look_for_unused(const toml::table& table) const {
+  void look_for_unused(const toml::table& table, const std::string& section) const {
     constexpr int most = 50;  // that get the name of the nearest other one, which takes as long as there are names
     int told = 0;
     for (const auto& [name, node] : table) {
       const std::string word(name.str());
-      if (!values_.contains(word) || used_.contains(word)) continue;
+      if (!(values_.contains(word) || controls_.contains(word)) || used_.contains(word)) continue;
       std::vector<std::string> others;
       if (told++ < most)
         for (const auto& [other, _] : values_)
           if (other != word) others.push_back(other);
       problems_.add(
-          name.source(), "constants." + word,
-          "nothing uses it; expected a constant that a value of the scene names" + did_you_mean(nearest(word, others)));
+          name.source(), section + "." + word,
+          "nothing uses it; expected " +
+              std::string(section == "controls" ? "a control that a formula of time" : "a constant that a value") +
+              " of the scene names" + did_you_mean(nearest(word, others)));
     }
   }
 
@@ -153,17 +170,19 @@ class Constants {
       });
   }
 
-  bool is_name(const std::string& name, const toml::source_region& place) {
-    static const std::set<std::string> taken{"x", "y", "z", "t", "pi", "e"};
+  bool is_name(const std::string& section, const std::string& name, const toml::source_region& place) {
+    static const std::set<std::string> taken{"x", "y", "z", "t", "pi", "e", "control"};
     if (taken.contains(name)) {
-      problems_.add(place, "constants." + name, "the name stands for something else in formulas; expected another one");
+      problems_.add(place, section + "." + name,
+                    "the name stands for something else in formulas; expected another one");
       return false;
     }
     const bool good = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
                       std::all_of(name.begin(), name.end(), in_name);
     if (!good)
-      problems_.add(place, "constants." + name,
-                    "not a name of a constant; expected a letter followed by letters, digits and underscores");
+      problems_.add(
+          place, section + "." + name,
+          "not a name of a constant or a control; expected a letter followed by letters, digits and underscores");
     return good;
   }
 
@@ -182,13 +201,34 @@ class Constants {
   }
 
   std::string value_of(const std::string& name) {
+    if (const auto control = controls_.find(name); control != controls_.end()) {
+      used_.insert(name);
+      return "control(" + std::to_string(std::distance(controls_.begin(), control)) + ",t)";
+    }
     const auto found = values_.find(name);
     if (found == values_.end()) return "";
     used_.insert(name);
     return exact(found->second);
   }
 
+  /// The first control that a text names; "".
+  std::string control_in(const std::string& text) const {
+    std::string found;
+    replaced(text, [&](const std::string& name) {
+      if (found.empty() && controls_.contains(name)) found = name;
+      return std::string();
+    });
+    return found;
+  }
+
   std::optional<double> evaluate(const toml::value<std::string>& text, const std::string& here) {
+    if (const std::string control = control_in(text.get()); !control.empty()) {
+      problems_.add(text.source(), here,
+                    "\"" + control +
+                        "\" is a control, which may change in time; expected a number, or a key that takes a "
+                        "function of time");
+      return std::nullopt;
+    }
     const std::string formula = replaced(text.get(), [&](const std::string& name) { return value_of(name); });
     const std::string problem = formula_problem(formula, "");
     double number = std::nan("");
@@ -234,10 +274,18 @@ class Constants {
     const bool word = (accepts & as_text) || std::find(words.begin(), words.end(), text.get()) != words.end();
     if (word || !(accepts & (formulas | numbers))) return false;
     if (accepts & formulas) {
+      if (key.variables.find('t') == std::string_view::npos)
+        if (const std::string control = control_in(text.get()); !control.empty()) {
+          problems_.add(text.source(), here,
+                        "\"" + control +
+                            "\" is a control, and this is read at the start only; expected a formula without "
+                            "it");
+          return false;
+        }
       text.get() = replaced(text.get(), [&](const std::string& name) { return value_of(name); });
       return false;
     }
-    if ((accepts & as_word) && !uses_constants(text.get())) return false;
+    if ((accepts & as_word) && !uses_constants(text.get()) && control_in(text.get()).empty()) return false;
     const auto number = evaluate(text, here);
     if (!number) return false;
     const bool whole = (accepts & as_integer) && *number == std::floor(*number) && std::abs(*number) < 1e9;
@@ -260,7 +308,7 @@ class Constants {
   }
 
   Problems& problems_;
-  std::map<std::string, double> values_;
+  std::map<std::string, double> values_, controls_;
   std::set<std::string> used_;
   std::string all_;
   double made_ = 0.0;  // what value() made, its type and its place
@@ -271,16 +319,20 @@ class Constants {
 }  // namespace
 
 void replace_constants(toml::table& document, Problems& problems) {
-  const toml::node* node = document.get("constants");
-  if (!node) return;
-  if (!node->is_table()) problems.fail(node->source(), "constants", "expected a section of names and numbers");
-  const toml::table table = *node->as_table();
-  document.erase("constants");
   Constants constants(problems);
-  constants.read(table);
+  std::map<std::string, toml::table> sections;
+  for (const char* name : {"constants", "controls"}) {
+    const toml::node* node = document.get(name);
+    if (node && !node->is_table()) problems.fail(node->source(), name, "expected a section of names and numbers");
+    if (node) sections[name] = *node->as_table();
+    document.erase(name);
+  }
+  if (sections.contains("constants")) constants.read(sections["constants"]);
+  constants.read_controls(sections.contains("controls") ? sections["controls"] : toml::table());
+  if (sections.empty()) return;
   constants.section(document, "", "");
   problems.throw_if_any();
-  constants.look_for_unused(table);
+  for (const auto& [name, table] : sections) constants.look_for_unused(table, name);
 }
 
 }  // namespace barchan

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/errors.hpp"
+#include "scene/controls.hpp"
 
 namespace barchan {
 namespace {
@@ -21,6 +22,7 @@ void define_constants(mu::Parser& parser) {
   parser.DefineConst("e", std::numbers::e);
   parser.DefineFun("fmod", modulo);
   parser.DefineFun("floor", floor_of);
+  parser.DefineFun("control", value_of_control);
 }
 
 /// muParser ends some of its messages with a full stop; the reader goes on with a semicolon.

@@ -22,6 +22,8 @@ constexpr Key rows_of_keys[] = {
     {"", "precision", at<&Scene::precision>(Precision::mixed), "", "Arithmetic of the pair loops; the state is always kept in double precision."},
     {"", "constants", names_of_numbers().like("d = 2.5e-4"), "",
      "Names for numbers, as d = 2.5e-4: a number of the scene may then be a formula of them, as \"25*d\"."},
+    {"", "controls", names_of_numbers().like("pull = 0.5"), "",
+     "Names for numbers that Python changes while the run goes on, with their values at the start, as pull = 0.5: a formula of time may use them, as \"pull*sin(t)\" (docs/python.md)."},
     {"", "domain", at<&Scene::domain>(required), "", "The box of the computation."},
     {"", "phases", at<&Scene::phases>(required), "", "One section a phase; a name is a letter followed by letters, digits and underscores."},
     {"", "interactions", pairs().like("air-air = 2.1"), "",

@@ -10,6 +10,7 @@
 #include "models/catalogue.hpp"
 #include "models/walls/wall.hpp"
 #include "output/numbers.hpp"
+#include "scene/controls.hpp"
 #include "scene/formula.hpp"
 #include "scene/located.hpp"
 
@@ -195,6 +196,7 @@ void Simulation::archive(Archive& a) {
       throw SceneError("the checkpoint does not fit this scene: the sound speed of " + p.name + " was " + brief(speed) +
                        " m/s and is now " + brief(p.sound_speed) + " m/s");
   }
+  for (Control& control : controls()) a.number("control " + control.name, control.value);
   state_.archive(a);
   work_->archive(a, loads_whole_);
   for (const auto& model : models_) model->archive(a);

@@ -279,6 +279,85 @@ class Running(Case):
         self.assertIn("numpy", ended.stderr)
 
 
+PUSHED = {  # water between two plates, pushed by a control
+    "spacing": 0.02, "controls": {"pull": 0.0}, "domain": {"size": [0.4, 0.2], "periodic": ["x"]},
+    "phases": {"water": {"kind": "fluid", "density": 1000, "viscosity": 1e-3, "sound-speed": 10}, "plates": {"kind": "wall"}},
+    "interactions": {"water-water": 2.1, "water-plates": 2.1},
+    "fill": [{"phase": "plates", "shape": {"sides": ["bottom", "top"]}}, {"phase": "water", "shape": "the-rest"}],
+    "forcing": [{"phase": "water", "acceleration": ["pull", 0]}],
+    "time": {"end": 0.06, "largest-speed": 1}, "output": {"every": 0.02, "history-every": 0.01},
+}
+
+
+class Stepping(Case):
+    def test_it_has_the_bits_of_a_run(self):
+        ran = barchan.run(PUSHED, out=self.folder / "ran", set={"controls.pull": 2}, threads=1)
+        with barchan.Simulation(PUSHED, out=self.folder / "stepped", set={"controls.pull": 2}, threads=1) as sim:
+            self.assertEqual((sim.time, sim.steps), (0, 0))
+            sim.step(3)
+            self.assertEqual(sim.steps, 3)
+            sim.run(until=0.033)
+            self.assertGreaterEqual(sim.time, 0.033)
+            self.assertLess(sim.time, 0.035)
+            sim.run()
+            self.assertTrue(sim.ended)
+            self.assertAlmostEqual(sim.time, 0.06, 12)
+            with self.assertRaisesRegex(barchan.Mistake, "has ended, at t = 0.06 s"):
+                sim.step()
+            last = sim["velocity", "water"]
+        self.assertTrue(barchan.compare(ran, sim.series))
+        self.assertEqual((self.folder / "ran/history.csv").read_bytes(), (self.folder / "stepped/history.csv").read_bytes())
+        self.assertTrue((sim.series[-1]["velocity", "water"][:, :2] == last.astype(numpy.float32)).all() or
+                        numpy.allclose(sim.series[-1]["velocity", "water"][:, :2], last, rtol=1e-6, atol=1e-9))
+        with self.assertRaisesRegex(barchan.Mistake, "is closed"):
+            sim["velocity", "water"]
+
+    def test_a_control_acts_from_the_next_step_on(self):
+        with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
+            sim.step(5)
+            self.assertEqual(abs(sim["velocity", "water"]).max(), 0)
+            begin = sim.time
+            sim.controls["pull"] = 3
+            self.assertEqual(dict(sim.controls), {"pull": 3.0})
+            seen = []
+            sim.run(until=0.04, every=0.01, call=lambda s: seen.append((s.time, s.history["water_mean_vx [m/s]"])))
+            self.assertEqual(len(seen), 4)
+            for time, speed in seen:  # the plates hold a little of it
+                self.assertTrue(0.85 * 3 * (time - begin) < speed < 3.001 * (time - begin), (time, speed))
+            self.assertIs(sim.run(every=1e-3, call=lambda _: False), None)
+            self.assertFalse(sim.ended)
+        self.assertEqual(sim.series.run["end_reason"], "the program that steers it")
+        # What was set stands in the checkpoint.
+        with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1, restart="latest") as sim:
+            self.assertEqual(sim.controls["pull"], 3.0)
+            self.assertGreater(sim.steps, 5)
+            sim.run()
+
+    def test_mistakes_have_names(self):
+        with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
+            with self.assertRaisesRegex(barchan.UnknownName, 'no control .pul.; did you mean "pull"'):
+                sim.controls["pul"] = 1
+            with self.assertRaisesRegex(barchan.UnknownName, "no phase"):
+                sim["velocity", "air"]
+            with self.assertRaisesRegex(barchan.UnknownName, "no field"):
+                sim["radius", "water"]
+            with self.assertRaisesRegex(barchan.Mistake, "several phases"):
+                sim["velocity"]
+            with self.assertRaisesRegex(barchan.Mistake, "every"):
+                sim.run(call=print)
+            self.assertEqual(sorted(sim["id", "water"]), list(sim["id", "water"]))
+        with self.assertRaisesRegex(barchan.SceneError, "unknown key"):
+            barchan.Simulation({**PUSHED, "colour": 1}, out=self.folder / "none")
+
+    def test_a_breakdown_ends_it_and_not_python(self):
+        with self.assertRaises(barchan.Breakdown) as found:
+            with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
+                sim.step(5)
+                sim.controls["pull"] = 1e6
+                sim.run()
+        self.assertGreater(len(found.exception.series), 0)
+
+
 class Scenes(Case):
     def test_every_scene_comes_back(self):
         files = sorted((ROOT / "scenes").rglob("*.toml"))
