@@ -16,20 +16,18 @@ namespace barchan {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t longest_request = 65536;  // bytes
 
-Json state_of(const Simulation& simulation, bool ended) {
-  Json j{{"time", simulation.time()}, {"steps", simulation.steps()}, {"ended", ended}};
+nlohmann::ordered_json state_of(const Simulation& simulation, bool ended) {
+  nlohmann::ordered_json j{{"time", simulation.time()}, {"steps", simulation.steps()}, {"ended", ended}};
   for (const PhaseParticles& p : simulation.phases()) {
-    Json& phase = j["phases"][p.name()];
+    nlohmann::ordered_json& phase = j["phases"][p.name()];
     phase["particles"] = p.size();
-    phase["fields"] = Json::array({"id"});
+    phase["fields"] = nlohmann::ordered_json::array({"id"});
     for (std::size_t f = 0; f < field_count; ++f)
       if (p.has(static_cast<Field>(f))) phase["fields"].push_back(info(static_cast<Field>(f)).name);
   }
-  j["controls"] = Json::object();
+  j["controls"] = nlohmann::ordered_json::object();
   for (const Control& control : controls()) j["controls"][control.name] = control.value;
   return j;
 }
@@ -48,12 +46,12 @@ std::string array_of(const PhaseParticles& p, const std::string& name) {
       if (field) std::memcpy(to, p.column(*field, static_cast<int>(d)) + k, 8);
       else std::memcpy(to, &p.id()[k], 8);
     }
-  const Json heading{
+  const nlohmann::ordered_json heading{
       {"rows", order.size()}, {"columns", width}, {"type", field ? "f8" : "i8"}, {"bytes", bytes.size()}};
   return heading.dump() + "\n" + bytes;
 }
 
-std::string fault(const std::string& what) { return Json{{"error", what}}.dump() + "\n"; }
+std::string fault(const std::string& what) { return nlohmann::ordered_json{{"error", what}}.dump() + "\n"; }
 
 }  // namespace
 
@@ -81,7 +79,7 @@ void Steering::write(const std::string& bytes) const {
 }
 
 Steering::Asked Steering::carry_out(const std::string& request, const Simulation& simulation, bool ended) {
-  const Json j = Json::parse(request, nullptr, false);
+  const nlohmann::ordered_json j = nlohmann::ordered_json::parse(request, nullptr, false);
   const std::string what = j.is_object() ? j.value("do", "") : "";
   if (what == "stop") return Asked::stop;
   if (what == "steps" || what == "until") {
@@ -98,7 +96,7 @@ Steering::Asked Steering::carry_out(const std::string& request, const Simulation
     write(state_of(simulation, ended).dump() + "\n");
   } else if (what == "history") {
     const HistoryRow row = simulation.history();
-    write(Json{{"names", row.names}, {"values", row.values}}.dump() + "\n");
+    write(nlohmann::ordered_json{{"names", row.names}, {"values", row.values}}.dump() + "\n");
   } else if (what == "array") {
     const std::string phase = j.value("phase", ""), field = j.value("field", "");
     const auto& all = simulation.phases();
@@ -127,7 +125,9 @@ bool Steering::goes_on(const Simulation& simulation, bool ended) {
   if (!ended && (simulation.steps() < until_step_ || simulation.time() < until_time_ * (1.0 - 1e-12))) return true;
   until_step_ = 0;
   until_time_ = 0.0;
-  if (waits_) write(Json{{"time", simulation.time()}, {"steps", simulation.steps()}, {"ended", ended}}.dump() + "\n");
+  if (waits_)
+    write(nlohmann::ordered_json{{"time", simulation.time()}, {"steps", simulation.steps()}, {"ended", ended}}.dump() +
+          "\n");
   waits_ = false;
   for (std::string request; read_line(request);) {
     const Asked asked = carry_out(request, simulation, ended);

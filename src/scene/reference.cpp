@@ -144,6 +144,7 @@ constexpr std::pair<std::string_view, std::string_view> sections[] = {
     {"inflow.fluctuations", "`fluctuations = { ... }` of an inflow"},
     {"outflow", "`[[outflow]]`"},
     {"influx", "`[[influx]]`"},
+    {"influx.box", "`box = { ... }` of an influx"},
     {"motion", "`[[motion]]`"},
     {"motion.box", "`motion.box`"},
     {"marker", "`[[marker]]`"},

@@ -56,7 +56,7 @@ std::vector<Json> forms(const Key& key) {
   if (key.slot.accepts & as_formulas) all.push_back(array_of(formula, 2, 3));
   if (key.slot.accepts & as_points) all.push_back(array_of(array_of(number, 2, 3), 1, 0));
   if (key.slot.accepts & as_corners) all.push_back(array_of(array_of(number, 2, 2), 3, 0));
-  if (path == "constants")
+  if (path == "constants" || path == "controls")
     all.push_back({{"type", "object"}, {"additionalProperties", {{"type", Json::array({"number", "string"})}}}});
   else if (key.slot.accepts & as_section) all.push_back(section_schema(path));
   if (key.slot.accepts & as_sections) all.push_back(array_of(section_schema(path), 0, 0));

@@ -769,7 +769,9 @@ TEST(SceneSchema, DescribesEveryKeyWithItsUnit) {
 
 /// The lines of a document in which the example of a key stands at its place, and the dotted name of the key there.
 std::pair<std::string, std::string> document_with_example(const Key& key) {
-  const std::string user = key.name == "constants" ? "spacing = \"d\"\n" : "";  // a constant must be used
+  const std::string user = key.name == "constants"  ? "spacing = \"d\"\n"  // a constant must be used
+                           : key.name == "controls" ? "forcing = [{ acceleration = [\"pull\", 0] }]\n"
+                                                    : "";
   if (key.section.empty()) return {user + example_of(key), std::string(key.name)};
   std::string path, dotted, text;
   std::istringstream parts{std::string(key.section)};
