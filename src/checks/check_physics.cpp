@@ -186,7 +186,6 @@ class PhysicsChecker {
         tell(dotted + key, "with a law of drag by name the mean wind about a grain acts on it; expected no such key");
     if (pair.drag_law == DragLaw::di_felice)
       tell(drag, "crowded drag acts in air of kind column; expected stokes, schiller-naumann, cheng or duran");
-    if (scene_.dimensions != 2) needs("two dimensions, with a fluid of particles; expected those, or a number");
     if (!(g[1] < 0.0) || g[0] != 0.0) needs("gravity along -y; expected domain.gravity = [0, -9.81]");
     if (!grains.diameter()) tell(place(grains) + ".diameter", why + "spheres; expected a number > 0 (m)");
     else if (fluid.spacing < 2.0 * grains.diameter()->mean)

@@ -1,6 +1,6 @@
-// Particles of air on a grid, in two dimensions: their mean velocity at a place, and forces at a place given back to
-// them. Both use the same weights, bilinear in each cell of one spacing, so that what a place gives the particles get,
-// to rounding: with M = sum m_a w_a of a node,
+// Particles of air on a grid: their mean velocity at a place, and forces at a place given back to them. Both use the
+// same weights, linear along each axis in a cell of one spacing, so that what a place gives the particles get, to
+// rounding: with M = sum m_a w_a of a node,
 //   u_node = sum m_a w_a u_a / M,   a_a = sum w_a F_node / M,   sum m_a a_a = sum F_node.
 #pragma once
 
@@ -14,8 +14,6 @@ namespace barchan {
 
 class AirGrid {
  public:
-  using Flat = std::array<double, 2>;
-
   /// Cells of about `spacing` (m) over the domain.
   AirGrid(const Bounds& bounds, double spacing);
 
@@ -26,12 +24,12 @@ class AirGrid {
   void forget() { kept_.clear(); }
   void archive(Archive& a) { a.array("kept forces on the air", kept_); }
   /// Mean velocity (m/s) about a place; zero where no air is.
-  Flat velocity(const Flat& x) const;
+  Vec3 velocity(const Vec3& x) const;
   /// kg/m3 (2D: kg/m2 a metre of depth), of the particles about a place.
-  double density(const Flat& x) const;
-  /// A force (N per metre of depth) on the air about a place. What finds no air is lost: lost().
-  void push(const Flat& x, const Flat& force);
-  const Flat& lost() const { return lost_; }
+  double density(const Vec3& x) const;
+  /// A force (N; 2D: per metre of depth) on the air about a place. What finds no air is lost: lost().
+  void push(const Vec3& x, const Vec3& force);
+  const Vec3& lost() const { return lost_; }
   /// Writes the accelerations of the particles by these forces (m/s2) into their field drag_acceleration.
   void give(PhaseParticles& air) const;
 
@@ -40,14 +38,22 @@ class AirGrid {
     std::size_t node;
     double weight;
   };
-  std::array<Corner, 4> corners(const Flat& x) const;
+  /// Of a cell: 4, in 3D 8.
+  struct Corners {
+    std::array<Corner, 8> of;
+    std::size_t count;
+    const Corner* begin() const { return of.data(); }
+    const Corner* end() const { return of.data() + count; }
+  };
+  Corners corners(const Vec3& x) const;
 
   Bounds bounds_;
-  std::array<std::size_t, 2> cells_{}, nodes_{};
-  Flat width_{};
+  std::size_t dimensions_;
+  std::array<std::size_t, 3> cells_{1, 1, 1}, nodes_{1, 1, 1};
+  Vec3 width_{};
   std::vector<double> mass_;
-  std::vector<Flat> velocity_, force_, kept_;  // kept_: empty, or by node
-  Flat lost_{};
+  std::vector<Vec3> velocity_, force_, kept_;  // kept_: empty, or by node
+  Vec3 lost_{};
 };
 
 }  // namespace barchan

@@ -1,6 +1,7 @@
 #include "models/coupling/airs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace barchan {
@@ -17,7 +18,7 @@ std::vector<std::size_t> airs_about(const Layout& layout, std::size_t grains) {
 Airs::Airs(const Layout& layout, std::vector<std::size_t> phases) : phases_(std::move(phases)) {
   for (const std::size_t k : phases_) {
     const PlanPhase& p = layout.phases[k];
-    density_.push_back(p.mass / (p.spacing * p.spacing));
+    density_.push_back(p.mass / (layout.dimensions == 2 ? p.spacing * p.spacing : std::pow(p.spacing, 3)));
     grids_.emplace_back(layout.bounds, p.spacing);
   }
 }
@@ -38,28 +39,28 @@ void Airs::archive(Archive& a) {
   for (AirGrid& grid : grids_) grid.archive(a);
 }
 
-Airs::Flat Airs::velocity(const Flat& x) const {
+Vec3 Airs::velocity(const Vec3& x) const {
   if (grids_.size() == 1) return grids_.front().velocity(x);
-  Flat sum{};
+  Vec3 sum{};
   double all = 0.0;
   for (std::size_t k = 0; k < grids_.size(); ++k) {
     const double share = grids_[k].density(x) / density_[k];
     if (!(share > 0.0)) continue;
-    const Flat u = grids_[k].velocity(x);
+    const Vec3 u = grids_[k].velocity(x);
     all += share;
-    for (std::size_t d = 0; d < 2; ++d) sum[d] += share * u[d];
+    for (std::size_t d = 0; d < 3; ++d) sum[d] += share * u[d];
   }
-  return all > 0.0 ? Flat{sum[0] / all, sum[1] / all} : Flat{};
+  return all > 0.0 ? Vec3{sum[0] / all, sum[1] / all, sum[2] / all} : Vec3{};
 }
 
-void Airs::push(const Flat& x, const Flat& force) {
+void Airs::push(const Vec3& x, const Vec3& force) {
   if (grids_.size() == 1) return grids_.front().push(x, force);
   double all = 0.0;
   for (std::size_t k = 0; k < grids_.size(); ++k) all += grids_[k].density(x) / density_[k];
   if (!(all > 0.0)) return grids_.front().push(x, force);
   for (std::size_t k = 0; k < grids_.size(); ++k) {
     const double share = grids_[k].density(x) / density_[k] / all;
-    if (share > 0.0) grids_[k].push(x, {share * force[0], share * force[1]});
+    if (share > 0.0) grids_[k].push(x, share * force);
   }
 }
 

@@ -17,8 +17,6 @@ std::vector<std::size_t> airs_about(const Layout& layout, std::size_t grains);
 
 class Airs {
  public:
-  using Flat = AirGrid::Flat;
-
   Airs(const Layout& layout, std::vector<std::size_t> phases);
   const std::vector<std::size_t>& phases() const { return phases_; }
 
@@ -29,9 +27,9 @@ class Airs {
   void forget();
   void archive(Archive& a);
   /// Mean velocity (m/s) about a place; zero where no air is.
-  Flat velocity(const Flat& x) const;
-  /// A force (N per metre of depth) on the air about a place.
-  void push(const Flat& x, const Flat& force);
+  Vec3 velocity(const Vec3& x) const;
+  /// A force (N; 2D: per metre of depth) on the air about a place.
+  void push(const Vec3& x, const Vec3& force);
   /// Writes the accelerations of the particles by these forces (m/s2) into their field drag_acceleration.
   void give(State& state) const;
 

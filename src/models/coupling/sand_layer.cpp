@@ -53,13 +53,20 @@ void SandLayer::begin(State& state, const std::vector<ParticleBlock>&) {
 
 void SandLayer::attach(Workspace& w) {
   w_ = &w;
-  const double size = layout_.domain.high[0] - layout_.domain.low[0];
   const double spacing = layout_.phases[fluid_].spacing;
   const double long_enough = std::max(spacing, long_as * diameter_);
-  const auto n = static_cast<std::size_t>(std::max(1.0, std::round(size / long_enough)));
-  width_ = size / static_cast<double>(n);
-  samples_ = static_cast<std::size_t>(std::max(1.0, std::round(width_ / spacing)));
-  ground_ = fitted_heights(scene_, {static_cast<int>(n * samples_ * heights), 0});
+  for (const std::size_t q : {0u, 1u}) {
+    const std::size_t axis = 2 * q;
+    if (axis >= static_cast<std::size_t>(layout_.dimensions)) continue;
+    const double size = layout_.domain.high[axis] - layout_.domain.low[axis];
+    count_[q] = static_cast<std::size_t>(std::max(1.0, std::round(size / long_enough)));
+    width_[q] = size / static_cast<double>(count_[q]);
+    samples_[q] = static_cast<std::size_t>(std::max(1.0, std::round(width_[q] / spacing)));
+  }
+  area_ = layout_.dimensions == 2 ? width_[0] : width_[0] * width_[1];
+  const std::size_t n = count_[0] * count_[1];
+  ground_ = fitted_heights(scene_, {static_cast<int>(count_[0] * samples_[0] * heights), 0});
+  refuse_ground_along_z();
   if (ground_.empty())
     throw SceneError(scene_.file + ": interactions." + name_ +
                      ".drag: no ground under the air; expected a wall with "
@@ -90,9 +97,21 @@ void SandLayer::attach(Workspace& w) {
   for (const std::size_t fluid : grid_.phases()) w.ground_stress[fluid].assign(w.particles(fluid).size(), 0.0);
 }
 
+/// Layers know the ground along x.
+void SandLayer::refuse_ground_along_z() const {
+  if (layout_.dimensions == 2) return;
+  constexpr int rows = 16;
+  const auto all = fitted_heights(scene_, {static_cast<int>(count_[0] * samples_[0] * heights), rows});
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (std::abs(all[k] - ground_[k % ground_.size()]) > 1e-6 * diameter_)
+      throw SceneError(scene_.file + ": interactions." + name_ +
+                       ".drag: the ground is not the same along z, and a law of drag by name knows the ground along x; "
+                       "expected a flat bed, or one that is the same along z");
+}
+
 /// Beyond an open side the ground goes on as it is at the side, and the last layer does.
 SandLayer::Ground SandLayer::ground(double x) const {
-  const double step = width_ / static_cast<double>(samples_ * heights), low = layout_.domain.low[0];
+  const double step = width_[0] / static_cast<double>(samples_[0] * heights), low = layout_.domain.low[0];
   const auto n = static_cast<long>(ground_.size()) - 1;
   const bool repeats = layout_.domain.periodic[0];
   const double s = repeats ? (x - low) / step : std::clamp((x - low) / step, 0.0, static_cast<double>(n));
@@ -104,10 +123,22 @@ SandLayer::Ground SandLayer::ground(double x) const {
   return {a + share * (b - a), 1.0 / length, slope / length};
 }
 
-SandLayer::Between SandLayer::between(double x) const {
-  const auto n = static_cast<long>(layers_.size());
-  double s = (x - layout_.domain.low[0]) / width_ - 0.5;
-  if (!layout_.domain.periodic[0]) {
+SandLayer::Between SandLayer::between(double x, double z) const {
+  const Along one = along(0, x);
+  if (layout_.dimensions == 2) return {{one.left, one.right}, {1.0 - one.share, one.share}, 2};
+  const Along other = along(2, z);
+  Between b{{}, {}, 4};
+  for (std::size_t k = 0; k < 4; ++k) {
+    b.layer[k] = (k < 2 ? other.left : other.right) * count_[0] + (k % 2 == 0 ? one.left : one.right);
+    b.share[k] = (k < 2 ? 1.0 - other.share : other.share) * (k % 2 == 0 ? 1.0 - one.share : one.share);
+  }
+  return b;
+}
+
+SandLayer::Along SandLayer::along(std::size_t axis, double x) const {
+  const auto n = static_cast<long>(count_[axis / 2]);
+  double s = (x - layout_.domain.low[axis]) / width_[axis / 2] - 0.5;
+  if (!layout_.domain.periodic[axis]) {
     s = std::clamp(s, 0.0, static_cast<double>(n - 1));
     const long left = std::min(static_cast<long>(s), std::max(n - 2, 0L)), right = std::min(left + 1, n - 1);
     return {static_cast<std::size_t>(left), static_cast<std::size_t>(right), s - static_cast<double>(left)};
@@ -141,13 +172,13 @@ void SandLayer::give_stress(std::size_t fluid) {
   const PhaseParticles& air = w_->particles(fluid);
   stress.resize(air.size());
   const double* x = air.column(Field::position, 0);
+  const double* z = layout_.dimensions == 2 ? nullptr : air.column(Field::position, 2);
   const auto n = static_cast<std::int64_t>(air.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const Between b = between(x[k]);
     stress[k] =
-        (1.0 - b.share) * std::abs(profile(b.left).stress.back()) + b.share * std::abs(profile(b.right).stress.back());
+        mean_of(between(x[k], z ? z[k] : 0.0), [&](std::size_t c) { return std::abs(profile(c).stress.back()); });
   }
 }
 
@@ -193,14 +224,31 @@ void SandLayer::act() {
 
 /// The speed of the air's particles along the ground, where the layer ends: by the weights by which places feel it.
 double SandLayer::top_speed(std::size_t column) const {
-  const auto all = static_cast<long>(samples_);
-  const double middle = layout_.domain.low[0] + (static_cast<double>(column) + 0.5) * width_;
+  const std::size_t row = column / count_[0];
+  const auto all = static_cast<long>(samples_[0]);
+  const double middle = layout_.domain.low[0] + (static_cast<double>(column % count_[0]) + 0.5) * width_[0];
   double sum = 0.0;
   for (long k = 1 - all; k < all; ++k) {
-    const double away = static_cast<double>(k) / static_cast<double>(all), x = middle + away * width_;
-    const Ground g = ground(x);
-    const auto u = grid_.velocity({x - top_ * g.along_y, g.height + top_ * g.along_x});
-    sum += (1.0 - std::abs(away)) * (u[0] * g.along_x + u[1] * g.along_y);
+    const double away = static_cast<double>(k) / static_cast<double>(all);
+    sum += (1.0 - std::abs(away)) * speed_over(middle + away * width_[0], row);
+  }
+  return sum / static_cast<double>(all);
+}
+
+/// The same at one x; in 3D by the same weights along z.
+double SandLayer::speed_over(double x, std::size_t row) const {
+  const Ground g = ground(x);
+  const auto along = [&](double z) {
+    const Vec3 u = grid_.velocity({x - top_ * g.along_y, g.height + top_ * g.along_x, z});
+    return u[0] * g.along_x + u[1] * g.along_y;
+  };
+  if (layout_.dimensions == 2) return along(0.0);
+  const auto all = static_cast<long>(samples_[1]);
+  const double middle = layout_.domain.low[2] + (static_cast<double>(row) + 0.5) * width_[1];
+  double sum = 0.0;
+  for (long k = 1 - all; k < all; ++k) {
+    const double away = static_cast<double>(k) / static_cast<double>(all);
+    sum += (1.0 - std::abs(away)) * along(middle + away * width_[1]);
   }
   return sum / static_cast<double>(all);
 }
@@ -235,7 +283,7 @@ void SandLayer::blow(double dt) {
 
 /// Mean wind (m/s) between two heights over the ground where a grain is.
 double SandLayer::wind_about(const Between& b, double low, double high) const {
-  return (1.0 - b.share) * layers_[b.left].mean_speed(low, high) + b.share * layers_[b.right].mean_speed(low, high);
+  return mean_of(b, [&](std::size_t c) { return layers_[c].mean_speed(low, high); });
 }
 
 /// Grains and air for the time to the next exchange: the drag in the present wind, the wind that this leaves, and the
@@ -252,6 +300,9 @@ void SandLayer::exchange(double kept, double meant) {
   PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  const bool flat = layout_.dimensions == 2;
+  const double* z = flat ? nullptr : p.column(Field::position, 2);
+  const double* az = flat ? nullptr : p.column(Field::drag_acceleration, 2);
   const auto near = static_cast<std::int64_t>(near_.size());
 #pragma omp parallel for schedule(static)
   for (std::int64_t i = 0; i < near; ++i) {
@@ -267,7 +318,8 @@ void SandLayer::exchange(double kept, double meant) {
   };
   const auto push_gust = [&](const Near& q) {
     const double force = -p.mass_of(q.grain) * gust_of(q);
-    grid_.push({x[q.grain], y[q.grain]}, {force * q.ground.along_x, force * q.ground.along_y});
+    grid_.push({x[q.grain], y[q.grain], z ? z[q.grain] : 0.0},
+               {force * q.ground.along_x, force * q.ground.along_y, 0.0});
   };
   // What those give that rest is kept on the grid: they come first.
   for (const Near& q : near_) {
@@ -286,7 +338,7 @@ void SandLayer::exchange(double kept, double meant) {
   // across it.
   for (const std::size_t k : flying_) {
     const double m = p.mass_of(k);
-    grid_.push({x[k], y[k]}, {-m * ax[k], -m * ay[k]});
+    grid_.push({x[k], y[k], z ? z[k] : 0.0}, {-m * ax[k], -m * ay[k], az ? -m * az[k] : 0.0});
   }
   for (const Near& q : near_)
     if (!q.rests) push_across(p, q);
@@ -298,8 +350,13 @@ void SandLayer::push_across(const PhaseParticles& p, const Near& q) {
   const std::size_t k = q.grain;
   const double ax = p.column(Field::drag_acceleration, 0)[k], ay = p.column(Field::drag_acceleration, 1)[k];
   const double across = -p.mass_of(k) * (ay * q.ground.along_x - ax * q.ground.along_y);
-  grid_.push({p.column(Field::position, 0)[k], p.column(Field::position, 1)[k]},
-             {-across * q.ground.along_y, across * q.ground.along_x});
+  Vec3 x{p.column(Field::position, 0)[k], p.column(Field::position, 1)[k], 0.0};
+  Vec3 force{-across * q.ground.along_y, across * q.ground.along_x, 0.0};
+  if (layout_.dimensions == 3) {
+    x[2] = p.column(Field::position, 2)[k];
+    force[2] = -p.mass_of(k) * p.column(Field::drag_acceleration, 2)[k];
+  }
+  grid_.push(x, force);
 }
 
 /// The profiles are in the state; their integrals are made again.

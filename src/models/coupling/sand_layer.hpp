@@ -1,5 +1,5 @@
 // Grains finer than the air's particles in a turbulent wind over sand: the entry of a fluid and of spheres with a law
-// of drag by name, in two dimensions.
+// of drag by name. In three dimensions the ground is the same along z, and the wind of a layer blows along x.
 //
 // A grain feels the mean wind about its place (airs.hpp). Nearer than `reach` spacings to the ground the particles
 // of the air do not resolve the wind. There, along each spacing of the ground, the wind is one-dimensional
@@ -7,9 +7,10 @@
 // bed, and loses what the grains take. The stress on its top is what the ground takes from the air's particles, in
 // place of the logarithmic law of a roughness: grains that fly make the ground rougher by themselves.
 //
-// A layer is 40 diameters long at least, and a grain feels the wind of the two about it, by linear weights: in a
-// shorter one the wake of a grain would hold back the grain itself. (The wind needs about that way to get over what a
-// grain has taken: the time in which it mixes over three diameters, times its speed.)
+// A layer is 40 diameters long at least, in three dimensions as wide or as wide as the domain, and a grain feels the
+// wind of the two (four) about it, by linear weights: in a shorter one the wake of a grain would hold back the grain
+// itself. (The wind needs about that way to get over what a grain has taken: the time in which it mixes over three
+// diameters, times its speed.)
 //
 // On request grains in a layer feel gusts (gusts.hpp) and a lift across the ground by the shear about them: with U+, U-
 // the mean wind about the upper and the lower half of a grain of speed v along the ground, U about all of it, u with
@@ -63,10 +64,28 @@ class SandLayer : public Model {
   struct Ground {
     double height, along_x, along_y;
   };
-  /// Two layers about a place; `share` is the weight of the right one.
+  /// The layers about a place, with their weights: two, in 3D four.
   struct Between {
+    std::array<std::size_t, 4> layer{};
+    std::array<double, 4> share{};
+    std::size_t count = 2;
+    template <class F>
+    void each(F&& f) const {
+      for (std::size_t k = 0; k < count; ++k) f(layer[k], share[k]);
+    }
+  };
+  /// Mean of value(layer) about a place. Two are one expression, which compilers may contract in one way only.
+  template <class Value>
+  static double mean_of(const Between& b, Value&& value) {
+    if (b.count == 2) return (1.0 - b.share[1]) * value(b.layer[0]) + b.share[1] * value(b.layer[1]);
+    double sum = 0.0;
+    b.each([&](std::size_t c, double share) { sum += share * value(c); });
+    return sum;
+  }
+  /// The layers of one axis about a place.
+  struct Along {
     std::size_t left, right;
-    double share;
+    double share;  // of the right one
   };
   /// A grain in a layer, where it will be in the middle of the time to the next exchange.
   struct Near {
@@ -87,16 +106,21 @@ class SandLayer : public Model {
     Ground ground;
   };
   Ground ground(double x) const;
-  Between between(double x) const;
+  Along along(std::size_t axis, double x) const;
+  Between between(double x, double z) const;
+  double speed_over(double x, std::size_t row) const;
   double wind_about(const Between& b, double low, double high) const;
 
   bool exchange_is_due();
   void exchange();
   void exchange(double kept, double meant);
   void act();
+  void refuse_ground_along_z() const;
   void find_steady_wind();
   void find_near();
+  template <std::size_t Dim>
   void feel();
+  void feel() { layout_.dimensions == 2 ? feel<2>() : feel<3>(); }
   void spread();
   void spread(bool resting, std::vector<AirColumn::Load>& loads);
   bool all_are_due();
@@ -111,10 +135,14 @@ class SandLayer : public Model {
 
   const Scene& scene_;
   const Layout& layout_;
-  std::size_t fluid_, grains_, place_ = 0, samples_ = 1;  // samples_: spacings of the air in a layer
+  std::size_t fluid_, grains_, place_ = 0;
+  std::array<std::size_t, 2> samples_{1, 1};  // spacings of the air in a layer, along x and z
+  std::array<std::size_t, 2> count_{1, 1};    // layers along x and z
   DragLaw law_;
   std::string name_;
-  double density_, viscosity_, diameter_, top_, width_ = 0.0;  // kg/m3, m2/s, m, m, m
+  double density_, viscosity_, diameter_, top_;  // kg/m3, m2/s, m, m
+  std::array<double, 2> width_{};                // m, of a layer along x and z
+  double area_ = 0.0;                            // m2, in 2D m: of a layer
   double lift_;
   double interval_, hold_ = 0.0;    // s
   bool finds_steady_wind_ = false;  // the exchange that comes is the first one

@@ -17,6 +17,10 @@ void SandLayer::find_near() {
   const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
   const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  const bool flat = layout_.dimensions == 2;
+  const double* z = flat ? nullptr : p.column(Field::position, 2);
+  const double* w = flat ? nullptr : p.column(Field::velocity, 2);
+  double* az = flat ? nullptr : p.column(Field::drag_acceleration, 2);
   const double half = 0.5 * hold_;
   rate_.resize(p.size());
   places_.resize(p.size());
@@ -28,13 +32,14 @@ void SandLayer::find_near() {
     Place& at = places_[k];
     at.where = Place::unasked;
     if (keeps && !all_due_ && keeps[k]) continue;
-    at.rests = keeps && all_due_ && u[k] == 0.0 && v[k] == 0.0;
+    at.rests = keeps && all_due_ && u[k] == 0.0 && v[k] == 0.0 && (!w || w[k] == 0.0);
     at.ground = ground(x[k]);
     const Ground& g = at.ground;
     at.height = (y[k] - g.height) * g.along_x + half * (v[k] * g.along_x - u[k] * g.along_y);
     at.where = at.height >= top_ ? Place::over : at.height > -deep * diameter_ ? Place::in : Place::under;
     if (keeps) keeps[k] = at.rests && at.where != Place::over;
     if (at.where == Place::under) ax[k] = ay[k] = rate_[k] = 0.0;
+    if (az && at.where == Place::under) az[k] = 0.0;
   }
   near_.clear();
   flying_.clear();
@@ -42,8 +47,8 @@ void SandLayer::find_near() {
     const Place& at = places_[k];
     if (at.where == Place::over) flying_.push_back(k);
     if (at.where == Place::in)
-      near_.push_back(
-          {k, between(x[k]), at.height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0, at.ground, at.rests});
+      near_.push_back({k, between(x[k], z ? z[k] : 0.0), at.height, own ? own[k] : 0.5 * diameter_, 0.0, 0.0, 0.0,
+                       at.ground, at.rests});
   }
 }
 
@@ -63,6 +68,7 @@ double SandLayer::lift(const Near& q, double blows, double along, double rate) c
   return lift_ * rate * gain * shear * difference / std::max({std::abs(difference), std::abs(blows), 1e-300});
 }
 
+template <std::size_t Dim>
 void SandLayer::feel() {
   find_near();
   if (gusts_) gusts_->blow(w_->state.time + 0.5 * hold_);
@@ -71,33 +77,43 @@ void SandLayer::feel() {
   const double *u = p.column(Field::velocity, 0), *v = p.column(Field::velocity, 1);
   const double* own = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
   double *ax = p.column(Field::drag_acceleration, 0), *ay = p.column(Field::drag_acceleration, 1);
+  const double* z = Dim == 2 ? nullptr : p.column(Field::position, 2);
+  const double* w = Dim == 2 ? nullptr : p.column(Field::velocity, 2);
+  double* az = Dim == 2 ? nullptr : p.column(Field::drag_acceleration, 2);
   const double solid = scene_.phases[grains_].density, half = 0.5 * hold_;
   const double weight = layout_.phases[grains_].weight_share;
-  const std::array<double, 2> gravity{weight * scene_.domain.gravity[0], weight * scene_.domain.gravity[1]};
+  std::array<double, Dim> gravity{};
+  for (std::size_t c = 0; c < Dim; ++c) gravity[c] = weight * scene_.domain.gravity[c];
   with_drag_law(law_, [&](auto law) {
     const auto excess = [](double re) { return decltype(law)::excess(re); };
-    const auto of = [&](std::size_t k, const std::array<double, 2>& wind) {
+    const auto of = [&](std::size_t k, const Vec3& wind) {
+      std::array<double, Dim> blown{}, moves{};
+      for (std::size_t c = 0; c < Dim; ++c) {
+        blown[c] = wind[c];
+        moves[c] = c == 0 ? u[k] : c == 1 ? v[k] : w[k];
+      }
       const double d = own ? 2.0 * own[k] : diameter_, stokes = 18.0 * density_ * viscosity_ / (solid * d * d);
-      const auto kept = kept_drag<2>(wind, {u[k], v[k]}, gravity, stokes, d / viscosity_, excess, hold_);
+      const auto kept = kept_drag<Dim>(blown, moves, gravity, stokes, d / viscosity_, excess, hold_);
       ax[k] = kept.drag[0];
       ay[k] = kept.drag[1];
+      if constexpr (Dim == 3) az[k] = kept.drag[2];
       rate_[k] = kept.rate;
     };
     const auto flying = static_cast<std::int64_t>(flying_.size()), near = static_cast<std::int64_t>(near_.size());
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < flying; ++i) {
       const std::size_t k = flying_[static_cast<std::size_t>(i)];
-      of(k, grid_.velocity({x[k] + half * u[k], y[k] + half * v[k]}));
+      of(k, grid_.velocity({x[k] + half * u[k], y[k] + half * v[k], Dim == 2 ? 0.0 : z[k] + half * w[k]}));
     }
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < near; ++i) {
       Near& q = near_[static_cast<std::size_t>(i)];
       q.wind = wind_about(q.place, q.height - q.radius, q.height + q.radius);
       const Ground& g = q.ground;
-      of(q.grain, {q.wind * g.along_x, q.wind * g.along_y});
+      of(q.grain, {q.wind * g.along_x, q.wind * g.along_y, 0.0});
       q.pull = ax[q.grain] * g.along_x + ay[q.grain] * g.along_y;
       const double blows = felt(x[q.grain], q.wind), mean_rate = rate_[q.grain];
-      if (gusts_) of(q.grain, {blows * g.along_x, blows * g.along_y});
+      if (gusts_) of(q.grain, {blows * g.along_x, blows * g.along_y, 0.0});
       const double rate = rate_[q.grain];
       rate_[q.grain] = mean_rate;  // of the layer
       if (!(lift_ > 0.0)) continue;
@@ -107,6 +123,9 @@ void SandLayer::feel() {
     }
   });
 }
+
+template void SandLayer::feel<2>();
+template void SandLayer::feel<3>();
 
 /// The drag of the grains in a layer's cells by area, and its derivative by the speed of the air.
 void SandLayer::spread() {
@@ -136,17 +155,17 @@ void SandLayer::spread(bool resting, std::vector<AirColumn::Load>& loads) {
     }
     for (const Near& q : near_) {
       const Between& b = q.place;
-      if (q.rests != resting || ((b.left < first || b.left >= end) && (b.right < first || b.right >= end))) continue;
+      bool own_layer = false;
+      b.each([&](std::size_t c, double) { own_layer = own_layer || (c >= first && c < end); });
+      if (q.rests != resting || !own_layer) continue;
       const double mass = p.mass_of(q.grain), along = q.ground.along_x;
-      const double pull = mass * q.pull * along / width_, rate = mass * rate_[q.grain] * along / width_;
+      const double pull = mass * q.pull * along / area_, rate = mass * rate_[q.grain] * along / area_;
       const double low = q.height - q.radius, high = q.height + q.radius;
-      const auto add = [&](std::size_t c, double share) {
+      b.each([&](std::size_t c, double share) {
         if (c < first || c >= end) return;
         pulls_[c].add(layers_[c], low, high, share * pull);
         rates_[c].add(layers_[c], low, high, share * rate);
-      };
-      add(b.left, 1.0 - b.share);
-      add(b.right, b.share);
+      });
     }
     for (std::size_t c = first; c < end; ++c) {
       pulls_[c].gather(layers_[c], loads[c].pull);
