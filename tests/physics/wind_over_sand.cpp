@@ -156,6 +156,49 @@ TEST(WindOverSand, GustsAndLiftKeepTheMomentum) {
   expect_exact_exchange(drive);
 }
 
+/// The same in three dimensions: a cloud that also moves along z, about both sides of the period.
+TEST(WindOverSand, InThreeDimensionsItKeepsTheMomentum) {
+  std::string points;
+  for (int k = 0; k < 60; ++k)
+    points += (k ? ", [" : "[") + std::to_string(0.001 + 0.0006 * k) + ", " + std::to_string(0.0034 + 1e-4 * k) + ", " +
+              std::to_string(0.0165 * k - 0.01 * std::floor(1.65 * k)) + "]";
+  Drive drive(
+      "wind_over_sand",
+      {"dimensions=3", "domain.size=[0.04, 0.033, 0.01]", "domain.periodic=[\"x\", \"z\"]",
+       "domain.gravity=[0, -9.81, 0]", "phases.lid.shear-stress=[0.196, 0, 0]", "profile=[]",
+       "fill.3={ phase = \"sand\", shape = { points = [" + points + "] }, velocity = [0.2, 0, \"0.5*cos(900*z)\"] }",
+       "interactions.air-sand.lift=0.85", "interactions.air-sand.gusts=0.38", "time.end=2e-3"});
+  for (int step = 0; step < 20; ++step) drive.simulation().step(1.0);
+  const State& state = drive.simulation().state();
+  EXPECT_EQ(state.air.size(), 4u) << "of 10 mm along x, as wide as the domain";
+  double layers = 0;
+  for (const AirProfile& p : state.air)
+    for (const double given : p.given)
+      layers += given / state.air[0].last * 0.04 * 0.01 / static_cast<double>(state.air.size());
+  const PhaseParticles &air = drive.phase(0), &sand = drive.phase(1);
+  const double all = momentum_by_drag(sand, 0);
+  EXPECT_GT(std::abs(momentum_by_drag(air, 0)), 1e-3 * std::abs(all));
+  EXPECT_GT(std::abs(momentum_by_drag(sand, 2)), 1e-3 * std::abs(all));
+  EXPECT_NEAR((layers - all - momentum_by_drag(air, 0)) / all, 0.0, 1e-10);
+  for (const int d : {1, 2}) EXPECT_NEAR((momentum_by_drag(sand, d) + momentum_by_drag(air, d)) / all, 0.0, 1e-10) << d;
+}
+
+TEST(WindOverSand, InThreeDimensionsTheGroundIsTheSameAlongZ) {
+  const std::string ground =
+      R"(fill.0={ phase = "ground", packing = "fitted", shape = { bed = 0.003, dune = { form = "formula",)";
+  for (const bool waves : {false, true}) {
+    std::string told;
+    try {
+      Drive drive("wind_over_sand",
+                  {"dimensions=3", "domain.size=[0.04, 0.033, 0.01]", "domain.periodic=[\"x\", \"z\"]",
+                   "domain.gravity=[0, -9.81, 0]", "phases.lid.shear-stress=[0.196, 0, 0]", "profile=[]",
+                   ground + " formula = \"0.0003*sin(2*pi*" + (waves ? "z/0.01" : "x/0.04") + ")\" } } }",
+                   "fill.3={ phase = \"sand\", shape = { points = [[0.01, 0.006, 0.005]] } }"});
+    } catch (const SceneError& error) { told = error.what(); }
+    EXPECT_EQ(told.find("expected a flat bed, or one that is the same along z") != std::string::npos, waves) << told;
+  }
+}
+
 /// Grains rest at the start and keep the drag of the first exchange for 16 (the first one is balanced to a hundredth,
 /// with and without sleep): nothing is lost meanwhile, and after it all feel the wind again.
 TEST(WindOverSand, ADragThatIsKeptKeepsTheMomentum) {

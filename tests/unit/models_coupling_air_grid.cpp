@@ -55,6 +55,38 @@ TEST(AirGrid, GivesTheParticlesWhatItGot) {
   EXPECT_EQ(p.column(Field::drag_acceleration, 0)[5], 0.0) << "forces are those since the last gathering";
 }
 
+TEST(AirGrid, GivesWhatItGotInThreeDimensions) {
+  Bounds bounds = flat_box();
+  bounds.dimensions = 3;
+  bounds.high[2] = 4.0;
+  bounds.periodic = {true, false, true};
+  PhaseParticles p("air", 3, 8 * 6 * 4, 0.7, 0);
+  for (const Field f : {Field::position, Field::velocity, Field::drag_acceleration}) p.add(f);
+  sets::Uniform random(5);
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const std::array<std::size_t, 3> at{k % 8, k / 8 % 6, k / 48};
+    for (int d = 0; d < 3; ++d)
+      p.column(Field::position, d)[k] =
+          static_cast<double>(at[static_cast<std::size_t>(d)]) + 0.5 + random(-0.15, 0.15);
+    p.column(Field::velocity, 0)[k] = 2.0 + p.column(Field::position, 1)[k];
+    p.column(Field::velocity, 2)[k] = -1.0;
+  }
+  AirGrid grid(bounds, 1.0);
+  grid.gather(p);
+  const Vec3 wind = grid.velocity({3.7, 3.0, 3.9});
+  EXPECT_NEAR(wind[0], 5.0, 0.15);
+  EXPECT_NEAR(wind[2], -1.0, 1e-12);
+  EXPECT_NEAR(grid.density({3.7, 3.0, 3.9}), 0.7, 0.1);
+  const Vec3 force{1.5, -0.25, 3.0};
+  grid.push({7.9, 3.3, 3.9}, force);  // about both periodic sides
+  grid.give(p);
+  for (int d = 0; d < 3; ++d) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < p.size(); ++k) sum += p.mass() * p.column(Field::drag_acceleration, d)[k];
+    EXPECT_NEAR(sum, force[static_cast<std::size_t>(d)], 1e-12);
+  }
+}
+
 /// Half of the nodes about the place have no air: those that have it take all of the force.
 TEST(AirGrid, SharesAForceOutAsAWholeBesideNodesWithoutAir) {
   PhaseParticles p("air", 2, 1, 0.7, 0);
