@@ -73,15 +73,15 @@ def threshold(bench):
 
 
 def flux(bench):
-    file = "saltation/results/flux.csv"
-    runs = load(bench, file)["runs"]
-    for u, most in ((.24, 35), (.40, 15), (.56, 15)):
-        beds = [t for t in runs if t["u"] == u]
-        measured = mean([t["flux"] for t in beds])
-        bound, met = within(100 * (measured / beds[0]["creyssels"] - 1), most)
-        scatter = max(half_range([t["flux"] for t in beds]), max(t["error"] for t in beds) / len(beds) ** .5)
-        yield row("saturated flux, g/m/s", f"column, u* = {u:g} m/s, mean of {len(beds)} beds", beds[0]["creyssels"], measured, CREYSSELS, file,
-                  scatter=scatter, bound=bound, met=met)
+    for case, file in (("column", "saltation/results/flux.csv"), ("column in 3D", "saltation/results/flux-3d.csv")):
+        runs = load(bench, file)["runs"]
+        for u, most in ((.24, 35), (.40, 15), (.56, 15)):
+            beds = [t for t in runs if t["u"] == u]
+            measured = mean([t["flux"] for t in beds])
+            bound, met = within(100 * (measured / beds[0]["creyssels"] - 1), most)
+            scatter = max(half_range([t["flux"] for t in beds]) or 0, max(t["error"] for t in beds) / len(beds) ** .5)
+            yield row("saturated flux, g/m/s", f"{case}, u* = {u:g} m/s, {'mean of ' if len(beds) > 1 else ''}{len(beds)} bed{'s' if len(beds) > 1 else ''}", beds[0]["creyssels"], measured,
+                      CREYSSELS, file, scatter=scatter, bound=bound, met=met)
     file = "saltation/results/resolved.csv"
     runs = load(bench, file)["runs"]
     for u in sorted({t["u"] for t in runs}):

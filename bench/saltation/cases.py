@@ -23,11 +23,11 @@ RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 
 class Bench:
     def __init__(self, program, out, threads):
-        self.program, self.out, self.threads = program, pathlib.Path(out), threads
+        self.program, self.out, self.threads, self.overrides = program, pathlib.Path(out), threads, []
 
     def run(self, scene, name, *overrides):
         """Runs a scene of the repository; returns its folder."""
-        run.scene(self.program, scene, self.out / name, overrides, threads=self.threads, shown=True)
+        run.scene(self.program, scene, self.out / name, [*overrides, *self.overrides], threads=self.threads, shown=True)
         return self.out / name
 
     def generate(self, scene, file, *overrides):
@@ -221,6 +221,23 @@ def flux(bench):
     return {"block": BLOCK, "runs": runs}
 
 
+# The same in three dimensions: u*, Creyssels' flux, begin and end of the average (s), beds: the shipped one, or others that settle.
+FLUX_3D = [(0.24, 5.25, 0.9, 2.4, (1,)), (0.40, 21.09, 0.4, 1.2, (1,)), (0.56, 48.85, 0.3, 1.0, (1, 2))]
+
+
+def flux_3d(bench):
+    runs = []
+    for u, creyssels, begin, end, seeds in FLUX_3D:
+        for seed in seeds:
+            folder = bench.out / f"flux3_{u}_{seed}"
+            if not (folder / "saltation_sand.json").exists():
+                bed = [] if seed == 1 else [f'fill.1={{ phase = "sand", shape = {{ bed = "8*d", from = "d" }}, packing = "settled", seed = {seed} }}']
+                bench.run("saltation_3d", folder.name, f"phases.air.friction-velocity={u}", f"time.end={end}", *bed)
+            run = flux_of(folder, u, creyssels, begin, end)
+            runs.append(dict(run, seed=seed, error_of_mean=error_of(run)))
+    return {"runs": runs}
+
+
 IMPACT_WINDS, IMPACT_END = (0.18, 0.20, 0.22), 3.0  # u* (m/s), s
 
 
@@ -356,7 +373,7 @@ def strikers_of(case, k):
     return "[" + ", ".join(places) + "]"
 
 
-def splash_of(bench, case):
+def splash_of(bench, case, speed=RICE["speed"]):
     """Many impacts of one scene: rebounds and ejected grains, those that rise over a level above the bed. A striker that does not rise so high stays in the bed."""
     rebounds, ejected, counts = ({level: [] for level in SPLASH_LEVELS} for _ in range(3))
     for k in range(case["runs"]):
@@ -373,7 +390,7 @@ def splash_of(bench, case):
     error = lambda values: math.sqrt(sum((v - mean(values)) ** 2 for v in values) / max(len(values) - 1, 1) / max(len(values), 1))  # noqa: E731
     rows = []
     for level in SPLASH_LEVELS:
-        shares, speeds = [v / RICE["speed"] for v, _ in rebounds[level]], [v for v, _ in ejected[level]]
+        shares, speeds = [v / speed for v, _ in rebounds[level]], [v for v, _ in ejected[level]]
         rows.append({"level": level, "impacts": case["runs"] * case["strikers"], "rebounds": len(shares), "rebound": mean(shares), "rebound_error": error(shares),
                      "rebound_angle": mean([a for _, a in rebounds[level]]), "ejecta": mean(counts[level]), "ejecta_error": error(counts[level]),
                      "ejection_speed": mean(speeds), "ejection_speed_error": error(speeds), "ejection_angle": mean([a for _, a in ejected[level]])})
@@ -383,6 +400,27 @@ def splash_of(bench, case):
 def splash(bench):
     """Many impacts of scenes/splash.toml and splash_3d.toml: the strikers of each run begin at other places of the same bed."""
     return {"rice": RICE, "beds": [splash_of(bench, case) for case in SPLASHES]}
+
+
+SPLASH_SPEEDS, SPLASH_ANGLES = (1.5, 2.5, 3.3, 4.5, 6.0, 8.0), (10, 20, 40)  # m/s, degrees
+
+
+def splash_table(bench):
+    """splash_3d.toml at many speeds and angles, 60 impacts each, stiffer contacts above 4 m/s; what the results have already is kept."""
+    file = RESULTS / "splash-table.csv"
+    rows = store.load(file)["rows"] if file.exists() else []
+    for angle in SPLASH_ANGLES:
+        for speed in SPLASH_SPEEDS:
+            if any((r["speed"], r["angle"]) == (speed, angle) for r in rows):
+                continue
+            a, stiff = math.radians(angle), 300 * max(1, (speed / 4) ** 2)
+            own = Bench(bench.program, bench.out / f"splash_{speed}_{angle}", bench.threads)
+            own.overrides = [f"fill.2.velocity=[{speed * math.cos(a)}, {-speed * math.sin(a)}, 0]", f"phases.sand.stiffness={stiff}", f"phases.striker.stiffness={stiff}",
+                             f"time.largest-speed={1.2 * max(speed, 3.4)}", "domain.size=[0.0144, 0.06, 0.006]"]
+            level = splash_of(own, SPLASHES[1], speed)["levels"][1]
+            rows.append({"speed": speed, "angle": angle, **{key: level[key] for key in ("impacts", "rebounds", "rebound", "rebound_angle", "ejecta", "ejecta_error", "ejection_speed")}})
+            store.keep(file, {"rows": rows})
+    return {"rows": rows}
 
 
 # --- the threshold of the wind ------------------------------------------------------------------------------------------
@@ -514,7 +552,7 @@ def heaps(bench):
     return {"parameters": {"friction": 0.6, "rolling": 0.4}, "repose": angles, "frictions": frictions, "collapse": columns}
 
 
-CASES = {"settling": settling, "hop": hop, "splash": splash, "threshold": threshold, "flux": flux, "impact": impact, "resolved": resolved, "heaps": heaps,
+CASES = {"settling": settling, "hop": hop, "splash": splash, "splash-table": splash_table, "threshold": threshold, "flux": flux, "flux-3d": flux_3d, "impact": impact, "resolved": resolved, "heaps": heaps,
          "kernel-drag": kernel_drag}
 
 

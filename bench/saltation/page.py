@@ -74,6 +74,18 @@ def splash(r):
                     "", "![Two grains have struck a bed of sand and rebound: speed of the grains at 7.5 ms](gallery/splash_3d.png)"]
 
 
+def splash_table(r):
+    lines = ["## Splash at other speeds and angles", "",
+             "`scenes/splash_3d.toml`, `bench/saltation/cases.py splash-table`: quartz of 0.3 mm, ejected grains that rise over 1.5 d. Beads: N = 13 (1 - e^2) (V/(40 sqrt(g d)) - 1), e = 0.87 - 0.72 sin(angle), "
+             "which Beladjine et al. 2007 found for spheres of PVC of 6 mm at 26 m/s, V/sqrt(g d) = 107; here that is 5.8 m/s.", "",
+             "| angle | V m/s | V/sqrt(g d) | impacts | rebound: share of the speed | beads | angle of the rebound | ejected | beads | speed of the ejected m/s |", "| --- " * 10 + "|"]
+    for row in r["rows"]:
+        scaled, e = row["speed"] / math.sqrt(9.81 * 3e-4), 0.87 - 0.72 * math.sin(math.radians(row["angle"]))
+        lines.append(f"| {row['angle']} | {row['speed']} | {scaled:.0f} | {row['impacts']} | {row['rebound']:.2f} | {e:.2f} | {row['rebound_angle']:.0f} | {row['ejecta']:.2f} +- {row['ejecta_error']:.2f} | "
+                     f"{max(0, 13 * (1 - e * e) * (scaled / 40 - 1)):.1f} | {row['ejection_speed']:.3f} |")
+    return lines + ["", "Sand ejects about as many grains as the law of beads at 3 m/s, and half as many at 8 m/s: its grains lose more in each contact. Below 2 m/s the law of beads has none, and sand still ejects one."]
+
+
 def heaps(r):
     lines = ["## Heaps", "", "`scenes/repose.toml` (a hopper that drains through a slot) and `scenes/column_collapse.toml`, grains of one kind, three beds each: `bench/saltation/cases.py heaps`. Wanted: an angle of "
              "30 to 34 degrees (a line through the surface from 0.25 to 0.85 of its height), and of a column of the aspect a = H0/L0 = 2 a run-out (L - L0)/L0 of 1.2 a to 1.8 a, 2.4 to 3.6 "
@@ -130,6 +142,17 @@ def flux(r):
     lines += ["", "Means of the two beds: " + ", ".join(f"{means[u]:.2f} +- {half_difference(rows):.2f} g/m/s at {u} ({percent(means[u], rows[0]['creyssels'])})" for u, rows in of.items()) + ". "
               + linear(means), "", *decays(of), "", LIMIT, "", "![Flux, profiles of flux, wind and stress](saltation.png)", ""]
     return lines
+
+
+def flux_3d(r):
+    lines = ["## Saturated flux in three dimensions", "", "`scenes/saltation_3d.toml`, a strip 120 d long and 6 d wide with the same sand: `bench/saltation/cases.py flux-3d`.", "",
+             "| u* m/s | bed | flux g/m/s | Creyssels | ratio | decay of flux, d | of concentration, d | air at the bed, m/s | averaged s |", "| --- " * 9 + "|"]
+    for row in r["runs"]:
+        lines.append(f"| {row['u']} | {row['seed']} | {row['flux']:.2f} +- {row['error_of_mean']:.2f} | {row['creyssels']} | {row['flux'] / row['creyssels']:.2f} | {row['flux_decay']:.1f} | "
+                     f"{row['concentration_decay']:.1f} | {row['bed_u']:.3f} | {row['from']} to {row['to']} |")
+    ratios = [row["flux"] / row["creyssels"] for row in r["runs"]]
+    return lines + ["", f"The flux is {min(ratios):.2f} to {max(ratios):.2f} of the measured at all three winds: the threshold is right, and a nearly constant share is missing. The sand has the measured splash; it was not fitted to the "
+                    "flux. Why the share is missing is not known yet."]
 
 
 def half_difference(rows):
@@ -337,7 +360,7 @@ def tunnel(r):
             "![Wind and grains after 1 s](gallery/dune_tunnel.png)", "", "![Flux along x and the wind at four places](gallery/dune_tunnel_plots.png)"]
 
 
-PARTS = {"settling": settling, "hop": hop, "splash": splash, "heaps": heaps, "threshold": threshold, "flux": flux, "impact": impact, "resolved": resolved,
+PARTS = {"settling": settling, "hop": hop, "splash": splash, "splash-table": splash_table, "heaps": heaps, "threshold": threshold, "flux": flux, "flux-3d": flux_3d, "impact": impact, "resolved": resolved,
          "kernel-drag": kernel_drag, "storm": storm, "tunnel": tunnel}
 
 
