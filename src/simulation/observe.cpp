@@ -167,7 +167,21 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   const std::string& name = plan_.phases[k].name;
   row.add(name + "_kinetic_energy [J]", kinetic);
   row.add(name + "_largest_speed [m/s]", fastest);
-  row.add(name + "_mean_vx [m/s]", mean[0]);
+  constexpr const char* axes[] = {"x", "y", "z"};
+  for (int d = 0; d < plan_.dimensions; ++d)
+    row.add(name + "_mean_v" + axes[d] + " [m/s]", mean[static_cast<std::size_t>(d)]);
+  if (rigid) return;
+  // Along a periodic axis there is no centre.
+  for (int d = 0; d < plan_.dimensions; ++d) {
+    if (plan_.domain.periodic[static_cast<std::size_t>(d)]) continue;
+    const double* x = p.column(Field::position, d);
+    const auto of_all = [&](auto&& value) {
+      return among.sum(n, [&](std::size_t i) { return is_shown(p, i) ? value(i) : 0.0; });
+    };
+    const double mass = sizes ? of_all([&](std::size_t i) { return p.mass_of(i); }) : static_cast<double>(shown);
+    const double moment = of_all([&](std::size_t i) { return (sizes ? p.mass_of(i) : 1.0) * x[i]; });
+    row.add(name + "_centre_" + axes[d] + " [m]", mass > 0.0 ? moment / mass : 0.0);
+  }
 }
 
 HistoryRow Simulation::history() const {
