@@ -75,8 +75,8 @@ void check_influxes(const Scene& scene, const Report& report) {
     const Influx& influx = scene.influxes[k];
     const std::string dotted = "influx." + std::to_string(k);
     check_phase(scene, influx, dotted + ".phase", report);
-    if (influx.end && !(*influx.end > influx.start) && !report.touched(dotted + ".end"))
-      report(dotted + ".end", "it ends before it starts; expected a time after influx." + std::to_string(k) + ".start");
+    if (influx.end && !(*influx.end > influx.start) && !report.touched(dotted + ".until"))
+      report(dotted + ".until", "it ends before it starts; expected a time after influx." + std::to_string(k) + ".start");
     if (influx.box && report.has(dotted + ".side"))
       report(dotted + ".side", "grains are poured into the box; expected one of the two");
     if (influx.box) {

@@ -306,7 +306,7 @@ constexpr Key rows_of_keys[] = {
     {"influx.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
     {"influx", "velocity", at<&Influx::velocity>("zero").like("[0, -0.5]"), "m/s", "Only with box: the velocity with which grains begin."},
     {"influx", "start", at<&Influx::start>(0.0), "s", "No grain enters before.", not_negative},
-    {"influx", "end", at<&Influx::end>("the end of the run").like("0.5"), "s", "No grain enters after it.", positive},
+    {"influx", "until", at<&Influx::end>("the end of the run").like("0.5"), "s", "No grain enters after it.", positive},
     {"influx", "flux", at<&Influx::flux>(required).like("0.02"), "kg/m/s",
      "Mass that enters by second and by metre of width (with box in 3D: kg/s): the mean; the times are those of a Poisson process.", positive},
     {"influx", "file", at<&Influx::file>("none: the distributions below"), "",

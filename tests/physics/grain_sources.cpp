@@ -158,7 +158,7 @@ largest-speed = 2
 TEST(GrainSources, PourFromAnEmptyStartWithinTheirTimes) {
   for (const int dimensions : {2, 3}) {
     const double flux = dimensions == 2 ? 4.0 : 0.008;  // kg/m/s; kg/s
-    Blown run(poured(dimensions, "flux = " + std::to_string(flux) + "\nstart = 0.02\nend = 0.22"));
+    Blown run(poured(dimensions, "flux = " + std::to_string(flux) + "\nstart = 0.02\nuntil = 0.22"));
     EXPECT_EQ(run.sand().size(), 0u);
     run.run(0.015);
     EXPECT_EQ(run.sand().size(), 0u) << "before it starts";
