@@ -178,9 +178,9 @@ TEST(GrainSources, PourFromAnEmptyStartWithinTheirTimes) {
 }
 
 TEST(GrainSources, PourNoMoreThanTheBoxLetsFall) {
-  Blown run(poured(2, "flux = 400\nvelocity = [0, -0.2]"));
-  run.run(0.15);
-  EXPECT_LT(run.mass(), 0.5 * 400.0 * 0.15);
+  Blown run(poured(2, "flux = 60\nvelocity = [0, -0.2]"));
+  run.run(0.12);
+  EXPECT_LT(run.mass(), 0.5 * 60.0 * 0.12);
   EXPECT_LT(run.column("contacts_deepest"), 0.1) << "none begins in another";
   bool said = false;
   for (const std::string& warning : run.simulation->warnings().texts())
