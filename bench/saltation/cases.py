@@ -225,17 +225,30 @@ def flux(bench):
 FLUX_3D = [(0.24, 5.25, 0.9, 2.4, (1,)), (0.40, 21.09, 0.4, 1.2, (1,)), (0.56, 48.85, 0.3, 1.0, (1, 2))]
 
 
+SETTLED_3D = 'fill.1={{ phase = "sand", shape = {{ bed = "8*d", from = "d" }}, packing = "settled", seed = {} }}'
+# What may be missing in the flux, each alone, at u* = 0.56 m/s.
+TRIED_3D = {"sizes": ("log-normal sizes, 0.25", [SETTLED_3D.format(1), 'phases.sand.diameter={ mean = "d", log-normal = 0.25 }']),
+            "cheng": ("drag of Cheng 1997", ["interactions.air-sand.drag=cheng"]), "e9": ("restitution 0.9", ["phases.sand.restitution=0.9"])}
+
+
 def flux_3d(bench):
-    runs = []
+    runs, tried = [], []
     for u, creyssels, begin, end, seeds in FLUX_3D:
         for seed in seeds:
             folder = bench.out / f"flux3_{u}_{seed}"
             if not (folder / "saltation_sand.json").exists():
-                bed = [] if seed == 1 else [f'fill.1={{ phase = "sand", shape = {{ bed = "8*d", from = "d" }}, packing = "settled", seed = {seed} }}']
+                bed = [] if seed == 1 else [SETTLED_3D.format(seed)]
                 bench.run("saltation_3d", folder.name, f"phases.air.friction-velocity={u}", f"time.end={end}", *bed)
             run = flux_of(folder, u, creyssels, begin, end)
             runs.append(dict(run, seed=seed, error_of_mean=error_of(run)))
-    return {"runs": runs}
+    for name, (words, overrides) in TRIED_3D.items():
+        u, creyssels, begin, end, _ = FLUX_3D[-1]
+        folder = bench.out / f"flux3_{name}"
+        if not (folder / "saltation_sand.json").exists():
+            bench.run("saltation_3d", folder.name, *overrides)
+        run = flux_of(folder, u, creyssels, begin, end)
+        tried.append({"what": words, "u": u, "creyssels": creyssels, "flux": run["flux"], "error_of_mean": error_of(run)})
+    return {"runs": runs, "tried": tried}
 
 
 IMPACT_WINDS, IMPACT_END = (0.18, 0.20, 0.22), 3.0  # u* (m/s), s

@@ -52,18 +52,31 @@ void check_contact(const Interaction& pair, const Phase& a, const Phase& b, cons
 }
 
 /// The kinds of phases that a set may be of; any: somebody else tells.
-enum class Holds { bodies, bodies_and_walls, any };
+enum class Holds { bodies_and_grains, bodies_and_walls, any };
+
+/// Why the grains of a set may not stay; empty: they do.
+std::string what_moves_grains_out(const Scene& scene, const Phase& grains) {
+  const bool enter = std::any_of(scene.influxes.begin(), scene.influxes.end(),
+                                 [&](const Influx& influx) { return influx.phase == grains.name; });
+  if (enter) return "grains of \"" + grains.name + "\" enter by an [[influx]]";
+  if (grains.diameter() && !scene.domain.open.empty())
+    return "grains of \"" + grains.name + "\" may leave through domain.open";
+  return {};
+}
 
 void check_set(const BodySet& set, const std::string& dotted, const Scene& scene, const Report& report, Holds holds) {
   if (report.touched(dotted) || !report.has(dotted + ".phase")) return;
   const Phase* phase = find_phase(scene, set.phase);
   if (!phase) return report(dotted + ".phase", unknown_phase(set.phase, scene));
   const bool body = phase->kind() == PhaseKind::elastic || phase->kind() == PhaseKind::rigid,
-             walls = holds == Holds::bodies_and_walls, known = body || (walls && phase->kind() == PhaseKind::wall);
+             walls = holds == Holds::bodies_and_walls,
+             grains = holds == Holds::bodies_and_grains && phase->kind() == PhaseKind::grains,
+             known = body || grains || (walls && phase->kind() == PhaseKind::wall);
   if (!report.touched("phases." + phase->name + ".kind") && !known && holds != Holds::any)
     return report(dotted + ".phase", "\"" + phase->name + "\" is no body" + (walls ? " and no wall" : "") +
-                                         "; expected a phase of kind elastic" +
-                                         (walls ? ", rigid or wall" : " or rigid"));
+                                         "; expected a phase of kind elastic, rigid or " + (walls ? "wall" : "grains"));
+  if (const std::string why = grains ? what_moves_grains_out(scene, *phase) : ""; !why.empty())
+    return report(dotted + ".phase", why + ", and a marker needs those of the start; expected grains that stay");
   for (std::size_t d = 0; set.box && d < static_cast<std::size_t>(scene.dimensions); ++d)
     if (!(set.box->min[d] <= set.box->max[d]))
       return report(dotted + ".box", "its lower corner lies above its upper one; expected min <= max");
@@ -170,7 +183,7 @@ void check_bodies(const Scene& scene, const Report& report) {
       report(dotted, "\"" + scene.markers[k].name +
                          "\" is a phase too, and the columns of both would have one name; expected another name");
   for (std::size_t k = 0; k < scene.markers.size(); ++k)
-    check_set(scene.markers[k], "marker." + std::to_string(k), scene, report, Holds::bodies);
+    check_set(scene.markers[k], "marker." + std::to_string(k), scene, report, Holds::bodies_and_grains);
   check_names(scene.force_meters, "force.", report);
   for (std::size_t k = 0; k < scene.force_meters.size(); ++k) {
     const std::string dotted = "force." + std::to_string(k);

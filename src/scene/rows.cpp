@@ -35,7 +35,7 @@ constexpr Key rows_of_keys[] = {
     {"", "outflow", at<&Scene::outflows>("none"), "", "Sides of the domain through which a fluid leaves."},
     {"", "influx", at<&Scene::influxes>("none"), "", "Sides of the domain through which grains with a diameter enter. They leave through sides of domain.open."},
     {"", "motion", at<&Scene::motions>("none").like("phase = \"plate\"\nvelocity = [\"0.1*cos(2*t)\", 0]"), "", "Sets of particles of bodies that are clamped or driven; rigid bodies that are, or that turn about a place; walls that move."},
-    {"", "marker", at<&Scene::markers>("none"), "", "Sets of particles of bodies whose mean place is written to history.csv."},
+    {"", "marker", at<&Scene::markers>("none"), "", "Sets of particles of bodies or grains whose mean place is written to history.csv."},
     {"", "force", at<&Scene::force_meters>("none"), "", "Walls and bodies, or parts of them, whose force and torque are written to history.csv."},
     {"", "probe", measured<&Measuring::probes>("none"), "", "Places at which a fluid is followed in time."},
     {"", "profile", measured<&Measuring::profiles>("none").like("name = \"crest\"\nphase = \"air\"\nfrom = [0.15, 0.03]\nto = [0.15, 0.1]"), "", "Averages over time along a line."},
@@ -337,7 +337,7 @@ constexpr Key rows_of_keys[] = {
     {"motion.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},
 
     {"marker", "name", at<&Marker::name>(required).like("\"tip\""), "", "Letters, digits and underscores: of the columns NAME_x, NAME_y (and NAME_z) in history.csv."},
-    {"marker", "phase", at<&Marker::phase, Marker>(required).like("\"plate\""), "", "Elastic or rigid phase."},
+    {"marker", "phase", at<&Marker::phase, Marker>(required).like("\"plate\""), "", "Elastic or rigid phase, or grains that neither enter nor leave."},
     {"marker", "box", at<&Marker::box, Marker>("all of it"), "", "Particles that stand in this box at the start."},
     {"marker.box", "min", at<&BoxShape::min>(required), "m", "Lower corner."},
     {"marker.box", "max", at<&BoxShape::max>(required), "m", "Upper corner."},

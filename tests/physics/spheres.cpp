@@ -284,6 +284,27 @@ TEST(ObliqueImpact, ASofterSpringAcrossTurnsLessBack) {
   EXPECT_LT(before, 0.5);
 }
 
+/// A set of grains by their places at the start: its mean place follows them, in whatever order memory has them.
+TEST(Markers, FollowGrains) {
+  std::string points = "[0.1, 0.1, 0.1]";
+  for (int k = 1; k < 40; ++k) {
+    const double x = 0.1 + 0.02 * k;
+    points += ", [" + std::to_string(x) + ", " + std::to_string(0.1 + 0.37 * k - std::floor(0.37 * k)) + ", 0.5]";
+  }
+  const auto run = small::simulation(
+      pair_of + "[[marker]]\nname = \"left\"\nphase = \"balls\"\nbox = { min = [0, 0, 0], max = [0.5, 2, 1] }\n",
+      {"domain.size=[1, 2, 1]",
+       "fill=[{ phase = \"balls\", shape = { points = [" + points +
+           "] }, velocity = [0, 0, 0.2] }, { phase = \"balls\", shape = { points = [[0.9, 0.05, 0.1]] }, velocity = "
+           "[0, 0, 5] }]",
+       "interactions.balls-balls.law=linear", "time.largest-speed=6"});
+  const double start = value(*run, "left_z"), along = value(*run, "left_x");
+  EXPECT_LT(along, 0.5);
+  testing::run_to(*run, 0.1);
+  EXPECT_NEAR(value(*run, "left_z") - start, 0.02, 1e-9);
+  EXPECT_NEAR(value(*run, "left_x"), along, 1e-9);
+}
+
 TEST(Spheres, KeepMomentumAndAngularMomentum) {
   // A cloud of rough spheres that collide in free space.
   for (const std::string law : {"linear", "hertz"}) {
