@@ -251,7 +251,7 @@ def flux_3d(bench):
     return {"runs": runs, "tried": tried}
 
 
-IMPACT_WINDS, IMPACT_END = (0.18, 0.20, 0.22), 3.0  # u* (m/s), s
+IMPACT_WINDS, IMPACT_END = (0.18, 0.20, 0.22, 0.24), 3.0  # u* (m/s), s
 
 
 def impact(bench):

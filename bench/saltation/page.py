@@ -87,7 +87,7 @@ def splash_table(r):
         lines.append(f"| {row['angle']} | {row['speed']} | {scaled:.0f} | {row['impacts']} | {row['rebound']:.2f} | {e:.2f} | {row['rebound_angle']:.0f} | {row['ejecta']:.2f} +- {row['ejecta_error']:.2f} | "
                      f"{beads:.1f} | {row['ejection_speed']:.3f} |")
     low, high = (f"{min(ratios[v]):.1f} to {max(ratios[v]):.1f}" for v in (3.3, 8.0))
-    return lines + ["", f"Sand ejects {low} of the number of beads at 3.3 m/s and {high} at 8 m/s: its grains lose more in each contact. Below 2 m/s the law of beads has none, and sand still ejects one."]
+    return lines + ["", f"Sand ejects {low} of the number of beads at 3.3 m/s and {high} at 8 m/s. Beads with their own constants were not run. Below 2 m/s the law of beads has none, and sand still ejects one."]
 
 
 def heaps(r):

@@ -76,7 +76,8 @@ void check_influxes(const Scene& scene, const Report& report) {
     const std::string dotted = "influx." + std::to_string(k);
     check_phase(scene, influx, dotted + ".phase", report);
     if (influx.end && !(*influx.end > influx.start) && !report.touched(dotted + ".until"))
-      report(dotted + ".until", "it ends before it starts; expected a time after influx." + std::to_string(k) + ".start");
+      report(dotted + ".until",
+             "it ends before it starts; expected a time after influx." + std::to_string(k) + ".start");
     if (influx.box && report.has(dotted + ".side"))
       report(dotted + ".side", "grains are poured into the box; expected one of the two");
     if (influx.box) {
