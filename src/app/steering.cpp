@@ -64,7 +64,7 @@ bool Steering::read_line(std::string& line) {
     }
     char bytes[4096];
     const ssize_t n = come_.size() > longest_request ? 0 : ::read(requests_, bytes, sizeof bytes);
-    if (n <= 0) return false;  // the other program is gone, or a signal came: the run ends
+    if (n <= 0) return false;  // the other program has ended, or a signal came: the run ends
     come_.append(bytes, static_cast<std::size_t>(n));
   }
 }
@@ -73,7 +73,7 @@ void Steering::write(const std::string& bytes) const {
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t n = ::write(answers_, bytes.data() + at, bytes.size() - at);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return;  // the next read tells
+    if (n <= 0) return;  // the next read fails too
     at += static_cast<std::size_t>(n);
   }
 }

@@ -6,6 +6,7 @@
 #include "base/input_file.hpp"
 #include "checks/checks.hpp"
 #include "scene/constants.hpp"
+#include "scene/controls.hpp"
 #include "scene/identity.hpp"
 #include "scene/located.hpp"
 #include "scene/read.hpp"
@@ -29,6 +30,10 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
   scene.overrides = overrides;
   scene.places = places;
   read_surfaces(scene, Report(document, problems));
+  if (toml::table values; !controls().empty()) {  // a checkpoint is of a scene with these values at the start
+    for (const Control& control : controls()) values.insert(control.name, control.value);
+    document.insert("controls", values);
+  }
   scene.identity = identity_of(document, checksums_of_files(scene));
   check(document, scene, problems);
   problems.throw_if_any();

@@ -22,7 +22,7 @@ void define_constants(mu::Parser& parser) {
   parser.DefineConst("e", std::numbers::e);
   parser.DefineFun("fmod", modulo);
   parser.DefineFun("floor", floor_of);
-  parser.DefineFun("control", value_of_control);
+  if (!controls().empty()) parser.DefineFun("control", value_of_control);  // else nobody has given it a meaning
 }
 
 /// muParser ends some of its messages with a full stop; the reader goes on with a semicolon.

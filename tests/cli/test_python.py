@@ -333,6 +333,9 @@ class Stepping(Case):
             self.assertGreater(sim.steps, 5)
             sim.run()
 
+        with self.assertRaisesRegex(barchan.SceneError, "another scene"):  # it would not count: the checkpoint has the control
+            barchan.Simulation(PUSHED, out=self.folder / "out", restart="latest", set={"controls.pull": 5, "time.end": 0.1})
+
     def test_mistakes_have_names(self):
         with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
             with self.assertRaisesRegex(barchan.UnknownName, 'no control .pul.; did you mean "pull"'):

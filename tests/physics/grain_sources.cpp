@@ -177,6 +177,25 @@ TEST(GrainSources, PourFromAnEmptyStartWithinTheirTimes) {
   }
 }
 
+/// Grains that reach over the side of a period along y take room in a box on its other end.
+TEST(GrainSources, PourAcrossAPeriodWithoutOverlap) {
+  std::string row;
+  for (int k = 0; k < 18; ++k) row += (k > 0 ? ", [" : "[") + std::to_string(0.004 + 0.003 * k) + ", 0.0798]";
+  std::string text = poured(2, "flux = 30");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("gravity = [0, -9.81]", "periodic = [\"y\"]");
+  replace("sides = [\"bottom\", \"left\", \"right\"]", "sides = [\"left\", \"right\"]");
+  replace("{ min = [0.02, 0.05], max = [0.04, 0.07] }", "{ min = [0.0, 0.0], max = [0.06, 0.004] }");
+  replace("[[influx]]", "[[fill]]\nphase = \"sand\"\nshape = { points = [" + row + "] }\n[[influx]]");
+  Blown run(text);
+  run.run(0.05);
+  EXPECT_GT(run.sand().size(), 25u);
+  EXPECT_EQ(run.column("contacts_deepest"), 0.0) << "none begins in another, at rest";
+}
+
 TEST(GrainSources, PourNoMoreThanTheBoxLetsFall) {
   Blown run(poured(2, "flux = 60\nvelocity = [0, -0.2]"));
   run.run(0.12);

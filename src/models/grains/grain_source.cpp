@@ -260,8 +260,13 @@ void GrainSource::gather(double reach) {
     AtSide& there = at_side_[q];
     there.spheres.clear();
     there.looked_at = p.size();
+    const double period = layout_.domain.periodic[axis_] ? layout_.domain.high[axis_] - layout_.domain.low[axis_] : 0.0;
+    const auto away = [&](std::size_t k) {  // only a box may stand across a period
+      const double way = at[k] - side_;
+      return std::abs(period > 0.0 ? way - period * std::round(way / period) : way);
+    };
     for (std::size_t k = 0; k < p.size(); ++k)
-      if (std::abs(at[k] - side_) < rounding * (reach + (radii ? radii[k] : 0.5 * other.largest_size)))
+      if (away(k) < rounding * (reach + (radii ? radii[k] : 0.5 * other.largest_size)))
         there.spheres.push_back(static_cast<std::uint32_t>(k));
   }
 }
