@@ -15,8 +15,11 @@ std::array<const double*, 3> columns_of(const PhaseParticles& p, Field field) {
   for (int d = 0; d < p.dimensions(); ++d) of[static_cast<std::size_t>(d)] = p.column(field, d);
   return of;
 }
+template <std::size_t Dim>
 Vec3 at(const std::array<const double*, 3>& columns, std::size_t k) {
-  return {columns[0][k], columns[1][k], columns[2] ? columns[2][k] : 0.0};
+  Vec3 x{};
+  for (std::size_t d = 0; d < Dim; ++d) x[d] = columns[d][k];
+  return x;
 }
 
 }  // namespace
@@ -34,10 +37,11 @@ AirGrid::AirGrid(const Bounds& bounds, double spacing)
   force_.assign(mass_.size(), {});
 }
 
-AirGrid::Corners AirGrid::corners(const Vec3& x) const {
+template <std::size_t Dim>
+std::array<AirGrid::Corner, std::size_t{1} << Dim> AirGrid::corners(const Vec3& x) const {
   std::array<std::array<std::size_t, 2>, 3> at{};
   Vec3 share{};
-  for (std::size_t d = 0; d < dimensions_; ++d) {
+  for (std::size_t d = 0; d < Dim; ++d) {
     const double s = (x[d] - bounds_.low[d]) / width_[d];
     const double last = static_cast<double>(cells_[d]) - 1.0;
     const double cell = bounds_.periodic[d] ? std::floor(s) : std::clamp(std::floor(s), 0.0, last);
@@ -46,12 +50,12 @@ AirGrid::Corners AirGrid::corners(const Vec3& x) const {
     at[d][0] = static_cast<std::size_t>(bounds_.periodic[d] ? ((k % n) + n) % n : k);
     at[d][1] = bounds_.periodic[d] ? (at[d][0] + 1) % cells_[d] : at[d][0] + 1;
   }
-  Corners corners{{}, std::size_t{1} << dimensions_};
-  for (std::size_t c = 0; c < corners.count; ++c) {
+  std::array<Corner, std::size_t{1} << Dim> corners;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
     const std::size_t i = c % 2, j = c / 2 % 2, k = c / 4;
     double weight = (i ? share[0] : 1.0 - share[0]) * (j ? share[1] : 1.0 - share[1]);
-    if (dimensions_ == 3) weight *= k ? share[2] : 1.0 - share[2];
-    corners.of[c] = {(at[2][k] * nodes_[1] + at[1][j]) * nodes_[0] + at[0][i], weight};
+    if constexpr (Dim == 3) weight *= k ? share[2] : 1.0 - share[2];
+    corners[c] = {(at[2][k] * nodes_[1] + at[1][j]) * nodes_[0] + at[0][i], weight};
   }
   return corners;
 }
@@ -65,11 +69,14 @@ void AirGrid::gather(const PhaseParticles& air) {
   const auto x = columns_of(air, Field::position), v = columns_of(air, Field::velocity);
   const double m = air.mass();
   const auto add = [&] {
-    for (std::size_t k = 0; k < air.size(); ++k)
-      for (const auto& [node, weight] : corners(at(x, k))) {
-        mass_[node] += m * weight;
-        for (std::size_t d = 0; d < dimensions_; ++d) velocity_[node][d] += m * weight * v[d][k];
-      }
+    by_dimension([&](auto dim) {
+      constexpr std::size_t Dim = dim;
+      for (std::size_t k = 0; k < air.size(); ++k)
+        for (const auto& [node, weight] : corners<Dim>(at<Dim>(x, k))) {
+          mass_[node] += m * weight;
+          for (std::size_t d = 0; d < Dim; ++d) velocity_[node][d] += m * weight * v[d][k];
+        }
+    });
   };
   Exchange().in_turn({Exchange::Sums{mass_.data(), mass_.size() * sizeof(double)},
                       Exchange::Sums{velocity_.data(), velocity_.size() * sizeof(Vec3)}},
@@ -79,38 +86,51 @@ void AirGrid::gather(const PhaseParticles& air) {
 }
 
 Vec3 AirGrid::velocity(const Vec3& x) const {
-  Vec3 sum{};
-  double all = 0.0;
-  for (const auto& [node, weight] : corners(x)) {
-    if (!(mass_[node] > 0.0)) continue;
-    all += weight;
-    for (std::size_t d = 0; d < dimensions_; ++d) sum[d] += weight * velocity_[node][d];
-  }
-  return all > 0.0 ? Vec3{sum[0] / all, sum[1] / all, sum[2] / all} : Vec3{};
+  return by_dimension([&](auto dim) {
+    constexpr std::size_t Dim = dim;
+    Vec3 sum{};
+    double all = 0.0;
+    for (const auto& [node, weight] : corners<Dim>(x)) {
+      if (!(mass_[node] > 0.0)) continue;
+      all += weight;
+      for (std::size_t d = 0; d < Dim; ++d) sum[d] += weight * velocity_[node][d];
+    }
+    for (std::size_t d = 0; d < Dim; ++d) sum[d] = all > 0.0 ? sum[d] / all : 0.0;
+    return sum;
+  });
 }
 
 /// A node on a side of the domain stands for half a cell, one in its corner for a quarter.
 double AirGrid::density(const Vec3& x) const {
-  double sum = 0.0;
-  for (const auto& [node, weight] : corners(x)) {
-    const std::array<std::size_t, 3> at{node % nodes_[0], node / nodes_[0] % nodes_[1], node / nodes_[0] / nodes_[1]};
-    double room = width_[0] * width_[1];
-    if (dimensions_ == 3) room *= width_[2];
-    for (std::size_t d = 0; d < dimensions_; ++d)
-      if (!bounds_.periodic[d] && (at[d] == 0 || at[d] == cells_[d])) room *= 0.5;
-    sum += weight * mass_[node] / room;
-  }
-  return sum;
+  return by_dimension([&](auto dim) {
+    constexpr std::size_t Dim = dim;
+    double sum = 0.0;
+    for (const auto& [node, weight] : corners<Dim>(x)) {
+      std::array<std::size_t, 3> at{node % nodes_[0], node / nodes_[0], 0};
+      double room = width_[0] * width_[1];
+      if constexpr (Dim == 3) {
+        at = {at[0], at[1] % nodes_[1], at[1] / nodes_[1]};
+        room *= width_[2];
+      }
+      for (std::size_t d = 0; d < Dim; ++d)
+        if (!bounds_.periodic[d] && (at[d] == 0 || at[d] == cells_[d])) room *= 0.5;
+      sum += weight * mass_[node] / room;
+    }
+    return sum;
+  });
 }
 
 void AirGrid::push(const Vec3& x, const Vec3& force) {
-  const Corners about = corners(x);
-  double all = 0.0;
-  for (const auto& [node, weight] : about) all += mass_[node] > 0.0 ? weight : 0.0;
-  for (std::size_t d = 0; d < dimensions_ && !(all > 0.0); ++d) lost_[d] += force[d];
-  for (const auto& [node, weight] : about)
-    for (std::size_t d = 0; d < dimensions_ && mass_[node] > 0.0 && all > 0.0; ++d)
-      force_[node][d] += weight / all * force[d];
+  by_dimension([&](auto dim) {
+    constexpr std::size_t Dim = dim;
+    const auto about = corners<Dim>(x);
+    double all = 0.0;
+    for (const auto& [node, weight] : about) all += mass_[node] > 0.0 ? weight : 0.0;
+    for (std::size_t d = 0; d < Dim && !(all > 0.0); ++d) lost_[d] += force[d];
+    for (const auto& [node, weight] : about)
+      for (std::size_t d = 0; d < Dim && mass_[node] > 0.0 && all > 0.0; ++d)
+        force_[node][d] += weight / all * force[d];
+  });
 }
 
 void AirGrid::give(PhaseParticles& air) const {
@@ -118,14 +138,17 @@ void AirGrid::give(PhaseParticles& air) const {
   std::array<double*, 3> to{};
   for (std::size_t d = 0; d < dimensions_; ++d) to[d] = air.column(Field::drag_acceleration, static_cast<int>(d));
   const auto n = static_cast<std::int64_t>(air.size());
+  by_dimension([&](auto dim) {
+    constexpr std::size_t Dim = dim;
 #pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    Vec3 a{};
-    for (const auto& [node, weight] : corners(at(x, k)))
-      for (std::size_t d = 0; d < dimensions_; ++d) a[d] += weight * force_[node][d] / std::max(mass_[node], 1e-300);
-    for (std::size_t d = 0; d < dimensions_; ++d) to[d][k] = a[d];
-  }
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      Vec3 a{};
+      for (const auto& [node, weight] : corners<Dim>(at<Dim>(x, k)))
+        for (std::size_t d = 0; d < Dim; ++d) a[d] += weight * force_[node][d] / std::max(mass_[node], 1e-300);
+      for (std::size_t d = 0; d < Dim; ++d) to[d][k] = a[d];
+    }
+  });
 }
 
 }  // namespace barchan

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 #include "engine/cell_grid.hpp"
@@ -38,14 +39,15 @@ class AirGrid {
     std::size_t node;
     double weight;
   };
-  /// Of a cell: 4, in 3D 8.
-  struct Corners {
-    std::array<Corner, 8> of;
-    std::size_t count;
-    const Corner* begin() const { return of.data(); }
-    const Corner* end() const { return of.data() + count; }
-  };
-  Corners corners(const Vec3& x) const;
+  /// Of a cell.
+  template <std::size_t Dim>
+  std::array<Corner, std::size_t{1} << Dim> corners(const Vec3& x) const;
+  /// Calls f with the number of dimensions as a constant.
+  template <class F>
+  auto by_dimension(F&& f) const {
+    if (dimensions_ == 2) return f(std::integral_constant<std::size_t, 2>{});
+    return f(std::integral_constant<std::size_t, 3>{});
+  }
 
   Bounds bounds_;
   std::size_t dimensions_;

@@ -124,18 +124,17 @@ SandLayer::Ground SandLayer::ground(double x) const {
 }
 
 SandLayer::Between SandLayer::between(double x, double z) const {
-  const Along one = along(0, x);
-  if (layout_.dimensions == 2) return {{one.left, one.right}, {1.0 - one.share, one.share}, 2};
-  const Along other = along(2, z);
-  Between b{{}, {}, 4};
-  for (std::size_t k = 0; k < 4; ++k) {
-    b.layer[k] = (k < 2 ? other.left : other.right) * count_[0] + (k % 2 == 0 ? one.left : one.right);
-    b.share[k] = (k < 2 ? 1.0 - other.share : other.share) * (k % 2 == 0 ? 1.0 - one.share : one.share);
-  }
+  Between b = along(0, x);
+  if (layout_.dimensions == 2) return b;
+  const Between row = along(2, z);
+  b.up = (row.right - row.left) * count_[0];  // downwards over the period, as unsigned numbers add
+  b.left += row.left * count_[0];
+  b.right += row.left * count_[0];
+  b.share_up = row.share;
   return b;
 }
 
-SandLayer::Along SandLayer::along(std::size_t axis, double x) const {
+SandLayer::Between SandLayer::along(std::size_t axis, double x) const {
   const auto n = static_cast<long>(count_[axis / 2]);
   double s = (x - layout_.domain.low[axis]) / width_[axis / 2] - 0.5;
   if (!layout_.domain.periodic[axis]) {

@@ -64,29 +64,33 @@ class SandLayer : public Model {
   struct Ground {
     double height, along_x, along_y;
   };
-  /// The layers about a place, with their weights: two, in 3D four.
+  /// The layers about a place along x; in 3D in two rows about it along z. `share`: of the right one, of the upper row.
   struct Between {
-    std::array<std::size_t, 4> layer{};
-    std::array<double, 4> share{};
-    std::size_t count = 2;
-    template <class F>
-    void each(F&& f) const {
-      for (std::size_t k = 0; k < count; ++k) f(layer[k], share[k]);
-    }
+    std::size_t left = 0, right = 0;
+    double share = 0.0;
+    std::size_t up = 0;      // from a layer of the lower row to that of the upper one
+    double share_up = -1.0;  // below zero: there is one row (2D)
   };
-  /// Mean of value(layer) about a place. Two are one expression, which compilers may contract in one way only.
+  /// Calls f(layer, weight) with each layer about a place.
+  template <class F>
+  static void each(const Between& b, F&& f) {
+    const double low = b.share_up < 0.0 ? 1.0 : 1.0 - b.share_up;
+    f(b.left, low * (1.0 - b.share));
+    f(b.right, low * b.share);
+    if (b.share_up < 0.0) return;
+    f(b.left + b.up, b.share_up * (1.0 - b.share));
+    f(b.right + b.up, b.share_up * b.share);
+  }
+  /// Mean of value(layer) about a place. The two of a row are one expression, which compilers may contract in one way
+  /// only.
   template <class Value>
   static double mean_of(const Between& b, Value&& value) {
-    if (b.count == 2) return (1.0 - b.share[1]) * value(b.layer[0]) + b.share[1] * value(b.layer[1]);
-    double sum = 0.0;
-    b.each([&](std::size_t c, double share) { sum += share * value(c); });
-    return sum;
+    const double row = (1.0 - b.share) * value(b.left) + b.share * value(b.right);
+    if (b.share_up < 0.0) [[likely]]
+      return row;
+    return (1.0 - b.share_up) * row +
+           b.share_up * ((1.0 - b.share) * value(b.left + b.up) + b.share * value(b.right + b.up));
   }
-  /// The layers of one axis about a place.
-  struct Along {
-    std::size_t left, right;
-    double share;  // of the right one
-  };
   /// A grain in a layer, where it will be in the middle of the time to the next exchange.
   struct Near {
     std::size_t grain;
@@ -106,7 +110,7 @@ class SandLayer : public Model {
     Ground ground;
   };
   Ground ground(double x) const;
-  Along along(std::size_t axis, double x) const;
+  Between along(std::size_t axis, double x) const;
   Between between(double x, double z) const;
   double speed_over(double x, std::size_t row) const;
   double wind_about(const Between& b, double low, double high) const;

@@ -155,14 +155,15 @@ void SandLayer::spread(bool resting, std::vector<AirColumn::Load>& loads) {
     }
     for (const Near& q : near_) {
       const Between& b = q.place;
-      bool own_layer = false;
-      b.each([&](std::size_t c, double) { own_layer = own_layer || (c >= first && c < end); });
-      if (q.rests != resting || !own_layer) continue;
+      const auto here = [&](std::size_t c) { return c >= first && c < end; };
+      if (q.rests != resting) continue;
+      if (!here(b.left) && !here(b.right) && (b.share_up < 0.0 || (!here(b.left + b.up) && !here(b.right + b.up))))
+        continue;
       const double mass = p.mass_of(q.grain), along = q.ground.along_x;
       const double pull = mass * q.pull * along / area_, rate = mass * rate_[q.grain] * along / area_;
       const double low = q.height - q.radius, high = q.height + q.radius;
-      b.each([&](std::size_t c, double share) {
-        if (c < first || c >= end) return;
+      each(b, [&](std::size_t c, double share) {
+        if (!here(c)) return;
         pulls_[c].add(layers_[c], low, high, share * pull);
         rates_[c].add(layers_[c], low, high, share * rate);
       });
