@@ -14,12 +14,17 @@ from barchan_numbers import ticks
 class Figure(Marks):
     """One render view laid out as a figure: title and time above, the data with axes, the colour bar below or beside."""
 
+    last = None   # the figure that was made last
+
     def __init__(self, series, title, window=None, walls=True, box=None):
         """`window`: [x0, x1, y0, y1] in metres of a 2D scene, if the user asks for none; `walls`: whether the view holds them; `box`: what the view
         holds, [x0, x1, y0, y1, z0, z1] in metres, instead of the particles' bounds."""
         self.series = series
         self._wanted_box = box
+        self.plain = bool(os.environ.get("BARCHAN_PLAIN"))   # what stands around the data is told, not drawn (barchan_paper.py)
+        self.around = {"bars": [], "arrow": None, "axes": None}
         self.view = self._empty_view()
+        Figure.last = self
         self.size = self._size(window, walls)
         self.scale = min(max(self.size[0] / 1600.0, 0.35), 2.5)   # of letters and lines
         view = self.view
@@ -74,13 +79,16 @@ class Figure(Marks):
             else:   # the height that the data fill
                 left, right, bottom, top = (m * unit for m in self._margins_1600())
                 size = [width, (width - left - right) / aspect + bottom + top]
-                size[1] = min(max(size[1], 0.25 * width), width)
+                if not self.plain:
+                    size[1] = min(max(size[1], 0.25 * width), width)
             size = [int(s) // 2 * 2 for s in size]   # video wants even numbers
             self.view.ViewSize = size
         return size
 
     def _margins_1600(self):
         """left, right, bottom, top in pixels of a picture 1600 wide."""
+        if self.plain:
+            return (0, 0, 0, 0)
         if not self.series.two_dimensional:
             return (40, 250, 40, 85)
         return (140, 40, 185, 72) if self.wide else (140, 230, 95, 72)
@@ -91,6 +99,9 @@ class Figure(Marks):
     def _heading(self, title):
         width, height = self.size
         left, right, _, top = self._margins()
+        if self.plain:
+            self.around["title"] = title
+            return
         text = Text(registrationName="title", Text=title)
         shown = Show(text, self.view)
         set_font(shown, 26 * self.scale, Bold=0)
@@ -98,8 +109,7 @@ class Figure(Marks):
         shown.Position = [left / width, 1 - 0.68 * top / height]
 
         end = abs(self.series.times[-1])
-        factor, unit = (1e6, "µs") if end < 2e-3 else (1e3, "ms") if end < 10 else (1.0, "s")
-        digits = min(max(2 - math.floor(math.log10(end * factor)), 0), 3) if end > 0 else 0   # three figures
+        factor, unit, digits = self._clock_words()
         time = AnnotateTimeFilter(registrationName="time", Input=self.series.reader)
         time.Scale = factor
         time.Format = "t = {time:." + str(digits) + "f} " + unit
@@ -108,6 +118,17 @@ class Figure(Marks):
         set_font(shown, 24 * self.scale)
         shown.WindowLocation = "Any Location"
         shown.Position = [1 - (right + 14.5 * self.scale * longest) / width, 1 - 0.68 * top / height]
+
+    def _clock_words(self):
+        """Factor, unit and digits of the times of the series."""
+        end = abs(self.series.times[-1])
+        factor, unit = (1e6, "µs") if end < 2e-3 else (1e3, "ms") if end < 10 else (1.0, "s")
+        return factor, unit, min(max(2 - math.floor(math.log10(end * factor)), 0), 3) if end > 0 else 0   # three figures
+
+    def words_at(self, time):
+        """What stands around the data of a plain figure at a time (s), for barchan_paper.py."""
+        factor, unit, digits = self._clock_words()
+        return {**self.around, "time": f"t = {time * factor:.{digits}f} {unit}"}
 
     def clock(self, source):
         """The time that the data say (TimeValue), in the place of the time of the view: of a live source."""
@@ -148,6 +169,10 @@ class Figure(Marks):
         milli = max(box[1] - box[0], box[3] - box[2]) < 1.0
         unit, factor = ("mm", 1e3) if milli else ("m", 1.0)
         axes = self.view.AxesGrid
+        if self.plain:
+            self.around["axes"] = {"box": [float(x) for x in box[:4]], "unit": unit, "factor": factor}
+            axes.Visibility = 0
+            return
         axes.Visibility = 1
         axes.UseCustomBounds = 1
         axes.CustomBounds = [*box[:4], 0.0, 0.0]
@@ -166,11 +191,15 @@ class Figure(Marks):
             setattr(axes, axis + "AxisUseCustomLabels", 1)
             setattr(axes, axis + "AxisLabels", places)
 
-    @staticmethod
-    def _directions():
-        """Of a 3D picture: to the right, upwards, to the eye."""
-        towards = np.array([0.35, 0.42, 0.84]) / np.linalg.norm([0.35, 0.42, 0.84])
-        across = np.cross([0.0, 1.0, 0.0], towards)
+    def _directions(self):
+        """Of a 3D picture: to the right, upwards, to the eye. Gravity points downwards; a strip along x is seen from its side."""
+        up = 2 if self.series.up == "z" else 1
+        deep = 1 if up == 2 else 2
+        share = min(1.0, 3 * (self.box[2 * deep + 1] - self.box[2 * deep]) / max(self.box[1] - self.box[0], 1e-30))
+        towards = np.zeros(3)
+        towards[0], towards[up], towards[deep] = 0.35 * share, 0.16 + 0.26 * share, 0.84 if up == 1 else -0.84
+        towards /= np.linalg.norm(towards)
+        across = np.cross(np.eye(3)[up], towards)
         across /= np.linalg.norm(across)
         return across, np.cross(towards, across), towards
 
@@ -194,10 +223,12 @@ class Figure(Marks):
         view.CameraParallelProjection = 1
         view.CameraFocalPoint = focus
         view.CameraPosition = focus + towards * 3 * size
-        view.CameraViewUp = [0.0, 1.0, 0.0]
+        view.CameraViewUp = list(up)
         view.CameraParallelScale = 0.5 * height * metres
         view.CenterOfRotation = centre
         view.AxesGrid.Visibility = 0
+        view.OrientationAxesVisibility = 1
+        view.OrientationAxesLabelColor = INK
 
     def place_of_pixel(self, x, y):
         """The point (m) of the picture's plane at x pixels from the left and y from below."""

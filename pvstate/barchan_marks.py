@@ -172,6 +172,18 @@ def set_font(owner, size, prefix="", **more):
         setattr(owner, prefix + key, value)
 
 
+def sampled(table, low, high, count=256):
+    """Colours [r, g, b] of a colour map, evenly from low to high."""
+    from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
+    made = vtkColorTransferFunction()
+    if table.ColorSpace == "Lab":
+        made.SetColorSpaceToLab()
+    points = list(table.RGBPoints)
+    for k in range(0, len(points), 4):
+        made.AddRGBPoint(*points[k:k + 4])
+    return [list(made.GetColor(low + (high - low) * (k + 0.5) / count)) for k in range(count)]
+
+
 def paint(shown, colour):
     """One colour for all of a representation, without light and shade."""
     shown.ColorArrayName = ["POINTS", ""]
@@ -299,6 +311,9 @@ class Marks:
     def _arrow_scale(self, speed, metres_per_speed, thickness, name):
         """An arrow of a round speed with its value, at the right of the colour bar or below it."""
         width, height = self.size
+        if self.plain:
+            self.around["arrow"] = {"speed": float(speed), "metres": float(speed * metres_per_speed), "name": name}
+            return
         room = 0.13 * width if self.wide else 130 * self.scale        # pixels
         pixels = speed * metres_per_speed / self.metres
         if pixels > room:
@@ -425,8 +440,10 @@ class Marks:
             table.AutomaticRescaleRangeMode = "Never"
             if number:
                 continue
-            if not bar:
+            if not bar or self.plain:
                 shown.SetScalarBarVisibility(self.view, False)
+                if bar:
+                    self.around["bars"].append({"title": title, "low": low, "high": high, "ticks": bar_ticks(low, high), "colours": sampled(table, low, high)})
                 continue
             self._bar(GetScalarBar(table, self.view), title, low, high)
             shown.SetScalarBarVisibility(self.view, True)

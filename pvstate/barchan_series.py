@@ -140,6 +140,7 @@ class Series:
         for sample in self._samples:
             self._leave_out_strays(sample)
         self.has_grains = "grains" in self.phase_kinds
+        self.up = self._find_up()
         self._helpers = self._helper_walls()
         self._thresholds = {}
         self.window = None              # [x0, x1, y0, y1, z0, z1] in metres: only these particles are drawn
@@ -188,6 +189,12 @@ class Series:
                 return json.load(file)["scene"].get(key)
         except (OSError, ValueError, LookupError, TypeError, AttributeError):
             return None
+
+    def _find_up(self):
+        """The axis against gravity, "y" or "z", as run.json says; y where it says nothing."""
+        gravity = self._from_run("gravity")
+        numbers = gravity if isinstance(gravity, list) and len(gravity) == 3 and all(isinstance(g, (int, float)) for g in gravity) else [0, 0, 0]
+        return "z" if abs(numbers[2]) > max(abs(numbers[0]), abs(numbers[1])) else "y"
 
     def _helper_walls(self):
         """Walls in which grains stand at the start: they are those of another phase, as the ground of the air in which sand lies, and are not drawn."""

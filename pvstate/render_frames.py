@@ -15,6 +15,7 @@ import paraview
 paraview.options.batch = True
 import paraview.simple as pv  # noqa: E402
 
+from barchan_figure import Figure  # noqa: E402
 from barchan_series import Wrong  # noqa: E402
 
 
@@ -34,6 +35,11 @@ def run_state(state, anew):
 def shoot(view, time, file):
     view.ViewTime = time
     pv.SaveScreenshot(file, view, ImageResolution=list(view.ViewSize), CompressionLevel="2")
+    if os.environ.get("BARCHAN_PLAIN"):
+        if Figure.last is None or Figure.last.view != view:
+            raise Wrong("this state draws lines over axes; --format takes states that draw particles and fields (its numbers: barchan report)")
+        with open(file[:-4] + ".json", "w", encoding="utf-8") as words:
+            json.dump(Figure.last.words_at(time), words)
     print(f"picture {file}", flush=True)
 
 

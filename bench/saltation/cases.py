@@ -228,7 +228,10 @@ FLUX_3D = [(0.24, 5.25, 0.9, 2.4, (1,)), (0.40, 21.09, 0.4, 1.2, (1,)), (0.56, 4
 SETTLED_3D = 'fill.1={{ phase = "sand", shape = {{ bed = "8*d", from = "d" }}, packing = "settled", seed = {} }}'
 # What may be missing in the flux, each alone, at u* = 0.56 m/s.
 TRIED_3D = {"sizes": ("log-normal sizes, 0.25", [SETTLED_3D.format(1), 'phases.sand.diameter={ mean = "d", log-normal = 0.25 }']),
-            "cheng": ("drag of Cheng 1997", ["interactions.air-sand.drag=cheng"])}
+            "cheng": ("drag of Cheng 1997", ["interactions.air-sand.drag=cheng"]),
+            "magnus": ("the force on grains that turn", ["interactions.air-sand.magnus=true"]),
+            "friction": ("friction 0.3, rolling friction 1", ["phases.sand.friction=0.3", "phases.sand.rolling-friction=1"]),
+            "both": ("this friction and this force", ["phases.sand.friction=0.3", "phases.sand.rolling-friction=1", "interactions.air-sand.magnus=true"])}
 
 
 def flux_3d(bench):

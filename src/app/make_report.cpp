@@ -83,6 +83,7 @@ RunReport start_report(const Scene& scene) {
   r.overrides = scene.overrides;
   r.scene_state = scene.state;
   r.scene_spacing = scene.spacing;
+  r.scene_gravity = {scene.domain.gravity[0], scene.domain.gravity[1], scene.domain.gravity[2]};
   r.process = ::getpid();
   r.host = host_name();
   return r;

@@ -271,6 +271,21 @@ class PhysicsChecker {
                       "\"; expected a density of the grains above that of the fluid");
   }
 
+  void magnus(const Interaction& pair, const Phase& a, const Phase& b, const std::string& place) {
+    if (!pair.magnus) return;
+    const Phase &grains = a.kind() == PhaseKind::grains ? a : b, &fluid = &grains == &a ? b : a;
+    const bool column = fluid.kind() == PhaseKind::column;
+    if (grains.kind() != PhaseKind::grains ||
+        !(column || (fluid.kind() == PhaseKind::fluid && pair.drag_law != DragLaw::none)))
+      return tell(place,
+                  "only the entry of grains with a column, or with a fluid and a law of drag by name, has it; expected "
+                  "no such key");
+    const GrainsKeys& keys = grains.grains();
+    if (!(keys.friction > 0.0 || keys.rolling_friction > 0.0) || !touches_as_spheres(scene_, grains))
+      tell(place, "\"" + grains.name +
+                      "\" does not turn; expected spheres that touch by a law, with friction, or no such key");
+  }
+
   /// What models/fluid/spacing_border.hpp needs: two phases that differ in nothing but their spacing.
   void border(const Interaction& pair, const Phase& a, const Phase& b, const std::string& at) {
     if (!report_.has(at)) return;
@@ -316,6 +331,7 @@ class PhysicsChecker {
              "it; expected no such key");
     border(pair, a, b, dotted + ".border");
     buoyancy(pair, a, b, dotted);
+    magnus(pair, a, b, dotted + ".magnus");
     contact(pair, a, b, dotted);
     if (of_spheres(pair) || touch_as_bodies(pair, a, b)) return;
     if (report_.has(dotted + ".drag") && !is(fluid, grains) && !is(column, grains))

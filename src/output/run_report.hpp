@@ -1,6 +1,7 @@
 // run.json: what ran, how fast, and how well the conserved quantities were kept.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -48,6 +49,7 @@ struct RunReport {
   std::string scene_sha256;               // of the text of its file
   std::vector<std::string> overrides;     // of the command line
   double scene_spacing = 0;               // m
+  std::array<double, 3> scene_gravity{};  // m/s2
   std::map<std::string, long> particles;  // by phase
   std::map<std::string, long> pairs;      // by matrix entry, "air-sand": directed pairs of the last list
   std::map<std::string, std::vector<std::string>> fields;  // by phase

@@ -171,6 +171,7 @@ constexpr Key rows_of_keys[] = {
     {"interactions.pair", "coupling-interval", at<&Interaction::coupling_interval>("0.004 sqrt(d/g)").like("8e-5"), "s",
      "Only with a law of drag by name, in a fluid: the least time between two exchanges of momentum of the wind and its grains; in between a grain keeps its drag (docs/method.md). In whole steps of the fluid.", {.at_most = 1e-3, .above = 0.0}},
     {"interactions.pair", "buoyancy", at<&Interaction::buoyancy>(false), "", "Only with a law of drag by name: grains weigh less by the fluid that they displace, g (1 - rho_fluid/rho_grain) (docs/method.md). In air 0.05 % for quartz; in water it matters."},
+    {"interactions.pair", "magnus", at<&Interaction::magnus>(false), "", "Only with a law of drag by name, of spheres that rub: the air pushes grains that turn across their way (Magnus) and takes their spin along with its own rotation (docs/method.md)."},
     {"interactions.pair", "border", at<&Interaction::border>("none: fluid stays in its phase").like("\"y - 0.05\""), "m",
      "Only of two phases of one fluid, spacings 1 to 2: below zero the fluid has the finer particles, above zero the coarser ones, as in \"y - 0.05\". "
      "A coarse particle that crosses it becomes 4 fine ones (3D: 8), and so many fine ones become a coarse one; mass and momentum are kept (docs/method.md).", {}, "x y z"},

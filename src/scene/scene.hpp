@@ -195,6 +195,7 @@ struct Interaction {
   double gusts{};                           // the same: standard deviation of the wind at the bed over its mean
   std::optional<double> coupling_interval;  // s, the same: between two exchanges of momentum
   bool buoyancy{};                          // with drag_law: grains weigh less by the fluid that they displace
+  bool magnus{};                            // with drag_law: the force on grains that turn, and the torque on them
   Expression border{};                      // fluid-fluid: above zero the coarser particles; a number: none is given
   ContactLaw law{};                         // of grains with grains, walls and bodies
   std::optional<double> restitution;        // contact of bodies: of two particles that meet

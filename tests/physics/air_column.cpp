@@ -175,7 +175,9 @@ TEST_F(AirColumnScene, MomentumIsClosed) {
   spheres.replace(spheres.find("step = 2e-5"), 11, "largest-speed = 5");
   std::string crowd = cloud(wind);
   crowd.replace(crowd.find("stokes"), 6, "di-felice");
-  for (const std::string& text : {cloud(wind), crowd, spheres}) {
+  std::string turning = spheres;
+  turning.replace(turning.find("\"stokes\""), 8, "\"stokes\", magnus = true");
+  for (const std::string& text : {cloud(wind), crowd, spheres, turning}) {
     const auto run = small::simulation(text);
     const auto total = [&] {
       return column_of(*run, "momentum_x") + column_of(*run, "air_momentum_x") -

@@ -151,9 +151,11 @@ void expect_exact_exchange(Drive& drive) {
 }
 
 TEST(WindOverSand, GustsAndLiftKeepTheMomentum) {
-  Drive drive("wind_over_sand", cloud_with("phases.sand.sleep=false"));
-  for (int step = 0; step < 20; ++step) drive.simulation().step(1.0);
-  expect_exact_exchange(drive);
+  for (const char* more : {"phases.sand.sleep=false", "interactions.air-sand.magnus=true"}) {
+    Drive drive("wind_over_sand", cloud_with(more));
+    for (int step = 0; step < 20; ++step) drive.simulation().step(1.0);
+    expect_exact_exchange(drive);
+  }
 }
 
 /// The same in three dimensions: a cloud that also moves along z, about both sides of the period.
@@ -162,12 +164,12 @@ TEST(WindOverSand, InThreeDimensionsItKeepsTheMomentum) {
   for (int k = 0; k < 60; ++k)
     points += (k ? ", [" : "[") + std::to_string(0.001 + 0.0006 * k) + ", " + std::to_string(0.0034 + 1e-4 * k) + ", " +
               std::to_string(0.0165 * k - 0.01 * std::floor(1.65 * k)) + "]";
-  Drive drive(
-      "wind_over_sand",
-      {"dimensions=3", "domain.size=[0.04, 0.033, 0.01]", "domain.periodic=[\"x\", \"z\"]",
-       "domain.gravity=[0, -9.81, 0]", "phases.lid.shear-stress=[0.196, 0, 0]", "profile=[]",
-       "fill.3={ phase = \"sand\", shape = { points = [" + points + "] }, velocity = [0.2, 0, \"0.5*cos(900*z)\"] }",
-       "interactions.air-sand.lift=0.85", "interactions.air-sand.gusts=0.38", "time.end=2e-3"});
+  Drive drive("wind_over_sand", {"dimensions=3", "domain.size=[0.04, 0.033, 0.01]", "domain.periodic=[\"x\", \"z\"]",
+                                 "domain.gravity=[0, -9.81, 0]", "phases.lid.shear-stress=[0.196, 0, 0]", "profile=[]",
+                                 "fill.3={ phase = \"sand\", shape = { points = [" + points +
+                                     "] }, velocity = [0.2, 0, \"0.5*cos(900*z)\"] }",
+                                 "interactions.air-sand.lift=0.85", "interactions.air-sand.gusts=0.38",
+                                 "interactions.air-sand.magnus=true", "time.end=2e-3"});
   for (int step = 0; step < 20; ++step) drive.simulation().step(1.0);
   const State& state = drive.simulation().state();
   EXPECT_EQ(state.air.size(), 4u) << "of 10 mm along x, as wide as the domain";

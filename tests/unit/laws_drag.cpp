@@ -1,10 +1,12 @@
 // Laws of drag: terminal speeds of spheres of quartz in air against a table, limits, and a crowd.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "laws/drag_coefficients.hpp"
+#include "laws/turning_sphere.hpp"
 
 namespace barchan {
 namespace {
@@ -74,6 +76,38 @@ TEST(DragLaws, AreFoundByName) {
   EXPECT_EQ(at_ten(DragLaw::cheng), ChengDrag::excess(10.0));
   EXPECT_EQ(at_ten(DragLaw::duran), DuranDrag::excess(10.0));
   EXPECT_EQ(at_ten(DragLaw::di_felice), DiFeliceDrag::excess(10.0));
+}
+
+/// A ball that rolls along x in air at rest is pushed down, as one with topspin; in faster air it is pushed up.
+TEST(TurningSpheres, ArePushedAcrossTheirWay) {
+  const TurningSphere sphere{5e-4, 1.5e-5, 2.5e-4, 0.0};
+  std::array<double, 1> spin{-2000.0};
+  EXPECT_LT((sphere.turn<2>(spin, {2.0, 0.0}, 0.0)[1]), 0.0);
+  EXPECT_GT((sphere.turn<2>(spin, {-2.0, 0.0}, 0.0)[1]), 0.0);
+  std::array<double, 3> same{0.0, 0.0, -2000.0};
+  EXPECT_EQ((sphere.turn<3>(same, {-2.0, 0.0, 0.0}, 0.0)[1]), (sphere.turn<2>(spin, {-2.0, 0.0}, 0.0)[1]));
+  // About the other axes the same, turned.
+  std::array<double, 3> x{-2000.0, 0.0, 0.0};
+  EXPECT_EQ((sphere.turn<3>(x, {0.0, -2.0, 0.0}, 0.0)[2]), (sphere.turn<2>(spin, {-2.0, 0.0}, 0.0)[1]));
+}
+
+/// 3/4 rho_f/rho_s W v as Re goes to zero (Rubinow & Keller), and Loth's share of it: at Re 50 and S 0.16 0.356.
+TEST(TurningSpheres, HaveLothsForce) {
+  const TurningSphere sphere{5e-4, 1.5e-5, 2.5e-4, 0.0};
+  std::array<double, 1> spin{-10.0};
+  EXPECT_NEAR((sphere.turn<2>(spin, {-1e-9, 0.0}, 0.0)[1]) / (0.75 * 5e-4 * 10.0 * 1e-9), 1.0, 1e-4);
+  EXPECT_NEAR(TurningSphere::share(50.0, 0.16), 0.356, 5e-4);
+  EXPECT_NEAR(TurningSphere::share(1e6, 100.0), 1.0 - 0.975, 1e-12);
+}
+
+/// Stokes's torque: the spin goes to that of the fluid, by exp(-60 rho_f nu t/(rho_s d^2)).
+TEST(TurningSpheres, AreTakenAlong) {
+  const TurningSphere sphere{5e-4, 1.5e-5, 2.5e-4, -300.0};
+  std::array<double, 3> spin{0.0, 400.0, 500.0};
+  const double time = 0.05, fade = std::exp(-60.0 * 5e-4 * 1.5e-5 * time / (2.5e-4 * 2.5e-4));
+  sphere.turn<3>(spin, {0.0, 0.0, 0.0}, time);
+  EXPECT_NEAR(spin[1], 400.0 * fade, 1e-9);
+  EXPECT_NEAR(spin[2], -300.0 + 800.0 * fade, 1e-9);
 }
 
 }  // namespace

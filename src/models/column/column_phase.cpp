@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "engine/exchange.hpp"
 #include "laws/kept_drag.hpp"
+#include "laws/turning_sphere.hpp"
 #include "models/coupling/wind_exchange.hpp"
 #include "models/drive.hpp"
 #include "output/numbers.hpp"
@@ -48,7 +49,14 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
     if (!e.has(number)) continue;
     const std::size_t grains = e.partner(number);
     const PlanPhase& plan = layout.phases[grains];
-    feeling_.push_back({grains, e.given.drag_law, scene.phases[grains].density, plan.size(), plan.own_steps(), {}, {}});
+    feeling_.push_back({grains,
+                        e.given.drag_law,
+                        scene.phases[grains].density,
+                        plan.size(),
+                        plan.own_steps(),
+                        e.given.magnus,
+                        {},
+                        {}});
     diameter_ = std::max(diameter_, plan.size());
     crowded_ = crowded_ || e.given.drag_law == DragLaw::di_felice;
   }
@@ -141,6 +149,7 @@ void ColumnPhase::schedule(Schedule& s) {
   Touches exchanged, pushed;
   for (const Feeling& grains : feeling_) {
     exchanged.push_back({layout_.phases[grains.phase].name, {position, velocity, radius}, {drag_acceleration}});
+    if (grains.magnus) exchanged.back().writes = {drag_acceleration, angular_velocity};
     pushed.push_back({layout_.phases[grains.phase].name, {drag_acceleration}, {acceleration}});
   }
   s.add({stage::drag, name, exchanged, [this] { exchange(); },
@@ -222,6 +231,11 @@ double ColumnPhase::wind(double y, double radius) const {
   return air_->mean_speed(y - radius, y + radius);
 }
 
+/// Half of the curl of the wind about a grain (1/s), about z.
+double ColumnPhase::rotation(double y, double radius) const {
+  return 0.5 * (wind(y - 0.5 * radius, 0.5 * radius) - wind(y + 0.5 * radius, 0.5 * radius)) / radius;
+}
+
 void ColumnPhase::feel() {
   for (Feeling& grains : feeling_) {
     if (grains.law == DragLaw::di_felice) {
@@ -256,6 +270,8 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     v[d] = p.column(Field::velocity, static_cast<int>(d));
     drag[d] = p.column(Field::drag_acceleration, static_cast<int>(d));
   }
+  std::array<double*, spins(Dim)> spin{};
+  if (grains.magnus) spin = spin_columns<Dim>(p, Field::angular_velocity);
   const double* y = p.column(Field::position, 1);
   const Diameters diameter(p, grains.diameter);
   const double weight = weight_share(scene_, scene_.phases[grains.phase]);
@@ -278,6 +294,15 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = kept.drag[c];
     grains.rate[k] = kept.rate;
     grains.wind[k] = speed;
+    if (!grains.magnus || own == std::array<double, dimensions>{}) continue;
+    std::array<double, dimensions> through{};
+    for (std::size_t c = 0; c < dimensions; ++c) through[c] = own[c] - air[c];
+    std::array<double, spins(Dim)> turns{};
+    for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = spin[c][k];
+    const TurningSphere sphere{density_ / grains.density, keys_.viscosity, d, rotation(at, 0.5 * d)};
+    const auto pushed = sphere.turn<dimensions>(turns, through, time);
+    for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] += pushed[c];
+    for (std::size_t c = 0; c < turns.size(); ++c) spin[c][k] = turns[c];
   }
 }
 

@@ -40,6 +40,7 @@ class ColumnPhase : public Model {
     double density;   // kg/m3, of the grains
     double diameter;  // m, mean
     bool own_steps;   // moved by models/grains/spheres.hpp: a step's drag acts in the whole of the next one
+    bool magnus;      // the force on those that turn (laws/turning_sphere.hpp)
     std::vector<double> rate, wind;  // of each grain: 1/s, drag by difference of speed; m/s, the air about it
   };
   AirProfile& profile() const { return w_->state.air[place_]; }
@@ -57,6 +58,7 @@ class ColumnPhase : public Model {
   void spread_drag(bool so_far, std::vector<double>& sums);
   void find_voidage();
   double wind(double y, double radius) const;
+  double rotation(double y, double radius) const;
   double top_stress(double time) const;
   double momentum() const;
   double impulse_time(const Feeling& grains) const;

@@ -34,6 +34,7 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       diameter_(layout.phases[grains_].diameter),
       top_(reach * layout.phases[fluid_].spacing),
       lift_(entry.given.lift),
+      magnus_(entry.given.magnus),
       interval_(entry.given.coupling_interval.value_or(0.0) > 0.0
                     ? *entry.given.coupling_interval
                     : interval * std::sqrt(diameter_ / std::max(std::abs(scene.domain.gravity[1]), 1e-300))),
@@ -151,6 +152,7 @@ void SandLayer::schedule(Schedule& s) {
   using enum Field;
   const std::string& grains = layout_.phases[grains_].name;
   Touches exchanged{{grains, {position, velocity, radius}, {drag_acceleration}}};
+  if (magnus_) exchanged.front().writes = {drag_acceleration, angular_velocity};
   Touches acting{{grains, {drag_acceleration}, {acceleration}}};
   for (const std::size_t k : grid_.phases()) {
     const std::string& fluid = layout_.phases[k].name;

@@ -148,6 +148,7 @@ class SandLayer : public Model {
   std::array<double, 2> width_{};                // m, of a layer along x and z
   double area_ = 0.0;                            // m2, in 2D m: of a layer
   double lift_;
+  bool magnus_;                     // the force on grains that turn
   double interval_, hold_ = 0.0;    // s
   bool finds_steady_wind_ = false;  // the exchange that comes is the first one
   Workspace* w_ = nullptr;

@@ -6,6 +6,7 @@
 
 #include "laws/drag_coefficients.hpp"
 #include "laws/kept_drag.hpp"
+#include "laws/turning_sphere.hpp"
 #include "models/coupling/sand_layer.hpp"
 
 namespace barchan {
@@ -80,6 +81,8 @@ void SandLayer::feel() {
   const double* z = Dim == 2 ? nullptr : p.column(Field::position, 2);
   const double* w = Dim == 2 ? nullptr : p.column(Field::velocity, 2);
   double* az = Dim == 2 ? nullptr : p.column(Field::drag_acceleration, 2);
+  std::array<double*, spins(Dim)> spin{};
+  if (magnus_) spin = spin_columns<Dim>(p, Field::angular_velocity);
   const double solid = scene_.phases[grains_].density, half = 0.5 * hold_;
   const double weight = layout_.phases[grains_].weight_share;
   std::array<double, Dim> gravity{};
@@ -99,11 +102,34 @@ void SandLayer::feel() {
       if constexpr (Dim == 3) az[k] = kept.drag[2];
       rate_[k] = kept.rate;
     };
+    // The acceleration of a grain that turns in a wind with a rotation (1/s) about z.
+    const auto turn = [&](std::size_t k, const Vec3& wind, double rotation) {
+      std::array<double, Dim> through{};
+      bool moves = false;
+      for (std::size_t c = 0; c < Dim; ++c) {
+        const double own_speed = c == 0 ? u[k] : c == 1 ? v[k] : w[k];
+        through[c] = own_speed - wind[c];
+        moves = moves || own_speed != 0.0;
+      }
+      if (!moves) return std::array<double, Dim>{};
+      std::array<double, spins(Dim)> turns{};
+      for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = spin[c][k];
+      const TurningSphere sphere{density_ / solid, viscosity_, own ? 2.0 * own[k] : diameter_, rotation};
+      const auto pushed = sphere.turn<Dim>(turns, through, hold_);
+      for (std::size_t c = 0; c < turns.size(); ++c) spin[c][k] = turns[c];
+      return pushed;
+    };
     const auto flying = static_cast<std::int64_t>(flying_.size()), near = static_cast<std::int64_t>(near_.size());
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < flying; ++i) {
       const std::size_t k = flying_[static_cast<std::size_t>(i)];
-      of(k, grid_.velocity({x[k] + half * u[k], y[k] + half * v[k], Dim == 2 ? 0.0 : z[k] + half * w[k]}));
+      const Vec3 wind = grid_.velocity({x[k] + half * u[k], y[k] + half * v[k], Dim == 2 ? 0.0 : z[k] + half * w[k]});
+      of(k, wind);
+      if (!magnus_) continue;
+      const auto pushed = turn(k, wind, 0.0);  // the wind's own rotation is small there
+      ax[k] += pushed[0];
+      ay[k] += pushed[1];
+      if constexpr (Dim == 3) az[k] += pushed[2];
     }
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < near; ++i) {
@@ -116,6 +142,15 @@ void SandLayer::feel() {
       if (gusts_) of(q.grain, {blows * g.along_x, blows * g.along_y, 0.0});
       const double rate = rate_[q.grain];
       rate_[q.grain] = mean_rate;  // of the layer
+      if (magnus_) {
+        const double difference =
+            wind_about(q.place, q.height - q.radius, q.height) - wind_about(q.place, q.height, q.height + q.radius);
+        const auto pushed = turn(q.grain, {blows * g.along_x, blows * g.along_y, 0.0}, 0.5 * difference / q.radius);
+        ax[q.grain] += pushed[0];
+        ay[q.grain] += pushed[1];
+        if constexpr (Dim == 3) az[q.grain] += pushed[2];
+        q.pull += pushed[0] * g.along_x + pushed[1] * g.along_y;
+      }
       if (!(lift_ > 0.0)) continue;
       const double up = lift(q, blows, u[q.grain] * g.along_x + v[q.grain] * g.along_y, rate);
       ax[q.grain] -= up * g.along_y;
