@@ -4,7 +4,7 @@ import math
 import os
 
 import numpy as np
-from paraview.simple import (Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
+from paraview.simple import (Box, Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
                              ProgrammableSource, Show, Text)
 
 from barchan_numbers import bar_ticks, round_floor
@@ -250,13 +250,24 @@ class Marks:
         return shown
 
     def walls(self, layer=3, drawn=()):
-        """Walls, in the colour of the ground where the scene has grains."""
+        """Walls, in the colour of the ground where the scene has grains; in 3D faint, with the edges of the domain."""
         colour = GROUND if self.series.has_grains else WALL
+        if not self.series.two_dimensional and self.series.domain is not None:
+            self.edges([float((min if side % 2 else max)(x, held)) for side, (x, held) in enumerate(zip(self.series.domain, self.box))])
         for phase in self.series.phases("wall"):
             if phase not in drawn and self.series.two_dimensional:
                 self.field([phase], colour=colour, layer=layer, outline=0.5)
             elif phase not in drawn:
-                self.particles(phase, radius=0.12, colour=colour)
+                self.particles(phase, radius=0.12, colour=colour, opacity=0.35)
+
+    def edges(self, box):
+        """The edges of a box [x0, x1, y0, y1, z0, z1] in metres."""
+        outline = Box(registrationName="domain")
+        outline.XLength, outline.YLength, outline.ZLength = (box[2 * a + 1] - box[2 * a] for a in range(3))
+        outline.Center = [(box[2 * a] + box[2 * a + 1]) / 2 for a in range(3)]
+        shown = Show(outline, self.view)
+        shown.SetRepresentationType("Outline")
+        shown.AmbientColor = shown.DiffuseColor = INK
 
     def bodies(self, layer=3, drawn=()):
         """Elastic and rigid bodies without a value of their own; in 2D their outline is filled."""

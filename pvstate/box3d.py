@@ -17,7 +17,7 @@ held = series.bounds(moving or [0])
 box = [float(x) for x in series.domain] if series.domain is not None else held
 room = 0.08 * max(box[1] - box[0], box[3] - box[2], box[5] - box[4])   # for the numbers at the axes
 figure = Figure(series, series.title, box=[x + (room if side % 2 else -room) for side, x in enumerate(box)])
-axis, _, place = os.environ.get("BARCHAN_CUT", "z").partition("=")
+axis, _, place = os.environ.get("BARCHAN_CUT", "y" if series.up == "z" else "z").partition("=")
 if axis not in ("x", "y", "z", "none"):
     raise Wrong(f"BARCHAN_CUT={axis}: expected x, y, z or none, or a place such as z=0.01")
 k = "xyz".find(axis)
@@ -28,14 +28,14 @@ except ValueError:
 
 
 def behind(source, name):
-    """What lies behind the plane, seen from the eye (which is at positive x, y and z): whole particles by their centres."""
+    """What lies behind the plane, seen from the eye (at positive x, y and z; where gravity is along z at negative y): whole particles by their centres."""
     if k < 0:
         return source
     cut = Calculator(registrationName=name + ": place", Input=source)
     cut.ResultArrayName, cut.Function = "place", f"coords{'XYZ'[k]}"
     part = Threshold(registrationName=name + " behind the cut", Input=cut)
     part.Scalars = ["POINTS", "place"]
-    part.LowerThreshold, part.UpperThreshold = -1e30, where
+    part.LowerThreshold, part.UpperThreshold = (where, 1e30) if axis == "y" and series.up == "z" else (-1e30, where)
     return part
 
 
@@ -43,12 +43,7 @@ shown = [figure.dots(behind(series.source(phase), series.phase_names[phase]), ra
 if shown:
     figure.colours(shown, "velocity", 0.0, series.top_speed(moving), series.speed_title(moving), preset="Viridis (matplotlib)")
 
-outline = Box(registrationName="domain")
-outline.XLength, outline.YLength, outline.ZLength = (box[2 * a + 1] - box[2 * a] for a in range(3))
-outline.Center = [(box[2 * a] + box[2 * a + 1]) / 2 for a in range(3)]
-edges = Show(outline, figure.view)
-edges.SetRepresentationType("Outline")
-edges.AmbientColor = edges.DiffuseColor = INK
+figure.edges(box)
 axes = figure.view.AxesGrid
 axes.Visibility = 1
 milli = max(box[2 * a + 1] - box[2 * a] for a in range(3)) < 1.0
@@ -60,6 +55,4 @@ for name in "XYZ":
     for part, size in (("Label", 17), ("Title", 19)):
         setattr(axes, f"{name}{part}FontSize", max(6, int(size * figure.scale)))
         setattr(axes, f"{name}{part}Color", INK)
-figure.view.OrientationAxesVisibility = 1
-figure.view.OrientationAxesLabelColor = INK
 figure.finish()

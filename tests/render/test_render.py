@@ -6,6 +6,9 @@ Runs short scenes with PROGRAM, then renders their last frame with each state th
 blank, must show the sand and the air where they are expected, and must not show a phase that was hidden. Single particles that
 went astray, coarse scenes and wrong commands have tests of their own.
 """
+import base64
+import io
+import re
 import shutil
 import subprocess
 import sys
@@ -221,6 +224,24 @@ class Rendering(unittest.TestCase):
             walls = np.abs(good - WALL).max(axis=2) < 0.06
             self.assertGreater((np.abs(picture - WALL).max(axis=2) < 0.06)[walls].mean(), 0.8, f"{series}: another view")
 
+    def test_figures_for_a_paper(self):
+        """Text is text, the data are a picture of 300 dots an inch, and nothing of what ParaView writes around it is left."""
+        target = self.out / "paper"
+        self.command([SOURCE / "pvstate/render", self.dune, "--state", "airflow", "--frames", "last", "--format", "svg,pdf", "--width", "80", "--out", target])
+        drawing = next(target.glob("airflow_*.svg")).read_text()
+        self.assertEqual(len(list(target.iterdir())), 2)
+        self.assertEqual(next(target.glob("airflow_*.pdf")).read_bytes()[:5], b"%PDF-")
+        for words in ("x (mm)", "y (mm)", "speed of air", " m/s", "t = "):
+            self.assertIn(words, drawing)
+        whole = re.search(r'<svg [^>]*width="([0-9.]+)pt"', drawing)
+        self.assertAlmostEqual(float(whole[1]), 80 / 25.4 * 72, delta=0.1)
+        picture = max(re.findall(r'xlink:href="data:image/png;base64,\s*([^"]+)"', drawing), key=len)
+        data = matplotlib.image.imread(io.BytesIO(base64.b64decode(picture)))[:, :, :3]
+        self.assertAlmostEqual(data.shape[1], (80 - 14) / 25.4 * 300, delta=2)
+        self.assertGreater(share(data, VIRIDIS), 0.40, "the air is missing")
+        self.assertGreater(share(data, SAND), 0.05, "the sand is missing")
+        self.assertLess(share(data, INK), 1e-3, "letters or axes of ParaView are in the picture")
+
     def test_a_single_frame(self):
         frame = sorted(self.dune.parent.glob("*.vtp"))[-1]
         of_series, of_frame = (self.render(file, ["airflow"])["airflow"] for file in (self.dune, frame))
@@ -285,7 +306,8 @@ class Rendering(unittest.TestCase):
         frame = sorted(self.dune.parent.glob("*.vtp"))[-1]
         for words, expected in ((["nowhere.pvd"], "nowhere.pvd"), ([text], ".pvd"), ([self.dune, "--state", "sunset"], "airflow"),
                                 ([self.dune, "--frames", "100000"], "frames 0 to"), ([self.dune, "--size", "big"], "1600x900"),
-                                ([frame, "--film"], "single frame"),
+                                ([frame, "--film"], "single frame"), ([self.dune, "--format", "gif"], "pdf and svg"),
+                                ([self.dune, "--format", "pdf", "--film"], "--format png"), ([self.dune, "--format", "pdf", "--width", "5"], "40 to 400"),
                                 ([self.dune, "--window", "0,1"], "X0,X1,Y0,Y1"), ([self.dune, "--window", "a,b,c,d"], "X0,X1,Y0,Y1"),
                                 ([self.dune, "--window", "1,0,0,1"], "X0 < X1"), ([self.dune, "--window", "0,nan,0,1"], "X0,X1"),
                                 ([self.dune, "--window", "5,6,5,6"], "shows nothing"), ([self.dune, "--hide", "snow"], "no phase 'snow'")):
