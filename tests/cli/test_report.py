@@ -261,6 +261,28 @@ class Parts(unittest.TestCase):
                                 ({"phases": {"air": {"friction-velocity": .5}}}, .5), ({"fill": [{"phase": "sand", "velocity": wind}]}, None), (None, None)):
             self.assertEqual(parts.asked_friction_velocity(gather.Gathered(pathlib.Path("."), "n", {}, scene=scene), "air"), expected)
 
+    def test_means_and_coefficients(self):
+        t = numpy.linspace(0, 80, 4001)
+        drag, lift = 0.7 + 0.01 * numpy.sin(4 * t) + 2 * numpy.exp(-t), 0.15 * numpy.sin(2 * numpy.pi * 0.165 * t)
+        history = Table({"time [s]": t, "a_force_x [N]": drag, "a_force_y [N]": lift, "a_flux [kg/s]": t, "b_flux [kg/s]": 1e-14 * t})
+        scene = {"dimensions": 2, "phases": {"water": {"kind": "fluid", "density": 2.}, "a": {"kind": "wall"}}}
+        g = gather.Gathered(pathlib.Path("."), "n", {}, state="ended", scene=scene, history=history, plan={"dimensions": 2})
+        mean, deviation, is_settled = parts.halves(t, drag)
+        self.assertAlmostEqual(mean, .7, places=3)
+        self.assertAlmostEqual(deviation, .01 / 2 ** .5, places=3)
+        self.assertTrue(is_settled)
+        self.assertFalse(parts.halves(t, t)[2])
+        self.assertAlmostEqual(parts.strouhal(t, lift, 1., 1.), .165, places=4)
+        self.assertIsNone(parts.strouhal(t, numpy.random.default_rng(1).normal(size=len(t)), 1., 1.))
+        page = parts.means(g, (1., 1.))
+        self.assertIn("<td class=\"n\">0.165</td>", page)
+        self.assertEqual(page.count(">0.6999<"), 2)   # Cd = F/(1/2 rho U^2 L), with a density of 2
+        self.assertNotIn("b_flux", page)
+        self.assertLess(page.index("a_force_x"), page.index("a_flux"))
+        self.assertEqual((page.count("settled"), page.count("still changes")), (4, 1))
+        scene["phases"]["air"] = {"kind": "fluid", "density": 1.}
+        self.assertIn("not one fluid alone", parts.means(g, (1., 1.)))
+
     def test_states(self):
         for reason, expected in (("end", ("ended", 0)), ("TERMINATE", ("ended", 0)), ("breakdown: x", ("broken", 3)), ("output failed: x", ("failed", 4)), ("SIGINT", ("stopped", 130)), ("", ("killed", None))):
             self.assertEqual(gather.state_of({"end_reason": reason}), expected)

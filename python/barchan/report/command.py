@@ -5,7 +5,7 @@ import pathlib
 import sys
 
 from .. import files
-from ..errors import OutputError
+from ..errors import OutputError, SceneError
 
 
 def parser():
@@ -16,6 +16,8 @@ def parser():
     p.add_argument("--render", action="store_true", help="render pictures of the scene's states first (ParaView)")
     p.add_argument("--film", action="store_true", help="put films into the page; with --render make them")
     p.add_argument("--scene", metavar="FILE", help="the file of the scene (default: the one that run.json names, if it is the same as then or lies in DIR)")
+    p.add_argument("--speed", type=float, metavar="U", help="with --length: coefficients of every force and Strouhal numbers, for a stream of this speed (m/s)")
+    p.add_argument("--length", type=float, metavar="L", help="width of the body across the stream (m)")
     p.add_argument("--no-plan", action="store_true", help="do not ask barchan plan for the matrix")
     return p
 
@@ -23,13 +25,16 @@ def parser():
 def main(words):
     """Writes the page of a run; returns the exit status."""
     options = parser().parse_args(words)
-    file = make(options.folder, options.output, options.render, options.film, not options.no_plan, options.scene)
+    stream = (options.speed, options.length)
+    if (stream[0] is None) != (stream[1] is None) or not all(s is None or 0 < s < float("inf") for s in stream):
+        raise SceneError("--speed and --length: expected both, above 0 (m/s, m)")
+    file = make(options.folder, options.output, options.render, options.film, not options.no_plan, options.scene, stream if stream[0] else None)
     print(f"report    {file}")
     return 0
 
 
-def make(folder, output=None, render=False, film=False, plan=True, scene=None):
-    """Writes the page of the run in `folder` to `output` (default DIR/report.html) and returns its path; `scene`: the file of its scene. Throws NoSeries, SceneError, OutputError, PackageMissing."""
+def make(folder, output=None, render=False, film=False, plan=True, scene=None, stream=None):
+    """Writes the page of the run in `folder` to `output` (default DIR/report.html) and returns its path; `scene`: the file of its scene; `stream`: speed (m/s) and length (m) of coefficients of force. Throws NoSeries, SceneError, OutputError, PackageMissing."""
     from . import gather, page, pictures
     g = gather.gather(folder, plan, scene)
     if render:
@@ -39,7 +44,7 @@ def make(folder, output=None, render=False, film=False, plan=True, scene=None):
             g.remarks.append(error.message)
             print(f"barchan: warning: {error}", file=sys.stderr)
     file = pathlib.Path(output) if output else g.folder / "report.html"
-    text = page.make(g, film)
+    text = page.make(g, film, stream)
     try:
         files.write_whole(file, text)
     except (OSError, ValueError) as error:

@@ -42,9 +42,9 @@ def attempt(g, heading, body):
         return ""
 
 
-def make(g, film=False):
-    """The page of a run, as text."""
-    sections = [("What drives the flow", lambda: parts.wind(g), "wind"), ("Pictures", lambda: parts.show_pictures(g) + parts.show_films(g, film), "pictures"),
+def make(g, film=False, stream=None):
+    """The page of a run, as text. `stream`: speed (m/s) and length (m) of coefficients of force."""
+    sections = [("Means", lambda: parts.means(g, stream), "means"), ("What drives the flow", lambda: parts.wind(g), "wind"), ("Pictures", lambda: parts.show_pictures(g) + parts.show_films(g, film), "pictures"),
                 ("Measured", lambda: parts.measured(g), "measured"), ("History", lambda: parts.budgets(g) + parts.history(g), "history"),
                 ("What ran: phases and their matrix", lambda: parts.matrix(g), "matrix"), ("How the time went", lambda: parts.schedule(g), "time"),
                 ("Program, machine, scene", lambda: parts.about(g), "about")]

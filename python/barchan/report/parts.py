@@ -135,6 +135,76 @@ def asked_friction_velocity(g, phase):
     return next((float(p["friction-velocity"]) for p in places if isinstance(p.get("friction-velocity"), (int, float))), None)
 
 
+MEANS = r".*(_force_[xyz]|_torque(_[xyz])?|_flux|mean_v[xyz]|_equivalent_friction_velocity|_bed_friction_velocity|mean_pressure)$"
+
+
+def halves(times, values):
+    """Mean and standard deviation over the second half of the time, and whether they have settled: the means of its own halves differ by less than a tenth of the mean
+    or a quarter of the deviation. None with less than eight rows there."""
+    late = times >= 0.5 * (times[0] + times[-1])
+    chosen = values[late & numpy.isfinite(values)]
+    if len(chosen) < 8:
+        return None
+    first, second = chosen[:len(chosen) // 2].mean(), chosen[len(chosen) // 2:].mean()
+    return float(chosen.mean()), float(chosen.std()), bool(abs(first - second) <= max(0.1 * abs(chosen.mean()), 0.25 * chosen.std()))
+
+
+def means(g, stream=None):
+    """Means over the second half of the run; with `stream`, (speed in m/s, length in m), the coefficients of every force too."""
+    if g.history is None or g.history.length < 16:
+        return ""
+    times = g.history["time [s]"]
+    rows = []
+    for full, values in sorted(g.history.items(), key=lambda item: "_force_" not in item[0]):
+        found = halves(times, values) if re.fullmatch(MEANS, bare(full)) and not plots.is_round_off(full, g.history) else None
+        if found and (found[0] or found[1]):
+            rows.append([f"<code>{esc(bare(full))}</code>", number(found[0]), number(found[1]), esc(g.history.unit(full)), settled(found[2])])
+    out = rows_table(("column", "mean of the second half", "standard deviation", "", ""), rows)
+    return out + (coefficients(g, times, *stream) if stream else "")
+
+
+def settled(is_settled):
+    return '<span class="chip good">settled</span>' if is_settled else '<span class="chip warn">still changes</span>'
+
+
+def coefficients(g, times, speed, length):
+    """Force over 1/2 rho U^2 A, A = L by metre of depth in 2D and pi L^2/4 in 3D, and the Strouhal number f L/U of what changes its sign about its mean."""
+    density = fluid_density(g)
+    if density is None:
+        return '<p class="hint">No coefficients: the scene has not one fluid alone.</p>'
+    area = length if (g.plan or {}).get("dimensions", g.said("dimensions")) == 2 else math.pi / 4 * length ** 2
+    rows = []
+    for full, values in g.history.items():
+        if not re.fullmatch(r".*_force_[xyz]", bare(full)):
+            continue
+        c = values / (0.5 * density * speed ** 2 * area)
+        if found := halves(times, c):
+            rows.append([f"<code>{esc(bare(full))}</code>", number(found[0]), number(found[1]), number(float(numpy.ptp(c[times >= 0.5 * (times[0] + times[-1])])) / 2),
+                         number(strouhal(times, c, speed, length)), settled(found[2])])
+    note = f'<p class="hint">Speed {number(speed)} m/s, length {number(length)} m, density {number(density)} kg/m3; second half of the run.</p>'
+    return "<h3>Coefficients of force</h3>" + rows_table(("force", "mean", "standard deviation", "half of the range", "Strouhal number", ""), rows) + note if rows else ""
+
+
+def fluid_density(g):
+    """kg/m3, of the only fluid of the scene; None: there are none or several."""
+    found = [p.get("density") for p in (g.scene or {}).get("phases", {}).values() if isinstance(p, dict) and p.get("kind") == "fluid"]
+    return float(found[0]) if len(found) == 1 and isinstance(found[0], (int, float)) else None
+
+
+def strouhal(times, values, speed, length):
+    """f L/U from the upward passages of the mean in the second half; None with less than three periods."""
+    late = (times >= 0.5 * (times[0] + times[-1])) & numpy.isfinite(values)
+    t, v = times[late], values[late] - values[late].mean()
+    up = numpy.flatnonzero((v[:-1] < 0) & (v[1:] >= 0))
+    if len(up) < 4:
+        return None
+    passed = t[up] - v[up] * (t[up + 1] - t[up]) / (v[up + 1] - v[up])
+    periods = numpy.diff(passed)
+    if periods.std() > 0.2 * periods.mean():   # no oscillation
+        return None
+    return float(length / speed / periods.mean())
+
+
 def show_pictures(g):
     """Rendered pictures where there are some, else frames drawn here."""
     shown, note = pictures.rendered(g), ""
