@@ -103,6 +103,11 @@ class Frame:
         self.arrays = {name: values[chosen] for name, values in self.arrays.items()}
         return self
 
+    def bed(self, phase, width=None, up="y"):
+        """The surface of the bed of a phase of spheres along x, and how much lies there (barchan.bed.Bed)."""
+        from .bed import bed
+        return bed(self, phase, width, up)
+
     def to_pandas(self):
         """A pandas.DataFrame, one row a particle, with its id as the index: x, y, z, the name of its phase, and the fields, vectors as velocity_x, ..."""
         pandas = package("pandas", "python3-pandas", "to_pandas()")
