@@ -180,6 +180,29 @@ class Reading(Case):
         import tomllib
         self.assertEqual(tomllib.loads((ROOT / "python/pyproject.toml").read_text())["project"]["version"], barchan.version().split()[1])
 
+    def test_beds(self):
+        """Grains of a hexagonal lattice under a slope, one in flight over it, and a gap of the ground: the slope is found within 2 %, the volume is that of the grains."""
+        r = 5e-4
+        x, y = numpy.meshgrid(numpy.arange(200) * 2 * r, numpy.arange(80) * 3 ** .5 * r)
+        x[1::2] += r
+        slope = lambda x: 0.01 + 0.25 * x
+        chosen = (y < slope(x)) & ((x < 0.12) | (x > 0.15))
+        places = numpy.column_stack([x[chosen], y[chosen], 0 * x[chosen]])
+        places = numpy.concatenate([places, [[0.1, 0.09, 0]]])
+        file = self.folder / "slope.vtp"
+        barchan.frame.write_particles(file, places, "sand", radius=numpy.full(len(places), r))
+        bed = barchan.Frame(file).bed("sand", width=8e-3)
+        self.assertAlmostEqual(bed.volume / (len(places) * 4 / 3 * numpy.pi * r ** 3 / (2 * r)), 1, places=12)
+        self.assertAlmostEqual(bed.solid.sum() * bed.width / bed.volume, 1, places=12)
+        lie = numpy.isfinite(bed.height)
+        self.assertFalse(lie[(bed.x > 0.125) & (bed.x < 0.145)].any())
+        lie &= (bed.x < 0.11) | (bed.x > 0.16)
+        found = numpy.polyfit(bed.x[lie], bed.height[lie], 1)
+        self.assertAlmostEqual(found[0], 0.25, delta=5e-3)
+        self.assertAlmostEqual(numpy.polyval(found, 0.1), slope(0.1), delta=r)
+        with self.assertRaises(ValueError):
+            barchan.Frame(file).of("sand").keep([]).bed("sand")
+
     def test_tracks(self):
         try:
             import pandas  # noqa: F401
