@@ -215,6 +215,8 @@ class Marks:
         else:
             shown.GaussianRadius = max(0.5 * size, 1.5 * self.metres)
         shown.ScaleByArray = 0
+        if size is not None and self.series.has("radius") and radius == 0.5 and 0.5 * size > 3 * self.metres:   # each its own
+            shown.ScaleByArray, shown.SetScaleArray, shown.UseScaleFunction, shown.GaussianRadius = 1, ["POINTS", "radius"], 0, 1.0
         shown.Opacity = opacity
         if flat:
             shown.Position = [0.0, 0.0, 0.05 * layer * self.series.spacing]
@@ -458,6 +460,25 @@ class Marks:
                 continue
             self._bar(GetScalarBar(table, self.view), title, low, high)
             shown.SetScalarBarVisibility(self.view, True)
+
+    def legend(self, entries):
+        """Names in their colours, (name, [r, g, b]), where the colour bar would stand."""
+        if self.plain:
+            self.around["names"] = [list(entry) for entry in entries]
+            return
+        width, height = self.size
+        x = 0.0
+        for number, (name, colour) in enumerate(entries):
+            text = Text(registrationName="name of " + name, Text=name)
+            shown = Show(text, self.view)
+            set_font(shown, 22 * self.scale, Bold=1)
+            shown.Color = colour
+            shown.WindowLocation = "Any Location"
+            if self.wide:
+                shown.Position = [0.12 + x / width, 18 * self.scale / height]
+                x += (15 * len(name) + 40) * self.scale
+            else:
+                shown.Position = [1 - 215 * self.scale / width, 0.6 - 40 * self.scale * number / height]
 
     def _bar(self, bar, title, low, high):
         width, height = self.size

@@ -52,6 +52,8 @@ def compose(drawn, words, targets, width):
         top = figure.text(left / width, 1 - 0.7 * ABOVE / height, about["title"], va="baseline")
         time = figure.text(1 - (EDGE + (BAR_BESIDE if beside else 0.0)) / width, 1 - 0.7 * ABOVE / height, about["time"], va="baseline", ha="right")
         shorten(figure, top, time)
+        for number, (name, colour) in enumerate(about.get("names", [])):
+            figure.text((left + 0.5) / width, (under + up - 3.5 * (number + 1)) / height, name, color=colour, weight="bold", va="baseline")
         bars = about["bars"]
         for number, bar in enumerate(bars):
             colours = ScalarMappable(Normalize(bar["low"], bar["high"]), ListedColormap(bar["colours"]))

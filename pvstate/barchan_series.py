@@ -336,11 +336,12 @@ class Series:
         return np.linalg.norm(velocity, axis=1) if len(velocity) else np.zeros(0)
 
     def size(self, phase):
-        """The spacing (m) of a phase; of spheres much finer than the scene's spacing their largest diameter (their smoothing length
-        is a radius)."""
-        h = self.values("smoothing_length", [phase]) if self.phase_kinds[phase] == "grains" else np.zeros(0)
-        h = h[h > 0]
-        return float(2 * h.max()) if len(h) and h.max() < 0.3 * self.spacing else self.spacing
+        """The spacing (m) of a phase; of grains of another size that size, as the particles' radius or smoothing length says (a smoothing length of grains is a radius)."""
+        if self.phase_kinds[phase] != "grains":
+            return self.spacing
+        r = self.values("radius" if self.has("radius") else "smoothing_length", [phase])
+        r = r[r > 0]
+        return float(2 * r.max()) if len(r) and abs(2 * r.max() / self.spacing - 1) > 0.15 else self.spacing
 
     def _distance(self, phase):
         """Of the particles of a phase at the start from their three nearest ones, the median of the means (m): its spacing, on a lattice or not."""

@@ -61,9 +61,23 @@ struct From {
   bool has_ended = false;          // the run of the folder is at its end: there is nothing to do
 };
 
+/// A run replaces history.csv, run.json and tables of the folder: those of another scene would be lost.
+void refuse_folder_of_another(const fs::path& directory, const Scene& scene) {
+  std::error_code none;
+  std::vector<std::string> others;
+  for (const auto& file : fs::directory_iterator(directory, none))
+    if (file.path().extension() == ".pvd" && file.path().stem() != scene.name)
+      others.push_back(file.path().filename().string());
+  if (others.empty()) return;
+  std::sort(others.begin(), others.end());
+  throw SceneError("--out " + directory.string() + ": the folder holds the run of another scene, " + others.front() +
+                   ", whose history.csv and run.json this run would replace; expected another folder");
+}
+
 /// The state that --restart asks for. "latest" is the checkpoint of this folder, or the beginning where no run was;
 /// frames without a checkpoint are refused, because a new run would remove them.
 From find_checkpoint(const std::string& restart, const fs::path& directory, const Scene& scene) {
+  refuse_folder_of_another(directory, scene);
   if (restart.empty()) return {};
   const fs::path latest = checkpoint_file(directory, scene), series = directory / (scene.name + ".pvd");
   if (restart == "latest" && !all_see(latest)) {

@@ -46,6 +46,19 @@ void warn_of_pairing(const Scene& scene, Plan& plan) {
           (scene.phases[e.a].fluid().scheme == FluidScheme::plain ? " or a smaller radius" : ""));
 }
 
+/// Grains sink in a dense fluid as in a vacuum with its drag, if nobody says that it bears them.
+void warn_of_missing_buoyancy(const Scene& scene, Plan& plan) {
+  constexpr double dense = 0.01;  // of the grains' density: the speed of sinking is then 0.5 % off
+  for (const PlanEntry& e : plan.entries) {
+    if (!e.blows || e.given.buoyancy || norm(scene.domain.gravity) == 0.0) continue;
+    const Phase &fluid = scene.phases[e.fluid], &grains = scene.phases[e.other];
+    if (fluid.density > dense * grains.density && fluid.density < grains.density)
+      plan.warnings.push_back("interactions." + e.name + ": \"" + fluid.name + "\" is " +
+                              brief(fluid.density / grains.density) + " times as dense as \"" + grains.name +
+                              "\" and does not bear it; add buoyancy = true");
+  }
+}
+
 void warn_of_walls_that_let_through(const Scene& scene, Plan& plan) {
   const auto meet = [&](std::size_t a, std::size_t b) {
     return entry_between(scene, scene.phases[a], scene.phases[b]);
@@ -356,6 +369,7 @@ void warn_of_small_radius(const Scene& scene, Plan& plan) {
 
 void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
   warn_of_pairing(scene, plan);
+  warn_of_missing_buoyancy(scene, plan);
   warn_of_walls_that_let_through(scene, plan);
   warn_of_loose_bodies(scene, plan);
   warn_of_what_does_not_meet(scene, plan);

@@ -171,14 +171,15 @@ void Simulation::add_phase(std::size_t k, HistoryRow& row) const {
   for (int d = 0; d < plan_.dimensions; ++d)
     row.add(name + "_mean_v" + axes[d] + " [m/s]", mean[static_cast<std::size_t>(d)]);
   if (rigid) return;
+  const auto of_all = [&](auto&& value) {
+    return among.sum(n, [&](std::size_t i) { return is_shown(p, i) ? value(i) : 0.0; });
+  };
+  const double mass = sizes ? of_all([&](std::size_t i) { return p.mass_of(i); }) : static_cast<double>(shown);
+  if (p.may_change()) row.add(name + "_mass [kg]", sizes ? mass : p.mass() * mass);
   // Along a periodic axis there is no centre.
   for (int d = 0; d < plan_.dimensions; ++d) {
     if (plan_.domain.periodic[static_cast<std::size_t>(d)]) continue;
     const double* x = p.column(Field::position, d);
-    const auto of_all = [&](auto&& value) {
-      return among.sum(n, [&](std::size_t i) { return is_shown(p, i) ? value(i) : 0.0; });
-    };
-    const double mass = sizes ? of_all([&](std::size_t i) { return p.mass_of(i); }) : static_cast<double>(shown);
     const double moment = of_all([&](std::size_t i) { return (sizes ? p.mass_of(i) : 1.0) * x[i]; });
     row.add(name + "_centre_" + axes[d] + " [m]", mass > 0.0 ? moment / mass : 0.0);
   }

@@ -130,7 +130,8 @@ std::optional<std::string> Watch::wrong_place(const Guard& g, std::size_t k) con
                   : "lower " + step_key() + " or the spacing");
     return " escaped through the " + side +
            "; no wall with which it interacts holds it there: add a wall on that side and an entry of \"" + p.name() +
-           "\" with it in [interactions], or enlarge domain.size";
+           "\" with it in [interactions], or enlarge domain.size" +
+           (see_.scene.domain.open.empty() ? "" : "; domain.open closes the sides that it does not name");
   }
   return std::nullopt;
 }

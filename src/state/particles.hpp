@@ -89,6 +89,7 @@ class PhaseParticles {
 
   /// In Model::begin: particles will be made or removed, so that checkpoints have other numbers than the start.
   void number_may_change();
+  bool may_change() const { return may_change_; }
   /// Makes `count` particles behind the last one and returns the place of the first. They have new ids; their fields
   /// are zero, their own columns have the values of new particles. Allocates only where there was never so much room.
   std::size_t create(std::size_t count, IdSource& ids);

@@ -1,5 +1,7 @@
 #include "models/coupling/border_load.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,7 +67,7 @@ void BorderLoad::schedule(Schedule& s) {
          }});
   s.add({stage::reaction,
          name + ", border",
-         {{name, {position}, {}}, {fluid, {position, velocity, pressure}, {}}},
+         {{name, {position}, {}}, {fluid, {position, velocity, pressure, acceleration, wholeness}, {}}},
          [this] { load(); }});
 }
 
@@ -82,6 +84,8 @@ void BorderLoad::hold() {
     if (layout_.bounds.periodic[d]) period[d] = layout_.bounds.high[d] - layout_.bounds.low[d];
   }
   const double* rho = fluid.column(Field::density);
+  const double dt = w_->state.dt;
+  spray_.begin(static_cast<std::size_t>(omp_get_max_threads()));
   const auto n = static_cast<std::int64_t>(fluid.size());
   for (std::size_t b = 0; b < borders_.size(); ++b) {
     const RigidBody& body = w_->state.bodies[first_body_ + b];
@@ -108,7 +112,59 @@ void BorderLoad::hold() {
         x[d][k] += (room - gap->distance) * gap->normal[d];
         v[d][k] -= std::min(into, 0.0) * gap->normal[d];
       }
+      if (free_surface_ && into < 0.0 && dt > 0.0)
+        spray_.of_threads[static_cast<std::size_t>(omp_get_thread_num())].push_back(
+            {static_cast<std::uint32_t>(b), 0, 1, 0, arm, fluid.mass() / dt * into * gap->normal});
     }
+  }
+}
+
+/// What spray does: the reaction to its acceleration across the border.
+void BorderLoad::spray() {
+  if (!free_surface_) return;
+  const PhaseParticles& fluid = w_->particles(fluid_);
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  std::array<const double*, 3> x{}, a{};
+  Vec3 period{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    x[d] = fluid.column(Field::position, static_cast<int>(d));
+    a[d] = fluid.column(Field::acceleration, static_cast<int>(d));
+    if (layout_.bounds.periodic[d]) period[d] = layout_.bounds.high[d] - layout_.bounds.low[d];
+  }
+  const double* const wholeness = fluid.column(Field::wholeness);
+  const Vec3& gravity = scene_.domain.gravity;
+  const auto n = static_cast<std::int64_t>(fluid.size());
+  spray_.make_room(static_cast<std::size_t>(omp_get_max_threads()));
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    const RigidBody& body = w_->state.bodies[first_body_ + b];
+    const BodyBorder& border = borders_[b].body;
+    const OwnAxes axes(body);
+    const double farthest = border.reach() + radius_;
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double share = Spray::share(wholeness[k]);
+      if (!(share < 1.0)) continue;
+      Vec3 arm{}, push{};
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        arm[d] = x[d][k] - body.now.place[d];
+        if (period[d] > 0.0) arm[d] -= period[d] * std::round(arm[d] / period[d]);
+        push[d] = a[d][k] - gravity[d];
+      }
+      if (!(dot(arm, arm) < farthest * farthest)) continue;
+      const auto gap = border.gap(axes, arm);
+      if (!gap || !(gap->distance < radius_)) continue;
+      const double off = dot(push, gap->normal);
+      if (off != 0.0)
+        spray_.of_threads[static_cast<std::size_t>(omp_get_thread_num())].push_back(
+            {static_cast<std::uint32_t>(b), 0, 0, 0, arm, -(1.0 - share) * fluid.mass() * off * gap->normal});
+    }
+  }
+  spray_.gather();
+  for (const Spray::Push& one : spray_.all) {
+    auto& now = w_->state.bodies[first_body_ + one.body].now;
+    now.touch_force = now.touch_force + one.force;
+    now.touch_torque = now.touch_torque + cross(one.arm, one.force);
   }
 }
 
@@ -121,6 +177,7 @@ void BorderLoad::load() {
   }
   neighbours_.share(stress_);
   for (std::size_t b = 0; b < borders_.size(); ++b) sum(w_->state.bodies[first_body_ + b], borders_[b]);
+  spray();
 }
 
 void BorderLoad::find_places() {
@@ -155,13 +212,17 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
              rate = axes.to_space(own_angular_velocity(body));
   const auto along = along_border(normal, Dim);
   BorderSample<Dim> sample;
-  double lowest = 0.0;
+  double lowest = 0.0, weights = 0.0, counted = 0.0, nearest = radius_ * radius_;
   for (const BorderNeighbour& near : about) {
     const Vec3& r = near.from;
     const double share = 1.0 - dot(r, r) / (radius_ * radius_);
     if (!(share > 0.0)) continue;
     const auto gap = border.body.gap(axes, arm + r);
     if (!gap) continue;
+    nearest = std::min(nearest, dot(r, r));
+    weights += share * share;
+    counted += share * share * near.share;
+    if (!(near.share > 0.0)) continue;
     Vector scaled, u;
     const Vec3 carried = body.now.velocity + cross(rate, arm + r);
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -169,7 +230,7 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
       scaled[c] = r[d] / spacing_;
       u[c] = near.velocity[d] - carried[d];
     }
-    const double w = share * share;
+    const double w = share * share * near.share;
     lowest = std::min(lowest, near.pressure);
     sample.press(scaled, w, near.pressure - scene_.phases[fluid_].density * dot(scene_.domain.gravity, r));
     if (!(gap->distance > 0.0) || !(dot(normal, r) > 0.0)) continue;
@@ -183,6 +244,10 @@ BorderLoad::Stress BorderLoad::stress_at(const RigidBody& body, const OwnAxes& a
   const Vector rise = sample.rise();
   for (std::size_t d = 0; d < Dim; ++d) s.friction[d] = viscosity_ / spacing_ * rise[static_cast<Eigen::Index>(d)];
   s.friction = s.friction - dot(s.friction, normal) * normal;
+  double whole = counted / weights;  // what is left is spray
+  if (free_surface_) whole *= Spray::wet(std::sqrt(nearest) / spacing_);
+  s.pressure *= whole;
+  s.friction = whole * s.friction;
   return s;
 }
 

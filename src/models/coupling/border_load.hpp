@@ -3,6 +3,7 @@
 
 #include "models/bodies/body_border.hpp"
 #include "models/coupling/border_neighbours.hpp"
+#include "models/coupling/spray.hpp"
 #include "models/workspace.hpp"
 
 namespace barchan {
@@ -42,6 +43,7 @@ class BorderLoad : public Model {
   void hold();
   void load();
   void find_places();
+  void spray();
   template <int Dim>
   void find_stress(const RigidBody& body, const Border& border);
   template <int Dim>
@@ -58,6 +60,7 @@ class BorderLoad : public Model {
   std::vector<Border> borders_;     // by body
   std::vector<PiecePlace> places_;  // by piece of all bodies
   std::vector<Stress> stress_;
+  Spray spray_;
   Workspace* w_ = nullptr;
 };
 

@@ -1,9 +1,11 @@
 #include "models/coupling/border_neighbours.hpp"
-#include "engine/exchange.hpp"
 
 #include <omp.h>
 
 #include <algorithm>
+
+#include "engine/exchange.hpp"
+#include "models/coupling/spray.hpp"
 
 namespace barchan {
 
@@ -66,6 +68,7 @@ void BorderNeighbours::find(std::size_t piece, std::vector<BorderNeighbour>& fou
     v[d] = fluid.column(Field::velocity, static_cast<int>(d));
   }
   const double* const pressure = fluid.column(Field::pressure);
+  const double* const wholeness = fluid.has(Field::wholeness) ? fluid.column(Field::wholeness) : nullptr;
   const auto periodic = [&](std::size_t d) { return d < Dim && bounds.periodic[d]; };
   std::uint32_t turn = 0;
   const auto search = [&](const std::array<int, 3>& turns) {
@@ -80,7 +83,9 @@ void BorderNeighbours::find(std::size_t piece, std::vector<BorderNeighbour>& fou
     }
     grid.candidates(sorted, sorted, static_cast<float>(reach_), [&](std::uint32_t begin, std::uint32_t end) {
       for (std::size_t b = begin; b < std::min<std::size_t>(end, n); ++b) {
-        BorderNeighbour near{{}, {}, pressure[b], static_cast<std::uint32_t>(piece), turn, 0};
+        BorderNeighbour near{
+            {},   {}, pressure[b], wholeness ? Spray::share(wholeness[b]) : 1.0, static_cast<std::uint32_t>(piece),
+            turn, 0};
         for (std::size_t d = 0; d < Dim; ++d) near.from[d] = x[d][b] - at[d];
         if (!(dot(near.from, near.from) < far)) continue;
         for (std::size_t d = 0; d < Dim; ++d) near.velocity[d] = v[d][b];

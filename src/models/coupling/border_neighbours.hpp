@@ -24,6 +24,7 @@ struct BorderNeighbour {
   Vec3 from;                        // m, from the piece to it
   Vec3 velocity;                    // m/s
   double pressure;                  // Pa
+  double share;                     // of it that counts (Spray::share)
   std::uint32_t piece, turn, cell;  // number of the piece; on several ranks what orders those of a piece (before())
 };
 

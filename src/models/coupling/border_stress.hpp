@@ -29,6 +29,7 @@ struct BorderStress {
   bool wet = false;       // some fluid is near
   double pressure = 0.0;  // Pa
   Vec3 friction{};        // Pa, along the border
+  double share = 1.0;     // of the fluid there that is no spray (spray.hpp); pressure and friction have it already
   double parting = 0.0;   // m/s, with which the fluid goes off the border: zero but for the error of the scheme
 };
 

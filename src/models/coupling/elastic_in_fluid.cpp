@@ -1,5 +1,7 @@
 #include "models/coupling/elastic_in_fluid.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -41,6 +43,7 @@ void ElasticInFluid::begin(State& state, const std::vector<ParticleBlock>& block
   stress_.resize(border_.pieces().size());
   followed_.assign(stress_.size(), Followed{});
   parted_.assign(fluids_.size(), std::vector<double>(stress_.size(), 0.0));
+  spray_.resize(fluids_.size());
   force_.resize(p.size());
 }
 
@@ -56,7 +59,7 @@ void ElasticInFluid::schedule(Schedule& s) {
   for (const BorderFluid& fluid : fluids_) {
     const std::string& other = layout_.phases[fluid.phase].name;
     held.push_back({other, {position, velocity, density}, {position, velocity}});
-    loaded.push_back({other, {position, velocity, pressure}, {}});
+    loaded.push_back({other, {position, velocity, pressure, acceleration, wholeness}, {}});
   }
   s.add({stage::walls, name + ", border", held, [this] { hold(); }});
   s.add(
@@ -97,8 +100,11 @@ void ElasticInFluid::limits(std::vector<StepLimit>& limits) const {
 void ElasticInFluid::hold() {
   border_.move(w_->particles(solid_));
   const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
-  for (const BorderFluid& fluid : fluids_) {
+  const double dt = w_->state.dt;
+  for (std::size_t c = 0; c < fluids_.size(); ++c) {
+    const BorderFluid& fluid = fluids_[c];
     PhaseParticles& p = w_->particles(fluid.phase);
+    spray_[c].begin(static_cast<std::size_t>(omp_get_max_threads()));
     std::array<double*, 3> x{}, v{};
     for (std::size_t d = 0; d < dimensions; ++d) {
       x[d] = p.column(Field::position, static_cast<int>(d));
@@ -123,6 +129,9 @@ void ElasticInFluid::hold() {
         x[d][k] += (room - near->distance) * piece.normal[d];
         v[d][k] -= std::min(into, 0.0) * piece.normal[d];
       }
+      if (fluid.free_surface && into < 0.0 && dt > 0.0)
+        spray_[c].of_threads[static_cast<std::size_t>(omp_get_thread_num())].push_back(
+            {0, static_cast<std::uint32_t>(near->piece), 1, 0, {}, p.mass() / dt * into * piece.normal});
     }
   }
 }
@@ -205,6 +214,7 @@ void ElasticInFluid::load() {
     find_stress(c);
     radiate(fluids_[c], parted_[c]);
     sum(fluids_[c]);
+    spray(c);
   }
   PhaseParticles& p = w_->particles(solid_);
   for (int d = 0; d < layout_.dimensions; ++d) {
@@ -212,6 +222,43 @@ void ElasticInFluid::load() {
     for (std::size_t id = 0; id < force_.size(); ++id)
       a[places[id]] += force_[id][static_cast<std::size_t>(d)] / p.mass();
   }
+}
+
+/// What spray does: the reaction to its acceleration across the border.
+void ElasticInFluid::spray(std::size_t number) {
+  const BorderFluid& fluid = fluids_[number];
+  if (!fluid.free_surface) return;
+  const PhaseParticles& p = w_->particles(fluid.phase);
+  const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
+  std::array<const double*, 3> x{}, a{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    x[d] = p.column(Field::position, static_cast<int>(d));
+    a[d] = p.column(Field::acceleration, static_cast<int>(d));
+  }
+  spray_[number].make_room(static_cast<std::size_t>(omp_get_max_threads()));
+  const double* const wholeness = p.column(Field::wholeness);
+  const Vec3& gravity = scene_.domain.gravity;
+  const auto n = static_cast<std::int64_t>(p.size());
+#pragma omp parallel for schedule(static)
+  for (std::int64_t i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double share = Spray::share(wholeness[k]);
+    Vec3 at{}, push{};
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      at[d] = x[d][k];
+      push[d] = a[d][k] - gravity[d];
+    }
+    if (!(share < 1.0) || !border_.may_reach(at)) continue;
+    const auto near = border_.nearest(at);
+    if (!near || !(near->distance < fluid.radius)) continue;
+    const Vec3& normal = border_.pieces()[near->piece].normal;
+    const double off = dot(push, normal);
+    if (off != 0.0)
+      spray_[number].of_threads[static_cast<std::size_t>(omp_get_thread_num())].push_back(
+          {0, static_cast<std::uint32_t>(near->piece), 0, 0, {}, -(1.0 - share) * p.mass() * off * normal});
+  }
+  spray_[number].gather();
+  for (const Spray::Push& one : spray_[number].all) border_.spread(one.piece, one.force, force_);
 }
 
 void ElasticInFluid::find_stress(std::size_t fluid) {
@@ -238,7 +285,7 @@ void ElasticInFluid::radiate(const BorderFluid& fluid, std::vector<double>& part
   for (std::size_t q = 0; q < stress_.size(); ++q) {
     if (!stress_[q].wet) continue;
     parted[q] += share * (stress_[q].parting - parted[q]);
-    stress_[q].pressure -= impedance * (stress_[q].parting - parted[q]);
+    stress_[q].pressure -= stress_[q].share * impedance * (stress_[q].parting - parted[q]);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "models/bodies/elastic_border.hpp"
 #include "models/coupling/border_stress.hpp"
+#include "models/coupling/spray.hpp"
 
 namespace barchan {
 
@@ -41,6 +42,7 @@ class ElasticInFluid : public Model {
   void find_stress(std::size_t fluid);
   void radiate(const BorderFluid& fluid, std::vector<double>& parted);
   void sum(const BorderFluid& fluid);
+  void spray(std::size_t fluid);
 
   const Scene& scene_;
   const Layout& layout_;
@@ -53,6 +55,7 @@ class ElasticInFluid : public Model {
   std::vector<BorderStress> stress_;         // by piece, of the fluid that is looked at
   std::vector<Followed> followed_;           // by piece
   std::vector<std::vector<double>> parted_;  // m/s by fluid and piece: mean speed of parting
+  std::vector<Spray> spray_;                 // by fluid
   std::vector<Vec3> force_;                  // N by particle (id from the phase's first)
   Workspace* w_ = nullptr;
 };
