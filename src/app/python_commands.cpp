@@ -43,6 +43,8 @@ void add_python_commands(CLI::App& app) {
   report->add_flag("--render")->description("render pictures of the scene's states first (ParaView)");
   report->add_flag("--film")->description("put films into the page; with --render make them");
   option(report, "--scene", "FILE", "the file of the scene, where it is not the one that run.json names");
+  option(report, "--speed", "U", "with --length: coefficients of force, for a stream of this speed (m/s)");
+  option(report, "--length", "L", "width of the body across the stream (m)");
   report->add_flag("--no-plan")->description("do not ask barchan plan for the matrix");
   auto* sweep = app.add_subcommand("sweep", "run a scene with many values of its keys (python3)");
   option(sweep, "scene", "SCENE", "scene file (.toml), or the name of a scene that comes along")->required();

@@ -100,6 +100,17 @@ class Restart(unittest.TestCase):
             if name.endswith(".vtp"):
                 self.assertEqual(files(part)[name], content, name)
 
+    def test_the_folder_of_another_scene_is_refused(self):
+        """Its history.csv and run.json would be replaced: nothing in it changes."""
+        out = self.top / "out"
+        self.assertEqual(self.run_to_end(out, *SHORT).returncode, 0)
+        before = {f.name: f.read_bytes() for f in out.iterdir()}
+        for more in ([], ["--restart", "latest"]):
+            other = subprocess.run(command(out, "--set", "time.end=0.01", *more, scene=SOURCE / "scenes/verification/hop.toml"), capture_output=True, text=True)
+            self.assertEqual(other.returncode, 2)
+            self.assertIn("the folder holds the run of another scene, poiseuille.pvd", other.stderr)
+            self.assertEqual({f.name: f.read_bytes() for f in out.iterdir()}, before)
+
     def test_other_scenes_and_damaged_files_are_refused(self):
         out = self.top / "out"
         self.assertEqual(self.run_to_end(out, *SHORT).returncode, 0)

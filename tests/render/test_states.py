@@ -36,7 +36,7 @@ RUNS = {
 # A state, the run, and whether a golden picture stands beside it.
 PICTURES = [("pressure", "column", True), ("density", "column", False), ("stress", "bars", True), ("von_mises", "bars", False), ("motion", "sphere", False),
             ("eddy_viscosity", "layer", True), ("profiles", "poiseuille", False), ("grid", "poiseuille", False), ("wall_shear", "poiseuille", False),
-            ("flux", "influx", False), ("grains", "influx", False), ("trajectories", "hop", True), ("box3d", "sphere", True)]
+            ("flux", "influx", False), ("grains", "influx", False), ("phases", "column", True), ("trajectories", "hop", True), ("box3d", "sphere", True)]
 STATES = {path.stem for path in (SOURCE / "pvstate").glob("*.py") if not path.stem.startswith(("barchan_", "render_"))}
 
 
