@@ -62,9 +62,10 @@ void BorderLoad::attach(Workspace& w) {
 void BorderLoad::schedule(Schedule& s) {
   using enum Field;
   const std::string &name = layout_.phases[solid_].name, &fluid = layout_.phases[fluid_].name;
-  s.add({stage::walls, name + ", border", {{fluid, {position, velocity, density}, {position, velocity}}}, [this] {
-           hold();
-         }});
+  s.add({stage::walls,
+         name + ", border",
+         {{fluid, {position, velocity, density, wholeness}, {position, velocity}}},
+         [this] { hold(); }});
   s.add({stage::reaction,
          name + ", border",
          {{name, {position}, {}}, {fluid, {position, velocity, pressure, acceleration, wholeness}, {}}},
@@ -84,6 +85,7 @@ void BorderLoad::hold() {
     if (layout_.bounds.periodic[d]) period[d] = layout_.bounds.high[d] - layout_.bounds.low[d];
   }
   const double* rho = fluid.column(Field::density);
+  const double* const wholeness = free_surface_ ? fluid.column(Field::wholeness) : nullptr;
   const double dt = w_->state.dt;
   spray_.begin(static_cast<std::size_t>(omp_get_max_threads()));
   const auto n = static_cast<std::int64_t>(fluid.size());
@@ -112,9 +114,10 @@ void BorderLoad::hold() {
         x[d][k] += (room - gap->distance) * gap->normal[d];
         v[d][k] -= std::min(into, 0.0) * gap->normal[d];
       }
-      if (free_surface_ && into < 0.0 && dt > 0.0)
+      const double alone = wholeness ? 1.0 - Spray::share(wholeness[k]) : 0.0;
+      if (into < 0.0 && dt > 0.0 && alone > 0.0)
         spray_.of_threads[static_cast<std::size_t>(omp_get_thread_num())].push_back(
-            {static_cast<std::uint32_t>(b), 0, 1, 0, arm, fluid.mass() / dt * into * gap->normal});
+            {static_cast<std::uint32_t>(b), 0, 1, 0, arm, alone * fluid.mass() / dt * into * gap->normal});
     }
   }
 }

@@ -58,7 +58,7 @@ void ElasticInFluid::schedule(Schedule& s) {
   Touches held{{name, {position, velocity}, {}}}, loaded{{name, {position, velocity}, {acceleration}}};
   for (const BorderFluid& fluid : fluids_) {
     const std::string& other = layout_.phases[fluid.phase].name;
-    held.push_back({other, {position, velocity, density}, {position, velocity}});
+    held.push_back({other, {position, velocity, density, wholeness}, {position, velocity}});
     loaded.push_back({other, {position, velocity, pressure, acceleration, wholeness}, {}});
   }
   s.add({stage::walls, name + ", border", held, [this] { hold(); }});
@@ -111,6 +111,7 @@ void ElasticInFluid::hold() {
       v[d] = p.column(Field::velocity, static_cast<int>(d));
     }
     const double* rho = p.column(Field::density);
+    const double* const wholeness = fluid.free_surface ? p.column(Field::wholeness) : nullptr;
     const auto n = static_cast<std::int64_t>(p.size());
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < n; ++i) {
@@ -129,9 +130,10 @@ void ElasticInFluid::hold() {
         x[d][k] += (room - near->distance) * piece.normal[d];
         v[d][k] -= std::min(into, 0.0) * piece.normal[d];
       }
-      if (fluid.free_surface && into < 0.0 && dt > 0.0)
+      const double alone = wholeness ? 1.0 - Spray::share(wholeness[k]) : 0.0;
+      if (into < 0.0 && dt > 0.0 && alone > 0.0)
         spray_[c].of_threads[static_cast<std::size_t>(omp_get_thread_num())].push_back(
-            {0, static_cast<std::uint32_t>(near->piece), 1, 0, {}, p.mass() / dt * into * piece.normal});
+            {0, static_cast<std::uint32_t>(near->piece), 1, 0, {}, alone * p.mass() / dt * into * piece.normal});
     }
   }
 }
