@@ -137,7 +137,7 @@ bool ForceOn::touches_nothing_else(std::size_t fluid) const {
 void ForceOn::schedule(Schedule& s) {
   using enum Field;
   const FieldSet reads = FieldSet{position, velocity, acceleration};
-  const FieldSet by_volume{position, velocity, acceleration, density, pressure};
+  const FieldSet by_volume{position, velocity, acceleration, density, pressure, wholeness};
   const FieldSet writes = stays_ ? FieldSet{acceleration} : FieldSet{};
   const std::string& name = layout_.phases[phase_].name;
   Touches touches{{name, reads, writes, {stays_ ? RecordSet{Record::extended} : RecordSet{}, {}, {}}}};

@@ -69,5 +69,58 @@ class Loose(unittest.TestCase):
         self.assertGreater(long["processor_seconds"], 1.5 * short["processor_seconds"])
 
 
+WATER = """
+dimensions = 3
+spacing = 1e-3
+[domain]
+size = [0.02, 0.05, 0.02]
+periodic = ["x", "z"]
+gravity = [0, -9.81, 0]
+open = ["bottom"]
+[phases.water]
+kind = "column"
+density = {density}
+viscosity = 1e-6
+speed = 0
+held = true
+[phases.sand]
+kind = "grains"
+material = "quartz-sand"
+diameter = 1e-3
+[interactions]
+water-sand = {{ drag = "cheng", buoyancy = {buoyancy} }}
+sand-sand = {{ law = "linear" }}
+[[fill]]
+phase = "sand"
+shape = {{ points = [[0.005, 0.002, 0.005], [0.005, 0.04, 0.005]] }}
+[time]
+end = 0.1
+largest-speed = 0.3
+"""
+
+
+class InWater(unittest.TestCase):
+    def told(self, command, *words, **keys):
+        with tempfile.TemporaryDirectory() as name:
+            scene = pathlib.Path(name) / "w.toml"
+            scene.write_text(WATER.format(**keys))
+            said = subprocess.run([PROGRAM, command, str(scene), *words], capture_output=True, text=True, cwd=name)
+            self.assertEqual(said.returncode, 0, said.stderr)
+            history = pathlib.Path(name) / "out/w/history.csv"
+            return said.stdout + said.stderr, history.read_text().splitlines() if history.exists() else []
+
+    def test_a_dense_fluid_that_bears_nothing_is_warned_of(self):
+        words = "does not bear it; add buoyancy = true"
+        self.assertIn(words, self.told("plan", density=1000, buoyancy="false")[0])
+        self.assertNotIn(words, self.told("plan", density=1000, buoyancy="true")[0])
+        self.assertNotIn(words, self.told("plan", density=1.2, buoyancy="false")[0])
+
+    def test_the_mass_of_what_leaves_falls(self):
+        rows = self.told("run", "--threads", "1", density=1000, buoyancy="true")[1]
+        mass = [float(row.split(",")[rows[0].split(",").index("sand_mass [kg]")]) for row in rows[1:]]
+        self.assertAlmostEqual(mass[0] / (2 * 2650 * 3.141592653589793 / 6 * 1e-9), 1, places=9)
+        self.assertAlmostEqual(mass[-1] / mass[0], 0.5, places=9)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)

@@ -49,11 +49,8 @@ void GrainFlux::sample() {
   const State& state = w_->state;
   if (state.steps == 0 || state.steps % every != 0) return;
   const auto note = [&](WindowMean& mean, double value) { mean.add(tenth_, state.time, state.dt, value); };
-  const double now = flux();
-  note(mean_, now);
-  if (!open_) {
-    quarter_.add(0.25 * scene_.time.end, state.time, state.dt, now);
-  } else {
+  note(mean_, flux());
+  if (open_) {
     const double low = layout_.domain.low[0], size = layout_.domain.high[0] - low;
     note(third_, 4.0 * flux(low + 0.5 * size, low + 0.75 * size));
     note(last_, 4.0 * flux(low + 0.75 * size, low + size));
@@ -82,17 +79,6 @@ void GrainFlux::report_growth(Warnings& warnings) const {
                    "domain or run, or an [[influx]]");
 }
 
-/// Over a periodic ground, in a run that is nearly over: the flux has not saturated yet.
-void GrainFlux::report_rise(Warnings& warnings) const {
-  if (open_ || w_->state.time < 0.95 * scene_.time.end || !(quarter_.last_time > 0.0) || !(quarter_.time > 0.0)) return;
-  const double before = quarter_.last / quarter_.last_time, last = quarter_.sum / quarter_.time;
-  if (!(std::abs(last) > rises * std::abs(before)) || !(std::abs(last) > noise * creyssels_flux(weakest))) return;
-  const std::string& name = scene_.phases[grains_].name;
-  warnings.add("rise of the flux of " + name, "the flux of \"" + name + "\" still grows: " + brief(1e3 * last) +
-                                                  " g/m/s in the last quarter of the run, " + brief(1e3 * before) +
-                                                  " in the third: it is not saturated; expected a longer run");
-}
-
 void GrainFlux::report_stress(Warnings& warnings) const {
   const Phase& wind = scene_.phases[wind_];
   const PlanPhase& plan = layout_.phases[wind_];
@@ -112,7 +98,6 @@ void GrainFlux::report_stress(Warnings& warnings) const {
 
 void GrainFlux::report(Warnings& warnings) const {
   report_growth(warnings);
-  report_rise(warnings);
   report_stress(warnings);
   const double u = layout_.phases[wind_].wind.friction_velocity(w_->state.time);
   if (!measured_ || !mean_.any() || u < weakest || u > strongest) return;
@@ -133,7 +118,6 @@ void GrainFlux::report(Warnings& warnings) const {
 void GrainFlux::archive(Archive& a) {
   const std::string name = scene_.phases[grains_].name + ": ";
   if (measured_ || open_) a.number(name + "flux in a tenth of the run", mean_);
-  if (measured_ && !open_) a.number(name + "flux in a quarter of the run", quarter_);
   if (open_) {
     a.number(name + "flux in the third quarter", third_);
     a.number(name + "flux in the last quarter", last_);

@@ -29,7 +29,6 @@ class GrainFlux : public Model {
   static constexpr double most_flux = 3.0;    // times the measured one
   static constexpr double most_stress = 1.5;  // times rho u*^2 of the stated wind, on the ground
   static constexpr double grows = 1.1;        // the last quarter of an open ground over the third
-  static constexpr double rises = 1.15;       // the last quarter of a run over the third, where x is periodic
   static constexpr double noise = 0.1;        // of the measured flux of the weakest wind: less does not count as growth
   static constexpr long every = 16;           // steps between two values of the mean
   static constexpr double finest = 1.5e-4, coarsest = 3.5e-4;  // m, grains for which the line is asked
@@ -39,7 +38,6 @@ class GrainFlux : public Model {
   double flux(double from = -1e300, double to = 1e300) const;
   void sample();
   void report_growth(Warnings& warnings) const;
-  void report_rise(Warnings& warnings) const;
   void report_stress(Warnings& warnings) const;  // a held wind's: Drive's
 
   const Scene& scene_;
@@ -50,7 +48,6 @@ class GrainFlux : public Model {
   bool measured_;            // such grains were measured
   bool open_;                // grains leave along x: the flux may grow
   WindowMean mean_;          // kg/m/s
-  WindowMean quarter_;       // kg/m/s, of the quarters of a run, where x is periodic
   WindowMean third_, last_;  // kg/m/s, of the quarters of an open ground along x
   WindowMean stress_;        // Pa, on the ground, of a wind with layers of its own
   Workspace* w_ = nullptr;
