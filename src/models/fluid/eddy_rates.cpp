@@ -147,7 +147,27 @@ void carry_by_flux(Rates<Dim, Four>& r, const typename EddyFluid<Dim>::template 
       r.acceleration[d] += r.shift[e] * (stress.t[d][e] * per_viscosity - stress.gradient[d][e]);
 }
 
-template <int Dim, Beside beside, class T>
+/// What makes rates of the sums over the neighbours of four particles of a turbulent fluid, and stores them.
+template <int Dim>
+struct EddyFinish {
+  using Columns = RateColumns<Dim, true>;
+
+  /// `company`: see Place.
+  template <FluidTerms has>
+  static void four(const EddySums<Dim>& s, const Four& company, const FourOf& at, const Columns& columns,
+                   const EddyColumns<Dim>& eddy_columns, const FluidParameters& q, const EddyParameters& p) {
+    auto anisotropy = columns.anisotropy(at);
+    auto place = columns.template place<has>(at, company);
+    typename EddyFluid<Dim>::template Stress<Four> stress{s};
+    const Four rho = load_four(columns.rho, at.first, at.count);
+    auto r = finish_consistent<Dim, has, Four>(s, 1.0, rho, q, anisotropy, place, stress, no_parts);
+    if (eddy_columns.shear) carry_by_flux<Dim>(r, stress, load_four(eddy_columns.root, at.first, at.count));
+    renew_viscosity<Dim>(eddy_columns, stress, at, p);
+    columns.template store<has>(at, r, anisotropy, place, s.concentration, q);
+  }
+};
+
+template <int Dim, class T>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, const EddyRecords& eddies,
            std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& p) {
   using V = LanesOf<T>;
@@ -158,6 +178,7 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
   const auto& kernels = ready_kernels<T>(neighbours, Dim, &EddyNeighbour::pair);
   const RateColumns<Dim, true> columns(fluid);
   const EddyColumns<Dim> eddy_columns(fluid, eddies);
+  const auto finish = finish_of<EddyFinish<Dim>>(terms_of(q));
   const std::size_t n = fluid.size();
   const std::int64_t blocks = FourOf::blocks(n);
   Shares shares(blocks, 64);
@@ -172,26 +193,15 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, cons
     };
     Four company(0.0);
     const auto s = sum_entries<Dim, T>(at, neighbours, kernels, unit, own_of, eddy_columns, weight, p, company);
-    auto anisotropy = columns.anisotropy(at);
-    auto place = columns.template place<beside>(at, company);
-    typename EddyFluid<Dim>::template Stress<Four> stress{s};
-    const Four rho = load_four(columns.rho, at.first, at.count);
-    auto r = finish_consistent<Dim, beside, Four>(s, 1.0, rho, q, anisotropy, place, stress, no_parts);
-    if (eddy_columns.shear) carry_by_flux<Dim>(r, stress, load_four(eddy_columns.root, at.first, at.count));
-    renew_viscosity<Dim>(eddy_columns, stress, at, p);
-    columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
+    finish(s, company, at, columns, eddy_columns, q, p);
   }
 }
 
 template <class T>
 void dispatch(PhaseParticles& fluid, const T* own, double unit, const EddyRecords& eddies,
               std::span<const EddyNeighbour> neighbours, const FluidParameters& q, const EddyParameters& e) {
-  constexpr Beside nothing = Beside::nothing, ends = Beside::ends;
-  const bool flat = fluid.dimensions() == 2;
-  if (flat && q.ends) rates<2, ends>(fluid, own, unit, eddies, neighbours, q, e);
-  else if (flat) rates<2, nothing>(fluid, own, unit, eddies, neighbours, q, e);
-  else if (q.ends) rates<3, ends>(fluid, own, unit, eddies, neighbours, q, e);
-  else rates<3, nothing>(fluid, own, unit, eddies, neighbours, q, e);
+  const auto call = fluid.dimensions() == 2 ? rates<2, T> : rates<3, T>;
+  call(fluid, own, unit, eddies, neighbours, q, e);
 }
 
 template <int Dim>

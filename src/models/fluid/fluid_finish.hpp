@@ -12,6 +12,7 @@
 #include "models/fluid/fluid_rates.hpp"
 #include "models/fluid/fluid_stress.hpp"
 #include "models/fluid/fluid_surface.hpp"
+#include "models/fluid/fluid_terms.hpp"
 #include "models/fluid/rate_parts.hpp"
 
 namespace barchan {
@@ -36,10 +37,6 @@ struct Rates {
   std::array<V, Dim> acceleration, shift;
   V density;
 };
-
-/// What may lie beside the particles of a fluid. nothing: it is whole, and no solid that moves is in it; neither plain
-/// operators nor surfaces are looked at. ends: a void or a free surface is near some of them, or solids move in it.
-enum class Beside { nothing, ends };
 
 /// Where a particle stands in its fluid. Read: its company, pressure, velocity, whether its fluid ends near it, and the
 /// direction inwards at and near the free surface, of the step before (zero elsewhere). Written: its wholeness (chi
@@ -95,7 +92,7 @@ BARCHAN_SIMD_INLINE void note_parts(RateParts<Dim, V>& parts, const typename Pla
   parts.moved = parts.renewed = V(0.0);
 }
 
-template <int Dim, Beside, class V, class Parts>
+template <int Dim, class V, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::template Sums<V>& s,
                                          [[maybe_unused]] double mu, V rho, const FluidParameters& q,
                                          std::array<V, Dim*(Dim + 1) / 2>&, Place<Dim, V>&,
@@ -115,12 +112,12 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainFluid<Dim>::templat
 }
 
 /// A plain fluid with a free surface: chi = -tr M/Dim - h|B|/2 is 1 inside and about a half on a straight surface.
-template <int Dim, Beside beside, class V, class Parts>
+template <int Dim, class V, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainSurface<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
                                          Place<Dim, V>& place, Parts& parts) {
   const typename PlainFluid<Dim>::template Sums<V>& plain = s;
-  Rates<Dim, V> r = finish<Dim, beside, V>(plain, mu, rho, q, anisotropy, place, parts);
+  Rates<Dim, V> r = finish<Dim, V>(plain, mu, rho, q, anisotropy, place, parts);
   keep_inside<Dim, V>(r.shift, place.normal);
   // Records hold the volume m/rho: the density takes out what compression does to it.
   const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration),
@@ -141,8 +138,8 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename PlainSurface<Dim>::templ
 constexpr double least_determinant = 0.6;
 
 template <int Dim>
-constexpr double least_determinant_of(const FluidParameters& q) {
-  return q.loosening > 0.0 ? least_determinant * (Dim == 2 ? 0.25 : 0.125) : least_determinant;
+constexpr double least_determinant_of(bool surface) {
+  return surface ? least_determinant * (Dim == 2 ? 0.25 : 0.125) : least_determinant;
 }
 
 /// A fluid particle alone in the pores of a bed is no fluid: the grains about it answer with its own pressure, and what
@@ -210,20 +207,20 @@ BARCHAN_SIMD_INLINE std::array<std::array<V, Dim>, Dim> flux_of(const Friction& 
 
 /// `friction` gives, from M^-1 and grad v, the viscous sum less what a linear field makes of it: of the term
 /// laplace_v mu friction.
-template <int Dim, Beside beside, class V, class Friction, class Parts>
+template <int Dim, FluidTerms has, class V, class Friction, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu,
                                                     V rho, const FluidParameters& q,
                                                     std::array<V, Dim*(Dim + 1) / 2>& anisotropy, Place<Dim, V>& place,
                                                     Friction&& friction, [[maybe_unused]] Parts& parts) {
   Rates<Dim, V> r;
-  constexpr bool ends = beside == Beside::ends;
+  constexpr bool ends = has.ends, heavy = has.heavy(), stressed = has.stressed();
   r.shift = shift_of<Dim, V>(s.concentration, q);
   if constexpr (ends) keep_inside<Dim, V>(r.shift, place.normal);
   // A particle among grains in flight may have too few neighbours to invert anything: it goes uncorrected, M = -1.
   auto moment = s.moment;
   const V sign(Dim == 2 ? 1.0 : -1.0);
   const V content = sign * determinant(moment);
-  const auto whole = content > V(least_determinant_of<Dim>(q));
+  const auto whole = content > V(least_determinant_of<Dim>(has.has_surface()));
   [[maybe_unused]] const V lopsided = V(q.smoothing_length) * length_of<Dim, V>(s.concentration);
   place.wholeness = content - V(0.5) * lopsided;
   for (std::size_t d = 0; d < Dim; ++d)
@@ -246,7 +243,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
   if constexpr (ends) {
     inner = simd::select(place.ends > V(0.0), smooth_step(place.wholeness, surface_begins, surface_ends), V(1.0));
     outer = V(1.0) - inner;
-    if (q.least_viscosity > 0.0) {
+    if constexpr (heavy) {
       beside_it = beside_surface<Dim, V>(outer, place.normal);
       viscosity = least_viscosity<Dim, V>(V(mu), beside_it, beside_surface<Dim, V>(V(1.0), place.normal), q);
     }
@@ -264,14 +261,13 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
         grad_v[d][e] = simd::fma(s.velocity[d * Dim + f], inverse[f * Dim + e], grad_v[d][e]);
     }
   const std::array<V, Dim> rubbed = friction(inverse, grad_v);
-  const bool stressed = ends && q.stressed;
   [[maybe_unused]] V level(0.0), more(0.0);
-  if (ends && q.least_viscosity > 0.0) {
+  if constexpr (heavy) {
     level = level_surface<Dim, V>(place.normal, q);
     more = V(std::max(mu, bulk_friction * q.least_viscosity) - q.surface_viscosity) * level;
   }
   [[maybe_unused]] SurfaceStress<Dim, V> stress;
-  if (stressed)
+  if constexpr (stressed)
     stress = surface_stress<Dim, V>(flux_of<Dim, V>(friction, grad_v, q), grad_v, s.concentration,
                                     beside_surface<Dim, V>(outer, place.normal), more, q);
   for (std::size_t d = 0; d < Dim; ++d) {
@@ -283,7 +279,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     std::array<V, Dim> f;
     for (std::size_t d = 0; d < Dim; ++d)
       f[d] = simd::fma(inner, grad_p[d], outer * simd::fma(twice_p, s.concentration[d], V(0.0) - s.pressure[d]));
-    if (q.least_viscosity > 0.0) carry_weight<Dim, V>(f, grad_p, s, twice_p, across, outer, place.normal, q);
+    if constexpr (heavy) carry_weight<Dim, V>(f, grad_p, s, twice_p, across, outer, place.normal, q);
     return f;
   };
   if constexpr (ends) force = pushed(stressed ? V(2.0) * stress.normal : V(0.0));
@@ -299,7 +295,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       squared += grad_v[d][e] * grad_v[e][d];
     }
     r.acceleration[d] = laplace_v * rubbed[d] - force[d] * specific + V(q.gravity[d] + q.acceleration[d]) + transported;
-    if (stressed) r.acceleration[d] = simd::fma(stress.drag[d], specific, r.acceleration[d]);
+    if constexpr (stressed) r.acceleration[d] = simd::fma(stress.drag[d], specific, r.acceleration[d]);
     if constexpr (Parts::asked) {
       parts.pressure[d] = -force[d] * specific;
       parts.friction[d] = laplace_v * rubbed[d];
@@ -307,25 +303,26 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       parts.carried[d] = transported;
     }
   }
-  if constexpr (Parts::asked && ends)
-    if (stressed) {
-      const auto bare = pushed(V(0.0));
-      const auto own = surface_stress<Dim, V>(flux_of<Dim, V>(friction, grad_v, q), grad_v, s.concentration,
-                                              beside_surface<Dim, V>(outer, place.normal), V(0.0), q);
-      for (std::size_t d = 0; d < Dim; ++d) {
-        parts.pressure[d] = -bare[d] * specific;
-        parts.stress[d] = (bare[d] - force[d] + own.drag[d]) * specific;
-        parts.turning[d] = (stress.drag[d] - own.drag[d]) * specific;
-      }
+  if constexpr (Parts::asked && stressed) {
+    const auto bare = pushed(V(0.0));
+    const auto own = surface_stress<Dim, V>(flux_of<Dim, V>(friction, grad_v, q), grad_v, s.concentration,
+                                            beside_surface<Dim, V>(outer, place.normal), V(0.0), q);
+    for (std::size_t d = 0; d < Dim; ++d) {
+      parts.pressure[d] = -bare[d] * specific;
+      parts.stress[d] = (bare[d] - force[d] + own.drag[d]) * specific;
+      parts.turning[d] = (stress.drag[d] - own.drag[d]) * specific;
     }
+  }
   // lap p + rho0 grad v : grad v^T vanishes for an incompressible flow: diffusion acts on what is left.
   V laplacian = laplace_p * dynamic, carried = along_p * V(1.0 / c2);
   if constexpr (ends) {
-    laplacian = inner * laplacian + outer * (V(2.0) * s.diffusion - lost_beyond<Dim, V>(force, s.concentration, q));
+    V lost(0.0);
+    if constexpr (heavy) lost = lost_beyond<Dim, V>(force, s.concentration, q);
+    laplacian = inner * laplacian + outer * (V(2.0) * s.diffusion - lost);
     carried = inner * carried;
   }
   V diffusivity(q.diffusivity / c2), source(q.source_diffusivity / c2 * q.reference_density);
-  if (ends && q.least_viscosity > 0.0) {
+  if constexpr (heavy) {
     diffusivity = simd::fma(V(q.surface_diffusivity / c2), level, diffusivity);
     source = simd::fma(V(q.surface_diffusivity / c2 * q.reference_density), level, source);
   }
@@ -338,7 +335,7 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
     parts.moved = carried;
     parts.renewed = V(0.0) - r.density;
   }
-  if (ends && q.pores > 0.0) {
+  if constexpr (has.pores) {
     const V counts = smooth_step(place.company, lonely, in_company), rate = (V(1.0) - counts) * V(q.pores);
     r.density = counts * r.density - rate * (rho - V(q.reference_density));
     for (std::size_t d = 0; d < Dim; ++d) {
@@ -346,9 +343,9 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       r.shift[d] *= counts;
     }
   }
-  if (ends && q.loosening > 0.0) r.density += loosen<Dim, V>(rho, trace_of<Dim, V>(s.moment), lopsided, q);
-  if (ends && q.least_viscosity > 0.0) r.density += relax_tension<V>(rho, beside_it, q);
-  if (q.calming > 0.0) r.density = calm<V>(r.density, rho, q);
+  if constexpr (has.has_surface()) r.density += loosen<Dim, V>(rho, trace_of<Dim, V>(s.moment), lopsided, q);
+  if constexpr (heavy) r.density += relax_tension<V>(rho, beside_it, q);
+  if constexpr (has.calming) r.density = calm<V>(r.density, rho, q);
   if constexpr (Parts::asked) parts.renewed += r.density;
   // The next step's weights; they stay positive: no entry of A beyond a half, save at a heavy surface.
   const V scale = V(-0.5 * (Dim + 2) * Dim) * per_trace;
@@ -359,19 +356,19 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish_consistent(const typename ConsistentFlu
       a[m] = scale * moment[m] + V(d == e ? 0.5 * (Dim + 2) : 0.0);
       anisotropy[m] = simd::mask_zero(whole, simd::max(simd::min(a[m], V(0.5)), V(-0.5)));
     }
-  if (ends && q.least_viscosity > 0.0) {
+  if constexpr (heavy) {
     V factor = raised_weights<Dim, V>(a, outer);
-    if (stressed) factor = simd::fnma(kept_isotropic<V>(viscosity, more, q), factor - V(1.0), factor);
+    factor = simd::fnma(kept_isotropic<V>(viscosity, more, q), factor - V(1.0), factor);
     for (auto& skew : anisotropy) skew *= factor;
   }
   return r;
 }
 
-template <int Dim, Beside beside, class V, class Parts>
+template <int Dim, FluidTerms has, class V, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename ConsistentFluid<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
                                          Place<Dim, V>& place, Parts& parts) {
-  return finish_consistent<Dim, beside, V>(
+  return finish_consistent<Dim, has, V>(
       s, mu, rho, q, anisotropy, place,
       [&](const auto&, const auto& grad_v) __attribute__((always_inline)) {
         std::array<V, Dim> friction = s.viscous;
@@ -383,11 +380,11 @@ BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename ConsistentFluid<Dim>::te
 }
 
 /// Next to an interface with another fluid: the flux of momentum has the kink of the velocity there.
-template <int Dim, Beside beside, class V, class Parts>
+template <int Dim, FluidTerms has, class V, class Parts>
 BARCHAN_SIMD_INLINE Rates<Dim, V> finish(const typename JoinedFluids<Dim>::template Sums<V>& s, double mu, V rho,
                                          const FluidParameters& q, std::array<V, Dim*(Dim + 1) / 2>& anisotropy,
                                          Place<Dim, V>& place, Parts& parts) {
-  return finish_consistent<Dim, beside, V>(
+  return finish_consistent<Dim, has, V>(
       s, mu, rho, q, anisotropy, place,
       [&](const auto& inverse, const auto& grad_v) __attribute__((always_inline)) {
         std::array<V, Dim> friction = s.viscous;

@@ -45,15 +45,51 @@ BARCHAN_SIMD_INLINE typename JoinedFluids<Dim>::template Own<LanesOf<T>> joined_
 /// The plain sums push with the pressures above that of the void: sum V F (p_a + p_b - 2 p_v) r. Written as a fused
 /// product, so that no compiler chooses the bits.
 template <int Dim, class Sums>
-BARCHAN_SIMD_INLINE void lift(Sums& s, const FluidParameters& q) {
+BARCHAN_SIMD_INLINE Sums lifted(Sums s, const FluidParameters& q) {
   for (std::size_t d = 0; d < Dim; ++d)
     s.pressure[d] = simd::fma(Four(-2.0 * q.void_pressure), s.concentration[d], s.pressure[d]);
+  return s;
 }
 
-/// Keep: where the parts of the rates go in place of the rates; NoParts: the rates go to their columns.
-template <int Dim, template <int> class Law, class T, Beside beside, bool Joined = false, class Keep = const NoParts>
+/// What makes rates of the sums of a law over the neighbours of four particles: it stores them or, for `parts`, their
+/// parts in place of them.
+template <int Dim, class Law, bool parts>
+struct Finish {
+  using Sums = typename Law::template Sums<Four>;
+  using Columns = RateColumns<Dim, Law::corrected>;
+  /// `company`: see Place; `mu` (Pa s): of the fluid; `into`: null where nobody asks for parts. Inlined into the loop,
+  /// a row saves a twentieth of it where a particle has few neighbours.
+  template <FluidTerms has>
+  static BARCHAN_SIMD_INLINE void inlined(const Sums& s, const Four& company, double mu, const FourOf& at,
+                                          const Columns& columns, const FluidParameters& q,
+                                          [[maybe_unused]] PartColumns* into) {
+    auto anisotropy = columns.anisotropy(at);
+    auto place = columns.template place<has>(at, company);
+    const Four rho = load_four(columns.rho, at.first, at.count);
+    const auto rates = [&](auto& of) __attribute__((always_inline)) {
+      if constexpr (Law::corrected) return finish<Dim, has, Four>(s, mu, rho, q, anisotropy, place, of);
+      else return finish<Dim, Four>(lifted<Dim>(s, q), mu, rho, q, anisotropy, place, of);
+    };
+    if constexpr (parts) {
+      auto of = into->of<Dim>();
+      rates(of);
+      into->store(of, at.first, at.count);
+    } else {
+      columns.template store<has>(at, rates(no_parts), anisotropy, place, s.concentration, q);
+    }
+  }
+  template <FluidTerms has>
+  static void four(const Sums& s, const Four& company, double mu, const FourOf& at, const Columns& columns,
+                   const FluidParameters& q, PartColumns* into) {
+    inlined<has>(s, company, mu, at, columns, q, into);
+  }
+};
+
+/// `finish`: a function of Finish<Dim, Total, ...>.
+template <int Dim, template <int> class Law, class Total = Law<Dim>, class T, class F>
 void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std::span<const FluidNeighbour> neighbours,
-           const FluidParameters& q, [[maybe_unused]] Keep& keep) {
+           const FluidParameters& q, PartColumns* parts, F finish) {
+  constexpr bool joined = !std::is_same_v<Total, Law<Dim>>;  // at an interface with another fluid
   using L = Law<Dim>;
   using V = LanesOf<T>;
   constexpr auto record_size = static_cast<std::size_t>(MotionRecord<Dim>::size);
@@ -74,14 +110,13 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       if constexpr (L::corrected) columns.weigh(own, k);
       return own;
     };
-    using Total = std::conditional_t<Joined, JoinedFluids<Dim>, L>;
     typename Total::template Sums<Four> s{};
     typename L::template Sums<Four> raw;
     [[maybe_unused]] typename JoinedFluids<Dim>::template Sums<Four> crossing;
     Four company(0.0);
     for (std::size_t c = 0; c < neighbours.size(); ++c) {
       const auto& e = neighbours[c];
-      if constexpr (Joined) {
+      if constexpr (joined) {
         if (e.joined > 0) {
           const auto across = [&](std::size_t k) __attribute__((always_inline)) {
             return joined_own<Dim, T>(own_of(k), e, q, columns.rho[k], mu, k);
@@ -101,25 +136,14 @@ void rates(PhaseParticles& fluid, const T* own_records, double length_unit, std:
       if (sum_rows<Dim, Law, T>(at, e, kernels[c], unit, pressed, raw)) {
         if (across != 1.0)
           for (Four& p : raw.pressure) p *= Four(across);
-        if constexpr (Joined)
+        if constexpr (joined)
           s.take(JoinedFluids<Dim>::template without_kink<Four>(raw), kernels[c].slope_factor(), 0.0, 0.0, weight);
         else s.take(raw, kernels[c].slope_factor(), e.viscosity, e.diffuse ? 1.0 : 0.0, weight);
       }
-      if constexpr (L::corrected && beside == Beside::ends)
+      if constexpr (L::corrected)
         if (c == 0) company = Four(-1.0 / Dim) * trace_of<Dim, Four>(s.moment);  // the fluid's own entry is the first
     }
-    if constexpr (!L::corrected) lift<Dim>(s, q);
-    auto anisotropy = columns.anisotropy(at);
-    auto place = columns.template place<beside>(at, company);
-    const Four rho = load_four(columns.rho, at.first, at.count);
-    if constexpr (Keep::asked) {
-      auto parts = keep.template of<Dim>();
-      finish<Dim, beside, Four>(s, mu, rho, q, anisotropy, place, parts);
-      keep.store(parts, at.first, at.count);
-    } else {
-      const auto r = finish<Dim, beside, Four>(s, mu, rho, q, anisotropy, place, keep);
-      columns.template store<beside>(at, r, anisotropy, place, s.concentration, q);
-    }
+    finish(s, company, mu, at, columns, q, parts);
   }
 }
 
@@ -149,48 +173,61 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   }
 }
 
-template <class T, class Keep>
+template <int Dim, bool keeps, class T>
+void dispatch_in(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
+                 const FluidParameters& q, FluidScheme scheme, PartColumns* parts) {
+  using Consistent = Finish<Dim, ConsistentFluid<Dim>, keeps>;
+  constexpr FluidTerms fills{.calming = true}, surface{.ends = true, .surface = SurfaceTerms::loose};
+  const bool joined =
+      !keeps && std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
+  if (scheme == FluidScheme::plain) {
+    if (fluid.has(Field::wholeness))
+      rates<Dim, PlainSurface>(fluid, own, unit, neighbours, q, parts,
+                               Finish<Dim, PlainSurface<Dim>, keeps>::template four<surface>);
+    else
+      rates<Dim, PlainFluid>(
+          fluid, own, unit, neighbours, q, parts, [](const auto&... a) __attribute__((always_inline)) {
+            Finish<Dim, PlainFluid<Dim>, keeps>::template inlined<FluidTerms{}>(a...);
+          });
+  } else if (joined) {
+    rates<Dim, ConsistentFluid, JoinedFluids<Dim>>(fluid, own, unit, neighbours, q, parts,
+                                                   finish_of<Finish<Dim, JoinedFluids<Dim>, false>>(terms_of(q, true)));
+  } else if (const FluidTerms terms = terms_of(q); !keeps && terms == fills) {
+    rates<Dim, ConsistentFluid>(
+        fluid, own, unit, neighbours, q, parts,
+        [](const auto&... a) __attribute__((always_inline)) { Consistent::template inlined<fills>(a...); });
+  } else {
+    rates<Dim, ConsistentFluid>(fluid, own, unit, neighbours, q, parts, finish_of<Consistent>(terms));
+  }
+}
+
+template <bool keeps, class T>
 void dispatch(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
-              const FluidParameters& q, FluidScheme scheme, Keep& keep) {
-  const bool plain = scheme == FluidScheme::plain, flat = fluid.dimensions() == 2;
-  const bool joined = std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
-  const bool surface = plain && fluid.has(Field::wholeness);
-  constexpr Beside nothing = Beside::nothing, ends = Beside::ends;
-  const auto call = [&](auto* run) { run(fluid, own, unit, neighbours, q, keep); };
-  if constexpr (!Keep::asked)
-    if (joined)
-      return call(flat ? rates<2, ConsistentFluid, T, ends, true, Keep>
-                       : rates<3, ConsistentFluid, T, ends, true, Keep>);
-  if (flat && surface) call(rates<2, PlainSurface, T, ends, false, Keep>);
-  else if (flat && plain) call(rates<2, PlainFluid, T, nothing, false, Keep>);
-  else if (flat && q.ends) call(rates<2, ConsistentFluid, T, ends, false, Keep>);
-  else if (flat) call(rates<2, ConsistentFluid, T, nothing, false, Keep>);
-  else if (surface) call(rates<3, PlainSurface, T, ends, false, Keep>);
-  else if (plain) call(rates<3, PlainFluid, T, nothing, false, Keep>);
-  else if (q.ends) call(rates<3, ConsistentFluid, T, ends, false, Keep>);
-  else call(rates<3, ConsistentFluid, T, nothing, false, Keep>);
+              const FluidParameters& q, FluidScheme scheme, PartColumns* parts) {
+  const auto call = fluid.dimensions() == 2 ? dispatch_in<2, keeps, T> : dispatch_in<3, keeps, T>;
+  call(fluid, own, unit, neighbours, q, scheme, parts);
 }
 
 }  // namespace
 
 void fluid_rates(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& q, FluidScheme scheme) {
-  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme, no_parts);
+  dispatch<false>(fluid, own.data(), 1.0, neighbours, q, scheme, nullptr);
 }
 
 void fluid_rates(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& q, FluidScheme scheme) {
-  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme, no_parts);
+  dispatch<false>(fluid, own.data(), own.unit(), neighbours, q, scheme, nullptr);
 }
 
 void fluid_rate_parts(PhaseParticles& fluid, const RecordArray& own, std::span<const FluidNeighbour> neighbours,
                       const FluidParameters& q, FluidScheme scheme, PartColumns& parts) {
-  dispatch(fluid, own.data(), 1.0, neighbours, q, scheme, parts);
+  dispatch<true>(fluid, own.data(), 1.0, neighbours, q, scheme, &parts);
 }
 
 void fluid_rate_parts(PhaseParticles& fluid, const CompactRecords& own, std::span<const FluidNeighbour> neighbours,
                       const FluidParameters& q, FluidScheme scheme, PartColumns& parts) {
-  dispatch(fluid, own.data(), own.unit(), neighbours, q, scheme, parts);
+  dispatch<true>(fluid, own.data(), own.unit(), neighbours, q, scheme, &parts);
 }
 
 void fluid_reaction(PhaseParticles& solid, const RecordArray& own, const FluidNeighbour& fluid, bool pores) {

@@ -173,10 +173,10 @@ struct RateColumns {
     return a;
   }
 
-  template <Beside beside>
+  template <FluidTerms has>
   BARCHAN_SIMD_INLINE Place<Dim, Four> place(const FourOf& at, Four company) const {
     Place<Dim, Four> place{};
-    if constexpr (beside == Beside::nothing) return place;
+    if constexpr (!has.ends) return place;
     place.company = company;
     place.pressure = load_four(pressure, at.first, at.count);
     place.ends = near_void ? load_four(near_void, at.first, at.count) : Four(1.0);
@@ -186,13 +186,13 @@ struct RateColumns {
     return place;
   }
 
-  template <Beside beside>
+  template <FluidTerms has>
   BARCHAN_SIMD_INLINE void store(const FourOf& at, const Rates<Dim, Four>& r, const std::array<Four, moments>& a,
                                  const Place<Dim, Four>& place, const std::array<Four, Dim>& concentration,
                                  const FluidParameters& q) const {
     if constexpr (Corrected)
       if (q.loose && simd::any(place.loose)) note_loose(at, place, *q.loose);
-    if (beside == Beside::ends && surface.wholeness) {
+    if (has.ends && surface.wholeness) {
       store_four(place.wholeness, surface.wholeness, at.first, at.count);
       for (std::size_t d = 0; d < Dim; ++d) store_four(concentration[d], surface.normal[d], at.first, at.count);
     }

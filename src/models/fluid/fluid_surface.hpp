@@ -169,9 +169,8 @@ template <int Dim, class V>
 BARCHAN_SIMD_INLINE V lost_beyond(const std::array<V, Dim>& force, const std::array<V, Dim>& concentration,
                                   const FluidParameters& q) {
   V lost(0.0);
-  if (q.least_viscosity > 0.0)
-    for (std::size_t d = 0; d < Dim; ++d)
-      lost = simd::fma(V(2.0) * (force[d] - V(q.reference_density * q.gravity[d])), concentration[d], lost);
+  for (std::size_t d = 0; d < Dim; ++d)
+    lost = simd::fma(V(2.0) * (force[d] - V(q.reference_density * q.gravity[d])), concentration[d], lost);
   return lost;
 }
 
