@@ -59,6 +59,7 @@ void Report::operator()(const std::string& dotted, const std::string& what) cons
 
 void check_side_names(const std::vector<std::string>& sides, const std::string& dotted, const Scene& scene,
                       const Report& report) {
+  if (report.touched(dotted)) return;  // a word is no side
   for (const std::string& side : sides) {
     const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
     if (axis == 2 && scene.dimensions == 2)

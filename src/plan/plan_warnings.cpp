@@ -365,6 +365,52 @@ void warn_of_small_radius(const Scene& scene, Plan& plan) {
   }
 }
 
+/// Numbers that are right in other units: lengths in mm, densities in g/cm3, a dynamic viscosity.
+void warn_of_units(const Scene& scene, Plan& plan) {
+  constexpr double longest = 500.0, shortest = 1e-4;        // m, of a domain
+  constexpr double lightest = 20.0;                         // kg/m3, of grains and of a liquid
+  constexpr double water = 1000.0, water_viscosity = 1e-6;  // kg/m3, m2/s
+  double length = 0.0;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+    length = std::max(length, scene.domain.size[d]);
+  if (length > longest || length < shortest)
+    plan.warnings.push_back("domain.size: the domain is " + brief(length) + " m long; lengths are in m");
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const Phase& phase = scene.phases[k];
+    const bool liquid = plan.phases[k].free_surface && norm(scene.domain.gravity) > 0.0;
+    if ((liquid || phase.if_grains()) && phase.density < lightest)
+      plan.warnings.push_back("phases." + phase.name + ".density: " + brief(phase.density) + " kg/m3 is light for " +
+                              (liquid ? "a liquid (water has 1000)" : "grains (quartz has 2650)") +
+                              "; densities are in kg/m3");
+    if (!liquid || std::abs(phase.density / water - 1.0) > 0.1) continue;
+    const double times = phase.fluid().viscosity / water_viscosity;
+    if (times > 500.0 && times < 2000.0)
+      plan.warnings.push_back("phases." + phase.name + ".viscosity: " + brief(phase.fluid().viscosity) + " m2/s is " +
+                              brief(times) +
+                              " times that of water; it is the kinematic viscosity, of water 1e-6 m2/s (1e-3 Pa s over "
+                              "its density)");
+  }
+}
+
+/// Layers of a side that are thinner than the kernel of the fluid at it.
+void warn_of_few_layers(const Scene& scene, Plan& plan) {
+  for (std::size_t f = 0; f < scene.fills.size(); ++f) {
+    const auto* sides = std::get_if<SidesShape>(&scene.fills[f].shape);
+    if (!sides || sides->layers == 0) continue;
+    for (const PlanEntry& e : plan.entries) {
+      const PlanPhase& wall = plan.phases[e.other];
+      const double missing = e.radius / wall.spacing * (1.0 - 1e-9) - sides->layers;
+      if (!e.extends || wall.name != scene.fills[f].phase || missing <= 0.5) continue;
+      plan.warnings.push_back("fill." + std::to_string(f) + ".shape.layers: " + std::to_string(sides->layers) + " of " +
+                              brief(wall.spacing) + " m, and the kernel of \"" + plan.phases[e.fluid].name +
+                              "\" reaches " + brief(e.radius - 0.5 * e.spacing) +
+                              " m into the wall: the fluid misses a part of it; expected " +
+                              std::to_string(static_cast<int>(std::ceil(e.radius / wall.spacing - 0.5))) +
+                              ", or no layers, which makes as many as are needed");
+    }
+  }
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
@@ -388,6 +434,8 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_another_up(scene, plan);
   warn_of_influxes(scene, plan);
   warn_of_small_radius(scene, plan);
+  warn_of_units(scene, plan);
+  warn_of_few_layers(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }
 

@@ -209,10 +209,17 @@ unsigned line_of_endless_key(std::string_view text) {
   return 0;
 }
 
-/// The value that a line gives to its key, without blanks before it; nothing: it gives none.
-std::string_view value_in_line(std::string_view text, unsigned line) {
+/// A line without blanks before it.
+std::string_view line_of(std::string_view text, unsigned line) {
   for (; line > 1 && !text.empty(); --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text;
+}
+
+/// The value that a line gives to its key, without blanks before it; nothing: it gives none.
+std::string_view value_in_line(std::string_view text, unsigned line) {
+  text = line_of(text, line);
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos) return {};
   text.remove_prefix(equals + 1);
@@ -227,6 +234,15 @@ std::string remedy(std::string_view text, unsigned line, std::string_view said) 
     const std::string name(said.substr(begin + mark.size(), end - begin - mark.size()));
     return "; expected [[" + name + "]] in place of [" + name + "]";
   }
+  constexpr std::string_view table = "existing array '", as_table = "' as table";
+  if (const std::size_t end = said.find(as_table), begin = said.find(table); end != said.npos && begin != said.npos) {
+    const std::string name(said.substr(begin + table.size(), end - begin - table.size()));
+    return "; expected [[" + name + "]] in place of [" + name + "]";
+  }
+  const std::string_view whole = line_of(text, line);
+  if (whole.starts_with("//") || whole.starts_with("%") || whole.starts_with(";") || whole.starts_with("/*"))
+    return "; a comment begins with #";
+  if (whole.starts_with(".[")) return "; expected the line without the full stop at its beginning";
   const std::string_view value = value_in_line(text, line);
   const std::size_t end = std::min(value.find_first_not_of("+-.0123456789eE"), value.size());
   const std::size_t unit = std::min(value.find_first_not_of(' ', end), value.size());

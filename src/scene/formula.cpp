@@ -130,7 +130,11 @@ std::string formula_problem(const std::string& formula, std::string_view variabl
     parser.Eval();
     if (parser.GetNumResults() != 1) return "\"" + shortened(formula) + "\" is several formulas";
   } catch (const mu::Parser::exception_type& error) {
-    return "the formula \"" + shortened(formula) + "\" is malformed: " + without_full_stop(error.GetMsg());
+    std::string meant;
+    if (formula.find("**") != std::string::npos) meant = "; a power is x^2";
+    for (const char* const prefix : {"np.", "numpy.", "math.", "std::"})
+      if (formula.find(prefix) != std::string::npos) meant = "; a function has no prefix, as in sin(x)";
+    return "the formula \"" + shortened(formula) + "\" is malformed: " + without_full_stop(error.GetMsg()) + meant;
   }
   return "";
 }

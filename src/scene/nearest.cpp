@@ -52,6 +52,9 @@ std::string one_of(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string did_you_mean(const std::string& word) { return word.empty() ? "" : "; did you mean \"" + word + "\"?"; }
+std::string did_you_mean(const std::string& word, std::string_view remark) {
+  if (word.empty()) return "";
+  return "; did you mean \"" + word + "\"" + (remark.empty() ? "" : " (" + std::string(remark) + ")") + "?";
+}
 
 }  // namespace barchan

@@ -18,7 +18,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 /// "a", "b" or "c", for messages.
 std::string one_of(const std::vector<std::string>& words);
 
-/// `; did you mean "word"?`, or nothing for an empty word.
-std::string did_you_mean(const std::string& word);
+/// `; did you mean "word" (remark)?`, or nothing for an empty word.
+std::string did_you_mean(const std::string& word, std::string_view remark = "");
 
 }  // namespace barchan

@@ -10,6 +10,7 @@
 #include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
+#include "scene/other_words.hpp"
 #include "scene/units.hpp"
 
 namespace barchan {
@@ -40,6 +41,21 @@ std::string meant_number(const std::string& text) {
   return size ? number_text(size->of(number)) : "";
 }
 
+/// The entry of a table of scene/other_words.hpp for a word of a section; null: it has none.
+template <class Table>
+const OtherWord* find_other(const Table& table, std::string_view section, std::string_view word) {
+  std::string plain(word);
+  for (char& c : plain) c = c == '_' || c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const OtherWord& o) { return o.section == section && o.word == plain; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+bool is_kind(std::string_view word) {
+  const std::vector<std::string> kinds = choices(*find_key("phases", "kind"));
+  return std::find(kinds.begin(), kinds.end(), word) != kinds.end();
+}
+
 class Validator {
  public:
   Validator(int dimensions, Problems& problems) : dimensions_(dimensions), problems_(problems) {}
@@ -51,10 +67,11 @@ class Validator {
       const std::string here = dotted.empty() ? std::string(name.str()) : dotted + "." + std::string(name.str());
       if (section == "interactions" && name.str() != "kernel") pair(node, here);
       else if (const Key* key = find_key(section, name.str())) value(*key, node, here);
-      else misspelt.push_back(unknown(name, section, dotted, here));
+      else misspelt.push_back(unknown(name, section, kind, dotted, here));
     }
     for (const Key* key : keys_of(section)) {
       if (!key->required() || table.contains(key->name)) continue;
+      if (!kind.empty() && !is_kind(kind)) continue;  // what it needs is not known
       const bool of_this_kind = key->slot.kinds.empty() || (!kind.empty() && belongs_to_kind(*key, kind));
       const bool from_material = key->name == "density" && table.contains("material") &&
                                  table["material"].value_or(std::string_view()) != words_of<Material>[0].word;
@@ -68,11 +85,18 @@ class Validator {
 
  private:
   /// Returns the key of the same section that was probably meant, if any.
-  std::string unknown(const toml::key& name, const std::string& section, const std::string& dotted,
-                      const std::string& here) {
+  std::string unknown(const toml::key& name, const std::string& section, const std::string& kind,
+                      const std::string& dotted, const std::string& here) {
     std::vector<std::string> names;
-    for (const Key* key : keys_of(section)) names.emplace_back(key->name);
-    std::string near = nearest(name.str(), names);
+    for (const Key* key : keys_of(section))
+      if (!is_kind(kind) || belongs_to_kind(*key, kind)) names.emplace_back(key->name);
+    const OtherWord* other = kind.empty() ? nullptr : find_other(other_keys, section + ":" + kind, name.str());
+    if (!other) other = find_other(other_keys, section, name.str());
+    if (other && other->ours.empty()) {
+      problems_.add(name.source(), here, "unknown key: " + std::string(other->remark));
+      return "";
+    }
+    std::string near = other ? std::string(other->ours) : nearest(name.str(), names);
     std::string meant = near;
     if (meant.empty())
       for (const Key& key : all_keys())
@@ -88,7 +112,7 @@ class Validator {
         name.source(), here,
         "unknown key; expected " +
             (meant.empty() ? "one of " + all : "a key of " + (dotted.empty() ? "the scene" : "[" + dotted + "]")) +
-            did_you_mean(meant));
+            did_you_mean(meant, other ? other->remark : std::string_view()));
     return near;
   }
 
@@ -209,9 +233,17 @@ class Validator {
   }
 
   void unknown_word(const Key& key, const toml::value<std::string>& text, const std::string& here) {
-    problems_.add(text.source(), here,
-                  "\"" + shortened(text.get()) + "\" is not known; expected " + expected(key, dimensions_) +
-                      did_you_mean(nearest(text.get(), choices(key))));
+    const std::vector<std::string> words = choices(key);
+    const OtherWord* other = find_other(other_values, path_of(key), text.get());
+    const bool side = std::find(words.begin(), words.end(), "bottom") != words.end();
+    if (!other && side) other = find_other(other_values, "", text.get());
+    const std::string what = "\"" + shortened(text.get()) + "\" is not known";
+    if (other && other->ours.empty())
+      return problems_.add(text.source(), here, what + ": " + std::string(other->remark));
+    problems_.add(
+        text.source(), here,
+        what + "; expected " + expected(key, dimensions_) +
+            (other ? did_you_mean(std::string(other->ours), other->remark) : did_you_mean(nearest(text.get(), words))));
   }
 
   void words(const Key& key, const toml::array& array, const std::string& here) {

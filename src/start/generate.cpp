@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
+#include "scene/keys.hpp"
 #include "scene/located.hpp"
 #include "scene/log_wind.hpp"
 #include "start/fitted.hpp"
@@ -249,10 +250,15 @@ struct FillPlaces {
 };
 
 void refuse_none(const Scene& scene, std::size_t k, std::size_t count) {
-  if (count == 0)
-    fail(scene, k,
-         "no particle of phase \"" + scene.fills[k].phase +
-             "\"; expected a larger shape, a smaller spacing, or an earlier place in the file");
+  if (count > 0) return;
+  const Phase* const phase = find_phase(scene, scene.fills[k].phase);
+  const auto size = phase ? phase->diameter() : std::nullopt;
+  fail(scene, k,
+       "no particle of phase \"" + scene.fills[k].phase + "\"" +
+           (size ? ": a grain of " + number_text(size->mean) +
+                       " m finds no room; expected a larger shape, a smaller diameter"
+                 : "; expected a larger shape, a smaller spacing") +
+           ", or an earlier place in the file");
 }
 
 /// Places of a fill of a fluid that comes in rows: on several ranks of a part of them.

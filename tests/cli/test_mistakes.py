@@ -22,7 +22,7 @@ gravity = [0, -9.81]
 [phases.water]
 kind = "fluid"
 density = 1000
-viscosity = 1e-3
+viscosity = 1e-6
 [phases.ground]
 kind = "wall"
 [interactions]
@@ -106,13 +106,45 @@ SCENES = [
     ("gravity = [0, -9.81]", "gravity = -9.81", "expected an array of 2 numbers (m/s2)"),
     ("gravity = [0, -9.81]", "gravity = [0, 0, -9.81]", "expected an array of 2 numbers (m/s2)"),
     ("density = 1000", "density = 1000 kg/m3", "expected a number in units of SI, its unit in a comment"),
-    ("viscosity = 1e-3", "viscosity = -1", "expected a number >= 0 (m2/s)"),
+    ("viscosity = 1e-6", "viscosity = -1", "expected a number >= 0 (m2/s)"),
     ("[[fill]]\nphase = \"ground\"", "[fill]\nphase = \"ground\"", "expected [[fill]] in place of [fill]"),
     ("[time]\nend = 0.01\n", "", "time: missing; expected a section"),
     ("water-ground = 2.1\n", "", "ground: nothing interacts with this wall"),
     ("water-ground = 2.1", "water-gruond = 2.1", 'did you mean "ground"?'),
     ("[domain]", "gravity = [0, -9.81]\n[domain]", 'did you mean "domain.gravity"?'),
     ("[domain]", "[constants]\nd = 1\n[domain]", "nothing uses it"),
+    # the words of other programs and of textbooks
+    ("viscosity = 1e-6", "nu = 1e-3", 'did you mean "viscosity" (kinematic, in m2/s)?'),
+    ("viscosity = 1e-6", "mu = 1e-3", "in m2/s: the dynamic one over the density)?"),
+    ("density = 1000", "rho = 1000", 'did you mean "density"?'),
+    ("viscosity = 1e-6", "surface-tension = 0.07", "unknown key: Barchan has no surface tension"),
+    ("viscosity = 1e-6", "temperature = 293", "unknown key: Barchan computes no heat"),
+    ("viscosity = 1e-6", 'turbulence = "k-epsilon"', 'did you mean "k-omega"?'),
+    ("viscosity = 1e-6", "colour = 3", "expected one of kind, spacing, density, viscosity"),
+    ('kind = "fluid"', 'kind = "gas"', 'did you mean "fluid"?'),
+    ('kind = "wall"', 'kind = "boundary"', 'did you mean "wall"?'),
+    ('["bottom"]', '["floor"]', 'did you mean "bottom"?'),
+    ('["bottom"]', '["ymin"]', 'did you mean "bottom"?'),
+    ("box = { min", "rectangle = { min", 'did you mean "box"?'),
+    ("box = { min = [0, 0], max = [1, 0.5] }", "circle = { centre = [0, 0], radius = 1 }", 'did you mean "disc"?'),
+    ("end = 0.01", "end = 0.01\ndt = 1e-4", 'did you mean "step" (a fixed one; without it the program chooses)?'),
+    ("[time]", '[output]\nfields = ["vorticity"]\n[time]', "the filter Gradient makes it of the velocity"),
+    ("[time]", "[output]\nfolder = 1\n[time]", "the folder is an option: barchan run SCENE --out DIR"),
+    ("[time]", ".[time]", "expected the line without the full stop at its beginning"),
+    ("[time]", "// the time\n[time]", "a comment begins with #"),
+    ('[[fill]]\nphase = "water"', '[fill]\nphase = "water"', "expected [[fill]] in place of [fill]"),
+    ("[time]", '[[motion]]\nphase = "ground"\nrotation = 1\n[time]', 'did you mean "angular-velocity" (in rad/s)?'),
+    ("max = [1, 0.5] } }", 'max = [1, 0.5] } }\nvelocity = ["x**2", 0]', "a power is x^2"),
+    ("max = [1, 0.5] } }", 'max = [1, 0.5] } }\nvelocity = ["np.sin(x)", 0]', "a function has no prefix, as in sin(x)"),
+]
+
+# What is read and done as it stands, with a warning of what it may mean: what was
+# written in the place of what, and the warning; the scene as it is has none of them.
+WARNED = [
+    ("viscosity = 1e-6", "viscosity = 1e-3", "1000 times that of water; it is the kinematic viscosity"),
+    ("density = 1000", "density = 1", "1 kg/m3 is light for a liquid"),
+    ("size = [1, 1]", "size = [1000, 1]", "the domain is 1000 m long; lengths are in m"),
+    ('["bottom"]', '["bottom"], layers = 1', "and the kernel of \"water\" reaches 0.16 m into the wall"),
 ]
 
 
@@ -151,6 +183,15 @@ class Mistakes(unittest.TestCase):
                 self.assertIn(before, SCENE)
                 (self.folder / "w.toml").write_text(SCENE.replace(before, after, 1))
                 self.answered(["run", "w.toml"], expected)
+
+    def test_warnings(self):
+        for before, after, expected in WARNED:
+            with self.subTest(written=after):
+                for text, warned in ((SCENE.replace(before, after, 1), True), (SCENE, False)):
+                    (self.folder / "w.toml").write_text(text)
+                    done = subprocess.run([PROGRAM, "plan", "w.toml"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertEqual(expected in done.stdout + done.stderr, warned, done.stdout)
 
     def test_the_scene_itself_is_right(self):
         self.assertEqual(said_of(self.folder, ["plan", "s.toml"])[0], 0)
