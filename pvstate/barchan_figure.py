@@ -60,6 +60,7 @@ class Figure(Marks):
         window = series.wanted_window(self.box) or window
         if window is not None:
             self.box[:4] = window
+        self.whole = window is None
         series.window = list(self.box)
         if series.two_dimensional:
             extent = self.box[1] - self.box[0], self.box[3] - self.box[2]

@@ -62,6 +62,33 @@ for particles, lengths in zip(inputs, widths):
                 cell = np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)
                 weights += np.bincount(cell, w, columns * rows)
                 sums += np.bincount(cell, w * v, columns * rows)
+if {filled}:   # empty space that walls and the lower edge of the picture enclose is ground, where no other particle is
+    def spread(seed, empty):
+        # All of `empty` that is joined to `seed`, by rows and columns in turn.
+        before = -1
+        while seed.sum() != before:
+            before = seed.sum()
+            for _ in range(2):
+                seed, empty = seed.T, np.ascontiguousarray(empty.T)
+                row = np.pad(empty, ((0, 0), (0, 1))).ravel()
+                run = np.cumsum(~row)
+                hit = np.bincount(run, np.pad(seed & empty, ((0, 0), (0, 1))).ravel()) > 0
+                seed = (hit[run] & row).reshape(len(empty), -1)[:, :-1]
+        return seed
+    weights = weights.reshape(rows, columns)
+    empty, air, ground = weights < {outline}, np.zeros((rows, columns), bool), np.zeros((rows, columns), bool)
+    for side in (0, -1):   # a gap of two spacings below a wall that leaves the picture is none
+        lowest = np.flatnonzero(~empty[:, side]).min(initial=rows)
+        air[0 if lowest > 8 else lowest:, side] = True
+    air[-1] = ground[0] = True
+    for particles in inputs[len(widths):]:
+        if particles.GetNumberOfPoints():
+            x = np.round((np.asarray(particles.Points)[:, :2] - (x0, y0)) / step)
+            column, row = x[np.isfinite(x).all(axis=1)].T.astype(int)
+            there = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+            air[row[there], column[there]] = True
+    weights[spread(ground, empty & ~spread(air & empty, empty))] = 1.0
+    weights = weights.ravel()
 image = vtkImageData()
 image.SetDimensions(columns, rows, 1)
 image.SetOrigin(x0, y0, z)
@@ -99,7 +126,7 @@ for particles, lengths in zip(inputs, widths):
     cell = row[inside].astype(int) * columns + column[inside].astype(int)
     areas += np.bincount(cell, area, columns * rows)
     sums += np.stack([np.bincount(cell, area * velocity[:, k], columns * rows) for k in range(3)], axis=1)
-full = np.flatnonzero(areas > 0.55 * side ** 2)
+full = np.flatnonzero(areas > 0.65 * side ** 2)   # with less its middle may lie in a wall
 if len(full):
     centre = np.stack([x0 + (full % columns + 0.5) * side, y0 + (full // columns + 0.5) * side, 0.0 * full], axis=1)
     points = vtkPoints()
@@ -226,11 +253,12 @@ class Marks:
             ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array), separate=True)
         return shown
 
-    def field(self, phases, array=None, low=0.0, high=1.0, colour=None, layer=0, sources=None, outline=0.25):
+    def field(self, phases, array=None, low=0.0, high=1.0, colour=None, layer=0, sources=None, outline=0.25, others=None):
         """Phases of a 2D scene as one smooth field, whatever their spacings: at each place the mean of the particles within 1.5 spacings, weighted by
         their distance; the outline is where about half of that neighbourhood is empty. `array` (a vector counts by its size) is drawn by colours from
         `low` to `high` under the name "smooth", else all in `colour`. `sources`: other filters of these phases. `outline`: the share of a full
-        neighbourhood where the area ends; 0.5 is the outline of a body, a drop alone has 0.42. Returns the representation."""
+        neighbourhood where the area ends; 0.5 is the outline of a body, a drop alone has 0.42. `others`: phases that are not drawn; then space is
+        filled that the drawn ones and the lower edge enclose and that has none of the others. Returns the representation."""
         x0, x1, y0, y1 = self.box[:4]
         widths = [self.series.width_in_lengths(p) for p in phases]
         lengths = (self.series.values("smoothing_length", [p]) for p in phases)
@@ -238,10 +266,10 @@ class Marks:
         columns = max(int((x1 - x0) / max(finest / 3, 1.5 * self.metres)), 1) + 1
         step = (x1 - x0) / (columns - 1)
         smooth = ProgrammableFilter(registrationName=(array or "outline") + " of " + self.series.names_of(phases),
-                                    Input=sources or [self.series.source(p) for p in phases])
+                                    Input=(sources or [self.series.source(p) for p in phases]) + [self.series.source(p) for p in others or []])
         smooth.OutputDataSetType = "vtkPolyData"
         smooth.Script = SMOOTH.format(x0=float(x0), y0=float(y0), step=float(step), columns=columns, rows=math.ceil((y1 - y0) / step) + 1, far=(columns - 1.0, float((y1 - y0) / step)),
-                                      array=array or "", low=float(low), high=float(high), outline=outline, z=0.05 * layer * self.series.spacing, widths=widths)
+                                      array=array or "", low=float(low), high=float(high), outline=outline, filled=others is not None, z=0.05 * layer * self.series.spacing, widths=widths)
         shown = Show(smooth, self.view)
         shown.SetRepresentationType("Surface")
         shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
@@ -256,10 +284,12 @@ class Marks:
         colour = GROUND if self.series.has_grains else WALL
         if not self.series.two_dimensional and self.series.domain is not None:
             self.edges([float((min if side % 2 else max)(x, held)) for side, (x, held) in enumerate(zip(self.series.domain, self.box))])
-        for phase in self.series.phases("wall"):
-            if phase not in drawn and self.series.two_dimensional:
-                self.field([phase], colour=colour, layer=layer, outline=0.5)
-            elif phase not in drawn:
+        walls = [phase for phase in self.series.phases("wall") if phase not in drawn]
+        if walls and self.series.two_dimensional:
+            others = [phase for phase in self.series.phases("fluid", "grains", "elastic", "rigid", "wall") if phase not in walls]
+            self.field(walls, colour=colour, layer=layer, outline=0.5, others=others if self.whole else None)
+        elif walls:
+            for phase in walls:
                 self.particles(phase, radius=0.12, colour=colour, opacity=0.35)
 
     def edges(self, box):
