@@ -368,7 +368,7 @@ void warn_of_small_radius(const Scene& scene, Plan& plan) {
 /// Numbers that are right in other units: lengths in mm, densities in g/cm3, a dynamic viscosity.
 void warn_of_units(const Scene& scene, Plan& plan) {
   constexpr double longest = 500.0, shortest = 1e-4;        // m, of a domain
-  constexpr double lightest = 20.0;                         // kg/m3, of grains and of a liquid
+  constexpr double lightest = 20.0;                         // kg/m3, of grains
   constexpr double water = 1000.0, water_viscosity = 1e-6;  // kg/m3, m2/s
   double length = 0.0;
   for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
@@ -378,12 +378,13 @@ void warn_of_units(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const Phase& phase = scene.phases[k];
     const bool liquid = plan.phases[k].free_surface && norm(scene.domain.gravity) > 0.0;
-    if ((liquid || phase.if_grains()) && phase.density < lightest)
+    const double times = liquid ? phase.fluid().viscosity / water_viscosity : 0.0;
+    const bool in_grams = times > 0.5 && times < 2.0 && std::abs(1000.0 * phase.density / water - 1.0) < 0.1;
+    if (in_grams || (plan.phases[k].own_steps() && phase.density < lightest))
       plan.warnings.push_back("phases." + phase.name + ".density: " + brief(phase.density) + " kg/m3 is light for " +
-                              (liquid ? "a liquid (water has 1000)" : "grains (quartz has 2650)") +
+                              (in_grams ? "a liquid (water has 1000)" : "grains (quartz has 2650)") +
                               "; densities are in kg/m3");
     if (!liquid || std::abs(phase.density / water - 1.0) > 0.1) continue;
-    const double times = phase.fluid().viscosity / water_viscosity;
     if (times > 500.0 && times < 2000.0)
       plan.warnings.push_back("phases." + phase.name + ".viscosity: " + brief(phase.fluid().viscosity) + " m2/s is " +
                               brief(times) +
@@ -401,6 +402,11 @@ void warn_of_few_layers(const Scene& scene, Plan& plan) {
       const PlanPhase& wall = plan.phases[e.other];
       const double missing = e.radius / wall.spacing * (1.0 - 1e-9) - sides->layers;
       if (!e.extends || wall.name != scene.fills[f].phase || missing <= 0.5) continue;
+      // Of several joined spacings the finest may stand at the wall.
+      if (std::any_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& other) {
+            return other.extends && other.other == e.other && other.radius < e.radius;
+          }))
+        continue;
       plan.warnings.push_back("fill." + std::to_string(f) + ".shape.layers: " + std::to_string(sides->layers) + " of " +
                               brief(wall.spacing) + " m, and the kernel of \"" + plan.phases[e.fluid].name +
                               "\" reaches " + brief(e.radius - 0.5 * e.spacing) +

@@ -213,7 +213,15 @@ std::function<double(const Vec3&)> depth_in_solids(const Scene& scene, std::size
   };
 }
 
-/// Lattice places over the ground and outside of solids that keep their distance from what is there.
+/// Of grains that are spheres: where walls and bodies leave no room for the largest.
+std::optional<NoRoom> no_room_for_spheres(const Scene& scene, std::size_t k) {
+  const Phase* const phase = find_phase(scene, scene.fills[k].phase);
+  if (!phase || !phase->if_grains() || !phase->diameter()) return std::nullopt;
+  return NoRoom(scene, *phase, 0.5 * phase->diameter()->largest());
+}
+
+/// Lattice places over the ground and outside of solids that keep their distance from what is there. Spheres keep it
+/// whole: none overlaps another or a surface.
 void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k, double dx, const Occupied& occupied) {
   const bool over_ground = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
                                        [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
@@ -221,9 +229,11 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
   const double slack = 1e-9 * dx;
   const auto depth = depth_in_solids(scene, k, dx);
   std::erase_if(places, [&](const Vec3& x) { return depth(x) > 0.25 * dx; });
+  const auto none = no_room_for_spheres(scene, k);
+  if (none) std::erase_if(places, [&](const Vec3& x) { return none->at(x); });
   leave_out(places, occupied.by_all, [&](const Vec3& x) {
     if (over_ground && x[1] - scene.domain.origin[1] < ground.height(x[0], x[2]) - slack) return true;
-    return occupied.is_taken(x, dx, rest_distance);
+    return occupied.is_taken(x, dx, none ? 1.0 : rest_distance);
   });
 }
 
@@ -291,10 +301,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupie
     const double cells = cells_between(scene, region.lower, region.upper, dx);
     check_room(scene, k, cells);
     if (fill.packing == Packing::random) {
-      const Phase* const phase = find_phase(scene, fill.phase);
-      std::optional<NoRoom> none;
-      if (phase && phase->if_grains() && phase->diameter())
-        none.emplace(scene, *phase, 0.5 * phase->diameter()->largest());
+      const auto none = no_room_for_spheres(scene, k);
       places = random_places(scene, region, cells, fill.seed, dx, occupied, none ? &*none : nullptr);
     } else {
       places = stretched_lattice(scene, fill, region, dx, share.value_or(ranks::Share{}));

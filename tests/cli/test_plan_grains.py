@@ -11,6 +11,9 @@ import sys
 import tempfile
 import unittest
 
+import meshio
+import numpy
+
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 
 # Grains that stand apart and fall on each other within the first twentieth of the run.
@@ -120,6 +123,63 @@ class InWater(unittest.TestCase):
         mass = [float(row.split(",")[rows[0].split(",").index("sand_mass [kg]")]) for row in rows[1:]]
         self.assertAlmostEqual(mass[0] / (2 * 2650 * 3.141592653589793 / 6 * 1e-9), 1, places=9)
         self.assertAlmostEqual(mass[-1] / mass[0], 0.5, places=9)
+
+
+BETWEEN = """spacing = 1e-3
+[domain]
+size = [0.03, 0.03]
+gravity = [0, -9.81]
+[phases.large]
+kind = "grains"
+material = "quartz-sand"
+diameter = 2e-3
+[phases.small]
+kind = "grains"
+material = "quartz-sand"
+diameter = 8e-4
+[phases.box]
+kind = "wall"
+[interactions]
+large-large = { law = "linear" }
+small-small = { law = "linear" }
+large-small = { law = "linear" }
+large-box = { law = "linear" }
+small-box = { law = "linear" }
+[[fill]]
+phase = "box"
+shape = { sides = ["left", "right", "bottom"] }
+[[fill]]
+phase = "large"
+shape = { box = { min = [0, 0], max = [0.03, 0.02] } }
+packing = "random"
+[[fill]]
+phase = "small"
+shape = { box = { min = [0, 0], max = [0.03, 0.02] } }
+leave-out = "earlier-fills"
+[time]
+end = 1e-3
+largest-speed = 0.3
+"""
+
+
+class SmallOnesBetweenLargeOnes(unittest.TestCase):
+    def test_no_two_overlap(self):
+        with tempfile.TemporaryDirectory() as name:
+            scene, start = pathlib.Path(name) / "b.toml", pathlib.Path(name) / "b.vtu"
+            scene.write_text(BETWEEN)
+            said = subprocess.run([PROGRAM, "generate", str(scene), "-o", str(start)], capture_output=True, text=True)
+            self.assertEqual(said.returncode, 0, said.stderr)
+            mesh = meshio.read(start)
+            phase, x = mesh.point_data["phase"], mesh.points[:, :2]
+            radius = numpy.where(phase == 0, 1e-3, 4e-4)[phase < 2]
+            x = x[phase < 2]
+            self.assertGreater((phase == 1).sum(), 30)
+            apart = numpy.linalg.norm(x[:, None] - x[None], axis=2) - radius[:, None] - radius[None]
+            numpy.fill_diagonal(apart, 1.0)
+            self.assertGreater(apart.min(), -1e-9)
+            self.assertGreater((x[:, 0] - radius).min(), -1e-9)
+            self.assertLess((x[:, 0] + radius).max(), 0.03 + 1e-9)
+            self.assertGreater((x[:, 1] - radius).min(), -1e-9)
 
 
 if __name__ == "__main__":
