@@ -173,11 +173,13 @@ void reaction(PhaseParticles& solid, const RecordArray& own_records, const Fluid
   }
 }
 
+constexpr FluidTerms fills{.calming = true};  // a fluid that fills its space
+
 template <int Dim, bool keeps, class T>
 void dispatch_in(PhaseParticles& fluid, const T* own, double unit, std::span<const FluidNeighbour> neighbours,
                  const FluidParameters& q, FluidScheme scheme, PartColumns* parts) {
   using Consistent = Finish<Dim, ConsistentFluid<Dim>, keeps>;
-  constexpr FluidTerms fills{.calming = true}, surface{.ends = true, .surface = SurfaceTerms::loose};
+  constexpr FluidTerms surface{.ends = true, .surface = SurfaceTerms::loose};
   const bool joined =
       !keeps && std::any_of(neighbours.begin(), neighbours.end(), [](const auto& e) { return e.joined > 0; });
   if (scheme == FluidScheme::plain) {
