@@ -111,6 +111,7 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
       return unknown_option(command, word);
   for (const std::string& word : words) {
     if (std::find(extras.begin(), extras.end(), word) == extras.end()) continue;
+    if (word.starts_with('=')) return "\"=\" stands alone; expected KEY=VALUE without blanks, as in time.end=0.01";
     if (word.find('=') != std::string::npos)
       return "\"" + shortened(word) + "\" stands alone; did you mean --set '" + shortened(word) + "'?";
     return "\"" + shortened(word) + "\" is one word too many; expected `" + usage(command) +

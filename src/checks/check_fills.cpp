@@ -135,8 +135,12 @@ void check_sizes(const Fill& fill, const std::string& shape, const Scene& scene,
   if (const auto* box = std::get_if<BoxShape>(&fill.shape); box && !report.touched(shape))
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis)
       if (!(box->max[axis] > box->min[axis])) {
-        report(shape + ".box.max", "the box is empty along " + std::string(1, static_cast<char>('x' + axis)) +
-                                       "; expected more than " + number_text(box->min[axis]) + " m");
+        const std::string along = std::string(1, static_cast<char>('x' + axis));
+        report(shape + ".box.max",
+               box->max[axis] < box->min[axis]
+                   ? "min and max are swapped along " + along + "; expected more than " + number_text(box->min[axis]) +
+                         " m"
+                   : "the box is empty along " + along + "; expected more than " + number_text(box->min[axis]) + " m");
         break;
       }
   if (const auto* ring = std::get_if<RingShape>(&fill.shape);

@@ -62,6 +62,9 @@ void check_box(const Scene& scene, const Influx& influx, const std::string& dott
     const double low = influx.box->min[d], high = influx.box->max[d], rounding = 1e-9 * scene.domain.size[d];
     if (low < scene.domain.origin[d] - rounding || high > scene.domain.origin[d] + scene.domain.size[d] + rounding)
       return report(dotted + ".box", "reaches out of the domain; expected a box in it");
+    if (high < low)
+      return report(dotted + ".box", "min and max are swapped along " + std::string(1, static_cast<char>('x' + d)) +
+                                         "; expected min below max");
     if (!(high - low >= least) || !(high > low))
       return report(dotted + ".box", "a grain of \"" + influx.phase + "\", " + number_text(least) +
                                          " m across, has no room in it; expected a larger box");

@@ -99,8 +99,13 @@ void check_phases(const Scene& scene, const Report& report) {
     for (const Key* key : keys_of("phases")) {
       const std::string here = dotted + "." + std::string(key->name);
       if (belongs_to_kind(*key, kind) || !report.has(here)) continue;
+      const std::string_view instead = kind != "column"           ? ""
+                                       : key->name == "roughness" ? "; that of its wind is a key of log-profile"
+                                       : key->name == "velocity"
+                                           ? "; its wind is friction-velocity, speed or log-profile"
+                                           : "";
       report(here, "not a key of a phase of kind " + kind + "; expected in a phase of kind " +
-                       kinds_text(*key, " or ") + " only");
+                       kinds_text(*key, " or ") + " only" + std::string(instead));
     }
     const auto mentions = [&](const auto& section) { return section.phase == phase.name; };
     const bool filled = std::any_of(scene.fills.begin(), scene.fills.end(), mentions) ||
@@ -176,7 +181,7 @@ void check_room_for_a_sphere(const Scene& scene, const Report& report, std::size
     char text[256];
     std::snprintf(text, sizeof text,
                   "%.10g m along the periodic axis %c is less than the largest diameter of \"%s\": such a sphere "
-                  "overlaps its own image; expected at least %.10g m",
+                  "overlaps its own image; expected at least %.10g m, or a smaller diameter",
                   scene.domain.size[axis], static_cast<char>('x' + axis), pair.a.c_str(), phase->diameter()->largest());
     report("domain.size", text);
   }

@@ -147,9 +147,10 @@ void describe_phases(const Scene& scene, const std::vector<ParticleBlock>& block
   bool leaves = scene.domain.open.empty() || scene.domain.open.front() == "none";
   for (std::size_t k = 0; k < layout.phases.size(); ++k) leaves = leaves || layout.leaves(k);
   if (!leaves)
-    throw SceneError(located(scene, "domain.open") +
-                     ": nothing leaves through it; expected a scene with a fluid that has a free surface, or with "
-                     "grains that have a diameter");
+    throw SceneError(
+        located(scene, "domain.open") +
+        ": nothing leaves through it: a wall closes the side, or nothing that moves has a free surface or a "
+        "diameter; expected a side without a wall, and a fluid with a free surface or grains with a diameter");
   for (std::size_t k = 0; k < layout.phases.size(); ++k) describe_surroundings(scene, k, layout.phases[k]);
 }
 

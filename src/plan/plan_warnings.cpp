@@ -213,7 +213,9 @@ void warn_of_background_pressure(const Scene& scene, Plan& plan) {
 void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
   for (std::size_t a = 0; a < plan.phases.size(); ++a) {
     const PlanPhase& p = plan.phases[a];
-    if (p.own_steps() && p.count > 1 && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
+    const bool enters = std::any_of(scene.influxes.begin(), scene.influxes.end(),
+                                    [&](const Influx& influx) { return influx.phase == p.name; });
+    if (p.own_steps() && (p.count > 1 || enters) && !entry_between(scene, scene.phases[a], scene.phases[a]) &&
         !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": the grains of \"" + p.name +
                               "\" pass through each other");
@@ -223,6 +225,14 @@ void warn_of_what_does_not_meet(const Scene& scene, Plan& plan) {
         plan.warnings.push_back("interactions: no entry " + plan.phases[b].name + "-" + p.name + ": the fluids \"" +
                                 plan.phases[b].name + "\" and \"" + p.name +
                                 "\" do not interact and pass through each other");
+    for (std::size_t b = 0; b < plan.phases.size(); ++b) {
+      const PlanPhase& body = plan.phases[b];
+      if (p.flows() && body.moves() && !body.flows() && !body.own_steps() && p.count > 0 && body.count > 0 &&
+          !entry_between(scene, scene.phases[a], scene.phases[b]) && !meant_apart(scene, p.name, body.name))
+        plan.warnings.push_back("interactions: no entry " + p.name + "-" + body.name + ": \"" + p.name + "\" and \"" +
+                                body.name + "\" pass through each other; " + p.name + "-" + body.name +
+                                " = false says that it is meant");
+    }
   }
 }
 
@@ -292,7 +302,8 @@ void warn_of_weight(const Scene& scene, Plan& plan) {
 /// What "up" means is not asked of gravity: beds, the sides by name, and grains that enter have their heights along y.
 void warn_of_another_up(const Scene& scene, Plan& plan) {
   const Vec3& g = scene.domain.gravity;
-  if (scene.dimensions == 2 || g[1] != 0.0 || std::abs(g[2]) <= std::abs(g[0]) || scene.domain.periodic[2]) return;
+  const std::size_t axis = std::abs(g[2]) > std::abs(g[0]) ? 2 : 0;
+  if (scene.dimensions == 2 || g[1] != 0.0 || g[axis] == 0.0 || scene.domain.periodic[axis]) return;
   std::string uses;
   const auto add = [&](const std::string& use) { uses += (uses.empty() ? "" : ", ") + use; };
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
@@ -307,7 +318,8 @@ void warn_of_another_up(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < scene.influxes.size(); ++k)
     if (!scene.influxes[k].box) add("influx." + std::to_string(k));
   if (!uses.empty())
-    plan.warnings.push_back("domain.gravity: it points along z, and the heights of " + uses +
+    plan.warnings.push_back("domain.gravity: it points along " + std::string(1, static_cast<char>('x' + axis)) +
+                            ", and the heights of " + uses +
                             " are along y: \"bottom\" and \"top\" are the sides across y, a bed lies on the first; "
                             "turn the scene so that gravity is along y, as in [0, -9.81, 0]");
 }
@@ -393,6 +405,86 @@ void warn_of_units(const Scene& scene, Plan& plan) {
   }
 }
 
+/// What moves has weight in most scenes: a liquid or grains over a bottom without gravity may have been forgotten.
+void warn_of_no_weight(const Scene& scene, Plan& plan) {
+  if (scene.places.contains("domain.gravity") || norm(scene.domain.gravity) > 0.0) return;
+  const bool on_bottom = std::any_of(scene.fills.begin(), scene.fills.end(), [](const Fill& fill) {
+    const auto* sides = std::get_if<SidesShape>(&fill.shape);
+    return sides && std::count(sides->sides.begin(), sides->sides.end(), "bottom") > 0;
+  });
+  for (std::size_t k = 0; k < plan.phases.size() && on_bottom; ++k)
+    if (const PlanPhase& p = plan.phases[k]; p.free_surface || (p.own_steps() && p.diameter > 0.0))
+      return plan.warnings.push_back("domain.gravity: none, and \"" + p.name +
+                                     "\" over the bottom has no weight; expected gravity = [0, -9.81" +
+                                     (scene.dimensions == 3 ? ", 0]" : "]") + ", or [0, 0" +
+                                     (scene.dimensions == 3 ? ", 0]" : "]") + " where that is meant");
+}
+
+/// Numbers of gravity in other units, sounds far above what a scene needs, and influxes that never begin.
+void warn_of_numbers(const Scene& scene, Plan& plan) {
+  constexpr double heavy = 50.0, too_stiff = 100.0;  // m/s2; of the largest speed
+  if (const double g = norm(scene.domain.gravity); g > heavy)
+    plan.warnings.push_back("domain.gravity: " + brief(g) + " m/s2 is " + brief(g / 9.81) +
+                            " times that of the earth, 9.81 m/s2");
+  for (std::size_t k = 0; k < plan.phases.size(); ++k) {
+    const PlanPhase& p = plan.phases[k];
+    if (!p.flows() || !scene.phases[k].fluid().sound_speed || !(plan.largest_speed > 0.0)) continue;
+    const double falls = std::sqrt(2.0 * norm(scene.domain.gravity) * scene.domain.size[1]);  // m/s, through the domain
+    const double fastest = std::max(plan.largest_speed, falls);
+    if (p.sound_speed > too_stiff * fastest)
+      plan.warnings.push_back("phases." + p.name + ".sound-speed: " + brief(p.sound_speed) + " m/s is " +
+                              brief(p.sound_speed / fastest) + " times what the scene can reach, " + brief(fastest) +
+                              " m/s; ten times suffice, and the run is that much shorter");
+  }
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k)
+    if (scene.influxes[k].start > scene.time.end)
+      plan.warnings.push_back("influx." + std::to_string(k) + " starts after time.end: nothing enters");
+}
+
+/// A side without a wall where others have one: what comes there stops the run.
+void warn_of_sides_without_a_wall(const Scene& scene, Plan& plan) {
+  if (norm(scene.domain.gravity) == 0.0) return;
+  std::vector<std::string> closed = scene.domain.open;
+  bool any = false;
+  for (const Fill& fill : scene.fills) {
+    const auto wall =
+        std::find_if(plan.phases.begin(), plan.phases.end(), [&](const PlanPhase& p) { return p.name == fill.phase; });
+    const auto* sides = std::get_if<SidesShape>(&fill.shape);
+    if (wall == plan.phases.end() || wall->moves()) continue;
+    if (!sides) return;  // its shape may be a vessel
+    any = true;
+    closed.insert(closed.end(), sides->sides.begin(), sides->sides.end());
+  }
+  const auto mover = std::find_if(plan.phases.begin(), plan.phases.end(),
+                                  [](const PlanPhase& p) { return p.free_surface || p.own_steps(); });
+  if (!any || mover == plan.phases.end() || !scene.inflows.empty() || !scene.outflows.empty() ||
+      !scene.influxes.empty() || !scene.domain.open.empty())
+    return;
+  std::string missing;
+  const char* const names[3][2] = {{"left", "right"}, {"bottom", ""}, {"back", "front"}};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+    for (const std::string side : names[d])
+      if (!side.empty() && !scene.domain.periodic[d] && std::find(closed.begin(), closed.end(), side) == closed.end())
+        missing += (missing.empty() ? "\"" : ", \"") + side + "\"";
+  if (!missing.empty())
+    plan.warnings.push_back("domain: no wall at " + missing + ": \"" + mover->name +
+                            "\" that comes there stops the run; expected it among the sides of a wall, in domain.open, "
+                            "or a periodic axis");
+}
+
+/// What enters a fluid that fills its space, and cannot leave it.
+void warn_of_no_way_out(const Scene& scene, Plan& plan) {
+  for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
+    const auto same = [&](const auto& end) { return end.phase == scene.inflows[k].phase; };
+    const auto found = std::find_if(plan.phases.begin(), plan.phases.end(),
+                                    [&](const PlanPhase& p) { return p.name == scene.inflows[k].phase; });
+    if (found == plan.phases.end() || found->free_surface || !scene.domain.open.empty()) continue;
+    if (std::none_of(scene.outflows.begin(), scene.outflows.end(), same))
+      plan.warnings.push_back("inflow." + std::to_string(k) + ": \"" + found->name +
+                              "\" enters, and nothing leaves: its pressure rises; expected an [[outflow]]");
+  }
+}
+
 /// Layers of a side that are thinner than the kernel of the fluid at it.
 void warn_of_few_layers(const Scene& scene, Plan& plan) {
   for (std::size_t f = 0; f < scene.fills.size(); ++f) {
@@ -441,6 +533,10 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_influxes(scene, plan);
   warn_of_small_radius(scene, plan);
   warn_of_units(scene, plan);
+  warn_of_no_weight(scene, plan);
+  warn_of_numbers(scene, plan);
+  warn_of_no_way_out(scene, plan);
+  warn_of_sides_without_a_wall(scene, plan);
   warn_of_few_layers(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }

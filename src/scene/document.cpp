@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <regex>
 #include <tuple>
 
 #include "base/errors.hpp"
@@ -227,6 +228,34 @@ std::string_view value_in_line(std::string_view text, unsigned line) {
   return text;
 }
 
+/// Slips that one line shows: signs of a text processor, decimal commas, numbers of other languages.
+std::string slip_of(std::string_view whole, std::string_view said) {
+  const auto has = [&](std::string_view text) { return whole.find(text) != whole.npos; };
+  for (const char* const quote : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019"})
+    if (has(quote)) return "; expected straight quotes, \"...\"";
+  if (has("\u2212") || has("\u2013")) return "; expected the sign - of the keyboard";
+  if (said.find("escape") != said.npos || said.find("hex digit") != said.npos)
+    return "; in \"...\" a \\ begins a code: expected / in its place, or '...'";
+  if (said.find("cannot redefine existing table") != said.npos)
+    return "; it stands twice: expected all its keys in one place, or [[...]] in both for a list";
+  if (said.find("saw '\\n'") != said.npos && has("{")) return "; expected { ... } in one line";
+  if (whole.ends_with(';') || has("; ")) return "; expected no semicolon";
+  const std::size_t equals = whole.find('=');
+  if (equals == whole.npos) return "";
+  const std::string value(whole.substr(equals + 1, whole.find('#') - equals - 1));
+  std::smatch number;
+  static const std::regex comma(R"(^\s*([+-]?\d+),(\d+)\s*$)"), no_zero(R"(^\s*([+-]?)\.(\d+)\s*$)"),
+      no_digit(R"(^\s*([+-]?\d+)\.([eE][+-]?\d+)?\s*$)"), of_fortran(R"(^\s*([+-]?[\d.]+)[dD]([+-]?\d+)\s*$)"),
+      spaces(R"(^\s*\[?\(?\s*[+-]?[\d.]+(\s+[+-]?[\d.]+)+\s*\)?\]?\s*$)"), words(R"(^\s*([A-Za-z]\w*( +\w+)+)\s*$)");
+  if (std::regex_match(value, number, comma)) return "; expected " + number.str(1) + "." + number.str(2);
+  if (std::regex_match(value, number, no_zero)) return "; expected " + number.str(1) + "0." + number.str(2);
+  if (std::regex_match(value, number, no_digit)) return "; expected " + number.str(1) + ".0" + number.str(2);
+  if (std::regex_match(value, number, of_fortran)) return "; expected " + number.str(1) + "e" + number.str(2);
+  if (std::regex_match(value, spaces)) return "; expected an array with commas, as in [0, -9.81]";
+  if (std::regex_match(value, number, words)) return "; expected \"" + number.str(1) + "\"";
+  return "";
+}
+
 /// What else to write where the reader of TOML only says what it cannot read; empty: nothing that we know.
 std::string remedy(std::string_view text, unsigned line, std::string_view said) {
   constexpr std::string_view array = "' as array-of-tables", mark = "existing table '";
@@ -243,6 +272,7 @@ std::string remedy(std::string_view text, unsigned line, std::string_view said) 
   if (whole.starts_with("//") || whole.starts_with("%") || whole.starts_with(";") || whole.starts_with("/*"))
     return "; a comment begins with #";
   if (whole.starts_with(".[")) return "; expected the line without the full stop at its beginning";
+  if (const std::string meant = slip_of(whole, said); !meant.empty()) return meant;
   const std::string_view value = value_in_line(text, line);
   const std::size_t end = std::min(value.find_first_not_of("+-.0123456789eE"), value.size());
   const std::size_t unit = std::min(value.find_first_not_of(' ', end), value.size());
@@ -265,6 +295,15 @@ std::string bare_word(std::string_view text, unsigned line) {
   return word;
 }
 
+/// Of a word that stands without quotes.
+std::string without_quotes(const std::string& word) {
+  std::string small = word;
+  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (small == "true" || small == "yes" || small == "on") return word + " is no value; expected true";
+  if (small == "false" || small == "no" || small == "off") return word + " is no value; expected false";
+  return word + " stands without quotes; expected \"" + word + "\"";
+}
+
 }  // namespace
 
 toml::table parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides,
@@ -280,8 +319,7 @@ toml::table parse_document(const std::string& text, const std::string& file, con
     const unsigned line = error.source().begin.line;
     const std::string word = bare_word(text, line), said(error.description());
     problems.fail(error.source(), "",
-                  "not TOML: " + (word.empty() ? said + remedy(text, line, said)
-                                               : word + " stands without quotes; expected \"" + word + "\""));
+                  "not TOML: " + (word.empty() ? said + remedy(text, line, said) : without_quotes(word)));
   }
   for (const std::string& assignment : overrides) apply(document, assignment, problems);
   return document;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "base/errors.hpp"
@@ -67,7 +68,7 @@ class Validator {
       const std::string here = dotted.empty() ? std::string(name.str()) : dotted + "." + std::string(name.str());
       if (section == "interactions" && name.str() != "kernel") pair(node, here);
       else if (const Key* key = find_key(section, name.str())) value(*key, node, here);
-      else misspelt.push_back(unknown(name, section, kind, dotted, here));
+      else misspelt.push_back(unknown(name, table, section, kind, dotted, here));
     }
     for (const Key* key : keys_of(section)) {
       if (!key->required() || table.contains(key->name)) continue;
@@ -85,13 +86,16 @@ class Validator {
 
  private:
   /// Returns the key of the same section that was probably meant, if any.
-  std::string unknown(const toml::key& name, const std::string& section, const std::string& kind,
-                      const std::string& dotted, const std::string& here) {
+  std::string unknown(const toml::key& name, const toml::table& table, const std::string& section,
+                      const std::string& kind, const std::string& dotted, const std::string& here) {
     std::vector<std::string> names;
     for (const Key* key : keys_of(section))
       if (!is_kind(kind) || belongs_to_kind(*key, kind)) names.emplace_back(key->name);
     const OtherWord* other = kind.empty() ? nullptr : find_other(other_keys, section + ":" + kind, name.str());
     if (!other) other = find_other(other_keys, section, name.str());
+    const bool of_kind = !other || other->ours.empty() || section.empty() ||
+                         std::find(names.begin(), names.end(), other->ours) != names.end();
+    if (other && (!of_kind || table.contains(other->ours))) other = nullptr;  // of another kind, or said already
     if (other && other->ours.empty()) {
       problems_.add(name.source(), here, "unknown key: " + std::string(other->remark));
       return "";
@@ -200,7 +204,12 @@ class Validator {
     if (!std::isfinite(number))
       problems_.add(node.source(), here, "found " + shown(node) + "; expected a finite number");
     else if (!key.bounds.hold(number))
-      problems_.add(node.source(), here, shown(node) + " is out of range; expected " + expected(key, dimensions_));
+      problems_.add(node.source(), here,
+                    shown(node) + " is out of range; expected " + expected(key, dimensions_) +
+                        (key.name == "friction" && number > 0.0 && number < 90.0
+                             ? "; of " + shown(node) + " degrees it is " +
+                                   number_text(std::round(1e3 * std::tan(number * std::numbers::pi / 180.0)) / 1e3)
+                             : ""));
   }
 
   void vector(const Key& key, const toml::array& array, const std::string& here, int components) {

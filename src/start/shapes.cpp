@@ -246,7 +246,13 @@ ShapeRegion region_of_shape(const Scene& scene, const Fill& fill) {
 }
 
 void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains) {
-  const ShapeRegion region = region_of_shape(scene, scene.fills[k]);
+  ShapeRegion region = region_of_shape(scene, scene.fills[k]);
+  // A shape that goes on to a side of the domain keeps what lies there: the middles of small grains are nearer to it
+  // than the last place of a row of the largest.
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) {
+    const double high = scene.domain.origin[d] + scene.domain.size[d];
+    if (d != 1 && region.upper[d] > high - spacing_of(scene, scene.fills[k])) region.upper[d] = high;
+  }
   std::vector<Vec3>& places = grains.position;
   constexpr std::size_t gone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> number(places.size(), gone);

@@ -136,6 +136,24 @@ SCENES = [
     ("[time]", '[[motion]]\nphase = "ground"\nrotation = 1\n[time]', 'did you mean "angular-velocity" (in rad/s)?'),
     ("max = [1, 0.5] } }", 'max = [1, 0.5] } }\nvelocity = ["x**2", 0]', "a power is x^2"),
     ("max = [1, 0.5] } }", 'max = [1, 0.5] } }\nvelocity = ["np.sin(x)", 0]', "a function has no prefix, as in sin(x)"),
+    ("viscosity = 1e-6", "viscosity = 1e-6\ncoefsound = 20", 'did you mean "sound-speed" (in m/s)?'),
+    ("viscosity = 1e-6", "viscosity = 1e-6\nalpha = 0.1", 'did you mean "artificial-viscosity"?'),
+    ('kind = "wall"', 'kind = "wall"\ntype = "noSlip"', "unknown key; expected one of"),
+    # slips of TOML
+    ("viscosity = 1e-6", "viscosity = 1e-6\nenclosed = False", "False is no value; expected false"),
+    ('kind = "fluid"', "kind = \u201cfluid\u201d", "expected straight quotes"),
+    ("-9.81", "\u22129.81", "expected the sign - of the keyboard"),
+    ("end = 0.01", "end = 0,01", "expected 0.01"),
+    ("end = 0.01", "end = .01", "expected 0.01"),
+    ("viscosity = 1e-6", "viscosity = 1.e-6", "expected 1.0e-6"),
+    ("viscosity = 1e-6", "viscosity = 1d-6", "expected 1e-6"),
+    ("end = 0.01", "end = 0.01;", "expected no semicolon"),
+    ("[0, -9.81]", "[0 -9.81]", "expected an array with commas, as in [0, -9.81]"),
+    ("spacing = 0.1", "spacing = 0.1\ntitle = My dam", 'expected "My dam"'),
+    ("[time]", "[domain]\n[time]", "it stands twice"),
+    ("spacing = 0.1", 'spacing = 0.1\ntitle = "C:\\Users"', "begins a code: expected / in its place"),
+    # places
+    ("min = [0, 0], max = [1, 0.5]", "min = [1, 0.5], max = [0, 0]", "min and max are swapped along x"),
 ]
 
 # What is read and done as it stands, with a warning of what it may mean: what was
@@ -145,6 +163,10 @@ WARNED = [
     ("density = 1000", "density = 1", "1 kg/m3 is light for a liquid"),
     ("size = [1, 1]", "size = [1000, 1]", "the domain is 1000 m long; lengths are in m"),
     ('["bottom"]', '["bottom"], layers = 1', "and the kernel of \"water\" reaches 0.16 m into the wall"),
+    ("gravity = [0, -9.81]\n[phases.water]", "[phases.water]\nsound-speed = 20", 'domain.gravity: none, and "water" over the bottom has no weight'),
+    ("gravity = [0, -9.81]", "gravity = [0, -981]", "is 100 times that of the earth"),
+    ("viscosity = 1e-6", "viscosity = 1e-6\nsound-speed = 1480", "times what the scene can reach"),
+    ('sides = ["bottom"] }', 'sides = ["bottom", "left"] }', 'domain: no wall at "right"'),
 ]
 
 

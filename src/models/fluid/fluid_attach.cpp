@@ -120,6 +120,8 @@ void describe_fluid(const Scene& scene, const std::vector<ParticleBlock>& blocks
   for (std::size_t k = 0; k < layout.phases.size(); ++k)
     if (layout.phases[k].travels() && entry_between(scene, phase, scene.phases[k]))
       movers += "; or \"" + layout.phases[k].name + "\", which moves, leaves it too little or too much room";
+  if (scene.time.largest_speed > 0.0)
+    movers += "; time.largest-speed promises " + brief(scene.time.largest_speed) + " m/s at most";
   p.rules = rules_of(p, scene.time.fixed_step ? "time.step" : "time.safety", movers);
 }
 

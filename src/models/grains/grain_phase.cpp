@@ -41,17 +41,19 @@ namespace {
 
 /// Of spheres: what their own contacts bear. Their way in a step needs no bound: what is slow enough for its contacts
 /// goes an eighth of its radius at most in one of their steps.
-PhaseRules sphere_rules(const PlanPhase& p, double bound) {
+/// `given`: the stiffness that the scene states; empty: it follows from the largest speed.
+PhaseRules sphere_rules(const PlanPhase& p, double bound, const std::string& given) {
   PhaseRules r;
   r.way = 1e300;
   r.signal_speed = bound;
   r.stops_at_sides = true;
   r.one = "grain";
-  r.remedy = [name = p.name](Fault fault, double speed, double most) {
+  r.remedy = [name = p.name, given](Fault fault, double speed, double most) {
     const std::string key = "phases." + name + "." + sphere_stiffness_keys(" or .");
     switch (fault) {
-      case Fault::passed_wall: return "raise time.largest-speed, " + key;
+      case Fault::passed_wall: return "raise " + (given.empty() ? "time.largest-speed, " + key : given);
       case Fault::too_fast:
+        if (!given.empty()) return "its contacts can stop (" + brief(most) + " m/s): raise " + given;
         return "its contacts can stop (" + brief(most) + " m/s): raise time.largest-speed to " + brief(2.0 * speed) +
                ", or make the contacts of \"" + name + "\" stiffer";
       case Fault::too_far: return std::string("lower time.safety");
@@ -99,7 +101,10 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, st
     bound = std::min(bound, impact.speed * std::pow(0.5 * p.diameter / overlap, Normal::speed_power));
     p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(spring.stiffness_at(impact.radius, overlap) / mass));
   });
-  p.rules = sphere_rules(p, bound);
+  std::string given;
+  for (const char* const key : {"stiffness", "young"})
+    if (scene.places.contains("phases." + p.name + "." + key)) given = "phases." + p.name + "." + key;
+  p.rules = sphere_rules(p, bound, given);
 }
 
 }  // namespace

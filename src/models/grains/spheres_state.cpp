@@ -55,7 +55,11 @@ std::optional<std::string> Spheres::trouble() const {
   return "two grains overlap by " + brief(100.0 * deepest_) + " % of their mean diameter (the bound is " +
          brief(100.0 * most_sphere_overlap) +
          " %): contacts are too soft for what presses them, or fills overlap; raise " + sphere_stiffness_keys(", ") +
-         " or time.largest-speed, or lower largest-overlap";
+         " or time.largest-speed, or lower largest-overlap" +
+         (scene_.time.fixed_step && *scene_.time.fixed_step > laws_.step()
+              ? "; time.step is longer than " + brief(laws_.step()) +
+                    " s, what contacts bear: lower it, or leave it out"
+              : "");
 }
 
 std::uint64_t Spheres::pairs(const PlanEntry& entry) const {
