@@ -84,8 +84,11 @@ void check_partner(const Scene& scene, const Interaction& pair, const Phase& a, 
                           std::string(scene.dimensions == 2 ? "box, cube, disc, ring, polygon or surface"
                                                             : "box, cube or sphere"));
       if (fill.phase == other.name && fill.packing == Packing::settled && !report.touched(packing))
-        report(packing,
-               "grains settle without rigid bodies, and would stand in them; expected rows, staggered or random");
+        report(
+            packing,
+            "grains settle without rigid bodies, and would stand in them; expected rows, staggered or random, or a bed "
+            "that settled in a scene without the body: barchan generate BED.toml -o bed.vtp, then shape = { file = "
+            "\"bed.vtp\" }");
     }
   }
 }

@@ -405,6 +405,24 @@ void warn_of_units(const Scene& scene, Plan& plan) {
   }
 }
 
+/// In 2D all spheres lie in one slab, so that small ones fill less of its thickness.
+void warn_of_two_sizes_in_a_slab(const Scene& scene, Plan& plan) {
+  constexpr double alike = 0.8;  // of the diameters
+  const PlanPhase *small = nullptr, *large = nullptr;
+  for (const PlanPhase& p : plan.phases) {
+    if (!p.own_steps() || !(p.diameter > 0.0)) continue;
+    if (!small || p.diameter < small->diameter) small = &p;
+    if (!large || p.diameter > large->diameter) large = &p;
+  }
+  if (scene.dimensions == 3 || !small || small->diameter > alike * large->diameter) return;
+  plan.warnings.push_back(
+      "dimensions: in 2D all grains are spheres in one slab, as thick as the largest mean diameter: a "
+      "region of \"" +
+      small->name + "\" has " + brief(small->diameter / large->diameter) + " of the mass that one of \"" + large->name +
+      "\" has; a density of \"" + small->name + "\" " + brief(large->diameter / small->diameter) +
+      " times as high makes up for it, or dimensions = 3");
+}
+
 /// What moves has weight in most scenes: a liquid or grains over a bottom without gravity may have been forgotten.
 void warn_of_no_weight(const Scene& scene, Plan& plan) {
   if (scene.places.contains("domain.gravity") || norm(scene.domain.gravity) > 0.0) return;
@@ -533,6 +551,7 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_influxes(scene, plan);
   warn_of_small_radius(scene, plan);
   warn_of_units(scene, plan);
+  warn_of_two_sizes_in_a_slab(scene, plan);
   warn_of_no_weight(scene, plan);
   warn_of_numbers(scene, plan);
   warn_of_no_way_out(scene, plan);

@@ -59,7 +59,9 @@ bool is_kind(std::string_view word) {
 
 class Validator {
  public:
-  Validator(int dimensions, Problems& problems) : dimensions_(dimensions), problems_(problems) {}
+  /// `stated`: the document says how many dimensions the scene has.
+  Validator(int dimensions, bool stated, Problems& problems)
+      : dimensions_(dimensions), stated_(stated), problems_(problems) {}
 
   void section(const toml::table& table, const std::string& section, const std::string& dotted) {
     const std::string kind = section == "phases" ? table["kind"].value_or(std::string()) : "";
@@ -217,7 +219,8 @@ class Validator {
       return problems_.add(array.source(), here,
                            "found " + std::to_string(array.size()) +
                                (array.size() == 1 ? " component" : " components") + "; expected " +
-                               expected(key, dimensions_));
+                               expected(key, dimensions_) +
+                               (array.size() == 3 && !stated_ ? "; did you mean dimensions = 3 at the top?" : ""));
     for (const toml::node& node : array) {
       if (node.is_number()) number(key, node, here);
       else if (const auto* text = node.as_string(); text && (key.slot.accepts & (as_formulas | as_axial)))
@@ -277,6 +280,7 @@ class Validator {
   }
 
   int dimensions_;
+  bool stated_;
   Problems& problems_;
 };
 
@@ -285,7 +289,7 @@ class Validator {
 int dimensions_of(const toml::table& document) { return document["dimensions"].value_or(2) == 3 ? 3 : 2; }
 
 void validate(const toml::table& document, Problems& problems) {
-  Validator(dimensions_of(document), problems).section(document, "", "");
+  Validator(dimensions_of(document), document.contains("dimensions"), problems).section(document, "", "");
 }
 
 }  // namespace barchan

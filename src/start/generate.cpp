@@ -134,7 +134,8 @@ void check_places(const std::vector<Vec3>& places, std::size_t k, const Scene& s
     fail(scene, k,
          "a particle" + phase + " at " + point_text(x, scene.dimensions) + " m overlaps fill." + std::to_string(other) +
              " of phase \"" + scene.fills[static_cast<std::size_t>(other)].phase +
-             "\"; expected at least half a spacing between particles of different fills");
+             "\"; expected at least half a spacing between particles of different fills, or leave-out = "
+             "\"earlier-fills\" in the later one");
   }
 }
 
