@@ -41,7 +41,10 @@ class Checker {
       if (!phase) report_(dotted + ".phase", unknown_phase(measured.phase, scene_));
       else if (known_kind && phase->kind() != PhaseKind::fluid && !(grains && phase->kind() == PhaseKind::grains))
         report_(dotted + ".phase", "\"" + phase->name + "\" is of kind " + phase->kind_word() +
-                                       "; expected a phase of kind fluid" + (grains ? " or grains" : ""));
+                                       "; expected a phase of kind " +
+                                       (std::is_same_v<T, SaltationLayer> ? "grains"
+                                        : grains                          ? "fluid or grains"
+                                                                          : "fluid"));
     }
   }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -90,7 +90,7 @@ double Drive::pull(double mass, double given, double held) const {
 }
 
 void Drive::history(HistoryRow& row, const PhaseParticles& p, double given, double held) const {
-  const auto count = static_cast<double>(Exchange().total(p.size()));
+  const auto count = static_cast<double>(count_of(p));
   const double mass = p.mass() * count;
   add_pull(row, name_, pull(mass, count > 0.0 ? given / count : 0.0, in_row_.mean(held)), density_);
 }

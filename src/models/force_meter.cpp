@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "models/fluid/fluid_phase.hpp"
 #include "scene/couplings.hpp"
@@ -228,7 +228,6 @@ void ForceOn::measure_volume() {
 /// Adds `share` of mass times (acceleration - less), and its moment.
 void ForceOn::add_sums(double share, const Vec3& less) {
   const PhaseParticles& p = set_.particles();
-  const Exchange among(p);
   const auto dimensions = static_cast<std::size_t>(layout_.dimensions);
   std::array<const double*, 3> x{}, a{};
   for (std::size_t d = 0; d < dimensions; ++d) {
@@ -246,11 +245,11 @@ void ForceOn::add_sums(double share, const Vec3& less) {
   };
   for (std::size_t d = 0; d < 3; ++d) {
     const std::size_t e = (d + 1) % 3, f = (d + 2) % 3;
-    force_[d] += mass * among.sum(set_.size(), [&](std::size_t q) { return push(d, set_.place(q)); });
-    torque_[d] += mass * among.sum(set_.size(), [&](std::size_t q) {
-      const std::size_t k = set_.place(q);
-      return lever(e, k) * push(f, k) - lever(f, k) * push(e, k);
-    });
+    force_[d] += mass * sum_of(p, set_.size(), [&](std::size_t q) { return push(d, set_.place(q)); });
+    torque_[d] += mass * sum_of(p, set_.size(), [&](std::size_t q) {
+                    const std::size_t k = set_.place(q);
+                    return lever(e, k) * push(f, k) - lever(f, k) * push(e, k);
+                  });
   }
 }
 

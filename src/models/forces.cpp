@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 namespace barchan {
 
 namespace {
@@ -124,7 +125,7 @@ void Forces::relax(PhaseParticles& p, double time, double dt) const {
 }
 
 Vec3 Forces::sum(const PhaseParticles& p, double time, double dt) const {
-  Vec3 total = static_cast<double>(Exchange().total(p.size())) * uniform();
+  Vec3 total = static_cast<double>(count_of(p)) * uniform();
   if (!varies()) return total;
   Exchange().in_turn(total, [&] { add_varying(total, p, time, dt); });
   return total;

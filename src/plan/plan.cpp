@@ -94,6 +94,18 @@ double largest_speed(const Scene& scene, const std::vector<ParticleBlock>& block
   return std::max(speed, std::sqrt(2.0 * height) / std::sqrt(2.0));
 }
 
+/// Motions that are faster than the scene promises.
+void warn_of_fast_motions(const Scene& scene, const std::vector<ParticleBlock>& blocks, Plan& plan) {
+  for (std::size_t k = 0; k < scene.motions.size() && scene.time.largest_speed > 0.0; ++k) {
+    const double speed = driven_speed(scene, scene.motions[k], blocks);
+    if (speed > 2.0 * scene.time.largest_speed)  // the back of a wall is faster than its surface
+      plan.warnings.push_back(
+          "motion." + std::to_string(k) + ": its fastest place has " + brief(speed) +
+          " m/s, more than time.largest-speed, " + brief(scene.time.largest_speed) + " m/s" +
+          (scene.motions[k].angular_velocity ? "; angular velocities are in 1/s (60 rpm are 6.28)" : ""));
+  }
+}
+
 /// A phase that moves looks for its partner. A phase that stays feels nothing, and looks only for a fluid that is
 /// extended into it.
 void add_directions(Plan& plan, PlanEntry& e) {
@@ -203,6 +215,7 @@ Plan make_plan(const Scene& scene, const std::vector<ParticleBlock>& blocks) {
   }
   declare_phases(scene, plan);
   plan.largest_speed = largest_speed(scene, blocks, plan);
+  warn_of_fast_motions(scene, blocks, plan);
   describe_phases(scene, blocks, plan, plan.warnings);
   add_entries(scene, plan);
   const Models models = make_models(scene, plan);

@@ -392,9 +392,12 @@ void warn_of_units(const Scene& scene, Plan& plan) {
     const bool liquid = plan.phases[k].free_surface && norm(scene.domain.gravity) > 0.0;
     const double times = liquid ? phase.fluid().viscosity / water_viscosity : 0.0;
     const bool in_grams = times > 0.5 && times < 2.0 && std::abs(1000.0 * phase.density / water - 1.0) < 0.1;
-    if (in_grams || (plan.phases[k].own_steps() && phase.density < lightest))
+    const bool spheres = plan.phases[k].own_steps(), body = plan.phases[k].deforms();
+    if (in_grams || (spheres && phase.density < lightest) || (body && phase.density < 0.5 * lightest))
       plan.warnings.push_back("phases." + phase.name + ".density: " + brief(phase.density) + " kg/m3 is light for " +
-                              (in_grams ? "a liquid (water has 1000)" : "grains (quartz has 2650)") +
+                              (in_grams  ? "a liquid (water has 1000)"
+                               : spheres ? "grains (quartz has 2650)"
+                                         : "a solid (rubber has 1100)") +
                               "; densities are in kg/m3");
     if (!liquid || std::abs(phase.density / water - 1.0) > 0.1) continue;
     if (times > 500.0 && times < 2000.0)
@@ -410,7 +413,7 @@ void warn_of_two_sizes_in_a_slab(const Scene& scene, Plan& plan) {
   constexpr double alike = 0.8;  // of the diameters
   const PlanPhase *small = nullptr, *large = nullptr;
   for (const PlanPhase& p : plan.phases) {
-    if (!p.own_steps() || !(p.diameter > 0.0)) continue;
+    if (!p.own_steps()) continue;
     if (!small || p.diameter < small->diameter) small = &p;
     if (!large || p.diameter > large->diameter) large = &p;
   }
@@ -431,7 +434,7 @@ void warn_of_no_weight(const Scene& scene, Plan& plan) {
     return sides && std::count(sides->sides.begin(), sides->sides.end(), "bottom") > 0;
   });
   for (std::size_t k = 0; k < plan.phases.size() && on_bottom; ++k)
-    if (const PlanPhase& p = plan.phases[k]; p.free_surface || (p.own_steps() && p.diameter > 0.0))
+    if (const PlanPhase& p = plan.phases[k]; p.free_surface || p.own_steps())
       return plan.warnings.push_back("domain.gravity: none, and \"" + p.name +
                                      "\" over the bottom has no weight; expected gravity = [0, -9.81" +
                                      (scene.dimensions == 3 ? ", 0]" : "]") + ", or [0, 0" +
@@ -473,9 +476,10 @@ void warn_of_sides_without_a_wall(const Scene& scene, Plan& plan) {
     any = true;
     closed.insert(closed.end(), sides->sides.begin(), sides->sides.end());
   }
-  const auto mover = std::find_if(plan.phases.begin(), plan.phases.end(),
-                                  [](const PlanPhase& p) { return p.free_surface || p.own_steps(); });
-  if (!any || mover == plan.phases.end() || !scene.inflows.empty() || !scene.outflows.empty() ||
+  const auto guest = std::find_if(plan.phases.begin(), plan.phases.end(), [](const PlanPhase& p) {
+    return (p.free_surface || p.own_steps()) && p.count > 20;
+  });
+  if (!any || guest == plan.phases.end() || !scene.inflows.empty() || !scene.outflows.empty() ||
       !scene.influxes.empty() || !scene.domain.open.empty())
     return;
   std::string missing;
@@ -485,7 +489,7 @@ void warn_of_sides_without_a_wall(const Scene& scene, Plan& plan) {
       if (!side.empty() && !scene.domain.periodic[d] && std::find(closed.begin(), closed.end(), side) == closed.end())
         missing += (missing.empty() ? "\"" : ", \"") + side + "\"";
   if (!missing.empty())
-    plan.warnings.push_back("domain: no wall at " + missing + ": \"" + mover->name +
+    plan.warnings.push_back("domain: no wall at " + missing + ": \"" + guest->name +
                             "\" that comes there stops the run; expected it among the sides of a wall, in domain.open, "
                             "or a periodic axis");
 }

@@ -448,7 +448,7 @@ TEST(Generate, TellsOfOverlapsEmptyFillsAndParticlesOutside) {
       fault_of(parse_scene(square_text + second, "s.toml")),
       "s.toml:15:1: fill.1: a particle of phase \"air\" at (0.47, 0.45) m overlaps fill.0 of phase \"air\"; expected "
       "at least half a spacing "
-      "between particles of different fills");
+      "between particles of different fills, or leave-out = \"earlier-fills\" in the later one");
   EXPECT_EQ(
       fault_of(parse_scene(with(square_text, "\"the-rest\"", "{ formula = \"-1\" }"), "s.toml")),
       "s.toml:9:1: fill.0: no particle of phase \"air\"; expected a larger shape, a smaller spacing, or an earlier "

@@ -1,6 +1,6 @@
 #include "models/bodies/angular_momentum.hpp"
 
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 
 namespace barchan {
 
@@ -10,8 +10,7 @@ double sum_over(const PhaseParticles* const* phases, std::size_t count, auto&& t
   double sum = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     const PhaseParticles& p = *phases[k];
-    const Exchange among(p);
-    sum += among.sum(p.size(), [&](std::size_t i) { return p.mass_of(i) * term(p, i); });
+    sum += sum_of(p, [&](std::size_t i) { return p.mass_of(i) * term(p, i); });
   }
   return sum;
 }

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/errors.hpp"
-#include "engine/exchange.hpp"
 #include "engine/integrate.hpp"
+#include "engine/phase_sums.hpp"
 #include "kernels/kernel.hpp"
 #include "models/bodies/angular_momentum.hpp"
 #include "models/bodies/body_forces.hpp"
@@ -268,17 +268,16 @@ void ElasticPhase::take_power() {
 /// p = (K/rho0)(rho - rho0), and s:s/(4 G) a cubic metre of the deviator.
 double ElasticPhase::strain_energy() const {
   const PhaseParticles& p = w_->particles(number_);
-  const Exchange among(p);
   const double* rho = p.column(Field::density);
   std::array<const double*, 6> s{};
   for (int c = 0; c < 6; ++c) s[static_cast<std::size_t>(c)] = p.column(Field::stress, c);
   const double bulk = parameters_.bulk_modulus / parameters_.reference_density, shear = 4.0 * parameters_.shear_modulus;
-  return p.mass() * among.sum(p.size(), [&](std::size_t k) {
-    const double x = rho[k] / parameters_.reference_density - 1.0;
-    double squares = 0.0;
-    for (std::size_t c = 0; c < 6; ++c) squares += (c < 3 ? 1.0 : 2.0) * s[c][k] * s[c][k];
-    return bulk * (std::log1p(x) - x / (1.0 + x)) + squares / (shear * rho[k]);
-  });
+  return p.mass() * sum_of(p, [&](std::size_t k) {
+           const double x = rho[k] / parameters_.reference_density - 1.0;
+           double squares = 0.0;
+           for (std::size_t c = 0; c < 6; ++c) squares += (c < 3 ? 1.0 : 2.0) * s[c][k] * s[c][k];
+           return bulk * (std::log1p(x) - x / (1.0 + x)) + squares / (shear * rho[k]);
+         });
 }
 
 void ElasticPhase::history(HistoryRow& row) const {
@@ -286,9 +285,8 @@ void ElasticPhase::history(HistoryRow& row) const {
   add_angular_momentum(row, w_->particles(number_), layout_);
   if (!phase_.elastic().energy) return;
   const PhaseParticles& p = w_->particles(number_);
-  const Exchange among(p);
   const double* e = p.column(Field::energy);
-  row.add(plan_.name + "_internal_energy [J]", p.mass() * among.sum(p.size(), [&](std::size_t k) { return e[k]; }));
+  row.add(plan_.name + "_internal_energy [J]", p.mass() * sum_of(p, [&](std::size_t k) { return e[k]; }));
 }
 
 }  // namespace barchan

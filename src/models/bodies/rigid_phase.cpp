@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "output/numbers.hpp"
 
 namespace barchan {
@@ -23,11 +23,11 @@ double step_of(const RigidBody& body, double spacing) {
   return step;
 }
 
-/// A sum whose bits no order decides.
-template <class F>
-Vec3 sum_of(const Exchange& among, std::size_t n, F&& f) {
+/// Of vectors; `sum`: of numbers.
+template <class Sum, class F>
+Vec3 vector_sum(Sum&& sum, F&& f) {
   Vec3 total{};
-  for (std::size_t d = 0; d < 3; ++d) total[d] = among.sum(n, [&](std::size_t k) { return f(k)[d]; });
+  for (std::size_t d = 0; d < 3; ++d) total[d] = sum([&](std::size_t k) { return f(k)[d]; });
   return total;
 }
 
@@ -97,7 +97,8 @@ void RigidPhase::begin(State& state, const std::vector<ParticleBlock>& blocks) {
       p.own(body_of_)[body.first + k] = static_cast<std::uint32_t>(state.bodies.size() - first_body_);
     }
     const Vec3 mean = 1.0 / static_cast<double>(body.count) *
-                      sum_of(Exchange::none(), body.count, [&](std::size_t k) { return p.own(arm_)[body.first + k]; });
+                      vector_sum([&](auto&& f) { return reproducible_sum(body.count, f, nullptr); },
+                                 [&](std::size_t k) { return p.own(arm_)[body.first + k]; });
     levers_.push_back(body.centre - mean);
     mass_shares_.push_back(body.mass / (p.mass() * static_cast<double>(body.count)));
     state.bodies.push_back(body);
@@ -223,15 +224,16 @@ void RigidPhase::add_forcings(PhaseParticles& p) {
     double* const a = p.column(Field::acceleration, d);
     for (std::size_t k = 0; k < p.size(); ++k) a[k] *= mass_shares_[body_of[k]];
   }
-  const Exchange among(p);
   for (std::size_t b = 0; b < bodies(); ++b) {
     const std::uint32_t* const place_of = p.places() + body(b).first;
-    const Vec3 force = p.mass() * sum_of(among, body(b).count, [&](std::size_t k) {
-                         Vec3 a{};
-                         for (int d = 0; d < layout_.dimensions; ++d)
-                           a[static_cast<std::size_t>(d)] = p.column(Field::acceleration, d)[place_of[k]];
-                         return a;
-                       });
+    const Vec3 force = p.mass() * vector_sum([&](auto&& f) { return sum_of(p, body(b).count, f); },
+                                             [&](std::size_t k) {
+                                               Vec3 a{};
+                                               for (int d = 0; d < layout_.dimensions; ++d)
+                                                 a[static_cast<std::size_t>(d)] =
+                                                     p.column(Field::acceleration, d)[place_of[k]];
+                                               return a;
+                                             });
     body(b).now.touch_torque = cross(OwnAxes(body(b)).to_space(levers_[b]), force);
   }
 }
@@ -249,11 +251,10 @@ void RigidPhase::add_particles(std::size_t number) {
     return f;
   };
   const std::uint32_t* const place_of = p.places() + body.first;
-  const Exchange among(p);
   for (std::size_t d = 0; d < 3; ++d) {
-    body.now.touch_force[d] += among.sum(body.count, [&](std::size_t k) { return force_on(place_of[k])[d]; });
-    body.now.touch_torque[d] += among.sum(
-        body.count, [&](std::size_t k) { return cross(axes.to_space(arm[place_of[k]]), force_on(place_of[k]))[d]; });
+    body.now.touch_force[d] += sum_of(p, body.count, [&](std::size_t k) { return force_on(place_of[k])[d]; });
+    body.now.touch_torque[d] += sum_of(
+        p, body.count, [&](std::size_t k) { return cross(axes.to_space(arm[place_of[k]]), force_on(place_of[k]))[d]; });
   }
 }
 

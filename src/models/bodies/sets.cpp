@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "scene/located.hpp"
 
 namespace barchan {
@@ -121,12 +121,11 @@ void DrivenSet::lead() { set_velocity(w_->state.time + 0.5 * w_->state.dt); }
 /// The forces of the step are known: they are noted, and the set goes on as it is driven.
 void DrivenSet::hold() {
   const PhaseParticles& p = set_.particles();
-  const Exchange among(p);
   Vec3 force{};
   for (int d = 0; d < layout_.dimensions; ++d) {
     const double* a = p.column(Field::acceleration, d);
     force[static_cast<std::size_t>(d)] =
-        p.mass() * among.sum(set_.size(), [&](std::size_t q) { return a[set_.place(q)]; });
+        p.mass() * sum_of(p, set_.size(), [&](std::size_t q) { return a[set_.place(q)]; });
   }
   const double power = dot(force, velocity_at(w_->state.time));
   if (w_->state.steps == 0) {
@@ -173,14 +172,14 @@ namespace {
 /// that goes round the domain goes on; it changes where 0.618 of the places changed sides, of which no number of them
 /// can be exactly.
 template <class Place>
-double periodic_mean(const Exchange& among, std::size_t size, double n, double period, double whole,
+double periodic_mean(const PhaseParticles& p, std::size_t size, double n, double period, double whole,
                      const Place& place) {
   const double turn = 2.0 * std::numbers::pi / period;
-  const double c = among.sum(size, [&](std::size_t q) { return std::cos(turn * place(q)); }),
-               s = among.sum(size, [&](std::size_t q) { return std::sin(turn * place(q)); });
+  const double c = sum_of(p, size, [&](std::size_t q) { return std::cos(turn * place(q)); }),
+               s = sum_of(p, size, [&](std::size_t q) { return std::sin(turn * place(q)); });
   if (!(std::hypot(c, s) > 1e-3 * n)) return whole;  // it goes all the way round
   const double middle = std::atan2(s, c) / turn;
-  const double off = among.sum(size, [&](std::size_t q) {
+  const double off = sum_of(p, size, [&](std::size_t q) {
     const double way = place(q) - middle;
     return way - period * std::round(way / period);
   });
@@ -193,16 +192,15 @@ double periodic_mean(const Exchange& among, std::size_t size, double n, double p
 
 void MarkedSet::history(HistoryRow& row) const {
   const PhaseParticles& p = set_.particles();
-  const Exchange among(p);
   const auto n = static_cast<double>(set_.count());
   for (int d = 0; d < std::min(layout_.dimensions, 3); ++d) {
     const auto axis = static_cast<std::size_t>(d);
     const double* x = p.column(Field::position, d);
     const auto place = [&](std::size_t q) { return x[set_.place(q)]; };
-    const double whole = among.sum(set_.size(), place) / n;
+    const double whole = sum_of(p, set_.size(), place) / n;
     const double period = layout_.bounds.high[axis] - layout_.bounds.low[axis];
     row.add(marker_.name + "_" + axes[d] + " [m]",
-            layout_.bounds.periodic[axis] ? periodic_mean(among, set_.size(), n, period, whole, place) : whole);
+            layout_.bounds.periodic[axis] ? periodic_mean(p, set_.size(), n, period, whole, place) : whole);
   }
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "engine/exchange.hpp"
 #include "engine/integrate.hpp"
+#include "engine/phase_sums.hpp"
 #include "models/bodies/angular_momentum.hpp"
 #include "models/bodies/body_forces.hpp"
 #include "models/bodies/stiffest_vibration.hpp"
@@ -229,9 +229,8 @@ void TotalPhase::derive() {
     return solid_of(detail.gradient, id, layout_.dimensions, parameters_.law, parameters_.moduli);
   };
   for (std::size_t id = 0; id < p.size(); ++id) fields.write(p.places()[id], solid(id));
-  const Exchange among(p);
-  strain_energy_ = volume * among.sum(p.size(), [&](std::size_t id) { return solid(id).energy; });
-  hourglass_energy_ = volume * among.sum(p.size(), [&](std::size_t id) { return detail.hourglass[id]; });
+  strain_energy_ = volume * sum_of(p, [&](std::size_t id) { return solid(id).energy; });
+  hourglass_energy_ = volume * sum_of(p, [&](std::size_t id) { return detail.hourglass[id]; });
 }
 
 std::uint64_t TotalPhase::pairs(const PlanEntry& entry) const { return &entry == own_ && body_ ? body_->pairs() : 0; }

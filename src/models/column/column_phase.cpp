@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "laws/kept_drag.hpp"
 #include "laws/turning_sphere.hpp"
 #include "models/coupling/wind_exchange.hpp"
@@ -398,9 +398,8 @@ double ColumnPhase::momentum() const {
   for (const Feeling& grains : feeling_) {
     const PhaseParticles& p = w_->particles(grains.phase);
     const double* drag = p.column(Field::drag_acceleration, 0);
-    const Exchange among(p);
     const double time = grains.own_steps ? air.elapsed : air.kicked + 0.5 * air.last;
-    sum -= time * among.sum(p.size(), [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
+    sum -= time * sum_of(p, [&](std::size_t k) { return p.mass_of(k) * drag[k]; });
   }
   return sum;
 }

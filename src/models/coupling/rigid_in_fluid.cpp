@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "models/bodies/contact_surface.hpp"
 #include "models/fluid/fluid_phase.hpp"
 
@@ -149,13 +149,12 @@ void RigidInFluid::turn() {
   w_->share_values(solid_, areas_);
   w_->share_values(solid_, couples_);
   const PhaseParticles& p = w_->particles(solid_);
-  const Exchange among(p);
   for (std::size_t b = 0; b < bodies_; ++b) {
     RigidBody& body = w_->state.bodies[first_body_ + b];
     const OwnAxes axes(body);
     const Vec3 rate = axes.to_space(own_angular_velocity(body));
     for (std::size_t d = layout_.dimensions == 2 ? 2 : 0; d < 3; ++d)
-      body.now.touch_torque[d] += among.sum(body.count, [&](std::size_t q) {
+      body.now.touch_torque[d] += sum_of(p, body.count, [&](std::size_t q) {
         const std::size_t k = p.places()[body.first + q];
         return couples_[k][d] - cross(axes.to_space(p.own(of_body_)[k].arm), cross(rate, areas_[k]))[d];
       });

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/errors.hpp"
-#include "engine/exchange.hpp"
 #include "engine/means.hpp"
+#include "engine/phase_sums.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "scene/couplings.hpp"
 
@@ -159,14 +159,13 @@ void EnergyBooks::held() {
         });
   }
   if (!leaves()) return;
-  number_before_ = Exchange().total(particles_->size());
+  number_before_ = count_of(*particles_);
   energy_before_ = whole_energy();
 }
 
 void EnergyBooks::find_left() {
   fit();
-  if (leaves() && number_before_ > Exchange().total(particles_->size()))
-    numbers_.taken[open_sides] += energy_before_ - whole_energy();
+  if (leaves() && number_before_ > count_of(*particles_)) numbers_.taken[open_sides] += energy_before_ - whole_energy();
   number_before_ = 0;
 }
 

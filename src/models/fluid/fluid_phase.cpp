@@ -6,6 +6,7 @@
 
 #include "base/errors.hpp"
 #include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "engine/reproducible_sum.hpp"
 #include "kernels/kernel.hpp"
 #include "models/fluid/energy.hpp"
@@ -115,7 +116,7 @@ void FluidPhase::derive() {
 void FluidPhase::hold() {
   if (drive_ && drive_->holds_force()) {
     hold_.acceleration[0] =
-        drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(Exchange().total(particles_->size())));
+        drive_->missing(w_->state.time, particles_->mass() * static_cast<double>(count_of(*particles_)));
     accelerate(*particles_, 0, hold_.acceleration[0]);
   } else {
     hold_bulk_velocity(*particles_, hold_, w_->state.dt);
@@ -245,7 +246,7 @@ void FluidPhase::history(HistoryRow& row) const {
   const std::size_t n = particles_->size();
   const bool all = plan_.flow_ends.empty();
   const auto counts = [&](std::size_t i) { return all || layout_.in_domain(*particles_, i); };
-  const double count = all ? static_cast<double>(Exchange().total(n))
+  const double count = all ? static_cast<double>(count_of(*particles_))
                            : reproducible_sum(n, [&](std::size_t i) { return counts(i) ? 1.0 : 0.0; });
   const double* rho = std::as_const(*particles_).column(Field::density);
   const double* pressure = std::as_const(*particles_).column(Field::pressure);
@@ -277,7 +278,7 @@ void FluidPhase::begin_row() {
 }
 
 void FluidPhase::report(Warnings& warnings) const {
-  if (drive_) drive_->report(particles_->mass() * static_cast<double>(Exchange().total(particles_->size())), warnings);
+  if (drive_) drive_->report(particles_->mass() * static_cast<double>(count_of(*particles_)), warnings);
 }
 
 void FluidPhase::archive(Archive& a) {

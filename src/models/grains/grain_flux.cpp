@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "models/grains/saltation_layer.hpp"
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
@@ -40,9 +40,7 @@ void GrainFlux::schedule(Schedule& s) {
 double GrainFlux::flux(double from, double to) const {
   const PhaseParticles& p = w_->particles(grains_);
   const double *x = p.column(Field::position, 0), *vx = p.column(Field::velocity, 0);
-  const Exchange among(p);
-  return among.sum(p.size(), [&](std::size_t k) { return x[k] >= from && x[k] < to ? p.mass_of(k) * vx[k] : 0.0; }) /
-         area_;
+  return sum_of(p, [&](std::size_t k) { return x[k] >= from && x[k] < to ? p.mass_of(k) * vx[k] : 0.0; }) / area_;
 }
 
 void GrainFlux::sample() {

@@ -63,7 +63,7 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound, const std::string& giv
   return r;
 }
 
-constexpr double soft = 1.0;  // diameters; above it a scene is warned
+constexpr double soft = 1.0, stiff = 1e-4;  // diameters; above the first and below the second a scene is warned
 
 std::string number_text(double value) {
   char text[32];
@@ -98,6 +98,12 @@ void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, st
                          ": two grains that meet at " + number_text(impact.speed) +
                          " m/s, the largest speed of the scene, overlap by " + number_text(overlap / p.diameter) +
                          " diameters and pass through each other: raise it");
+    if (overlap < stiff * p.diameter && Normal::of(scene.phases[number].grains()))
+      warnings.push_back("phases." + p.name + "." + std::string(sphere_keys_of(Row::word)->stiffness) +
+                         ": two grains that meet at " + number_text(impact.speed) +
+                         " m/s, the largest speed of the scene, overlap by " + number_text(overlap / p.diameter) +
+                         " diameters; 0.01 are small enough, and steps some " +
+                         number_text(0.01 * p.diameter / overlap) + " times as long: lower it");
     bound = std::min(bound, impact.speed * std::pow(0.5 * p.diameter / overlap, Normal::speed_power));
     p.sound_speed = std::max(p.sound_speed, p.diameter * std::sqrt(spring.stiffness_at(impact.radius, overlap) / mass));
   });

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/exchange.hpp"
+#include "engine/phase_sums.hpp"
 #include "models/grains/sphere_forces.hpp"
 #include "models/grains/spheres.hpp"
 #include "output/numbers.hpp"
@@ -15,9 +16,8 @@ void Spheres::history(HistoryRow& row) const {
   for (const Part& part : parts_) {
     const PhaseParticles& p = w_->particles(part.phase);
     if (!p.has(Field::angular_velocity)) continue;
-    const Exchange among(p);
     const double* radius = p.has(Field::radius) ? p.column(Field::radius) : nullptr;
-    turning += among.sum(p.size(), [&](std::size_t k) {
+    turning += sum_of(p, [&](std::size_t k) {
       const double r = radius ? radius[k] : part.mean_radius;
       double w2 = 0.0;
       for (int d = 0; d < p.components(Field::angular_velocity); ++d)
