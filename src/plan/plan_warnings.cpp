@@ -476,9 +476,8 @@ void warn_of_sides_without_a_wall(const Scene& scene, Plan& plan) {
     any = true;
     closed.insert(closed.end(), sides->sides.begin(), sides->sides.end());
   }
-  const auto guest = std::find_if(plan.phases.begin(), plan.phases.end(), [](const PlanPhase& p) {
-    return (p.free_surface || p.own_steps()) && p.count > 20;
-  });
+  const auto guest = std::find_if(plan.phases.begin(), plan.phases.end(),
+                                  [](const PlanPhase& p) { return (p.free_surface || p.own_steps()) && p.count > 20; });
   if (!any || guest == plan.phases.end() || !scene.inflows.empty() || !scene.outflows.empty() ||
       !scene.influxes.empty() || !scene.domain.open.empty())
     return;
