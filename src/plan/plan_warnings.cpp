@@ -370,6 +370,12 @@ void warn_of_small_radius(const Scene& scene, Plan& plan) {
       plan.warnings.push_back("interactions." + e.name +
                               ": with a radius below 1.8 spacings the plain scheme presses about 11 % less on walls "
                               "than the fluid at rest should; expected 1.8 or more, or scheme = \"consistent\"");
+    const double stated = pair.radius_in_metres.value_or(pair.radius * e.spacing);
+    if (pair.states_radius && !e.own_steps() && e.a != e.b && std::abs(e.radius - stated) > 1e-6 * stated) {
+      plan.warnings.push_back("interactions." + e.name + ": its radius is not used: the two touch by their surfaces; " +
+                              e.name + " = {} says all, or { restitution = 0.9 }");
+      continue;
+    }
     if (e.own_steps() || e.self_contact || !(pair.radius > 0.0 && pair.radius < 1.0)) continue;
     plan.warnings.push_back(
         "interactions." + pair.a + "-" + pair.b + ": a radius below one spacing meets no neighbour of a lattice; " +

@@ -226,6 +226,7 @@ std::vector<Interaction> read_matrix(const toml::table& table, const std::vector
     const toml::table* entry = table[name].as_table();
     Reader::section(entry ? *entry : nothing, radius.section, &pair);
     if (!entry) Reader::value(radius, *table.get(name), &pair);
+    pair.states_radius = !entry || entry->contains("radius") || entry->contains("radius-in-metres");
   }
   return interactions;
 }

@@ -188,6 +188,7 @@ struct Interaction {
   std::string a, b;                        // phase names as written, "air-sand"
   double radius{};                         // kernel radius (support) in spacings of the coarser phase, eq. (15)-(17)
   std::optional<double> radius_in_metres;  // m; empty: `radius` says it
+  bool states_radius{};                    // else it is the default
   KernelKind kernel{};
   double drag{};                            // fluid-grains: drag coefficient of a grain, 0 switches it off
   DragLaw drag_law{};                       // column-grains: drag of a grain
