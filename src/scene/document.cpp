@@ -241,7 +241,8 @@ std::string slip_of(std::string_view whole, std::string_view said) {
   if (said.find("saw '\\n'") != said.npos && has("{")) return "; expected { ... } in one line";
   if (whole.ends_with(';') || has("; ")) return "; expected no semicolon";
   const std::size_t equals = whole.find('=');
-  if (equals == whole.npos) return "";
+  constexpr std::size_t longest = 200;  // characters; what std::regex matches takes stack by its length
+  if (equals == whole.npos || whole.size() > longest) return "";
   const std::string value(whole.substr(equals + 1, whole.find('#') - equals - 1));
   std::smatch number;
   static const std::regex comma(R"(^\s*([+-]?\d+),(\d+)\s*$)"), no_zero(R"(^\s*([+-]?)\.(\d+)\s*$)"),
