@@ -234,6 +234,7 @@ std::string slip_of(std::string_view whole, std::string_view said) {
   for (const char* const quote : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019"})
     if (has(quote)) return "; expected straight quotes, \"...\"";
   if (has("\u2212") || has("\u2013")) return "; expected the sign - of the keyboard";
+  if (said.find("unescaped control") != said.npos) return "; expected a closing \" in this line";
   if (said.find("escape") != said.npos || said.find("hex digit") != said.npos)
     return "; in \"...\" a \\ begins a code: expected / in its place, or '...'";
   if (said.find("cannot redefine existing table") != said.npos)

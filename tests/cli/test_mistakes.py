@@ -153,6 +153,7 @@ SCENES = [
     ("spacing = 0.1", "spacing = 0.1\ntitle = My dam", 'expected "My dam"'),
     ("[time]", "[domain]\n[time]", "it stands twice"),
     ("spacing = 0.1", 'spacing = 0.1\ntitle = "C:\\Users"', "begins a code: expected / in its place"),
+    ("spacing = 0.1", 'spacing = 0.1\ntitle = "My dam', 'expected a closing " in this line'),
     ("end = 0.01", "end = " + " ".join(["1"] * 200000), "not TOML"),   # a long line is answered, too
     # places
     ("min = [0, 0], max = [1, 0.5]", "min = [1, 0.5], max = [0, 0]", "min and max are swapped along x"),
