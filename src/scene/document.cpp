@@ -230,6 +230,8 @@ std::string_view value_in_line(std::string_view text, unsigned line) {
 
 /// Slips that one line shows: signs of a text processor, decimal commas, numbers of other languages.
 std::string slip_of(std::string_view whole, std::string_view said) {
+  whole = whole.substr(0, whole.find('#'));  // what a comment says is no slip
+  while (!whole.empty() && std::isspace(static_cast<unsigned char>(whole.back()))) whole.remove_suffix(1);
   const auto has = [&](std::string_view text) { return whole.find(text) != whole.npos; };
   for (const char* const quote : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019"})
     if (has(quote)) return "; expected straight quotes, \"...\"";
@@ -240,11 +242,11 @@ std::string slip_of(std::string_view whole, std::string_view said) {
   if (said.find("cannot redefine existing table") != said.npos)
     return "; it stands twice: expected all its keys in one place, or [[...]] in both for a list";
   if (said.find("saw '\\n'") != said.npos && has("{")) return "; expected { ... } in one line";
-  if (whole.ends_with(';') || has("; ")) return "; expected no semicolon";
+  if (whole.ends_with(';')) return "; expected no semicolon";
   const std::size_t equals = whole.find('=');
   constexpr std::size_t longest = 200;  // characters; what std::regex matches takes stack by its length
   if (equals == whole.npos || whole.size() > longest) return "";
-  const std::string value(whole.substr(equals + 1, whole.find('#') - equals - 1));
+  const std::string value(whole.substr(equals + 1));
   std::smatch number;
   static const std::regex comma(R"(^\s*([+-]?\d+),(\d+)\s*$)"), no_zero(R"(^\s*([+-]?)\.(\d+)\s*$)"),
       no_digit(R"(^\s*([+-]?\d+)\.([eE][+-]?\d+)?\s*$)"), of_fortran(R"(^\s*([+-]?[\d.]+)[dD]([+-]?\d+)\s*$)"),

@@ -247,9 +247,12 @@ ShapeRegion region_of_shape(const Scene& scene, const Fill& fill) {
 
 void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains) {
   ShapeRegion region = region_of_shape(scene, scene.fills[k]);
-  // A shape that goes on to a side of the domain keeps what lies there: the middles of small grains are nearer to it
-  // than the last place of a row of the largest.
-  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) {
+  // A shape without sides of its own goes on to those of the domain, and keeps what lies there: the middles of small
+  // grains are nearer to them than the last place of a row of the largest.
+  const Shape& shape = scene.fills[k].shape;
+  const bool goes_on = std::holds_alternative<BedShape>(shape) || std::holds_alternative<FormulaShape>(shape) ||
+                       std::holds_alternative<RemainderShape>(shape);
+  for (std::size_t d = 0; goes_on && d < static_cast<std::size_t>(scene.dimensions); ++d) {
     const double high = scene.domain.origin[d] + scene.domain.size[d];
     if (d != 1 && region.upper[d] > high - spacing_of(scene, scene.fills[k])) region.upper[d] = high;
   }

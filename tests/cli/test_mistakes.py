@@ -153,6 +153,7 @@ SCENES = [
     ("spacing = 0.1", "spacing = 0.1\ntitle = My dam", 'expected "My dam"'),
     ("[time]", "[domain]\n[time]", "it stands twice"),
     ("spacing = 0.1", 'spacing = 0.1\ntitle = "C:\\Users"', "begins a code: expected / in its place"),
+    ("density = 1000", "density = 1000 kg/m3  # water; at \u201c20\u201d", "expected a number in units of SI, its unit in a comment"),
     ("spacing = 0.1", 'spacing = 0.1\ntitle = "My dam', 'expected a closing " in this line'),
     ("end = 0.01", "end = " + " ".join(["1"] * 200000), "not TOML"),   # a long line is answered, too
     # places
