@@ -1,5 +1,5 @@
-// Sums over all particles of a phase, wherever they are: whoever asks need not know who holds them. Their bits do not
-// depend on the order of the particles (engine/reproducible_sum.hpp). All ranks ask at the same place.
+// Sums over all particles of a phase, wherever they are: a model does not ask which process holds them. Their bits do
+// not depend on the order of the particles (engine/reproducible_sum.hpp). All ranks ask at the same place.
 #pragma once
 
 #include <cstddef>

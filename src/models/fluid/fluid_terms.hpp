@@ -14,7 +14,7 @@
 
 namespace barchan {
 
-/// What ends a fluid: nothing that a term knows, or a free surface. `loose`: spray and swollen water lose their
+/// What ends a fluid: nothing, or a free surface. `loose`: spray and swollen water lose their
 /// pressure; `stressed`: besides, the surface bears no viscous stress; `heavy`: besides, it bears weight.
 enum class SurfaceTerms { none, loose, stressed, heavy };
 
