@@ -191,11 +191,12 @@ class PhysicsChecker {
     else if (fluid.spacing < 2.0 * grains.diameter()->mean)
       needs("air coarser than the grains; expected a spacing of \"" + fluid.name +
             "\" of two diameters or more, or a number");
-    if (fluid.fluid().turbulence != Turbulence::mixing_length || fluid.fluid().scheme != FluidScheme::consistent ||
-        !(fluid.fluid().viscosity > 0.0))
+    const Turbulence turbulence = fluid.fluid().turbulence;
+    if ((turbulence != Turbulence::mixing_length && turbulence != Turbulence::k_omega) ||
+        fluid.fluid().scheme != FluidScheme::consistent || !(fluid.fluid().viscosity > 0.0))
       needs(
-          "a turbulent wind; expected scheme = \"consistent\", turbulence = \"mixing-length\" and a viscosity above 0 "
-          "of "
+          "a turbulent wind; expected scheme = \"consistent\", turbulence = \"mixing-length\" or \"k-omega\" and a "
+          "viscosity above 0 of "
           "\"" +
           fluid.name + "\"");
     const bool ground = std::any_of(scene_.fills.begin(), scene_.fills.end(), [&](const Fill& fill) {
@@ -324,11 +325,17 @@ class PhysicsChecker {
       return (a.kind() == k && b.kind() == l) || (a.kind() == l && b.kind() == k);
     };
     using enum PhaseKind;
-    for (const char* key : {".lift", ".gusts", ".coupling-interval"})
-      if (report_.has(dotted + key) && (pair.drag_law == DragLaw::none || !is(fluid, grains)))
-        tell(dotted + key,
-             "only the entry of a fluid of particles and grains with a law of drag by name, as drag = \"duran\", has "
-             "it; expected no such key");
+    const bool by_name = pair.drag_law != DragLaw::none && is(fluid, grains);
+    for (const char* key : {".lift", ".gusts"})
+      if (report_.has(dotted + key) && !by_name && !is(column, grains))
+        tell(
+            dotted + key,
+            "only the entry of a column, or of a fluid with a law of drag by name, as drag = \"duran\", and grains has "
+            "it; expected no such key");
+    if (report_.has(dotted + ".coupling-interval") && !by_name)
+      tell(dotted + ".coupling-interval",
+           "only the entry of a fluid of particles and grains with a law of drag by name, as drag = \"duran\", has "
+           "it; expected no such key");
     border(pair, a, b, dotted + ".border");
     buoyancy(pair, a, b, dotted);
     magnus(pair, a, b, dotted + ".magnus");

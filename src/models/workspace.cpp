@@ -117,6 +117,7 @@ Workspace::Workspace(const Scene& scene_, const Layout& layout_, State& state_)
     if (!e.continues_fluid || e.extends) read[e.a] = read[e.b] = true;
   }
   ground_stress.resize(phases);
+  grains_in_eddies.resize(phases);
   wall_motions.resize(phases, nullptr);
   for (std::size_t k = 0; k < phases; ++k) {
     const PlanPhase& p = layout.phases[k];

@@ -4,11 +4,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/neighbours.hpp"
 #include "engine/phase_records.hpp"
+#include "laws/grains_in_eddies.hpp"
 #include "models/fluid/turbulence.hpp"
 #include "models/model.hpp"
 #include "models/packing.hpp"
@@ -28,6 +30,9 @@ class Workspace : public Halo {
   Neighbours neighbours;
 
   std::vector<AlignedVector<double>> ground_stress;  // Pa, by fluid and particle; empty: walls say it themselves
+
+  /// By fluid: the grains in it that its turbulence feels.
+  std::vector<std::optional<OwnColumn<GrainsInEddies>>> grains_in_eddies;
 
   /// What spheres of a phase do to a wall in a step (N s and N m s, not by depth), for a meter that asks (attach).
   struct SpherePush {

@@ -165,9 +165,9 @@ constexpr Key rows_of_keys[] = {
      "Fluid with grains: drag coefficient of a grain, for the form drag that one spacing cannot resolve. Column with grains: the law of a "
      "grain's drag by name (docs/method.md).", not_negative},
     {"interactions.pair", "lift", at<&Interaction::lift>(0.0).like("0.85"), "",
-     "Only with a law of drag by name, in a fluid: lift of a grain that stands on the bed over its drag, by the shear of the wind about it (docs/method.md); 0.85 measured by Chepil 1958.", not_negative},
+     "Only with a law of drag by name: lift of a grain that stands on the bed over its drag, by the shear of the wind about it (docs/method.md); 0.85 measured by Chepil 1958.", not_negative},
     {"interactions.pair", "gusts", at<&Interaction::gusts>(0.0).like("0.38"), "",
-     "Only with a law of drag by name, in a fluid: standard deviation of the wind near the bed over its mean, in patterns that the wind carries (docs/method.md); 0.38 at a wall.", {.at_least = 0.0, .at_most = 0.6}},
+     "Only with a law of drag by name: standard deviation of the wind near the bed over its mean, in patterns that the wind carries (docs/method.md); 0.38 at a wall.", {.at_least = 0.0, .at_most = 0.6}},
     {"interactions.pair", "coupling-interval", at<&Interaction::coupling_interval>("0.004 sqrt(d/g)").like("8e-5"), "s",
      "Only with a law of drag by name, in a fluid: the least time between two exchanges of momentum of the wind and its grains; in between a grain keeps its drag (docs/method.md). In whole steps of the fluid.", {.at_most = 1e-3, .above = 0.0}},
     {"interactions.pair", "buoyancy", at<&Interaction::buoyancy>(false), "", "Only with a law of drag by name: grains weigh less by the fluid that they displace, g (1 - rho_fluid/rho_grain) (docs/method.md). In air 0.05 % for quartz; in water it matters."},

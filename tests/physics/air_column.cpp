@@ -177,7 +177,9 @@ TEST_F(AirColumnScene, MomentumIsClosed) {
   crowd.replace(crowd.find("stokes"), 6, "di-felice");
   std::string turning = spheres;
   turning.replace(turning.find("\"stokes\""), 8, "\"stokes\", magnus = true");
-  for (const std::string& text : {cloud(wind), crowd, spheres, turning}) {
+  std::string gusty = spheres;
+  gusty.replace(gusty.find("\"stokes\""), 8, "\"duran\", gusts = 0.38, lift = 0.85");
+  for (const std::string& text : {cloud(wind), crowd, spheres, turning, gusty}) {
     const auto run = small::simulation(text);
     const auto total = [&] {
       return column_of(*run, "momentum_x") + column_of(*run, "air_momentum_x") -
@@ -193,6 +195,31 @@ TEST_F(AirColumnScene, MomentumIsClosed) {
     EXPECT_LT(worst, 1e-10);
     EXPECT_GT(column_of(*run, "momentum_x"), 1e-3 * scale) << "the grains have got some of it";
   }
+}
+
+/// Of a grain at rest in a held wind U(y): C (U+ - U-)/U of its drag, and gusts that change both by one factor.
+TEST_F(AirColumnScene, LiftIsAShareOfTheDrag) {
+  const std::vector<std::string> wind{"phases.air.held=true", "phases.air.log-profile.friction-velocity=0.4",
+                                      "fill.0.velocity=[0, 0]", "time.end=2e-4"};
+  const auto drag_and_lift = [&](const std::string& drag) {
+    auto keys = wind;
+    keys.push_back("interactions.air-sand={ drag = \"stokes\"" + drag + " }");
+    Drive drive("verification/hop", keys);
+    drive.simulation().step(1e-4);
+    const PhaseParticles& sand = drive.phase(1);
+    return std::array<double, 3>{sand.column(Field::drag_acceleration, 0)[0],
+                                 sand.column(Field::drag_acceleration, 1)[0], sand.column(Field::position, 1)[0]};
+  };
+  const auto bare = drag_and_lift(""), lifted = drag_and_lift(", lift = 0.85"),
+             gusty = drag_and_lift(", lift = 0.85, gusts = 0.38");
+  EXPECT_NEAR(bare[1] / bare[0], 0.0, 1e-3) << "it begins to fall";
+  EXPECT_EQ(lifted[0], bare[0]);
+  const double d = 2.5e-4, z0 = 8.3e-6, y = bare[2];
+  const double share = 0.85 * std::log((y + 0.25 * d) / (y - 0.25 * d)) / std::log(y / z0);
+  report("lift over drag, over its formula", lifted[1] / lifted[0] / share, 1.05);
+  EXPECT_NEAR(lifted[1] / lifted[0] / share, 1.0, 0.05);
+  EXPECT_NE(gusty[0], lifted[0]);
+  EXPECT_NEAR(gusty[1] / gusty[0], lifted[1] / lifted[0], 0.02 * share) << "Stokes: drag and lift grow alike";
 }
 
 /// A wind along -x, and grains in it, are the mirror image of one along x: of a held profile, and of air that the

@@ -55,6 +55,22 @@ TEST(KOmega, OmegaBesideTheGround) {
   EXPECT_EQ(omega_beside_ground(9.0 * layer, u, d), 2.0 * layer);
 }
 
+/// Heavy grains take k as exp(-2 s t), and 0.35 of that exponent of omega; grains that follow every eddy take nothing.
+TEST(KOmega, GrainsTakeOfTheTurbulence) {
+  const double rate = 10.0, dt = 1e-5, end = 0.05;
+  double k = 1.0, omega = 300.0;
+  for (int step = 0; step < static_cast<int>(std::lround(end / dt)); ++step)
+    slow_eddies({rate, 0.2}, dt, k, omega);  // St = 32 and more
+  EXPECT_NEAR(std::log(k) / (-2.0 * rate * end), 1.0, 2e-3);
+  EXPECT_NEAR(std::log(omega / 300.0) / (-0.7 * rate * end), 1.0, 2e-3);
+  k = 1.0;
+  slow_eddies({rate, 1.0 / (6.0 * 0.09 * 300.0)}, dt, k, omega = 300.0);  // St = 1
+  EXPECT_NEAR((1.0 - k) / (2.0 * rate * dt * (1.0 - std::exp(-0.25))), 1.0, 1e-3);
+  k = 1.0;
+  slow_eddies({rate, 0.0}, dt, k, omega);
+  EXPECT_EQ(k, 1.0);
+}
+
 /// Where shear is fast the stress is at most sqrt(beta*)/(7/8) k.
 TEST(KOmega, TheStressIsLimited) {
   const double k = 0.5, shear = 1e4;

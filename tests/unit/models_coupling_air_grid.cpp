@@ -101,6 +101,28 @@ TEST(AirGrid, SharesAForceOutAsAWholeBesideNodesWithoutAir) {
   EXPECT_NEAR(0.7 * p.column(Field::drag_acceleration, 1)[0], -0.25, 1e-13);
 }
 
+/// What brakes the air's eddies is shared out as a force is: sum m_a s_a = sum m rate of the grains.
+TEST(AirGrid, SharesGrainsOut) {
+  PhaseParticles p = air_of();
+  AirGrid grid(flat_box(), 1.0);
+  std::vector<GrainsInEddies> of(p.size());
+  grid.gather(p);
+  grid.give_grains(p, of.data());
+  for (const GrainsInEddies& one : of) EXPECT_EQ(one.rate, 0.0) << "none are there";
+  grid.put({7.9, 3.3}, 0.3, 4.0);
+  grid.put({2.2, 0.1}, 0.1, 7.0);
+  grid.give_grains(p, of.data());
+  double sum = 0.0;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    sum += p.mass() * of[k].rate;
+    if (of[k].rate > 0.0 && p.column(Field::position, 0)[k] > 4.0) { EXPECT_NEAR(of[k].response, 0.25, 1e-12); }
+  }
+  EXPECT_NEAR(sum, 0.3 * 4.0 + 0.1 * 7.0, 1e-12);
+  grid.gather(p);
+  grid.give_grains(p, of.data());
+  EXPECT_EQ(of[30].rate, 0.0) << "they are those since the last gathering";
+}
+
 TEST(AirGrid, FindsTheMeanWindAboutAPlace) {
   PhaseParticles p = air_of();
   AirGrid grid(flat_box(), 1.0);

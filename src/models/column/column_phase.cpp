@@ -34,6 +34,7 @@ constexpr double cells_a_diameter = 4.0;
 constexpr double most_cells = 20000.0;
 /// Of sqrt(d/g), the time in which a grain falls half its diameter: 20 us for 0.25 mm.
 constexpr double interval_share = 0.004;
+constexpr double gust_nodes = 4.0;  // diameters between places where gusts are known
 
 }  // namespace
 
@@ -54,6 +55,7 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
                         scene.phases[grains].density,
                         plan.size(),
                         plan.own_steps(),
+                        e.given.lift,
                         e.given.magnus,
                         {},
                         {}});
@@ -62,6 +64,13 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
   }
   const double g = std::abs(scene.domain.gravity[1]);
   interval_ = interval_share * std::sqrt(diameter_ / (g > 0.0 ? g : 9.81));
+  for (const PlanEntry& e : layout.entries) {
+    if (!e.has(number) || !(e.given.gusts > 0.0) || gusts_) continue;
+    const double heavier = scene.phases[e.partner(number)].density / density_ - 1.0;
+    gusts_.emplace(e.given.gusts, keys_.viscosity, bagnold_threshold(heavier, g, diameter_), layout.domain.low[0],
+                   scene.domain.size[0],
+                   static_cast<std::size_t>(std::ceil(scene.domain.size[0] / (gust_nodes * diameter_))));
+  }
 }
 
 void ColumnPhase::attach(Workspace& w) {
@@ -236,7 +245,23 @@ double ColumnPhase::rotation(double y, double radius) const {
   return 0.5 * (wind(y - 0.5 * radius, 0.5 * radius) - wind(y + 0.5 * radius, 0.5 * radius)) / radius;
 }
 
+/// m/s, with the gust at x.
+double ColumnPhase::felt(double x, double wind) const {
+  if (!gusts_) return wind;
+  const double most = gusts_->largest_gusty_speed();
+  return wind + gusts_->at(x) * std::clamp(wind, -most, most);
+}
+
+/// Lift over the rate of the drag, m/s: of a grain of speed `along` the ground in a mean `wind` that `blows` with its
+/// gust (models/coupling/sand_layer.hpp).
+double ColumnPhase::lift_of(double y, double radius, double mean, double blows, double along) const {
+  const double shear = wind(y + 0.5 * radius, 0.5 * radius) - wind(y - 0.5 * radius, 0.5 * radius);
+  const double gain = mean != 0.0 ? blows / mean : 1.0, difference = blows - along;
+  return gain * shear * difference / std::max({std::abs(difference), std::abs(blows), 1e-300});
+}
+
 void ColumnPhase::feel() {
+  if (gusts_) gusts_->blow(w_->state.time + 0.5 * hold_);
   for (Feeling& grains : feeling_) {
     if (grains.law == DragLaw::di_felice) {
       const auto excess = [this](double re, double y) {
@@ -272,7 +297,7 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
   }
   std::array<double*, spins(Dim)> spin{};
   if (grains.magnus) spin = spin_columns<Dim>(p, Field::angular_velocity);
-  const double* y = p.column(Field::position, 1);
+  const double *x = p.column(Field::position, 0), *y = p.column(Field::position, 1);
   const Diameters diameter(p, grains.diameter);
   const double weight = weight_share(scene_, scene_.phases[grains.phase]);
   const double time = hold_, ahead = time_ahead(grains);
@@ -283,8 +308,8 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     const auto k = static_cast<std::size_t>(i);
     const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
     const double at = y[k] + ahead * v[1][k];
-    const double speed = wind(at, 0.5 * d);
-    std::array<double, dimensions> air{speed}, own{}, gravity{};
+    const double speed = wind(at, 0.5 * d), blows = felt(x[k], speed);
+    std::array<double, dimensions> air{blows}, own{}, gravity{};
     for (std::size_t c = 0; c < dimensions; ++c) {
       own[c] = v[c][k];
       gravity[c] = weight * scene_.domain.gravity[c];
@@ -294,6 +319,7 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     for (std::size_t c = 0; c < dimensions; ++c) drag[c][k] = kept.drag[c];
     grains.rate[k] = kept.rate;
     grains.wind[k] = speed;
+    if (grains.lift > 0.0) drag[1][k] += grains.lift * kept.rate * lift_of(at, 0.5 * d, speed, blows, own[0]);
     if (!grains.magnus || own == std::array<double, dimensions>{}) continue;
     std::array<double, dimensions> through{};
     for (std::size_t c = 0; c < dimensions; ++c) through[c] = own[c] - air[c];

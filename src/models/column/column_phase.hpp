@@ -6,10 +6,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "laws/drag_coefficients.hpp"
 #include "models/column/air_column.hpp"
+#include "models/coupling/gusts.hpp"
 #include "models/workspace.hpp"
 #include "scene/formula.hpp"
 
@@ -40,6 +42,7 @@ class ColumnPhase : public Model {
     double density;   // kg/m3, of the grains
     double diameter;  // m, mean
     bool own_steps;   // moved by models/grains/spheres.hpp: a step's drag acts in the whole of the next one
+    double lift;      // of a grain on the bed over its drag (models/coupling/sand_layer.hpp)
     bool magnus;      // the force on those that turn (laws/turning_sphere.hpp)
     std::vector<double> rate, wind;  // of each grain: 1/s, drag by difference of speed; m/s, the air about it
   };
@@ -59,6 +62,8 @@ class ColumnPhase : public Model {
   void find_voidage();
   double wind(double y, double radius) const;
   double rotation(double y, double radius) const;
+  double felt(double x, double wind) const;
+  double lift_of(double y, double radius, double wind, double blows, double along) const;
   double top_stress(double time) const;
   double momentum() const;
   double impulse_time(const Feeling& grains) const;
@@ -73,7 +78,8 @@ class ColumnPhase : public Model {
   double hold_ = 0.0;                 // s, for which the next drag is kept
   Formula friction_velocity_;
   std::vector<Feeling> feeling_;
-  bool crowded_ = false;  // some law reads the voidage
+  std::optional<Gusts> gusts_;  // where an entry has some
+  bool crowded_ = false;        // some law reads the voidage
   Workspace* w_ = nullptr;
   std::unique_ptr<AirColumn> air_;
   std::unique_ptr<AirColumn::Spread> spread_;

@@ -66,6 +66,7 @@ void AirGrid::gather(const PhaseParticles& air) {
   if (kept_.empty()) std::fill(force_.begin(), force_.end(), Vec3{});
   else force_ = kept_;
   lost_ = {};
+  std::fill(grains_.begin(), grains_.end(), std::array<double, 2>{});
   const auto x = columns_of(air, Field::position), v = columns_of(air, Field::velocity);
   const double m = air.mass();
   const auto add = [&] {
@@ -147,6 +148,36 @@ void AirGrid::give(PhaseParticles& air) const {
       for (const auto& [node, weight] : corners<Dim>(at<Dim>(x, k)))
         for (std::size_t d = 0; d < Dim; ++d) a[d] += weight * force_[node][d] / std::max(mass_[node], 1e-300);
       for (std::size_t d = 0; d < Dim; ++d) to[d][k] = a[d];
+    }
+  });
+}
+
+void AirGrid::put(const Vec3& x, double mass, double rate) {
+  grains_.resize(mass_.size());
+  by_dimension([&](auto dim) {
+    for (const auto& [node, weight] : corners<dim>(x)) {
+      grains_[node][0] += weight * mass * rate;
+      grains_[node][1] += weight * mass;
+    }
+  });
+}
+
+void AirGrid::give_grains(const PhaseParticles& air, GrainsInEddies* of) const {
+  const auto x = columns_of(air, Field::position);
+  const auto n = static_cast<std::int64_t>(air.size());
+  by_dimension([&](auto dim) {
+    constexpr std::size_t Dim = dim;
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      double rate = 0.0, drag = 0.0, mass = 0.0;
+      for (const auto& [node, weight] : corners<Dim>(at<Dim>(x, k))) {
+        if (grains_.empty()) break;
+        rate += weight * grains_[node][0] / std::max(mass_[node], 1e-300);
+        drag += weight * grains_[node][0];
+        mass += weight * grains_[node][1];
+      }
+      of[k] = {rate, drag > 0.0 ? mass / drag : 0.0};
     }
   });
 }

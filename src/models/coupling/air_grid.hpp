@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/cell_grid.hpp"
+#include "laws/grains_in_eddies.hpp"
 #include "state/particles.hpp"
 
 namespace barchan {
@@ -31,8 +32,12 @@ class AirGrid {
   /// A force (N; 2D: per metre of depth) on the air about a place. What finds no air is lost: lost().
   void push(const Vec3& x, const Vec3& force);
   const Vec3& lost() const { return lost_; }
+  /// A grain of this mass (kg) about a place, with this drag by difference of speed (1/s), for give_grains().
+  void put(const Vec3& x, double mass, double rate);
   /// Writes the accelerations of the particles by these forces (m/s2) into their field drag_acceleration.
   void give(PhaseParticles& air) const;
+  /// Writes the grains about the particles that were put since gather().
+  void give_grains(const PhaseParticles& air, GrainsInEddies* of) const;
 
  private:
   struct Corner {
@@ -55,6 +60,7 @@ class AirGrid {
   Vec3 width_{};
   std::vector<double> mass_;
   std::vector<Vec3> velocity_, force_, kept_;  // kept_: empty, or by node
+  std::vector<std::array<double, 2>> grains_;  // by node, of those put: mass times rate (kg/s), mass (kg); or empty
   Vec3 lost_{};
 };
 

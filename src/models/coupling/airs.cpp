@@ -53,15 +53,24 @@ Vec3 Airs::velocity(const Vec3& x) const {
   return all > 0.0 ? Vec3{sum[0] / all, sum[1] / all, sum[2] / all} : Vec3{};
 }
 
-void Airs::push(const Vec3& x, const Vec3& force) {
-  if (grids_.size() == 1) return grids_.front().push(x, force);
+/// Calls f(grid, share) with each grid that has air about a place; the shares add up to 1.
+template <class F>
+void Airs::each_about(const Vec3& x, F&& f) {
   double all = 0.0;
-  for (std::size_t k = 0; k < grids_.size(); ++k) all += grids_[k].density(x) / density_[k];
-  if (!(all > 0.0)) return grids_.front().push(x, force);
+  for (std::size_t k = 0; k < grids_.size() && grids_.size() > 1; ++k) all += grids_[k].density(x) / density_[k];
+  if (!(all > 0.0)) return f(grids_.front(), 1.0);
   for (std::size_t k = 0; k < grids_.size(); ++k) {
     const double share = grids_[k].density(x) / density_[k] / all;
-    if (share > 0.0) grids_[k].push(x, share * force);
+    if (share > 0.0) f(grids_[k], share);
   }
+}
+
+void Airs::push(const Vec3& x, const Vec3& force) {
+  each_about(x, [&](AirGrid& grid, double share) { grid.push(x, share * force); });
+}
+
+void Airs::put(const Vec3& x, double mass, double rate) {
+  each_about(x, [&](AirGrid& grid, double share) { grid.put(x, share * mass, rate); });
 }
 
 void Airs::give(State& state) const {

@@ -30,10 +30,19 @@ class Airs {
   Vec3 velocity(const Vec3& x) const;
   /// A force (N; 2D: per metre of depth) on the air about a place.
   void push(const Vec3& x, const Vec3& force);
+  /// A grain that the turbulence feels, as AirGrid's; by the same shares.
+  void put(const Vec3& x, double mass, double rate);
+  /// Writes the grains about the particles of a phase, the `number`th of phases().
+  void give_grains(const State& state, std::size_t number, GrainsInEddies* of) const {
+    grids_[number].give_grains(state.phases[phases_[number]], of);
+  }
   /// Writes the accelerations of the particles by these forces (m/s2) into their field drag_acceleration.
   void give(State& state) const;
 
  private:
+  template <class F>
+  void each_about(const Vec3& x, F&& f);
+
   std::vector<std::size_t> phases_;
   std::vector<double> density_;  // kg/m3
   std::vector<AirGrid> grids_;

@@ -10,10 +10,17 @@
 // 0.1 sqrt((rho_s/rho - 1) g d), a number of the scene. Nothing is random at run time: x and t give g.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace barchan {
+
+/// m/s, Bagnold's threshold (1936), whose u* gusts have; `heavier`: the density of the grains over the air's, less 1.
+inline double bagnold_threshold(double heavier, double gravity, double diameter) {
+  return 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter);
+}
 
 class Gusts {
  public:

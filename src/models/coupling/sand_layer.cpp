@@ -42,14 +42,18 @@ SandLayer::SandLayer(const Scene& scene, const Layout& layout, const PlanEntry& 
       may_rest_(scene.phases[grains_].grains().sleep) {
   if (!(entry.given.gusts > 0.0)) return;
   const double heavier = scene.phases[grains_].density / density_ - 1.0, gravity = std::abs(scene.domain.gravity[1]);
-  const double bagnold = 0.1 * std::sqrt(std::max(heavier, 1.0) * gravity * diameter_);  // m/s, his threshold
   const double low = layout.domain.low[0], size = layout.domain.high[0] - low;
-  gusts_.emplace(entry.given.gusts, viscosity_, bagnold, low, size,
+  gusts_.emplace(entry.given.gusts, viscosity_, bagnold_threshold(heavier, gravity, diameter_), low, size,
                  static_cast<std::size_t>(std::max(1.0, std::round(size / layout.phases[fluid_].spacing))));
 }
 
 void SandLayer::begin(State& state, const std::vector<ParticleBlock>&) {
   if (may_rest_) keeps_ = state.phases[grains_].add_own<std::uint8_t>(name_ + ".keeps");
+  for (const std::size_t fluid : grid_.phases()) {
+    slowed_.emplace_back();
+    if (scene_.phases[fluid].fluid().turbulence == Turbulence::k_omega)
+      slowed_.back() = state.phases[fluid].add_own<GrainsInEddies>(name_ + ".grains in eddies");
+  }
 }
 
 void SandLayer::attach(Workspace& w) {
@@ -95,7 +99,11 @@ void SandLayer::attach(Workspace& w) {
   near_.reserve(grains);
   flying_.reserve(grains);
   rate_.assign(grains, 0.0);
-  for (const std::size_t fluid : grid_.phases()) w.ground_stress[fluid].assign(w.particles(fluid).size(), 0.0);
+  for (std::size_t k = 0; k < grid_.phases().size(); ++k) {
+    const std::size_t fluid = grid_.phases()[k];
+    w.ground_stress[fluid].assign(w.particles(fluid).size(), 0.0);
+    w.grains_in_eddies[fluid] = slowed_[k];
+  }
 }
 
 /// Layers know the ground along x.
@@ -339,11 +347,15 @@ void SandLayer::exchange(double kept, double meant) {
   // across it.
   for (const std::size_t k : flying_) {
     const double m = p.mass_of(k);
-    grid_.push({x[k], y[k], z ? z[k] : 0.0}, {-m * ax[k], -m * ay[k], az ? -m * az[k] : 0.0});
+    const Vec3 place{x[k], y[k], z ? z[k] : 0.0};
+    grid_.push(place, {-m * ax[k], -m * ay[k], az ? -m * az[k] : 0.0});
+    if (slowed_.front()) grid_.put(place, m, rate_[k]);
   }
   for (const Near& q : near_)
     if (!q.rests) push_across(p, q);
   grid_.give(w_->state);
+  for (std::size_t k = 0; k < slowed_.size(); ++k)
+    if (slowed_[k]) grid_.give_grains(w_->state, k, w_->particles(grid_.phases()[k]).own(*slowed_[k]));
 }
 
 void SandLayer::push_across(const PhaseParticles& p, const Near& q) {

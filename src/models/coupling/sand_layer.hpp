@@ -158,16 +158,17 @@ class SandLayer : public Model {
   std::vector<AirColumn> layers_;
   std::vector<AirColumn::Spread> pulls_, rates_;
   std::vector<AirColumn::Load> loads_;
-  bool may_rest_;                                  // grains that rest keep their drag
-  bool all_due_ = true;                            // of all grains in this exchange
-  long to_all_ = 0, seen_changes_ = 0;             // exchanges until then; of the grains (PhaseParticles::changes)
-  OwnColumn<std::uint8_t> keeps_;                  // by grain: it rested in the last exchange of all
-  std::vector<AirColumn::Load> rest_loads_;        // pull: what those take from the layers
-  std::vector<std::vector<double>> speed_before_;  // m/s, of the layers, in an exchange of all
-  std::vector<Place> places_;                      // by grain
-  std::vector<Near> near_;                         // grains in the layers
-  std::vector<std::size_t> flying_;                // grains over them
-  std::vector<double> rate_;                       // 1/s, of each grain, by the difference of speed
+  bool may_rest_;                       // grains that rest keep their drag
+  bool all_due_ = true;                 // of all grains in this exchange
+  long to_all_ = 0, seen_changes_ = 0;  // exchanges until then; of the grains (PhaseParticles::changes)
+  std::vector<std::optional<OwnColumn<GrainsInEddies>>> slowed_;  // by phase of grid_, of those with k-omega
+  OwnColumn<std::uint8_t> keeps_;                                 // by grain: it rested in the last exchange of all
+  std::vector<AirColumn::Load> rest_loads_;                       // pull: what those take from the layers
+  std::vector<std::vector<double>> speed_before_;                 // m/s, of the layers, in an exchange of all
+  std::vector<Place> places_;                                     // by grain
+  std::vector<Near> near_;                                        // grains in the layers
+  std::vector<std::size_t> flying_;                               // grains over them
+  std::vector<double> rate_;                                      // 1/s, of each grain, by the difference of speed
 };
 
 }  // namespace barchan

@@ -141,6 +141,8 @@ void FluidPhase::kick_and_drift() {
 
 void FluidPhase::step_k_omega() {
   k_omega_.step = w_->state.dt;
+  const auto& grains = w_->grains_in_eddies[number_];
+  k_omega_.grains = grains ? std::as_const(*particles_).own(*grains) : nullptr;
   k_omega_step(*particles_, w_->records(number_, Record::turbulence), k_omega_neighbours_, k_omega_);
 }
 

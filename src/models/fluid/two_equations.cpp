@@ -172,6 +172,7 @@ void step(PhaseParticles& fluid, const RecordArray& own, std::span<const KOmegaN
     finish<Dim>(s, a, i, c, q.spacing, p);
     double k = p.k, omega = p.omega;
     step_k_omega(p, q.step, k, omega);
+    if (q.grains) slow_eddies(q.grains[i], q.step, k, omega);
     if (c.distance[i] < q.spacing)
       omega = omega_beside_ground(omega, friction_velocity_of_energy(k),
                                   std::max({c.distance[i], 0.25 * q.spacing, 2.0 * q.roughness}));

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "laws/grains_in_eddies.hpp"
 #include "models/fluid/fluid_rates.hpp"
 
 namespace barchan {
@@ -19,11 +20,12 @@ struct KOmegaNeighbour {
 };
 
 struct KOmegaParameters {
-  double viscosity = 0.0;  // m2/s
-  double spacing = 0.0;    // m
-  double roughness = 0.0;  // m, the largest of the ground
-  double begins = 0.0;     // m/s, friction velocity of the layer that it begins as
-  double step = 0.0;       // s
+  double viscosity = 0.0;                  // m2/s
+  double spacing = 0.0;                    // m
+  double roughness = 0.0;                  // m, the largest of the ground
+  double begins = 0.0;                     // m/s, friction velocity of the layer that it begins as
+  double step = 0.0;                       // s
+  const GrainsInEddies* grains = nullptr;  // by particle; null: none are in the fluid
 };
 
 /// Writes the turbulence records; gives particles that have no k the k and omega of the logarithmic layer.

@@ -38,11 +38,15 @@ void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) 
                      "a log-profile as velocity of a fill, or a lid with shear-stress");
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& other = scene.phases[k];
-    if (k == fluid || !entry_between(scene, phase, other)) continue;
+    const Interaction* const pair = k == fluid ? nullptr : entry_between(scene, phase, other);
+    if (!pair || pair->drag_law != DragLaw::none) continue;  // grains that feel the mean wind are no obstacles
     if (layout.phases[k].separate() || layout.phases[k].travels() ||
         layout.phases[k].moves() != layout.phases[k].flows())
-      throw SceneError(key + "does not support grains, bodies or walls that move, and \"" + other.name +
-                       "\" is such a phase; expected \"mixing-length\", or no entry of the two");
+      throw SceneError(key +
+                       "supports moving grains with a law of drag by name only, and no bodies or walls that move; \"" +
+                       other.name +
+                       "\" is such a phase; expected \"mixing-length\", drag = \"duran\" of grains, or no entry of the "
+                       "two");
   }
 }
 
