@@ -27,6 +27,7 @@ from barchan_bench.frame import Frame, series, table  # noqa: E402
 SCENE, RESULT = ROOT / "scenes/dune.toml", ROOT / "bench/saltation/results/tunnel.csv"
 PICTURE, PLOTS = ROOT / "docs/gallery/dune_tunnel.png", ROOT / "docs/gallery/dune_tunnel_plots.png"
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
+QUARTZ = 2650.0  # kg/m3, of material = "quartz-sand" (src/scene/materials.cpp)
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
 TOP = 0.12  # m, of the picture
 
@@ -61,7 +62,7 @@ class Means:
         self.air, self.flux, self.pushes, self.fastest = [], [], [], 0.0
         parts = round(ground.length / PART)
         diameter = scene["phases"]["sand"]["diameter"]["mean"]
-        density = scene["phases"]["sand"]["density"]
+        density = scene["phases"]["sand"].get("density", QUARTZ)
         frames = [(t, p) for t, p in series(next(folder.glob("*.pvd"))) if begin <= t <= end]
         for _, path in frames:
             air, self.sand = Frame(path, phase="air"), Frame(path, phase="sand")
