@@ -514,7 +514,7 @@ def kernel_drag(bench):
 # --- heaps --------------------------------------------------------------------------------------------------------------
 
 HEAP_SEEDS, HEAP_D = (1, 2, 3), 1e-3
-HEAP_FRICTIONS = ((0.5, 0.2), (0.6, 0.6), (1.0, 0.8))  # friction and rolling-friction
+HEAP_FRICTIONS = ((0.3, 0.4), (0.6, 0.4), (0.6, 1.0))  # friction and rolling-friction
 
 
 def surface_of(x, step):
@@ -565,7 +565,7 @@ def heaps(bench):
         columns.append({"seed": seed, "aspect": height / length, "front": (float(numpy.quantile(end[:, 0], 0.99)) - length) / length,
                         "gap": (along[-1] + HEAP_D - length) / length, "height": max(up) / length})
     frictions = [dict(h, friction=mu, rolling=rolling) for h, (mu, rolling) in zip(harder, HEAP_FRICTIONS)]
-    return {"parameters": {"friction": 0.6, "rolling": 0.4}, "repose": angles, "frictions": frictions, "collapse": columns}
+    return {"parameters": {"friction": 0.3, "rolling": 1.0}, "repose": angles, "frictions": frictions, "collapse": columns}
 
 
 CASES = {"settling": settling, "hop": hop, "splash": splash, "splash-table": splash_table, "threshold": threshold, "flux": flux, "flux-3d": flux_3d, "impact": impact, "resolved": resolved, "heaps": heaps,

@@ -18,10 +18,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from barchan_bench import ROOT, run  # noqa: E402
 from barchan_bench.frame import Frame, series, table, write_particles  # noqa: E402
 
-BED, HEIGHT, START, FRICTION_VELOCITY, DIAMETER = 0.0035, 0.25, 0.6, 0.5, 2.5e-4  # m: of the tunnel; s; m/s; m
+BED, HEIGHT, START, FRICTION_VELOCITY, DIAMETER = 0.0065, 0.25, 0.6, 0.5, 2.5e-4  # m: of the tunnel; s; m/s; m
 KEYS = {"phases.air.friction-velocity": FRICTION_VELOCITY, "phases.air.density": 1.225, "phases.air.viscosity": 1.48e-5, "phases.sand.density": 2650,
-        "phases.sand.diameter": "{ mean = 2.5e-4, spread = 0.15 }", "phases.sand.restitution": 0.7, "phases.sand.friction": 0.6,
-        "phases.sand.rolling-friction": 0.4, "phases.floor.density": 2650, "phases.floor.diameter": 2.5e-4, "fill.0.shape": "{ bed = 2.5e-4 }",
+        "phases.sand.diameter": "{ mean = 2.5e-4, spread = 0.15 }", "phases.sand.restitution": 0.7, "phases.sand.friction": 0.3,
+        "phases.sand.rolling-friction": 1.0, "interactions.air-sand.magnus": "true", "phases.floor.density": 2650, "phases.floor.diameter": 2.5e-4, "fill.0.shape": "{ bed = 2.5e-4 }",
         "fill.1.shape": "{ bed = 2.9e-3, from = 2.5e-4 }", "output.every": 0.01, "output.fields": '["radius"]'}
 
 

@@ -29,6 +29,7 @@ PICTURE, PLOTS = ROOT / "docs/gallery/dune_tunnel.png", ROOT / "docs/gallery/dun
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
 QUARTZ = 2650.0  # kg/m3, of material = "quartz-sand" (src/scene/materials.cpp)
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
+BORDER = 0.07  # m, above it the air is coarser
 TOP = 0.12  # m, of the picture
 
 
@@ -59,23 +60,28 @@ class Means:
 
     def __init__(self, folder, ground, scene, begin, end):
         self.ground, self.spacing = ground, scene["spacing"]
-        self.air, self.flux, self.pushes, self.fastest = [], [], [], 0.0
+        self.air, self.flux, self.mass, self.pushes, self.fastest = [], [], [], [], 0.0
         parts = round(ground.length / PART)
+        fluids = [name for name, keys in scene["phases"].items() if keys["kind"] == "fluid"]
         diameter = scene["phases"]["sand"]["diameter"]["mean"]
         density = scene["phases"]["sand"].get("density", QUARTZ)
         frames = [(t, p) for t, p in series(next(folder.glob("*.pvd"))) if begin <= t <= end]
         for _, path in frames:
-            air, self.sand = Frame(path, phase="air"), Frame(path, phase="sand")
+            airs, self.sand = [Frame(path, phase=name) for name in fluids], Frame(path, phase="sand")
+            air = airs[0]
             inside = (air.x[:, 0] > 0) & (air.x[:, 0] < ground.length)
             self.last = air.keep(inside)
-            self.air.append(np.column_stack([air.x[:, :2], air["velocity"][:, :2]]))
+            self.whole = np.concatenate([np.column_stack([a.x[:, :2], a["velocity"][:, :2]]) for a in airs])
+            self.air.append(self.whole)
             self.pushes.append(push_on_dune(self.last, ground, self.spacing))
             mass = density * math.pi / 6 * (2 * self.sand["radius"]) ** 3 / diameter
-            sums = np.histogram(self.sand.x[:, 0], bins=parts, range=(0, ground.length), weights=mass * self.sand["velocity"][:, 0])[0]
-            self.flux.append(sums / PART * 1e3)
+            along = {"bins": parts, "range": (0, ground.length)}
+            self.flux.append(np.histogram(self.sand.x[:, 0], weights=mass * self.sand["velocity"][:, 0], **along)[0] / PART * 1e3)
+            self.mass.append(np.histogram(self.sand.x[:, 0], weights=mass, **along)[0])
             self.fastest = max(self.fastest, float(np.hypot(*self.sand["velocity"][:, :2].T).max()))
         self.frames, self.times = len(frames), (frames[0][0], frames[-1][0])
-        self.flux, self.air = np.array(self.flux), np.concatenate(self.air)
+        self.flux, self.mass, self.air = np.array(self.flux), np.array(self.mass), np.concatenate(self.air)
+        self.moments = np.array([t for t, _ in frames])
 
     def wind(self, x):
         """Heights over the ground (m) and mean speed along the wind (m/s) about a place."""
@@ -97,18 +103,22 @@ def push_on_dune(air, ground, spacing):
     return float(((sums[high] - sums[low]) / np.maximum(high - low, 1) * ground.slope(cells)).sum() * 1e-3)
 
 
-def through(profile):
-    """Momentum and pressure of the air through a section (N/m)."""
-    known = np.isfinite(profile["velocity_mean_x"])
+def through(folder, name, border):
+    """Momentum and pressure of the air through a section (N/m); the air has coarser particles above the border (m)."""
+    return sum(through_part(table(folder / f"profile_{name}{part}.csv"), *ends) for part, ends in (("", (0, border)), ("_above", (border, 1))))
+
+
+def through_part(profile, low, high):
+    known = np.isfinite(profile["velocity_mean_x"]) & (profile["y"] >= low) & (profile["y"] <= high)
     return float(np.trapz((DENSITY * (profile["velocity_mean_x"] ** 2 + profile["velocity_rms_x"] ** 2) + profile["pressure_mean"])[known], profile["y"][known]))
 
 
 def driven_by(folder, ground, history, chosen):
     """Pa, for each metre of length: lid; momentum and pressure of the air that enters less what leaves; the same of the grains."""
-    sections = [table(folder / f"profile_{name}.csv") for name in ("upstream", "far")]
-    places = [float(s["x"][0]) for s in sections]
+    names = ("upstream", "far")
+    places = [float(table(folder / f"profile_{name}.csv")["x"][0]) for name in names]
     grains = sum(sign * np.ptp(history[f"sand_{side}_momentum_x"][chosen]) for sign, side in ((1, "left_in"), (-1, "left_out"), (-1, "right_out")))
-    return {"lid": DENSITY * FRICTION_VELOCITY**2, "air": (through(sections[0]) - through(sections[1])) / (places[1] - places[0]),
+    return {"lid": DENSITY * FRICTION_VELOCITY**2, "air": (through(folder, names[0], BORDER) - through(folder, names[1], BORDER)) / (places[1] - places[0]),
             "grains": float(grains / np.ptp(history["time"][chosen]) / ground.length)}
 
 
@@ -135,6 +145,20 @@ def back(means, ground):
     return float(speeds.min()), float(places[turned[-1]] + 0.005 - ground.crest) if len(turned) else 0.0
 
 
+def erosion(means, ground):
+    """What the dune loses: of its mass by time, and of the flux through its ends; the share of what passes the brink that does not leave the lee."""
+    parts = (np.arange(means.flux.shape[1]) + 0.5) * PART
+    dune = (parts > ground.toe) & (parts < ground.end + PART)
+    flux = means.flux.mean(0) * 1e-3
+    first, last = np.nonzero(dune)[0][[0, -1]]
+    at = lambda edge: 0.5 * (flux[edge - 1] + flux[edge])  # noqa: E731
+    mass = means.mass[:, dune].sum(1)
+    brink = np.abs(parts - ground.crest) < PART
+    behind = (parts > ground.end + ground.height_of_dune) & (parts < ground.end + 4 * ground.height_of_dune)
+    return {"dune_kg_m": float(mass[0]), "dune_loses_kg_m_s": float(-np.polyfit(means.moments, mass, 1)[0]), "flux_out_less_in_kg_m_s": float(at(last + 1) - at(first)),
+            "trapped_share": float(1 - flux[behind].mean() / flux[brink].mean())}
+
+
 def measure(folder, begin, end):
     scene = tomllib.loads(SCENE.read_text())
     ground = Ground(scene)
@@ -153,7 +177,7 @@ def measure(folder, begin, end):
     half = ground.windward / 2
     meant_speed_up = (1 + 2 * ground.height_of_dune / half) * (ground.top - ground.bed) / (ground.top - ground.bed - ground.height_of_dune) - 1
     stress = DENSITY * FRICTION_VELOCITY**2
-    drives = driven_by(folder, ground, history, chosen) if begin >= 0.99 else None
+    drives = driven_by(folder, ground, history, chosen) if abs(begin - scene["profile"][0]["start"]) < 0.01 else None
     return means, ground, {
         "driven_by_Pa": drives, "u_star_of_all_that_drives": math.sqrt(max(sum(drives.values()), 0) / DENSITY) if drives else None,
         "pressure_on_the_dune_N_m": float(np.mean(means.pushes)), "pressure_on_the_dune_over_length_Pa": float(np.mean(means.pushes)) / ground.length,
@@ -165,7 +189,7 @@ def measure(folder, begin, end):
         "entered_g_m_s": float(1e3 * np.ptp(history["sand_left_in"][chosen]) / np.ptp(history["time"][chosen])), "flux_upstream_over_saturated": float(flux[before].mean() / SATURATED),
         "ground_stress_over_rho_u2": float(history["air-sand_ground_stress"][chosen].mean() / stress),
         "speed_up_10_mm": float(speed_up), "speed_up_2H_over_L_and_blockage": float(meant_speed_up), "reverse_m_s": reverse,
-        "reverse_length_over_H": length / ground.height_of_dune, "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
+        "reverse_length_over_H": length / ground.height_of_dune, **erosion(means, ground), "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
 
 
 def picture(means, ground):
@@ -173,11 +197,11 @@ def picture(means, ground):
     plt = page.pyplot()
     from matplotlib.tri import LinearTriInterpolator, Triangulation
     figure, axes = plt.subplots(figsize=(10, 2.5), layout="constrained")
-    x, u, spacing = means.last.x, means.last["velocity"], means.spacing
+    x, u, spacing = means.whole[:, :2], means.whole[:, 2:], means.spacing
     xs = np.linspace(0, ground.length, 661)
     bed = ground.height(xs)
     rest = np.arange(0, ground.length + spacing, spacing)   # the ground belongs to the field: there the air is at rest
-    places, speeds = np.concatenate([x[:, :2], np.column_stack([rest, ground.height(rest)])]), np.concatenate([u[:, 0], np.zeros(len(rest))])
+    places, speeds = np.concatenate([x, np.column_stack([rest, ground.height(rest)])]), np.concatenate([u[:, 0], np.zeros(len(rest))])
     ys = np.linspace(0, TOP, 261)
     grid = np.meshgrid(xs, ys)
     field = LinearTriInterpolator(Triangulation(*places.T), speeds)(*grid)
@@ -233,7 +257,7 @@ def main():
         if not (folder / "history.csv").exists():
             continue
         end = options.end or float(table(folder / "history.csv")["time"][-1])
-        measured = measure(folder, max(end - 1, 0) if options.begin is None else options.begin, end)
+        measured = measure(folder, max(end - 0.5, 0) if options.begin is None else options.begin, end)
         runs.append(measured[2])
         shown = shown or measured
     store.keep(RESULT, {"runs": runs})
