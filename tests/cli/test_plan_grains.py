@@ -50,6 +50,17 @@ every = 0
 """
 
 
+class MeanWind(unittest.TestCase):
+    """A column has one wind along x: `plan` says so where its grains have a dune."""
+
+    def test_a_dune_in_a_column(self):
+        dune = "fill.1.shape.dune={ form = \"asymmetric\", height = 2e-3, length = 0.02, at = 0.03, slip-face-angle = 30 }"
+        for more in ([], ["--set", dune]):
+            ended = subprocess.run([PROGRAM, "plan", pathlib.Path(sys.argv[2]) / "scenes/saltation.toml", *more], capture_output=True, text=True)
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            self.assertEqual("is one mean along x, over a flat bed" in ended.stdout + ended.stderr, bool(more))
+
+
 class Loose(unittest.TestCase):
     def planned(self, end):
         scene = LOOSE.format(dimensions=2, size=[0.02, 0.03], gravity=[0, -9.81], sides='["bottom", "left", "right"]', zero=[0, 0], top=[0.02, 0.015], end=end)

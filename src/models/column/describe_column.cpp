@@ -5,6 +5,7 @@
 #include "models/column/column_phase.hpp"
 #include "models/drive.hpp"
 #include "output/numbers.hpp"
+#include "scene/couplings.hpp"
 #include "scene/log_wind.hpp"
 
 namespace barchan {
@@ -24,12 +25,26 @@ std::string beyond_measured_winds(const Scene& scene, const Phase& wind, const C
          "not";
 }
 
+/// A fill of the wind's grains with a dune, which a mean along x does not know; empty: there is none.
+std::string dune_in_mean_wind(const Scene& scene, const Phase& wind) {
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const auto* bed = std::get_if<BedShape>(&scene.fills[k].shape);
+    const Phase* grains = find_phase(scene, scene.fills[k].phase);
+    if (!bed || !bed->dune || !grains || !entry_between(scene, wind, *grains)) continue;
+    return "fill." + std::to_string(k) + ".shape.dune: the wind of \"" + wind.name +
+           "\" is one mean along x, over a flat bed: over the crest and behind it, it is the same; expected air of kind "
+           "fluid, as in the scene dune, or a flat bed";
+  }
+  return "";
+}
+
 }  // namespace
 
 void declare_column(const Scene&, std::size_t, Layout&) {}  // the defaults: nothing of it moves
 
 void describe_column(const Scene& scene, const std::vector<ParticleBlock>&, std::size_t number, Layout& layout,
-                     std::vector<std::string>&) {
+                     std::vector<std::string>& warnings) {
+  if (const std::string told = dune_in_mean_wind(scene, scene.phases[number]); !told.empty()) warnings.push_back(told);
   const ColumnKeys& keys = scene.phases[number].column();
   PlanPhase& p = layout.phases[number];
   p.physics = "column";
