@@ -83,6 +83,14 @@ void warn_of_loose_bodies(const Scene& scene, Plan& plan) {
         !meant_apart(scene, p.name, p.name))
       plan.warnings.push_back("interactions: no entry " + p.name + "-" + p.name + ": nothing holds the body \"" +
                               p.name + "\" together");
+    const bool body = p.moves() && !p.flows() && !p.own_steps() && p.count > 0;
+    if (body && norm(scene.domain.gravity) > 0.0 &&
+        std::none_of(plan.entries.begin(), plan.entries.end(),
+                     [&](const PlanEntry& e) { return e.has(k) && e.partner(k) != k; }) &&
+        std::none_of(scene.motions.begin(), scene.motions.end(), [&](const auto& m) { return m.phase == p.name; }))
+      plan.warnings.push_back("interactions: no entry of \"" + p.name +
+                              "\" with another phase: it falls; expected one with what bears it, as " + p.name +
+                              "-floor");
   }
 }
 
@@ -336,6 +344,21 @@ void warn_of_influxes(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < scene.influxes.size(); ++k) {
     const Influx& influx = scene.influxes[k];
     const std::string key = "influx." + std::to_string(k);
+    if (influx.box) {
+      // What falls out of the box in the time in which a grain crosses it, a quarter full: grains are put in at random.
+      constexpr double full = 0.25;
+      double room = 1.0;
+      for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
+        if (d != 1) room *= influx.box->max[d] - influx.box->min[d];
+      const double height = influx.box->max[1] - influx.box->min[1];
+      const double speed = std::max(norm(influx.velocity), std::sqrt(2.0 * norm(scene.domain.gravity) * height));
+      const double most = full * find_phase(scene, influx.phase)->density * room * speed;
+      if (influx.flux > most)
+        plan.warnings.push_back(key + ".flux: " + brief(influx.flux) + (scene.dimensions == 2 ? " kg/m/s" : " kg/s") +
+                                " is more than the box can take, about " + brief(most) +
+                                ": grains that find no room enter later or never; expected a larger box, a higher "
+                                "velocity, or less");
+    }
     if (!influx.speed || !influx.decay_height) continue;
     const double bottom = scene.domain.origin[1], h = *influx.decay_height;
     const double room = bottom + scene.domain.size[1] - influx.above.value_or(bottom);
@@ -411,6 +434,22 @@ void warn_of_units(const Scene& scene, Plan& plan) {
                               brief(times) +
                               " times that of water; it is the kinematic viscosity, of water 1e-6 m2/s (1e-3 Pa s over "
                               "its density)");
+  }
+}
+
+/// Numbers of grains beyond those of any material.
+void warn_of_grains(const Scene& scene, Plan& plan) {
+  constexpr double roughest = 1.5, least_spread = 1e-3;
+  for (const Phase& phase : scene.phases) {
+    const GrainsKeys* const grains = phase.if_grains();
+    if (!grains || !grains->diameter) continue;
+    if (grains->friction > roughest)
+      plan.warnings.push_back("phases." + phase.name + ".friction: " + brief(grains->friction) +
+                              " is beyond all materials; between grains 0.1 to 0.9 are measured");
+    if (const double spread = grains->diameter->spread; spread > 0.0 && spread < least_spread)
+      plan.warnings.push_back("phases." + phase.name + ".diameter.spread: " + brief(spread) +
+                              " is a share of the mean; where metres were meant, " +
+                              brief(spread / grains->diameter->mean));
   }
 }
 
@@ -563,6 +602,7 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_two_sizes_in_a_slab(scene, plan);
   warn_of_no_weight(scene, plan);
   warn_of_numbers(scene, plan);
+  warn_of_grains(scene, plan);
   warn_of_no_way_out(scene, plan);
   warn_of_sides_without_a_wall(scene, plan);
   warn_of_few_layers(scene, plan);

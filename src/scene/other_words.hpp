@@ -31,6 +31,8 @@ inline constexpr std::array other_keys = {
     OtherWord{"phases", "e", "restitution", ""},
     OtherWord{"phases", "cor", "restitution", ""},
     OtherWord{"phases", "radius", "diameter", "twice the radius"},
+    OtherWord{"phases", "pressure", "", "pressures are differences from that of the air; at the start a fill has one"},
+    OtherWord{"phases", "atmospheric-pressure", "", "pressures are differences from that of the air"},
     OtherWord{"phases", "d", "diameter", ""},
     OtherWord{"phases", "d50", "diameter", ""},
     OtherWord{"phases", "size", "diameter", ""},

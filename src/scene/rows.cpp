@@ -70,7 +70,7 @@ constexpr Key rows_of_keys[] = {
      "The fluid fills a closed space: its mean density is kept. barchan plan says what it is and why."},
     {"phases", "shifting", of<&FluidKeys::shifting>(1.0), "", "Strength of particle shifting; 0 switches it off.", not_negative},
     {"phases", "background-pressure", of<&FluidKeys::background_pressure>(0.0).like("0.02"), "rho c2",
-     "Pressure at rest, in units of density times sound speed squared.", not_negative},
+     "Pressure at rest, in units of density times sound speed squared; no atmospheric pressure is needed.", {.at_least = 0.0, .at_most = 1.0}},
     {"phases", "scheme", of<&FluidKeys::scheme>(FluidScheme::consistent), "",
      "Gradient operators: as they are, or corrected to first order (docs/method.md)."},
     {"phases", "turbulence", of<&FluidKeys::turbulence>(Turbulence::none), "",

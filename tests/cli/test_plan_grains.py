@@ -61,6 +61,27 @@ class MeanWind(unittest.TestCase):
             self.assertEqual("is one mean along x, over a flat bed" in ended.stdout + ended.stderr, bool(more))
 
 
+class Numbers(unittest.TestCase):
+    """Numbers of grains that no material has, an influx that its box cannot take, a body that nothing bears."""
+
+    def test_they_are_warned_of(self):
+        scene = LOOSE.format(dimensions=2, size=[0.02, 0.03], gravity=[0, -9.81], sides='["bottom", "left", "right"]', zero=[0, 0], top=[0.02, 0.005], end=0.001)
+        pour = '[[influx]]\nphase = "sand"\nbox = { min = [0.005, 0.02], max = [0.015, 0.025] }\nvelocity = [0, -0.5]\nflux = '
+        body = '[phases.block]\nkind = "rigid"\ndensity = 500\n[interactions]'
+        fill = '[[fill]]\nphase = "block"\nshape = { box = { min = [0.005, 0.01], max = [0.01, 0.015] } }\n[time]'
+        with tempfile.TemporaryDirectory() as at:
+            file = pathlib.Path(at) / "numbers.toml"
+            for right, wrong, words in ((("friction = 0.5",) * 2, ("friction = 0.5", "friction = 5"), "beyond all materials"), (("spread = 0.2",) * 2, ("spread = 0.2", "spread = 2e-4"), "where metres were meant, 0.2"),
+                                        (("[time]", pour + "1\n[time]"), ("[time]", pour + "50\n[time]"), "more than the box can take"),
+                                        (("[interactions]", body + "\nblock-box = 1.1"), ("[interactions]", body), "it falls; expected one with what bears it")):
+                for (before, after), warned in ((right, False), (wrong, True)):
+                    text = scene.replace(before, after, 1)
+                    file.write_text(text.replace("[time]", fill, 1) if "block" in after else text)
+                    ended = subprocess.run([PROGRAM, "plan", file, "--threads", "1"], capture_output=True, text=True)
+                    self.assertEqual(ended.returncode, 0, ended.stderr)
+                    self.assertEqual(words in ended.stdout + ended.stderr, warned, (after, ended.stdout))
+
+
 class Loose(unittest.TestCase):
     def planned(self, end):
         scene = LOOSE.format(dimensions=2, size=[0.02, 0.03], gravity=[0, -9.81], sides='["bottom", "left", "right"]', zero=[0, 0], top=[0.02, 0.015], end=end)
