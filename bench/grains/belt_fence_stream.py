@@ -90,7 +90,7 @@ def belt(folder):
 
 # --- a fence in a wind tunnel -----------------------------------------------------------------------------------------
 
-FENCE, BACK, HEIGHT, GROUND = 0.12, 0.136, 0.024, 0.0035  # m
+FENCE, BACK, HEIGHT, GROUND = 0.12, 0.136, 0.024, 0.0065  # m
 WIND, CELL = (0.1, 0.2), 0.008                            # s, m
 
 

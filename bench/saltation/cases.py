@@ -222,16 +222,21 @@ def flux(bench):
 
 
 # The same in three dimensions: u*, Creyssels' flux, begin and end of the average (s), beds: the shipped one, or others that settle.
-FLUX_3D = [(0.24, 5.25, 0.9, 2.4, (1,)), (0.40, 21.09, 0.4, 1.2, (1,)), (0.56, 48.85, 0.3, 1.0, (1, 2))]
+FLUX_3D = [(0.24, 5.25, 0.9, 2.4, (1,)), (0.40, 21.09, 0.4, 1.2, (1, 2)), (0.56, 48.85, 0.3, 1.0, (1, 2, 3, 4, 5))]
 
 
 SETTLED_3D = 'fill.1={{ phase = "sand", shape = {{ bed = "8*d", from = "d" }}, packing = "settled", seed = {} }}'
-# What may be missing in the flux, each alone, at u* = 0.56 m/s.
-TRIED_3D = {"sizes": ("log-normal sizes, 0.25", [SETTLED_3D.format(1), 'phases.sand.diameter={ mean = "d", log-normal = 0.25 }']),
-            "cheng": ("drag of Cheng 1997", ["interactions.air-sand.drag=cheng"]),
-            "magnus": ("the force on grains that turn", ["interactions.air-sand.magnus=true"]),
-            "friction": ("friction 0.3, rolling friction 1", ["phases.sand.friction=0.3", "phases.sand.rolling-friction=1"]),
-            "both": ("this friction and this force", ["phases.sand.friction=0.3", "phases.sand.rolling-friction=1", "interactions.air-sand.magnus=true"])}
+# What each part of the sand, of the air and of the box does, at u* = 0.56 m/s.
+NARROW, HEAPS_FRICTION = 'domain.size=["120*d", "800*d", "6*d"]', ["phases.sand.friction=0.6", "phases.sand.rolling-friction=0.4"]
+PLAIN = "interactions.air-sand.magnus=false"
+TRIED_3D = {"plain": ("6 d wide, friction 0.6, rolling friction 0.4, no Magnus force", [NARROW, SETTLED_3D.format(1), *HEAPS_FRICTION, PLAIN]),
+            "sizes": ("the same, log-normal sizes, 0.25", [NARROW, SETTLED_3D.format(1), *HEAPS_FRICTION, PLAIN, 'phases.sand.diameter={ mean = "d", log-normal = 0.25 }']),
+            "cheng": ("the same, drag of Cheng 1997", [NARROW, SETTLED_3D.format(1), *HEAPS_FRICTION, PLAIN, "interactions.air-sand.drag=cheng"]),
+            "magnus": ("the same, with the Magnus force", [NARROW, SETTLED_3D.format(1), *HEAPS_FRICTION]),
+            "friction": ("the same, friction 0.3, rolling friction 1", [NARROW, SETTLED_3D.format(1), PLAIN]),
+            "both": ("6 d wide, friction 0.3, rolling friction 1, Magnus force", [NARROW, SETTLED_3D.format(1)]),
+            "long": ("240 d long, 6 d wide, friction 0.3, rolling friction 1, Magnus force", ['domain.size=["240*d", "800*d", "6*d"]', SETTLED_3D.format(1)]),
+            "gusts": ("12 d wide, friction 0.3, rolling friction 1, Magnus force, gusts of 0.38", ["interactions.air-sand.gusts=0.38"])}
 
 
 def flux_3d(bench):
@@ -240,7 +245,7 @@ def flux_3d(bench):
         for seed in seeds:
             folder = bench.out / f"flux3_{u}_{seed}"
             if not (folder / "saltation_sand.json").exists():
-                bed = [] if seed == 1 else [SETTLED_3D.format(seed)]
+                bed = [] if seed == 1 else [SETTLED_3D.format(seed)]  # the shipped bed is that of seed 1
                 bench.run("saltation_3d", folder.name, f"phases.air.friction-velocity={u}", f"time.end={end}", *bed)
             run = flux_of(folder, u, creyssels, begin, end)
             runs.append(dict(run, seed=seed, error_of_mean=error_of(run)))

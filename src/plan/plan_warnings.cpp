@@ -437,22 +437,6 @@ void warn_of_units(const Scene& scene, Plan& plan) {
   }
 }
 
-/// Numbers of grains beyond those of any material.
-void warn_of_grains(const Scene& scene, Plan& plan) {
-  constexpr double roughest = 1.5, least_spread = 1e-3;
-  for (const Phase& phase : scene.phases) {
-    const GrainsKeys* const grains = phase.if_grains();
-    if (!grains || !grains->diameter) continue;
-    if (grains->friction > roughest)
-      plan.warnings.push_back("phases." + phase.name + ".friction: " + brief(grains->friction) +
-                              " is beyond all materials; between grains 0.1 to 0.9 are measured");
-    if (const double spread = grains->diameter->spread; spread > 0.0 && spread < least_spread)
-      plan.warnings.push_back("phases." + phase.name + ".diameter.spread: " + brief(spread) +
-                              " is a share of the mean; where metres were meant, " +
-                              brief(spread / grains->diameter->mean));
-  }
-}
-
 /// In 2D all spheres lie in one slab, so that small ones fill less of its thickness.
 void warn_of_two_sizes_in_a_slab(const Scene& scene, Plan& plan) {
   constexpr double alike = 0.8;  // of the diameters
@@ -602,7 +586,6 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_two_sizes_in_a_slab(scene, plan);
   warn_of_no_weight(scene, plan);
   warn_of_numbers(scene, plan);
-  warn_of_grains(scene, plan);
   warn_of_no_way_out(scene, plan);
   warn_of_sides_without_a_wall(scene, plan);
   warn_of_few_layers(scene, plan);

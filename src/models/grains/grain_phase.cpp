@@ -71,11 +71,23 @@ std::string number_text(double value) {
   return text;
 }
 
+/// Numbers beyond those of any material.
+void warn_of_grains(const std::string& name, const GrainsKeys& keys, std::vector<std::string>& warnings) {
+  constexpr double roughest = 1.5, least_spread = 1e-3;
+  if (keys.friction > roughest)
+    warnings.push_back("phases." + name + ".friction: " + brief(keys.friction) +
+                       " is beyond all materials; between grains 0.1 to 0.9 are measured");
+  if (const double spread = keys.diameter->spread; spread > 0.0 && spread < least_spread)
+    warnings.push_back("phases." + name + ".diameter.spread: " + brief(spread) +
+                       " is a share of the mean; where metres were meant, " + brief(spread / keys.diameter->mean));
+}
+
 /// Spheres: their fields, the speed of waves through their contacts (d sqrt(K/m), at the overlap of the largest speed),
 /// and the speed at which two of them would overlap by half a diameter.
 void describe_spheres(const Scene& scene, std::size_t number, Layout& layout, std::vector<std::string>& warnings) {
   using enum Field;
   PlanPhase& p = layout.phases[number];
+  warn_of_grains(p.name, scene.phases[number].grains(), warnings);
   p.mass = scene.phases[number].density * std::numbers::pi / 6.0 * std::pow(p.diameter, 3) / layout.slab;
   p.physics = "spheres";
   p.smoothing_length = 0.5 * p.diameter;
