@@ -352,8 +352,9 @@ def tunnel(r):
     places = ", ".join(f"{1e2 * (k + .5) * runs[0]['part_m']:.1f}: {over(lambda run, k=k: run['flux_g_m_s'][k])[0]:.0f}" for k in parts)
     scatter = [over(lambda run, k=k: run["flux_g_m_s"][k])[1] for k in parts]
     spread_of_flux = f"+- {min(scatter):.0f} to {max(scatter):.0f}" if len(runs) > 1 else f"errors of the means of the frames {min(runs[0]['flux_error']):.0f} to {max(runs[0]['flux_error']):.0f}"
-    which = (f"{len(runs)} runs of two seconds, whose grains that enter are other ones (`influx.0.seed`); +- is the standard deviation of the runs" if len(runs) > 1
-             else "one run of two seconds (its scatter from run to run is not known: the command makes four)")
+    which = (f"{len(runs)} runs whose grains that enter are other ones (`influx.0.seed`); +- is the standard deviation of the runs" if len(runs) > 1
+             else "one run (its scatter from run to run is not known: the command makes four)")
+    loses, leaves = of("dune_loses_kg_m_s"), of("flux_out_less_in_kg_m_s")
     return ["## A dune in a wind tunnel", "",
             f"`scenes/dune.toml`, `bench/saltation/tunnel.py`: {which}. Means from {begin:.2f} to {end:.2f} s, of {runs[0]['frames']} frames a run.", "",
             "| figure | wanted | measured |", "| --- | --- | --- |",
@@ -362,23 +363,38 @@ def tunnel(r):
             f"| near the focus of the saltation layer, {1e3 * height:.1f} mm over the bed | {enters:.2f} m/s within 10 % | {speed:.2f}{scatter_of(speed_spread, '.2f')} m/s ({100 * (speed / enters - 1):+.1f} %){verdict(abs(speed / enters - 1) < .1)} |",
             f"| u* of all that drives air and grains between 5 and 60 cm: lid {drives['lid']:.3f} Pa, air that enters less air that leaves {drives['air']:.3f} Pa, grains {drives['grains']:.3f} Pa | 0.5 m/s within 5 % | "
             f"{u_all:.3f}{scatter_of(u_all_spread, '.3f')} m/s ({100 * (u_all / .5 - 1):+.0f} %){verdict(abs(u_all / .5 - 1) < .05)} |",
-            f"| flux before the toe | 35 g/m/s within 20 % (Creyssels et al. 2009) | {flux:.1f}{scatter_of(flux_spread, '.1f')} g/m/s ({100 * (flux / 35 - 1):+.0f} %){verdict(abs(flux / 35 - 1) < .2)}; "
+            f"| flux before the toe | 35 g/m/s within 15 % (Creyssels et al. 2009) | {flux:.1f}{scatter_of(flux_spread, '.1f')} g/m/s ({100 * (flux / 35 - 1):+.0f} %){verdict(abs(flux / 35 - 1) < .15)}; "
             f"{of('entered_g_m_s')[0]:.1f} g/m/s entered in that time |",
             f"| flux along x, g/m/s, middles of parts of 3 cm in cm | stated | {places}; {spread_of_flux} |",
             f"| stress on top of the layers near the ground, mean over the tunnel, over rho u*^2 | stated | {of('ground_stress_over_rho_u2')[0]:.2f}{scatter_of(of('ground_stress_over_rho_u2')[1], '.2f')} |",
             f"| pressure of the air on the dune along x | stated | {1e3 * pressure:.0f}{scatter_of(1e3 * pressure_spread, '.0f')} mN/m, by length of the tunnel {of('pressure_on_the_dune_over_length_Pa')[0] / .30625:.2f} rho u*^2 |",
             f"| speed-up 10 mm over the crest | 2H/L corrected for blockage: {runs[0]['speed_up_2H_over_L_and_blockage']:.2f} | {speed_up:.2f}{scatter_of(speed_up_spread, '.2f')} |",
             f"| slowest mean wind of the lowest row behind the crest | reverse flow over 4 to 10 H | {reverse:.2f}{scatter_of(reverse_spread, '.2f')} m/s; reverse flow over {length:.1f}{scatter_of(length_spread, '.1f')} H behind the crest{verdict(4 <= length <= 10)} |",
+            f"| mass of the dune, toe to foot; what it loses; the flux out of it less the flux in | stated | {of('dune_kg_m')[0]:.3f} kg/m; {1e3 * loses[0]:.1f}{scatter_of(1e3 * loses[1], '.1f')} g/m/s; "
+            f"{1e3 * leaves[0]:.1f}{scatter_of(1e3 * leaves[1], '.1f')} g/m/s |",
+            f"| share of what passes the brink that is trapped within 4 H behind the slip face | stated | {of('trapped_share')[0]:.2f}{scatter_of(of('trapped_share')[1], '.2f')} |",
             f"| fastest grain; largest density error of the air, of all runs | | {max(run['fastest_grain_m_s'] for run in runs):.1f} m/s; {100 * max(run['largest_density_error'] for run in runs):.1f} % |", "",
-            "The air has spacings of 5 mm, and a layer of 7.5 mm at the ground is one-dimensional: what is small behind the brink is not resolved. Its viscosity is a mixing length by the distance to the ground, "
-            "which is too large in a wake.", "",
+            "The air has k-omega, 2.5 mm up to 7 cm and 5 mm above; a layer of 3.75 mm at the ground is one-dimensional. Influx and wind that enter are those of a saturated column: they shorten the tunnel by metres.", "",
+            "A heap of 3 cm in air erodes: the saturation length of this sand is about 1.2 m, and the shortest dune that lives has some 20 m (Andreotti et al. 2010). So its figure is a rate of loss, not a form.", "",
             "All that drives is more than rho u*^2 because the dune brakes the air too: by its pressure, and by grains over the layers which the faster air over the crest speeds up. Over flat sand the balance would be "
             "that of the lid.", "",
-            "![Wind and grains after 1 s](gallery/dune_tunnel.png)", "", "![Flux along x and the wind at four places](gallery/dune_tunnel_plots.png)"]
+            "![Wind and grains at the end](gallery/dune_tunnel.png)", "", "![Flux along x and the wind at four places](gallery/dune_tunnel_plots.png)"]
+
+
+def dune_air(r):
+    lines = ["## The air over the dune", "", "The dune of `scenes/dune.toml` without sand, rough ground of z0 = 0.4 mm, u* = 0.5 m/s, beside finite volumes (OpenFOAM 1912, 330 x 64 cells): `bench/saltation/dune_reference.py`. "
+             "Speed-up: 10 mm over the crest against 10 cm before the toe. Bubble: to where the wind 2.5 mm over the ground turns forwards, in heights behind the crest. Wanted: speed-up within 10 % of finite volumes, a bubble "
+             "of 4 to 10 H.", "", "| air | wind before the toe m/s | over the crest m/s | speed-up | bubble, H | slowest wind there m/s |", "| --- " * 6 + "|"]
+    lines += [f"| {row['method']} | {row['upstream_m_s']:.2f} | {row['crest_m_s']:.2f} | {row['speed_up']:.3f} | {row['bubble_over_H']:.1f} | {row['slowest_m_s']:.2f} |" for row in r["rows"]]
+    lines += ["", "Stress on the ground over rho u*^2, at x in m (toe 0.158, crest 0.302, foot of the slip face 0.358):", "",
+              "| air | " + " | ".join(f"{x:g}" for x in r["places"]) + " |", "| --- " * (1 + len(r["places"])) + "|"]
+    lines += [f"| {row['method']} | " + " | ".join(f"{s:.2f}" for s in row["stress"]) + " |" for row in r["rows"]]
+    return lines + ["", "The particles have the equations of Wilcox 2006, whose limiter of the stress lengthens bubbles; the finite volumes those of 1998, or SST. With 12 spacings in the height of the dune the largest stress on "
+                    "the windward side is 17 to 23 % above that of finite volumes, and the air leaves the ground 3 to 8 mm before the crest, as theirs does. With six spacings the crest is not resolved."]
 
 
 PARTS = {"settling": settling, "hop": hop, "splash": splash, "splash-table": splash_table, "heaps": heaps, "threshold": threshold, "flux": flux, "flux-3d": flux_3d, "impact": impact, "resolved": resolved,
-         "kernel-drag": kernel_drag, "storm": storm, "tunnel": tunnel}
+         "kernel-drag": kernel_drag, "storm": storm, "tunnel": tunnel, "dune_reference": dune_air}
 
 
 def tables():

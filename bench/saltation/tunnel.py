@@ -41,6 +41,7 @@ class Ground:
         dune = shape["dune"]
         self.length, self.top = scene["domain"]["size"]
         self.bed, self.crest, self.height_of_dune = shape["bed"], dune["at"], dune["height"]
+        self.angle = dune["slip-face-angle"]
         self.lee = self.height_of_dune / math.tan(math.radians(dune["slip-face-angle"]))
         self.windward = dune["length"] - self.lee
         self.toe, self.end = self.crest - self.windward, self.crest + self.lee
