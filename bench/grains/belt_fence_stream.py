@@ -35,7 +35,7 @@ def frames(folder, begin, end):
 
 def masses(sand, phase):
     """kg by metre of the slab's depth."""
-    return phase["density"] * math.pi / 6 * (2 * sand["radius"]) ** 3 / phase["diameter"]["mean"]
+    return phase.get("density", 2650.0) * math.pi / 6 * (2 * sand["radius"]) ** 3 / phase["diameter"]["mean"]
 
 
 def mean(values):
