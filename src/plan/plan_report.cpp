@@ -1,7 +1,9 @@
 // The plan as a person reads it, and as JSON.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "models/grains/grain_source.hpp"
 #include "plan/formatted.hpp"
 #include "plan/run_cost.hpp"
 
@@ -62,6 +64,12 @@ std::string to_text(const Plan& plan, const Scene& scene) {
                    calls_of(r, plan.step()).c_str());
   for (const auto& i : plan.instruments)
     t += "measured " + to_text(i) + (i.start > scene.time.end ? ": after the end, nothing is averaged\n" : "\n");
+  for (std::size_t k = 0; k < scene.influxes.size(); ++k) {
+    const Influx& influx = scene.influxes[k];
+    const double time = std::min(influx.end.value_or(scene.time.end), scene.time.end) - influx.start;
+    t += formatted("enters  %s: about %.3g grains in the run; its time, below, is that of what is there at the start\n",
+                   influx.phase.c_str(), std::max(0.0, time / Arrivals(scene, k, plan.slab).mean_wait()));
+  }
   t += "not measured " + joined(not_measured(plan.instruments)) + "\n\n";
   if (plan.fixed_step > 0) t += formatted("step    %.4g s, fixed by the scene\n", plan.fixed_step);
   for (const auto& l : plan.limits)

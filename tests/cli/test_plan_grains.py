@@ -73,6 +73,7 @@ class Numbers(unittest.TestCase):
             file = pathlib.Path(at) / "numbers.toml"
             for right, wrong, words in ((("friction = 0.5",) * 2, ("friction = 0.5", "friction = 5"), "beyond all materials"), (("spread = 0.2",) * 2, ("spread = 0.2", "spread = 2e-4"), "where metres were meant, 0.2"),
                                         (("[time]", pour + "1\n[time]"), ("[time]", pour + "50\n[time]"), "more than the box can take"),
+                                        (("[time]", "[time]"), ("[time]", pour + "1\n[time]"), "enters  sand: about 0."),
                                         (("[interactions]", body + "\nblock-box = 1.1"), ("[interactions]", body), "it falls; expected one with what bears it")):
                 for (before, after), warned in ((right, False), (wrong, True)):
                     text = scene.replace(before, after, 1)
