@@ -336,9 +336,9 @@ def tunnel(r):
 
     def verdict(good):
         return "" if good else ", **missed**"
-    height = runs[0]["wind_near_the_focus"][0]
-    speed, speed_spread = over(lambda run: run["wind_near_the_focus"][1])
-    enters = runs[0]["wind_near_the_focus"][2]
+    height = runs[0]["wind_on_the_layers"][0]
+    speed, speed_spread = over(lambda run: run["wind_on_the_layers"][1])
+    enters = runs[0]["wind_on_the_layers"][2]
     u_star, u_spread = of("u_star_upstream")
     off = max(run["largest_difference_above_one_spacing"] for run in runs)
     flux, flux_spread = of("flux_upstream")
@@ -360,7 +360,7 @@ def tunnel(r):
             "| figure | wanted | measured |", "| --- | --- | --- |",
             f"| u* of the wind 10 cm before the toe, by its slope from 2 to 10 cm over the bed | 0.5 m/s within 10 % | {u_star:.3f}{scatter_of(u_spread, '.3f')} m/s ({100 * (u_star / .5 - 1):+.1f} %){verdict(abs(u_star / .5 - 1) < .1)} |",
             f"| the same wind over that of the saltating column which enters, largest difference above one spacing, all runs | 10 % | {100 * off:.1f} %{verdict(off < .1)} |",
-            f"| near the focus of the saltation layer, {1e3 * height:.1f} mm over the bed | {enters:.2f} m/s within 10 % | {speed:.2f}{scatter_of(speed_spread, '.2f')} m/s ({100 * (speed / enters - 1):+.1f} %){verdict(abs(speed / enters - 1) < .1)} |",
+            f"| where the layers near the ground end, {1e3 * height:.2f} mm over the bed | {enters:.2f} m/s within 10 % | {speed:.2f}{scatter_of(speed_spread, '.2f')} m/s ({100 * (speed / enters - 1):+.1f} %){verdict(abs(speed / enters - 1) < .1)} |",
             f"| u* of all that drives air and grains between 5 and 60 cm: lid {drives['lid']:.3f} Pa, air that enters less air that leaves {drives['air']:.3f} Pa, grains {drives['grains']:.3f} Pa | 0.5 m/s within 5 % | "
             f"{u_all:.3f}{scatter_of(u_all_spread, '.3f')} m/s ({100 * (u_all / .5 - 1):+.0f} %){verdict(abs(u_all / .5 - 1) < .05)} |",
             f"| flux before the toe | 35 g/m/s within 15 % (Creyssels et al. 2009) | {flux:.1f}{scatter_of(flux_spread, '.1f')} g/m/s ({100 * (flux / 35 - 1):+.0f} %){verdict(abs(flux / 35 - 1) < .15)}; "

@@ -29,6 +29,7 @@ PICTURE, PLOTS = ROOT / "docs/gallery/dune_tunnel.png", ROOT / "docs/gallery/dun
 FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/m3; g/m/s, Creyssels et al. 2009; -
 QUARTZ = 2650.0  # kg/m3, of material = "quartz-sand" (src/scene/materials.cpp)
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
+SECTIONS = (0.05, 0.6)  # m, between which the momentum of the air is summed
 BORDER = 0.07  # m, above it the air is coarser
 TOP = 0.12  # m, of the picture
 
@@ -62,6 +63,7 @@ class Means:
     def __init__(self, folder, ground, scene, begin, end):
         self.ground, self.spacing = ground, scene["spacing"]
         self.air, self.flux, self.mass, self.pushes, self.fastest = [], [], [], [], 0.0
+        self.taken, low, high = [], *SECTIONS
         parts = round(ground.length / PART)
         fluids = [name for name, keys in scene["phases"].items() if keys["kind"] == "fluid"]
         diameter = scene["phases"]["sand"]["diameter"]["mean"]
@@ -74,6 +76,8 @@ class Means:
             self.last = air.keep(inside)
             self.whole = np.concatenate([np.column_stack([a.x[:, :2], a["velocity"][:, :2]]) for a in airs])
             self.air.append(self.whole)
+            self.taken.append(sum(-DENSITY * scene["phases"][name].get("spacing", scene["spacing"]) ** 2 * a["drag_acceleration"][(a.x[:, 0] > low) & (a.x[:, 0] < high), 0].sum()
+                                  for name, a in zip(fluids, airs)))
             self.pushes.append(push_on_dune(self.last, ground, self.spacing))
             mass = density * math.pi / 6 * (2 * self.sand["radius"]) ** 3 / diameter
             along = {"bins": parts, "range": (0, ground.length)}
@@ -123,6 +127,20 @@ def driven_by(folder, ground, history, chosen):
             "grains": float(grains / np.ptp(history["time"][chosen]) / ground.length)}
 
 
+def balance(folder, means, ground):
+    """Momentum of the air between two sections, N/m: what drives it, and what it gives, each by name; what is left over, and that over all that drives."""
+    low, high = SECTIONS
+    wall = table(folder / "wall_shear_ground.csv")
+    inside = (wall["x"] > low) & (wall["x"] < high)
+    x, step = wall["x"][inside], wall["x"][1] - wall["x"][0]
+    slope = ground.slope(x)
+    terms = {"lid": DENSITY * FRICTION_VELOCITY**2 * (high - low), "through_the_sections": through(folder, "upstream", BORDER) - through(folder, "far", BORDER),
+             "shear_of_the_ground": -float((wall["shear_stress_mean_x"][inside] * np.hypot(1, slope)).sum() * step), "pressure_on_the_ground": -float((wall["pressure_mean"][inside] * slope).sum() * step),
+             "grains_over_the_layers": -float(np.mean(means.taken))}
+    left = sum(terms.values())
+    return {"balance_N_m": terms, "balance_left_N_m": left, "balance_left_share": left / sum(v for v in terms.values() if v > 0)}
+
+
 def wind_that_enters():
     """y (m) and speed (m/s)."""
     profile = table(SCENE.parent / "dune_wind.csv")
@@ -168,6 +186,7 @@ def measure(folder, begin, end):
     upstream, crest = means.wind(ground.toe - 0.1), means.wind(ground.crest)
     meant = np.interp(upstream[0] + ground.bed, *entering)
     off = upstream[1] / meant - 1
+    layers = 1.5 * scene["spacing"]  # m over the ground: where the layers of one-dimensional wind end
     history = table(folder / "history.csv")
     chosen = (history["time"] >= begin) & (history["time"] <= end)
     parts = (np.arange(means.flux.shape[1]) + 0.5) * PART
@@ -185,12 +204,12 @@ def measure(folder, begin, end):
         "ground_stress_Pa": float(history["air-sand_ground_stress"][chosen].mean()),
         "times_s": means.times, "frames": means.frames, "u_star_upstream": friction_velocity(*upstream),
         "largest_difference_above_one_spacing": float(np.abs(off[1:]).max()),
-        "wind_near_the_focus": [float(upstream[0][0]), float(upstream[1][0]), float(meant[0])], "flux_g_m_s": flux.tolist(), "flux_error": error.tolist(), "part_m": PART,
+        "wind_on_the_layers": [layers, at(upstream, layers), float(np.interp(layers + ground.bed, *entering))], "flux_g_m_s": flux.tolist(), "flux_error": error.tolist(), "part_m": PART,
         "flux_upstream": float(flux[before].mean()), "flux_upstream_error": float(means.flux[:, before].mean(1).std() / math.sqrt(means.frames)),
         "entered_g_m_s": float(1e3 * np.ptp(history["sand_left_in"][chosen]) / np.ptp(history["time"][chosen])), "flux_upstream_over_saturated": float(flux[before].mean() / SATURATED),
         "ground_stress_over_rho_u2": float(history["air-sand_ground_stress"][chosen].mean() / stress),
         "speed_up_10_mm": float(speed_up), "speed_up_2H_over_L_and_blockage": float(meant_speed_up), "reverse_m_s": reverse,
-        "reverse_length_over_H": length / ground.height_of_dune, **erosion(means, ground), "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
+        "reverse_length_over_H": length / ground.height_of_dune, **erosion(means, ground), **(balance(folder, means, ground) if drives else {}), "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
 
 
 def picture(means, ground):
@@ -252,7 +271,7 @@ def main():
     seeds = range(1, RUNS + 1)
     if options.barchan != "none":
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            list(pool.map(lambda seed: run.scene(options.barchan, SCENE, options.out / f"seed_{seed}", [f"influx.0.seed={seed}"]), seeds))
+            list(pool.map(lambda seed: run.scene(options.barchan, SCENE, options.out / f"seed_{seed}", [f"influx.0.seed={seed}", 'output.fields=["radius", "drag_acceleration"]'], threads=1), seeds))
     runs, shown = [], None
     for folder in (options.out / f"seed_{seed}" for seed in seeds):
         if not (folder / "history.csv").exists():
