@@ -29,7 +29,7 @@ void use_threads(int wanted, double particles);
 int run(const RunOptions& options);
 /// `ranks` > 0: what a run on so many ranks would be as well.
 int plan(const std::string& scene, const std::vector<std::string>& overrides, int threads, bool json, int ranks = 0);
-int generate(const std::string& scene, const std::string& file, const std::vector<std::string>& overrides);
+int generate(const std::string& scene, const std::string& file, const std::vector<std::string>& overrides, int threads);
 int compare(const std::string& a, const std::string& b, double tolerance, bool json);
 
 /// Whether the first word of a command line is one that the Python package does: report, sweep.

@@ -143,8 +143,11 @@ int dispatch(int argc, char** argv) {
   auto* c_generate = app.add_subcommand("generate", "write the initial particles only");
   c_generate->add_option("scene", scene, of_scene)->type_name("SCENE")->required();
   c_generate->add_option("-o,--output", file_a, "file to write (.vtp or .vtu)")->type_name("FILE")->required();
+  c_generate->add_option("--threads", threads, "number of threads (default: as many as pay)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
   add_set(c_generate);
-  c_generate->callback([&] { status = barchan::generate(barchan::scene_file(scene), file_a, overrides); });
+  c_generate->callback([&] { status = barchan::generate(barchan::scene_file(scene), file_a, overrides, threads); });
 
   auto* c_compare =
       app.add_subcommand("compare", "compare two frames, series or folders of runs, particle by particle");

@@ -43,14 +43,16 @@ int plan(const std::string& file, const std::vector<std::string>& overrides, int
   return 0;
 }
 
-int generate(const std::string& file, const std::string& output, const std::vector<std::string>& overrides) {
+int generate(const std::string& file, const std::string& output, const std::vector<std::string>& overrides,
+             int threads) {
   const bool vtu = std::filesystem::path(output).extension() == ".vtu";
   if (!vtu && std::filesystem::path(output).extension() != ".vtp")
     throw SceneError("-o " + output + ": expected a file that ends in .vtp or .vtu");
   const Scene scene = read_scene(file, overrides);
+  if (threads > 0) use_threads(threads, 0);
   auto blocks = make_particles(scene, &std::cout);
   const Plan plan = make_plan(scene, blocks);
-  use_threads(0, plan.particles());
+  use_threads(threads, plan.particles());
   std::vector<std::vector<RestingContact>> contacts;
   for (const ParticleBlock& block : blocks) contacts.push_back(block.contacts);
   Simulation start(scene, plan, std::move(blocks));
