@@ -263,6 +263,14 @@ void Run::files_of_retreat() {
   if (ranks::is_first()) remove_older_checkpoint(file);
 }
 
+/// The first warning of the scene's physics, which may be why a run breaks down; empty: there was none.
+static std::string warned_of(const Plan& plan) {
+  for (const std::string& warning : plan.warnings)
+    for (const char* const section : {"phases.", "interactions", "domain", "fill.", "time."})
+      if (warning.starts_with(section)) return "; the start warned of what may be the cause: " + warning;
+  return "";
+}
+
 std::string Run::break_down(const std::string& what) {
   const long good = simulation_.good_step();
   if (good > clock().last_frame_step) {
@@ -294,7 +302,7 @@ std::string Run::break_down(const std::string& what) {
                         std::to_string(clock().last_frame_step) + "), first bad state: " + bad +
                         " (t = " + brief(simulation_.time()) + " s, step " + std::to_string(simulation_.steps()) + ")";
   finish("breakdown: " + message);
-  return message;
+  return message + warned_of(simulation_.plan());
 }
 
 void Run::write_frame() {

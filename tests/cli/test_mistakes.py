@@ -174,6 +174,32 @@ WARNED = [
 ]
 
 
+# Water runs out where no wall stands.
+OPEN = """
+dimensions = 2
+spacing = 0.02
+[domain]
+size = [1, 1]
+gravity = [0, -9.81]
+[phases.water]
+kind = "fluid"
+density = 1000
+[phases.floor]
+kind = "wall"
+[interactions]
+water-water = 2.1
+water-floor = 2.1
+[[fill]]
+phase = "floor"
+shape = { sides = ["bottom", "left"] }
+[[fill]]
+phase = "water"
+shape = { box = { min = [0.3, 0], max = [0.9, 0.5] } }
+[time]
+end = 0.5
+"""
+
+
 def said_of(folder, words):
     done = subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True, timeout=120)
     return done.returncode, done.stderr
@@ -218,6 +244,12 @@ class Mistakes(unittest.TestCase):
                     done = subprocess.run([PROGRAM, "plan", "w.toml"], cwd=self.folder, capture_output=True, text=True, timeout=120)
                     self.assertEqual(done.returncode, 0, done.stderr)
                     self.assertEqual(expected in done.stdout + done.stderr, warned, done.stdout)
+
+    def test_a_run_that_breaks_down_repeats_what_was_warned_of(self):
+        (self.folder / "open.toml").write_text(OPEN)
+        code, said = said_of(self.folder, ["run", "open.toml", "--quiet", "--threads", "1"])
+        self.assertEqual(code, 3, said)
+        self.assertIn('the start warned of what may be the cause: domain: no wall at "right"', said.splitlines()[-1])
 
     def test_the_scene_itself_is_right(self):
         self.assertEqual(said_of(self.folder, ["plan", "s.toml"])[0], 0)
