@@ -128,7 +128,7 @@ def threshold(r):
 
 def flux(r):
     lines = ["## Saturated flux", "",
-             "`scenes/saltation.toml`, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %): `bench/saltation/cases.py flux`. Two beds with other diameters for "
+             "`scenes/saltation.toml`, 242 um, against Creyssels et al. 2009 (wind tunnel, +-5 %): `bench/saltation/cases.py flux`. Measured with friction 0.6, rolling friction 0.4 and without the Magnus force. Two beds with other diameters for "
              f"each wind. The error of a bed is that of the mean of blocks of {r['block']} s or that of the autocorrelation of the flux (Madras & Sokal 1988), the larger. It tells how well one bed's mean "
              "is known, not how much beds differ: two beds of one wind differ by up to three of them. So the error of a mean of two beds is half of their difference. Wanted: within 35, 15 and 15 %.", "",
              "| u* m/s | bed | flux g/m/s | measured by Creyssels | difference | decay of flux, d | of concentration, d | air at the bed, m/s | "
@@ -225,7 +225,7 @@ def plot(r):
 
 
 def impact(r):
-    lines = ["## The least wind that keeps saltation going", "", "`scenes/saltation.toml` in weak winds, 3 s, 18 grains in flight at the start: `bench/saltation/cases.py impact`. Flux of the last second.", "",
+    lines = ["## The least wind that keeps saltation going", "", "`scenes/saltation.toml` in weak winds, 3 s, 18 grains in flight at the start: `bench/saltation/cases.py impact`. Flux of the last second. Measured with friction 0.6, rolling friction 0.4 and without the Magnus force.", "",
              "| u* m/s | " + " | ".join(f"bed {s}, g/m/s" for s in (1, 2)) + " |", "| --- " * 3 + "|"]
     of = {}
     for row in r["runs"]:
