@@ -161,17 +161,18 @@ TEST(WindOverSand, GustsAndLiftKeepTheMomentum) {
 }
 
 /// The same in three dimensions: a cloud that also moves along z, about both sides of the period.
-TEST(WindOverSand, InThreeDimensionsItKeepsTheMomentum) {
+void expect_exact_exchange_in_3d(const std::string& turbulence) {
   std::string points;
   for (int k = 0; k < 60; ++k)
     points += (k ? ", [" : "[") + std::to_string(0.001 + 0.0006 * k) + ", " + std::to_string(0.0034 + 1e-4 * k) + ", " +
               std::to_string(0.0165 * k - 0.01 * std::floor(1.65 * k)) + "]";
-  Drive drive("wind_over_sand", {"dimensions=3", "domain.size=[0.04, 0.033, 0.01]", "domain.periodic=[\"x\", \"z\"]",
-                                 "domain.gravity=[0, -9.81, 0]", "phases.lid.shear-stress=[0.196, 0, 0]", "profile=[]",
-                                 "fill.3={ phase = \"sand\", shape = { points = [" + points +
-                                     "] }, velocity = [0.2, 0, \"0.5*cos(900*z)\"] }",
-                                 "interactions.air-sand.lift=0.85", "interactions.air-sand.gusts=0.38",
-                                 "interactions.air-sand.magnus=true", "time.end=2e-3"});
+  Drive drive(
+      "wind_over_sand",
+      {"dimensions=3", "domain.size=[0.04, 0.033, 0.01]", "domain.periodic=[\"x\", \"z\"]",
+       "domain.gravity=[0, -9.81, 0]", "phases.lid.shear-stress=[0.196, 0, 0]", "profile=[]",
+       "fill.3={ phase = \"sand\", shape = { points = [" + points + "] }, velocity = [0.2, 0, \"0.5*cos(900*z)\"] }",
+       "interactions.air-sand.lift=0.85", "interactions.air-sand.gusts=0.38", "interactions.air-sand.magnus=true",
+       "time.end=2e-3", "phases.air.turbulence=" + turbulence});
   for (int step = 0; step < 20; ++step) drive.simulation().step(1.0);
   const State& state = drive.simulation().state();
   EXPECT_EQ(state.air.size(), 4u) << "of 10 mm along x, as wide as the domain";
@@ -185,6 +186,10 @@ TEST(WindOverSand, InThreeDimensionsItKeepsTheMomentum) {
   EXPECT_GT(std::abs(momentum_by_drag(sand, 2)), 1e-3 * std::abs(all));
   EXPECT_NEAR((layers - all - momentum_by_drag(air, 0)) / all, 0.0, 1e-10);
   for (const int d : {1, 2}) EXPECT_NEAR((momentum_by_drag(sand, d) + momentum_by_drag(air, d)) / all, 0.0, 1e-10) << d;
+}
+
+TEST(WindOverSand, InThreeDimensionsItKeepsTheMomentum) {
+  for (const char* turbulence : {"mixing-length", "k-omega"}) expect_exact_exchange_in_3d(turbulence);
 }
 
 TEST(WindOverSand, InThreeDimensionsTheGroundIsTheSameAlongZ) {
