@@ -168,8 +168,7 @@ TEST(TwoEquations, AreRefusedWhereTheyCannotBe) {
             std::string::npos);
   std::string dune = small::turbulent_dune;
   dune.replace(dune.find("mixing-length"), 13, "k-omega");
-  EXPECT_NE(refusal(dune).find("no bodies or walls that move; \"sand\" is such a phase"),
-            std::string::npos);
+  EXPECT_NE(refusal(dune).find("no bodies or walls that move; \"sand\" is such a phase"), std::string::npos);
 }
 
 /// Particles that have hardly any turbulence get it back from their neighbours: k of none falls further, and none is
