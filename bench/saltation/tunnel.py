@@ -30,6 +30,7 @@ FRICTION_VELOCITY, DENSITY, SATURATED, KAPPA = 0.5, 1.225, 35.0, 0.4  # m/s; kg/
 QUARTZ = 2650.0  # kg/m3, of material = "quartz-sand" (src/scene/materials.cpp)
 PART, REACH, RUNS = 0.03, 0.01, 4  # m, of the flux; about a place; of the ensemble
 SECTIONS = (0.05, 0.6)  # m, between which the momentum of the air is summed
+STRESS = (0.05, 0.1, 0.158, 0.2, 0.24, 0.28, 0.302, 0.33, 0.36, 0.4, 0.45, 0.5, 0.55, 0.6)  # m, where the stress of the ground is told
 BORDER = 0.07  # m, above it the air is coarser
 TOP = 0.12  # m, of the picture
 
@@ -76,8 +77,9 @@ class Means:
             self.last = air.keep(inside)
             self.whole = np.concatenate([np.column_stack([a.x[:, :2], a["velocity"][:, :2]]) for a in airs])
             self.air.append(self.whole)
-            self.taken.append(sum(-DENSITY * scene["phases"][name].get("spacing", scene["spacing"]) ** 2 * a["drag_acceleration"][(a.x[:, 0] > low) & (a.x[:, 0] < high), 0].sum()
-                                  for name, a in zip(fluids, airs)))
+            if all("drag_acceleration" in a.arrays for a in airs):
+                self.taken.append(sum(-DENSITY * scene["phases"][name].get("spacing", scene["spacing"]) ** 2 * a["drag_acceleration"][(a.x[:, 0] > low) & (a.x[:, 0] < high), 0].sum()
+                                      for name, a in zip(fluids, airs)))
             self.pushes.append(push_on_dune(self.last, ground, self.spacing))
             mass = density * math.pi / 6 * (2 * self.sand["radius"]) ** 3 / diameter
             along = {"bins": parts, "range": (0, ground.length)}
@@ -132,13 +134,12 @@ def balance(folder, means, ground):
     low, high = SECTIONS
     wall = table(folder / "wall_shear_ground.csv")
     inside = (wall["x"] > low) & (wall["x"] < high)
-    x, step = wall["x"][inside], wall["x"][1] - wall["x"][0]
-    slope = ground.slope(x)
+    step = wall["x"][1] - wall["x"][0]
     terms = {"lid": DENSITY * FRICTION_VELOCITY**2 * (high - low), "through_the_sections": through(folder, "upstream", BORDER) - through(folder, "far", BORDER),
-             "shear_of_the_ground": -float((wall["shear_stress_mean_x"][inside] * np.hypot(1, slope)).sum() * step), "pressure_on_the_ground": -float((wall["pressure_mean"][inside] * slope).sum() * step),
+             "shear_of_the_ground": -float(wall["total_shear_stress_mean"][inside].sum() * step), "pressure_on_the_dune": -float(np.mean(means.pushes)),
              "grains_over_the_layers": -float(np.mean(means.taken))}
     left = sum(terms.values())
-    return {"balance_N_m": terms, "balance_left_N_m": left, "balance_left_share": left / sum(v for v in terms.values() if v > 0)}
+    return {"stress_places_m": list(STRESS), "stress_over_rho_u2": [float(np.interp(x, wall["x"], wall["total_shear_stress_mean"])) / (DENSITY * FRICTION_VELOCITY**2) for x in STRESS], "balance_N_m": terms, "balance_left_N_m": left, "balance_left_share": left / sum(v for v in terms.values() if v > 0)}
 
 
 def wind_that_enters():
@@ -209,7 +210,7 @@ def measure(folder, begin, end):
         "entered_g_m_s": float(1e3 * np.ptp(history["sand_left_in"][chosen]) / np.ptp(history["time"][chosen])), "flux_upstream_over_saturated": float(flux[before].mean() / SATURATED),
         "ground_stress_over_rho_u2": float(history["air-sand_ground_stress"][chosen].mean() / stress),
         "speed_up_10_mm": float(speed_up), "speed_up_2H_over_L_and_blockage": float(meant_speed_up), "reverse_m_s": reverse,
-        "reverse_length_over_H": length / ground.height_of_dune, **erosion(means, ground), **(balance(folder, means, ground) if drives else {}), "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
+        "reverse_length_over_H": length / ground.height_of_dune, **erosion(means, ground), **(balance(folder, means, ground) if drives and (folder / "wall_shear_ground.csv").exists() else {}), "fastest_grain_m_s": means.fastest, "largest_density_error": float(history["largest_density_error"].max())}
 
 
 def picture(means, ground):
