@@ -58,19 +58,19 @@ ColumnPhase::ColumnPhase(const Scene& scene, const Layout& layout, std::size_t n
                         e.given.lift,
                         e.given.magnus,
                         {},
+                        {},
                         {}});
+    if (e.given.gusts > 0.0) {
+      const double size = scene.domain.size[0], u = bagnold_threshold(scene.phases[grains].density / density_ - 1.0,
+                                                                      std::abs(scene.domain.gravity[1]), plan.size());
+      feeling_.back().gusts.emplace(e.given.gusts, keys_.viscosity, u, layout.domain.low[0], size,
+                                    static_cast<std::size_t>(std::ceil(size / (gust_nodes * plan.size()))));
+    }
     diameter_ = std::max(diameter_, plan.size());
     crowded_ = crowded_ || e.given.drag_law == DragLaw::di_felice;
   }
   const double g = std::abs(scene.domain.gravity[1]);
   interval_ = interval_share * std::sqrt(diameter_ / (g > 0.0 ? g : 9.81));
-  for (const PlanEntry& e : layout.entries) {
-    if (!e.has(number) || !(e.given.gusts > 0.0) || gusts_) continue;
-    const double heavier = scene.phases[e.partner(number)].density / density_ - 1.0;
-    gusts_.emplace(e.given.gusts, keys_.viscosity, bagnold_threshold(heavier, g, diameter_), layout.domain.low[0],
-                   scene.domain.size[0],
-                   static_cast<std::size_t>(std::ceil(scene.domain.size[0] / (gust_nodes * diameter_))));
-  }
 }
 
 void ColumnPhase::attach(Workspace& w) {
@@ -245,13 +245,6 @@ double ColumnPhase::rotation(double y, double radius) const {
   return 0.5 * (wind(y - 0.5 * radius, 0.5 * radius) - wind(y + 0.5 * radius, 0.5 * radius)) / radius;
 }
 
-/// m/s, with the gust at x.
-double ColumnPhase::felt(double x, double wind) const {
-  if (!gusts_) return wind;
-  const double most = gusts_->largest_gusty_speed();
-  return wind + gusts_->at(x) * std::clamp(wind, -most, most);
-}
-
 /// Lift over the rate of the drag, m/s: of a grain of speed `along` the ground in a mean `wind` that `blows` with its
 /// gust (models/coupling/sand_layer.hpp).
 double ColumnPhase::lift_of(double y, double radius, double mean, double blows, double along) const {
@@ -261,8 +254,8 @@ double ColumnPhase::lift_of(double y, double radius, double mean, double blows, 
 }
 
 void ColumnPhase::feel() {
-  if (gusts_) gusts_->blow(w_->state.time + 0.5 * hold_);
   for (Feeling& grains : feeling_) {
+    if (grains.gusts) grains.gusts->blow(w_->state.time + 0.5 * hold_);
     if (grains.law == DragLaw::di_felice) {
       const auto excess = [this](double re, double y) {
         return DiFeliceDrag::excess_in_crowd(re, std::max(1.0 - solid_[air_->cell_at(y)], 0.3));
@@ -308,7 +301,7 @@ void ColumnPhase::feel(Feeling& grains, const DragOf& excess) {
     const auto k = static_cast<std::size_t>(i);
     const double d = diameter[k], stokes = 18.0 * density_ * keys_.viscosity / (grains.density * d * d);
     const double at = y[k] + ahead * v[1][k];
-    const double speed = wind(at, 0.5 * d), blows = felt(x[k], speed);
+    const double speed = wind(at, 0.5 * d), blows = grains.gusts ? grains.gusts->felt(x[k], speed) : speed;
     std::array<double, dimensions> air{blows}, own{}, gravity{};
     for (std::size_t c = 0; c < dimensions; ++c) {
       own[c] = v[c][k];

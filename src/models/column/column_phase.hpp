@@ -44,6 +44,7 @@ class ColumnPhase : public Model {
     bool own_steps;   // moved by models/grains/spheres.hpp: a step's drag acts in the whole of the next one
     double lift;      // of a grain on the bed over its drag (models/coupling/sand_layer.hpp)
     bool magnus;      // the force on those that turn (laws/turning_sphere.hpp)
+    std::optional<Gusts> gusts;
     std::vector<double> rate, wind;  // of each grain: 1/s, drag by difference of speed; m/s, the air about it
   };
   AirProfile& profile() const { return w_->state.air[place_]; }
@@ -62,7 +63,6 @@ class ColumnPhase : public Model {
   void find_voidage();
   double wind(double y, double radius) const;
   double rotation(double y, double radius) const;
-  double felt(double x, double wind) const;
   double lift_of(double y, double radius, double wind, double blows, double along) const;
   double top_stress(double time) const;
   double momentum() const;
@@ -78,8 +78,7 @@ class ColumnPhase : public Model {
   double hold_ = 0.0;                 // s, for which the next drag is kept
   Formula friction_velocity_;
   std::vector<Feeling> feeling_;
-  std::optional<Gusts> gusts_;  // where an entry has some
-  bool crowded_ = false;        // some law reads the voidage
+  bool crowded_ = false;  // some law reads the voidage
   Workspace* w_ = nullptr;
   std::unique_ptr<AirColumn> air_;
   std::unique_ptr<AirColumn::Spread> spread_;

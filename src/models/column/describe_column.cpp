@@ -33,8 +33,7 @@ std::string dune_in_mean_wind(const Scene& scene, const Phase& wind) {
     if (!bed || !bed->dune || !grains || !entry_between(scene, wind, *grains)) continue;
     return "fill." + std::to_string(k) + ".shape.dune: the wind of \"" + wind.name +
            "\" is one mean along x, over a flat bed: over the crest and behind it, it is the same; expected air of "
-           "kind "
-           "fluid, as in the scene dune, or a flat bed";
+           "kind fluid, as in the scene dune, or a flat bed";
   }
   return "";
 }

@@ -37,6 +37,10 @@ class Gusts {
   /// (I U with I = 0.38; Marusic & Kunkel 2003).
   static constexpr double ceiling = 6.0;
   double largest_gusty_speed() const { return ceiling * friction_velocity_; }
+  /// m/s, a mean wind with its gust about a place (m).
+  double felt(double x, double wind) const {
+    return wind + at(x) * std::clamp(wind, -largest_gusty_speed(), largest_gusty_speed());
+  }
 
  private:
   struct Wave {

@@ -54,11 +54,7 @@ void SandLayer::find_near() {
 }
 
 /// The wind (m/s) that a grain at x feels where its mean is `wind`.
-double SandLayer::felt(double x, double wind) const {
-  if (!gusts_) return wind;
-  const double most = gusts_->largest_gusty_speed();
-  return wind + gusts_->at(x) * std::clamp(wind, -most, most);
-}
+double SandLayer::felt(double x, double wind) const { return gusts_ ? gusts_->felt(x, wind) : wind; }
 
 /// Lift (m/s2) across the ground on a grain of speed `along` the ground that feels the wind `blows`, whose drag by
 /// difference of speed is `rate`.
