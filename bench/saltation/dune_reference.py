@@ -11,7 +11,6 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tomllib
 
@@ -146,7 +145,7 @@ def volumes(out, ground, model):
         etc = pathlib.Path("/usr/share/openfoam")
         environment = dict(os.environ, WM_PROJECT_DIR=str(etc), FOAM_ETC=str(etc / "etc"))
         for command in (["blockMesh"], ["simpleFoam"], ["simpleFoam", "-postProcess", "-func", "wallShearStress", "-latestTime"]):
-            subprocess.run(command, cwd=folder, env=environment, check=True, stdout=subprocess.DEVNULL)
+            run.command(command, environment=environment, folder=folder, check=True)
     last = max((p for p in folder.iterdir() if p.name.isdigit()), key=lambda p: int(p.name))
     u = values((last / "U").read_text(), "internalField", 3)[:, 0].reshape(NY, NX)
     tau = -values((last / "wallShearStress").read_text(), "    ground", 3) / (U * U)

@@ -75,7 +75,7 @@ def splash(r):
 
 def splash_table(r):
     lines = ["## Splash at other speeds and angles", "",
-             "`scenes/splash_3d.toml`, `bench/saltation/cases.py splash-table`: quartz of 0.3 mm, ejected grains that rise over 1.5 d. Beads: N = 13 (1 - e^2) (V/(40 sqrt(g d)) - 1), e = 0.87 - 0.72 sin(angle), "
+             "`scenes/splash_3d.toml`, `bench/saltation/cases.py splash-table`: quartz of 0.3 mm with friction 0.6 and rolling friction 0.4, ejected grains that rise over 1.5 d. Beads: N = 13 (1 - e^2) (V/(40 sqrt(g d)) - 1), e = 0.87 - 0.72 sin(angle), "
              "which Beladjine et al. 2007 found for spheres of PVC of 6 mm at 26 m/s, V/sqrt(g d) = 107; here that is 5.8 m/s.", "",
              "| angle | V m/s | V/sqrt(g d) | impacts | rebound: share of the speed | beads | angle of the rebound | ejected | beads | speed of the ejected m/s |", "| --- " * 10 + "|"]
     ratios = {}
@@ -165,7 +165,7 @@ def flux_3d(r):
         middle = sum(values) / len(values)
         spread = (sum((v - middle) ** 2 for v in values) / (len(values) - 1)) ** 0.5 if len(values) > 1 else rows[0]["error_of_mean"]
         return f"{middle:.1f} +- {spread:.1f} g/m/s at {rows[0]['u']} m/s ({middle / rows[0]['creyssels']:.2f} of the measured, {len(rows)} bed{'s' if len(rows) > 1 else ''})"
-    lines += ["", "Means of the beds, with their standard deviation or the error of the one bed: " + "; ".join(mean(rows) for rows in of.values()) + ".", "",
+    lines += ["", "The sand of the first row is that of before. Means of the beds, with their standard deviation or the error of the one bed: " + "; ".join(mean(rows) for rows in of.values()) + ".", "",
               "What the parts do, at u* = 0.56 m/s:", "", "| sand, air and box | flux g/m/s | ratio |", "| --- | --- | --- |"]
     lines += [f"| {row['what']} | {row['flux']:.2f} +- {row['error_of_mean']:.2f} | {row['flux'] / row['creyssels']:.2f} |" for row in r["tried"]]
     return lines + ["", "Nothing was fitted to the flux. The Magnus force pushes grains that turn upwards (White & Schulz 1977 saw it). The friction is the largest that was measured between two grains of quartz "
