@@ -205,6 +205,12 @@ class PhysicsChecker {
              std::holds_alternative<BedShape>(fill.shape) && entry_between(scene_, fluid, *wall);
     });
     several_airs(pair, fluid, grains, dotted);
+    for (const Phase& other : scene_.phases) {
+      const Interaction* const its = other.if_grains() ? entry_between(scene_, other, fluid) : nullptr;
+      if (its && its != &pair && its->drag_law != DragLaw::none)
+        needs("one phase of grains in its air, whose momentum one exchange keeps, and \"" + other.name +
+              "\" is another; expected one phase with sizes that differ (log-normal, sieve), or air of kind column");
+    }
     if (!ground)
       needs("ground under the wind; expected a wall that \"" + fluid.name +
             "\" interacts with, with a roughness, shape = { bed = ... } and packing = \"fitted\"");

@@ -1,4 +1,4 @@
-// What the turbulence of a fluid feels of grains in it (laws/k_omega.hpp: slow_eddies).
+// Grains in a fluid as they act on its turbulence (laws/k_omega.hpp: slow_eddies).
 #pragma once
 
 namespace barchan {

@@ -31,7 +31,7 @@ class Workspace : public Halo {
 
   std::vector<AlignedVector<double>> ground_stress;  // Pa, by fluid and particle; empty: walls say it themselves
 
-  /// By fluid: the grains in it that its turbulence feels.
+  /// By fluid: the grains in it that act on its turbulence.
   std::vector<std::optional<OwnColumn<GrainsInEddies>>> grains_in_eddies;
 
   /// What spheres of a phase do to a wall in a step (N s and N m s, not by depth), for a meter that asks (attach).

@@ -174,32 +174,6 @@ WARNED = [
 ]
 
 
-# Water runs out where no wall stands.
-OPEN = """
-dimensions = 2
-spacing = 0.02
-[domain]
-size = [1, 1]
-gravity = [0, -9.81]
-[phases.water]
-kind = "fluid"
-density = 1000
-[phases.floor]
-kind = "wall"
-[interactions]
-water-water = 2.1
-water-floor = 2.1
-[[fill]]
-phase = "floor"
-shape = { sides = ["bottom", "left"] }
-[[fill]]
-phase = "water"
-shape = { box = { min = [0.3, 0], max = [0.9, 0.5] } }
-[time]
-end = 0.5
-"""
-
-
 def said_of(folder, words):
     done = subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True, timeout=120)
     return done.returncode, done.stderr
@@ -246,7 +220,7 @@ class Mistakes(unittest.TestCase):
                     self.assertEqual(expected in done.stdout + done.stderr, warned, done.stdout)
 
     def test_a_run_that_breaks_down_repeats_what_was_warned_of(self):
-        (self.folder / "open.toml").write_text(OPEN)
+        (self.folder / "open.toml").write_text(SCENE.replace('sides = ["bottom"] }', 'sides = ["bottom", "left"] }').replace("end = 0.01", "end = 1"))
         code, said = said_of(self.folder, ["run", "open.toml", "--quiet", "--threads", "1"])
         self.assertEqual(code, 3, said)
         self.assertIn('the start warned of what may be the cause: domain: no wall at "right"', said.splitlines()[-1])

@@ -79,6 +79,17 @@ TEST(WindOverSand, AHeavyBedIsAsRoughAsItsGrains) {
   EXPECT_NEAR(share, 1.05, 0.15);
 }
 
+/// The air keeps the drag of one exchange: that of a second phase of grains would take its place.
+TEST(WindOverSand, OneAirHasOnePhaseOfGrains) {
+  std::string told;
+  try {
+    Drive drive("wind_over_sand", {"phases.grit={ kind = \"grains\", density = 2650, diameter = 5e-4, stiffness = 200, "
+                                   "restitution = 0.7 }",
+                                   "interactions.air-grit={ drag = \"duran\" }"});
+  } catch (const SceneError& error) { told = error.what(); }
+  EXPECT_NE(told.find("one phase of grains in its air"), std::string::npos) << told;
+}
+
 /// A grain that is twice as heavy as the air feels half of gravity besides its drag.
 TEST(WindOverSand, BuoyancyTakesTheWeightOfTheAir) {
   Drive drive("wind_over_sand", {"fill.3={ phase = \"sand\", shape = { points = [[0.05, 0.02]] } }",

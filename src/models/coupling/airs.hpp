@@ -30,7 +30,7 @@ class Airs {
   Vec3 velocity(const Vec3& x) const;
   /// A force (N; 2D: per metre of depth) on the air about a place.
   void push(const Vec3& x, const Vec3& force);
-  /// A grain that the turbulence feels, as AirGrid's; by the same shares.
+  /// A grain that acts on the turbulence, as AirGrid's; by the same shares.
   void put(const Vec3& x, double mass, double rate);
   /// Writes the grains about the particles of a phase, the `number`th of phases().
   void give_grains(const State& state, std::size_t number, GrainsInEddies* of) const {

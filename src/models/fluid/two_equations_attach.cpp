@@ -39,7 +39,7 @@ void check_k_omega(const Scene& scene, std::size_t fluid, const Layout& layout) 
   for (std::size_t k = 0; k < scene.phases.size(); ++k) {
     const Phase& other = scene.phases[k];
     const Interaction* const pair = k == fluid ? nullptr : entry_between(scene, phase, other);
-    if (!pair || pair->drag_law != DragLaw::none) continue;  // grains that feel the mean wind are no obstacles
+    if (!pair || pair->drag_law != DragLaw::none) continue;  // grains in the mean wind are no obstacles
     if (layout.phases[k].separate() || layout.phases[k].travels() ||
         layout.phases[k].moves() != layout.phases[k].flows())
       throw SceneError(key +
