@@ -25,6 +25,7 @@ MOST_OF_A_HEAD = 1 << 22       # bytes before the appended data
 MOST_OF_INLINE = 1 << 28       # bytes of a file that has none
 MOST_COMPRESSION = 1100        # zlib makes data at most 1032 times smaller, LZ4 255 times
 MOST_COMPONENTS = 1 << 16
+PADDING = 8192 * b" "          # without it ParaView 5.11 with a later expat does not find the data (src/output/whole_file.hpp)
 
 
 class Array:
@@ -362,4 +363,4 @@ def write_particles(path, x, arrays, words):
     out.array("offsets", numpy.arange(1, n + 1, dtype=numpy.int64))
     out.lines += ["</Verts>", "</Piece>", "</PolyData>"]
     head = '<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n' + "\n".join(out.lines)
-    pathlib.Path(path).write_bytes(head.encode() + b'\n<AppendedData encoding="raw">\n_' + b"".join(out.data) + b"\n</AppendedData>\n</VTKFile>\n")
+    pathlib.Path(path).write_bytes(head.encode() + b'\n<AppendedData encoding="raw">\n' + PADDING + b"_" + b"".join(out.data) + b"\n</AppendedData>\n</VTKFile>\n")

@@ -49,7 +49,7 @@ class XmlFile {
     WholeFile whole(file);
     whole.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type_ +
                 "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n" + head_ +
-                "<AppendedData encoding=\"raw\">\n_");
+                "<AppendedData encoding=\"raw\">\n" + std::string(appended_padding, ' ') + "_");
     whole.write(data_);
     whole.write("\n</AppendedData>\n</VTKFile>\n");
     whole.publish();

@@ -369,8 +369,9 @@ std::string unit_of(const std::string& field, const std::vector<std::string>& un
 std::optional<Frame> read_appended(std::string_view text, const std::string& suffix) {
   const std::size_t tag = text.find("<AppendedData");
   if (tag == std::string_view::npos) return std::nullopt;
-  const std::size_t close = text.find('>', tag), begin = text.find('_', tag);
-  if (close == std::string_view::npos || begin == std::string_view::npos || begin < close || begin - close > 64 ||
+  const std::size_t close = std::min(text.find('>', tag), text.size() - 1),
+                    begin = text.find_first_not_of(" \t\r\n", close + 1);
+  if (begin == std::string_view::npos || text[begin] != '_' ||
       text.substr(tag, close - tag).find("encoding=\"raw\"") == std::string_view::npos)
     refuse_file("its appended data are not raw");
   const std::string_view data = text.substr(begin + 1);

@@ -194,6 +194,26 @@ vtkSmartPointer<vtkCellArray> vertices(std::size_t n) {
   return cells;
 }
 
+/// A writer of VTK's, with white space before its appended data (appended_padding).
+template <class Writer>
+class Padded : public Writer {
+ public:
+  static Padded* New() {
+    auto* made = new Padded;
+    made->InitializeObjectBase();
+    return made;
+  }
+
+ protected:
+  int WriteHeader() override {  // ends with the "_" behind which VTK counts the places of arrays
+    if (Writer::WriteHeader() == 0) return 0;
+    this->Stream->seekp(-1, std::ios::cur);
+    *this->Stream << std::string(appended_padding, ' ') << '_';
+    this->AppendedDataPosition = this->Stream->tellp();
+    return this->Stream->good() ? 1 : 0;
+  }
+};
+
 void run(vtkXMLWriter* writer, vtkPointSet* data, WholeFile& file, FrameFormat format, bool compress) {
   writer->SetInputData(data);
   writer->SetFileName(file.temporary().c_str());
@@ -321,12 +341,12 @@ void write_frame(const std::filesystem::path& file, const Frame& frame, FrameFor
       vtkNew<vtkPolyData> data;
       fill(data, frame, format);
       data->SetVerts(vertices(frame.size()));
-      run(vtkNew<vtkXMLPolyDataWriter>(), data, whole, format, compress);
+      run(vtkNew<Padded<vtkXMLPolyDataWriter>>(), data, whole, format, compress);
     } else {
       vtkNew<vtkUnstructuredGrid> data;
       fill(data, frame, format);
       data->SetCells(VTK_VERTEX, vertices(frame.size()));
-      run(vtkNew<vtkXMLUnstructuredGridWriter>(), data, whole, format, compress);
+      run(vtkNew<Padded<vtkXMLUnstructuredGridWriter>>(), data, whole, format, compress);
     }
   } catch (const OutputError& e) { throw OutputError("cannot write '" + file.string() + "': " + e.what()); }
   whole.publish();

@@ -48,6 +48,12 @@ class SmallWrites {
   std::string waiting_;
 };
 
+/// White space between the tag AppendedData of VTK's XML files and its "_": with it the readers of VTK 9.1 and 9.2 find
+/// the data where their parser is expat 2.6 or later, or the expat 2.5 of an updated Debian 12. That parser puts off a
+/// tag of which it has got only a few bytes; the readers then feed it the next 4096 bytes of the file, which must be
+/// text.
+inline constexpr std::size_t appended_padding = 8192;
+
 /// The whole of a small file at once. Throws OutputError.
 void write_whole_file(const std::filesystem::path& file, std::string_view text);
 

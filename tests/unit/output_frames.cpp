@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "output/series.hpp"
+#include "output/whole_file.hpp"
 #include "unit/output_example.hpp"
 
 // VTK 9.2 forgets its compression tables (32 bytes an array) when a write fails half way. Read by the leak sanitizer
@@ -143,7 +144,7 @@ TEST(Frames, ThatAreDamagedAreNotRead) {
   }
   const auto data = whole.find("<AppendedData");
   std::ofstream(directory / "frame.vtp", std::ios::binary)
-      << whole.substr(0, data + 500) + "\n  </AppendedData>\n</VTKFile>\n";
+      << whole.substr(0, data + appended_padding + 500) + "\n  </AppendedData>\n</VTKFile>\n";
   expect_output_error([&] { read_frame(directory / "frame.vtp"); }, {"frame.vtp"});
 }
 
