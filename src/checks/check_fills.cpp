@@ -5,6 +5,7 @@
 
 #include "checks/checks.hpp"
 #include "scene/couplings.hpp"
+#include "scene/sides.hpp"
 #include "start/fitted.hpp"
 #include "start/outline.hpp"
 #include "start/region.hpp"
@@ -119,7 +120,7 @@ void check_sides(const SidesShape& sides, const Phase* phase, const std::string&
 /// A bed that the domain cuts off would be another one than the scene says.
 void check_bed(const BedShape& bed, const std::string& shape, const Scene& scene, const Report& report) {
   if (report.touched(shape) || report.touched("domain")) return;
-  const double height = scene.domain.size[1];
+  const double height = scene.domain.size[up_axis(scene.domain)];
   const bool rises = bed.dune && bed.dune->form != DuneShape::Form::formula;
   const double top = bed.depth + (rises ? bed.dune->height : 0.0);
   if (bed.depth > height * (1.0 + 1e-9))
@@ -251,9 +252,11 @@ void check_fills(const Scene& scene, const Report& report) {
     check_outline(fill, spacing_of(scene, fill), shape, scene, report);
     check_leave_out(fill, dotted, report);
     check_along_ground(fill, dotted + ".velocity.log-profile", scene, report);
-    if (phase && fill.packing == Packing::settled && !(scene.domain.gravity[1] < 0.0) &&
+    if (phase && fill.packing == Packing::settled && !(scene.domain.gravity[up_axis(scene.domain)] < 0.0) &&
         !report.touched("domain.gravity"))
-      report(dotted + ".packing", "nothing makes the grains fall; expected domain.gravity with a negative y component");
+      report(dotted + ".packing",
+             "nothing makes the grains fall; expected domain.gravity = [0, -9.81], in three dimensions [0, -9.81, 0] "
+             "or [0, 0, -9.81]");
     if (phase) check_phase_of(fill, *phase, dotted, report);
     if (fill.packing == Packing::relaxed && !report.touched(dotted)) {
       const std::string misfit = misfit_of_region(scene, k);

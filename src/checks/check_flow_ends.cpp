@@ -54,7 +54,7 @@ void check_side(const Scene& scene, const Section& section, const std::vector<Se
     if (other.side == section.side && other.phase == section.phase)
       return report(at, "\"" + section.phase + "\" flows through \"" + word + "\" by " + other.dotted +
                             " too; expected one section a side");
-    if (axis_of(other.side) != axis_of(section.side))
+    if (side_at(scene.domain, other.side).axis != side_at(scene.domain, section.side).axis)
       return report(at, "\"" + word + "\" and \"" + word_of(other.side) + "\" of " + other.dotted +
                             " meet in a corner, beyond which nothing is said; expected sides of one axis");
   }
@@ -149,7 +149,7 @@ void check_flow_ends(const Scene& scene, const Report& report) {
         report(dotted + ".velocity", "no velocity; expected { log-profile = ... } or { profile = ... }");
       if (report.has(log) && report.has(profile))
         report(profile, "a second wind after log-profile; expected one of the two");
-      if (report.has(profile) && axis_of(scene.inflows[k].side) == 1)
+      if (report.has(profile) && side_at(scene.domain, scene.inflows[k].side).axis == 1)
         report(profile, "a profile is by height, and \"" + word_of(scene.inflows[k].side) +
                             "\" has one height; expected a side that cuts the ground, or formulas");
     }

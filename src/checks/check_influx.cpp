@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "checks/checks.hpp"
-#include "start/flow_ends.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 namespace {
@@ -18,7 +18,7 @@ void check_phase(const Scene& scene, const Influx& influx, const std::string& at
 
 void check_side(const Scene& scene, const Influx& influx, const std::string& at, const Report& report) {
   if (report.touched(at) || !report.has(at) || report.touched("domain") || report.touched("dimensions")) return;
-  const std::string word = word_of(side_of(*influx.side));
+  const std::string word = word_of(*influx.side);
   check_side_names({word}, at, scene, report);
   const Phase* grains = find_phase(scene, influx.phase);
   if (report.touched(at) || !grains) return;
@@ -41,7 +41,8 @@ void check_flux(const Scene& scene, const Influx& influx, const std::string& dot
   if (!grains || !influx.speed || report.touched("domain") || report.touched("phases." + grains->name + ".density"))
     return;
   constexpr double packing = 0.6;  // of the volume; spheres at random, poured
-  const double bottom = scene.domain.origin[1], top = bottom + scene.domain.size[1];
+  const std::size_t up = up_axis(scene.domain);
+  const double bottom = scene.domain.origin[up], top = bottom + scene.domain.size[up];
   const double most = packing * grains->density * *influx.speed * (top - influx.above.value_or(bottom));
   if (influx.flux > most)
     report(dotted + ".flux", number_text(influx.flux) + " kg/m/s is more than grains of \"" + grains->name +
@@ -102,9 +103,10 @@ void check_influxes(const Scene& scene, const Report& report) {
       if (file && report.has(dotted + "." + key))
         report(dotted + "." + key,
                "the grains of influx." + std::to_string(k) + ".file say how they move; expected one of the two");
-    const double top = scene.domain.origin[1] + scene.domain.size[1];
+    const std::size_t up = up_axis(scene.domain);
+    const double bottom = scene.domain.origin[up], top = bottom + scene.domain.size[up];
     if (influx.above && !report.touched(dotted + ".above") && !report.touched("domain") &&
-        !(*influx.above >= scene.domain.origin[1] && *influx.above < top))
+        !(*influx.above >= bottom && *influx.above < top))
       report(dotted + ".above", "no grain could enter from there on; expected a height in the domain");
     if (!file) check_flux(scene, influx, dotted, report);
   }

@@ -6,6 +6,7 @@
 
 #include "checks/checks.hpp"
 #include "scene/couplings.hpp"
+#include "scene/sides.hpp"
 #include "start/ball_surfaces.hpp"
 
 namespace barchan {
@@ -31,17 +32,15 @@ struct SameAlong {
     return box.min[axis] <= low + slack && box.max[axis] >= high - slack;
   }
   bool operator()(const BedShape& bed) const {
-    if (axis == 1) return false;
+    if (axis == up_axis(domain)) return false;
     if (!bed.dune) return true;
     const bool formula = bed.dune->form == DuneShape::Form::formula;
-    return axis == 2 && !(formula && mentions(bed.dune->formula.formula, 'z'));
+    return axis == across_axis(domain) && !(formula && mentions(bed.dune->formula.formula, 'z'));
   }
   bool operator()(const FormulaShape& shape) const { return !mentions(shape.inside.formula, "xyz"[axis]); }
   bool operator()(const SidesShape& sides) const {
-    constexpr const char* of_axis[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
-    for (const std::string& side : sides.sides)
-      if (side == of_axis[axis][0] || side == of_axis[axis][1]) return false;
-    return true;
+    return std::none_of(sides.sides.begin(), sides.sides.end(),
+                        [&](const std::string& side) { return side_at(domain, side).axis == axis; });
   }
   bool operator()(const DiscShape&) const { return axis == 2; }
   bool operator()(const RingShape&) const { return axis == 2; }
@@ -102,7 +101,7 @@ void check_sizes(const Scene& scene, const Phase& wall, const Report& report) {
     const auto* sides = std::get_if<SidesShape>(&scene.fills[k].shape);
     if (scene.fills[k].phase != wall.name || !sides) continue;
     for (const std::string& side : sides->sides) {
-      const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
+      const std::size_t axis = side_at(scene.domain, side).axis;
       if ((*wall.wall().shear_stress)[axis] != 0.0)
         return report(dotted + ".shear-stress",
                       std::string("its part along ") + "xyz"[axis] + " stands across the side \"" + side +

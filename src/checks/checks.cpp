@@ -10,6 +10,7 @@
 #include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
+#include "scene/sides.hpp"
 #include "start/lattice.hpp"
 
 namespace barchan {
@@ -61,7 +62,7 @@ void check_side_names(const std::vector<std::string>& sides, const std::string& 
                       const Report& report) {
   if (report.touched(dotted)) return;  // a word is no side
   for (const std::string& side : sides) {
-    const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
+    const std::size_t axis = side_at(scene.domain, side).axis;
     if (axis == 2 && scene.dimensions == 2)
       report(dotted, "\"" + side + "\" needs three dimensions; expected \"bottom\", \"top\", \"left\" or \"right\"");
     else if (scene.domain.periodic[axis])
@@ -371,6 +372,7 @@ void check(const toml::table& document, const Scene& scene, Problems& problems) 
   check_motions(scene, report);
   check_columns(scene, report);
   check_walls(scene, report);
+  check_up(scene, report);
   check_measuring(scene, report);
   check_run(scene, report);
 }

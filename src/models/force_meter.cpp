@@ -25,7 +25,7 @@ ForceMeter in_the_domain(ForceMeter meter, const Layout& layout) {
   if (!stays || meter.box || !layout.flows_through()) return meter;
   BoxShape box{{-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}};
   for (const PlanPhase& phase : layout.phases)
-    for (const FlowEnd& end : phase.flow_ends) (is_upper(end.side) ? box.max : box.min)[end.axis()] = end.place;
+    for (const FlowEnd& end : phase.flow_ends) (end.upper() ? box.max : box.min)[end.axis()] = end.place;
   meter.box = box;
   return meter;
 }

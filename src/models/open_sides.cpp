@@ -10,14 +10,12 @@
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 #include "start/flow_ends.hpp"
 
 namespace barchan {
 
 namespace {
-
-constexpr std::array<std::array<const char*, 2>, 3> side_names{
-    {{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
 
 /// The wall behind a side that the fluid feels; null: there is none.
 const Phase* wall_behind(const Scene& scene, const Phase& fluid, const std::string& side) {
@@ -44,7 +42,7 @@ std::string upper_side(const Scene& scene) {
     const double g = scene.domain.gravity[d];
     if (g == 0.0) continue;
     if (!side.empty() || scene.domain.periodic[d]) return "";
-    side = side_names[d][g < 0.0 ? 1 : 0];
+    side = side_names(scene.domain)[d][g < 0.0 ? 1 : 0];
   }
   return side;
 }
@@ -57,7 +55,7 @@ std::array<std::array<bool, 2>, 3> open_sides(const Scene& scene, std::size_t fl
   const std::vector<std::string> sides = said ? scene.domain.open : std::vector<std::string>{upper_side(scene)};
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t end = 0; end < 2; ++end) {
-      const std::string name = side_names[d][end];
+      const std::string name = side_names(scene.domain)[d][end];
       if (!free_surface || flows_through(scene, scene.phases[fluid], name) ||
           std::find(sides.begin(), sides.end(), name) == sides.end())
         continue;
@@ -75,7 +73,7 @@ std::array<std::array<bool, 2>, 3> open_sides_of_spheres(const Scene& scene, std
   const auto& sides = scene.domain.open;
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t end = 0; end < 2; ++end) {
-      const std::string name = side_names[d][end];
+      const std::string name = side_names(scene.domain)[d][end];
       open[d][end] =
           std::find(sides.begin(), sides.end(), name) != sides.end() && !wall_behind(scene, scene.phases[grains], name);
     }
@@ -206,7 +204,7 @@ std::string OpenSides::sides_text() const {
   std::string text;
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t end = 0; end < 2; ++end)
-      if (plan_.open[d][end]) text += std::string(text.empty() ? "" : " or ") + side_names[d][end];
+      if (plan_.open[d][end]) text += std::string(text.empty() ? "" : " or ") + side_names(scene_.domain)[d][end];
   return "the open side (" + text + ")";
 }
 
@@ -217,7 +215,7 @@ void OpenSides::history(HistoryRow& row) const {
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t end = 0; end < 2; ++end)
       if (plan_.open[d][end])
-        add_passed(row, plan_.name + "_" + side_names[d][end] + "_out", dimensions, passed_[d][end]);
+        add_passed(row, plan_.name + "_" + side_names(scene_.domain)[d][end] + "_out", dimensions, passed_[d][end]);
 }
 
 void OpenSides::archive(Archive& a) {

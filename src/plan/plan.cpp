@@ -74,9 +74,9 @@ double influx_speed(const Scene& scene) {
 Bounds bounds_with_zones(const Scene& scene, Bounds bounds) {
   for (const Phase& phase : scene.phases)
     for (const FlowEnd& end : flow_ends(scene, phase)) {
-      double& side = (is_upper(end.side) ? bounds.high : bounds.low)[end.axis()];
+      double& side = (end.upper() ? bounds.high : bounds.low)[end.axis()];
       const double far = end.at(end.length + phase.spacing);
-      side = is_upper(end.side) ? std::max(side, far) : std::min(side, far);
+      side = end.upper() ? std::max(side, far) : std::min(side, far);
     }
   return bounds;
 }

@@ -10,6 +10,7 @@
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 #include "start/ball_surfaces.hpp"
 #include "start/flow_ends.hpp"
 #include "start/thin_wall.hpp"
@@ -307,11 +308,13 @@ void warn_of_weight(const Scene& scene, Plan& plan) {
     plan.warnings.emplace_back("domain.gravity: it points upwards, along +y; weight is along -y, as in [0, -9.81]");
 }
 
-/// What "up" means is not asked of gravity: beds, the sides by name, and grains that enter have their heights along y.
+/// Beds, the sides by name, and grains that enter have their heights along y, or along z where gravity is along -z.
 void warn_of_another_up(const Scene& scene, Plan& plan) {
   const Vec3& g = scene.domain.gravity;
   const std::size_t axis = std::abs(g[2]) > std::abs(g[0]) ? 2 : 0;
-  if (scene.dimensions == 2 || g[1] != 0.0 || g[axis] == 0.0 || scene.domain.periodic[axis]) return;
+  if (scene.dimensions == 2 || up_axis(scene.domain) == 2 || g[1] != 0.0 || g[axis] == 0.0 ||
+      scene.domain.periodic[axis])
+    return;
   std::string uses;
   const auto add = [&](const std::string& use) { uses += (uses.empty() ? "" : ", ") + use; };
   for (std::size_t k = 0; k < scene.fills.size(); ++k) {
@@ -329,7 +332,7 @@ void warn_of_another_up(const Scene& scene, Plan& plan) {
     plan.warnings.push_back("domain.gravity: it points along " + std::string(1, static_cast<char>('x' + axis)) +
                             ", and the heights of " + uses +
                             " are along y: \"bottom\" and \"top\" are the sides across y, a bed lies on the first; "
-                            "turn the scene so that gravity is along y, as in [0, -9.81, 0]");
+                            "turn the scene so that gravity is along -y or -z, as in [0, 0, -9.81]");
 }
 
 /// Grains that enter faster or more densely than in any wind: a flux in g, or a speed in mm/s. A liquid carries dense
@@ -511,10 +514,9 @@ void warn_of_sides_without_a_wall(const Scene& scene, Plan& plan) {
       !scene.influxes.empty() || !scene.domain.open.empty())
     return;
   std::string missing;
-  const char* const names[3][2] = {{"left", "right"}, {"bottom", ""}, {"back", "front"}};
   for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
-    for (const std::string side : names[d])
-      if (!side.empty() && !scene.domain.periodic[d] && std::find(closed.begin(), closed.end(), side) == closed.end())
+    for (const std::string side : side_names(scene.domain)[d])
+      if (side != "top" && !scene.domain.periodic[d] && std::find(closed.begin(), closed.end(), side) == closed.end())
         missing += (missing.empty() ? "\"" : ", \"") + side + "\"";
   if (!missing.empty())
     plan.warnings.push_back("domain: no wall at " + missing + ": \"" + guest->name +

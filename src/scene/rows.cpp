@@ -313,7 +313,7 @@ constexpr Key rows_of_keys[] = {
     {"influx", "file", at<&Influx::file>("none: the distributions below"), "",
      "Frame of another run (.vtp or .vtu): grains that enter have the height, velocity and radius of a grain in flight there, drawn with a weight that is its speed through "
      "the side. If diameters differ, that run needs output.fields = [\"radius\"]. A path from the folder of the scene."},
-    {"influx", "above", at<&Influx::above>("the bottom of the domain"), "m", "y from which on grains enter; in a file only grains higher than this are taken."},
+    {"influx", "above", at<&Influx::above>("the bottom of the domain"), "m", "Height from which on grains enter; in a file only grains higher than this are taken."},
     {"influx", "decay-height", at<&Influx::decay_height>("required without file"), "m", "Height over which the flux falls by a factor e.", positive},
     {"influx", "speed", at<&Influx::speed>("required without file").like("1.5"), "m/s", "Mean speed through the side; none is below a tenth of it.", positive},
     {"influx", "speed-spread", at<&Influx::speed_spread>(0.0), "m/s", "Standard deviation of the speed.", not_negative},

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/couplings.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 
@@ -53,14 +54,14 @@ void add_box(const Scene& scene, ContactLaw law, Scene& s) {
   Fill sides;
   sides.phase = settling_box;
   SidesShape shape{{"bottom"}, 1};
-  const char* const names[3][2] = {{"left", "right"}, {"", ""}, {"back", "front"}};
-  for (const std::size_t d : {std::size_t{0}, std::size_t{2}}) {
+  const SideNames& names = side_names(scene.domain);
+  for (const std::size_t d : {std::size_t{0}, across_axis(scene.domain)}) {
     if (d == 2 && scene.dimensions == 2) continue;
     const double whole = scene.domain.size[d];
     s.domain.periodic[d] = scene.domain.periodic[d] && s.domain.size[d] > whole * (1.0 - 1e-9);
     if (!s.domain.periodic[d]) shape.sides.insert(shape.sides.end(), {names[d][0], names[d][1]});
   }
-  s.domain.periodic[1] = false;
+  s.domain.periodic[up_axis(scene.domain)] = false;
   sides.shape = shape;
   s.phases.push_back(box);
   Interaction at_box;
@@ -87,6 +88,7 @@ Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
   s.precision = scene.precision;
   s.domain = scene.domain;
   s.phases = {phase};
+  s.domain.open.clear();
   s.domain.gravity = weight_share(scene, phase) * scene.domain.gravity;
   s.time = scene.time;
   s.output = scene.output;
@@ -95,11 +97,13 @@ Scene settling_scene(const Scene& scene, std::size_t k, const SettlingRoom& c) {
   s.output.fields.clear();
   s.time.fixed_step.reset();
   const ContactLaw law = add_walls(scene, k, s);
-  const double height = (c.high[1] - c.from) * loose_lattice_height * std::pow(size.largest_share(), scene.dimensions) +
-                        3.0 * size.largest();
+  const std::size_t up = up_axis(scene.domain);
+  const double height =
+      (c.high[up] - c.from) * loose_lattice_height * std::pow(size.largest_share(), scene.dimensions) +
+      3.0 * size.largest();
   s.domain.origin = c.low;
   s.domain.size = c.high - c.low;
-  s.domain.size[1] = c.from - c.low[1] + height;
+  s.domain.size[up] = c.from - c.low[up] + height;
   add_box(scene, law, s);
   s.time.end = 1e3;
   return s;

@@ -13,6 +13,7 @@
 #include "engine/team.hpp"
 #include "scene/couplings.hpp"
 #include "scene/settling_scene.hpp"
+#include "scene/sides.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/settle_room.hpp"
 #include "simulation/simulation.hpp"
@@ -43,8 +44,9 @@ constexpr double stiffer = 8.0;         // contacts from stage to stage
 Fill loose_lattice(const Scene& s, const Fill& fill, const SettlingRoom& c, const SphereSize& size) {
   Fill grains = fill;
   BoxShape loosely{c.low, c.high};
-  loosely.min[1] = c.from;
-  loosely.max[1] = s.domain.origin[1] + s.domain.size[1] - 1.01 * size.largest();
+  const std::size_t up = up_axis(s.domain);
+  loosely.min[up] = c.from;
+  loosely.max[up] = s.domain.origin[up] + s.domain.size[up] - 1.01 * size.largest();
   grains.shape = loosely;
   grains.packing = Packing::square;
   // What disorder the sizes do not bring, a little motion does.
@@ -63,11 +65,12 @@ Fill loose_lattice(const Scene& s, const Fill& fill, const SettlingRoom& c, cons
 std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, const Scene& s, const SettlingRoom& c,
                                          double& thickness) {
   const SphereSize size = *s.phases[0].diameter();
+  const std::size_t up = up_axis(scene.domain), across = across_axis(scene.domain);
   Scene alone = s;
   alone.fills = {loose_lattice(s, fill, c, size)};
   std::vector<ParticleBlock> blocks = generate(s), grains = generate(alone);
   const double stretch = loose_lattice_height * std::pow(size.largest_share(), s.dimensions),
-               bottom = scene.domain.origin[1];
+               bottom = scene.domain.origin[up];
   // Fixed spheres: those of walls whose particles lie in the domain.
   const PeriodicSpace space(s.domain);
   const auto width = [](const Phase& p) { return p.diameter() ? p.diameter()->largest() : p.spacing; };
@@ -90,11 +93,11 @@ std::vector<ParticleBlock> begin_loosely(const Scene& scene, const Fill& fill, c
   for (std::size_t i = 0; i < all.position.size(); ++i) {
     const Vec3& x = all.position[i];
     double floor = c.from;
-    for (const Ground& g : floors) floor = std::max(floor, bottom + g.height(x[0], x[2]));
-    const double high = top ? bottom + top->height(x[0], x[2]) : c.high[1];
-    if (!floors.empty() && x[1] < floor) continue;
+    for (const Ground& g : floors) floor = std::max(floor, bottom + g.height(x[0], x[across]));
+    const double high = top ? bottom + top->height(x[0], x[across]) : c.high[up];
+    if (!floors.empty() && x[up] < floor) continue;
     if (fixed.owner_near(x, size.largest(), 1.0) >= 0 || none.at(x)) continue;
-    if (x[1] > floor + (high - floor) * stretch + 2.0 * size.largest()) continue;
+    if (x[up] > floor + (high - floor) * stretch + 2.0 * size.largest()) continue;
     thickness = std::max(thickness, high - floor);
     kept.position.push_back(x);
     kept.velocity.push_back(all.velocity[i]);

@@ -8,6 +8,7 @@
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 #include "start/ground.hpp"
 #include "start/shapes.hpp"
 
@@ -15,16 +16,17 @@ namespace barchan {
 
 namespace {
 
-// Places along x, in 3D a tenth of them along z too, at which the heights of beds are asked.
+// Places along x, in 3D a tenth of them along the third axis too, at which the heights of beds are asked.
 constexpr int samples_across = 400;
 
 template <class F>
 void each_column(const Scene& scene, F&& f) {
   const int across = scene.dimensions == 3 ? samples_across / 10 : 1;
+  const std::size_t third = across_axis(scene.domain);
   for (int k = 0; k < across; ++k)
     for (int i = 0; i <= samples_across; ++i)
       f(scene.domain.origin[0] + scene.domain.size[0] * i / samples_across,
-        scene.domain.origin[2] + scene.domain.size[2] * (k + 0.5) / across);
+        scene.domain.origin[third] + scene.domain.size[third] * (k + 0.5) / across);
 }
 
 /// The height of a bed over the bottom of the domain where it is highest (m).
@@ -43,19 +45,20 @@ SettlingRoom settling_room(const Scene& scene, std::size_t k) {
   SettlingRoom c;
   c.low = scene.domain.origin;
   c.high = scene.domain.origin + scene.domain.size;
-  c.from = c.low[1];
+  const std::size_t up = up_axis(scene.domain);
+  c.from = c.low[up];
   if (const auto* box = std::get_if<BoxShape>(&fill.shape)) {
     for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d) {
-      if (d != 1) c.low[d] = std::max(c.low[d], box->min[d]);
+      if (d != up) c.low[d] = std::max(c.low[d], box->min[d]);
       c.high[d] = std::min(c.high[d], box->max[d]);
     }
-    c.from = std::max(c.low[1], box->min[1]);
+    c.from = std::max(c.low[up], box->min[up]);
   } else if (const auto* bed = std::get_if<BedShape>(&fill.shape)) {
-    c.high[1] = c.low[1] + highest(*bed, scene);
-    c.from = c.low[1] + bed->from;
-    if (c.high[1] > scene.domain.origin[1] + scene.domain.size[1])
+    c.high[up] = c.low[up] + highest(*bed, scene);
+    c.from = c.low[up] + bed->from;
+    if (c.high[up] > scene.domain.origin[up] + scene.domain.size[up])
       throw SceneError(located(scene, "fill." + std::to_string(k)) + ": the bed is up to " +
-                       brief(c.high[1] - c.low[1]) + " m high, higher than the domain; expected a lower dune");
+                       brief(c.high[up] - c.low[up]) + " m high, higher than the domain; expected a lower dune");
   }
   return c;
 }
@@ -64,17 +67,20 @@ namespace {
 
 /// Where the grains of a settled fill stand.
 struct Extent {
-  Extent(const Scene& scene, std::size_t k) : room(settling_room(scene, k)), bottom(scene.domain.origin[1]) {
+  Extent(const Scene& scene, std::size_t k)
+      : room(settling_room(scene, k)), up(up_axis(scene.domain)), third(3 - up), bottom(scene.domain.origin[up]) {
     if (const auto* bed = std::get_if<BedShape>(&scene.fills[k].shape)) ground.emplace(*bed, scene.domain);
   }
   /// {from, to} (m) in a column; to < from: nowhere.
   std::array<double, 2> in_column(double x, double z) const {
     const Vec3 &low = room.low, &high = room.high;
-    const bool beside = x <= low[0] || x >= high[0] || (high[2] > low[2] && (z <= low[2] || z >= high[2]));
+    const bool beside =
+        x <= low[0] || x >= high[0] || (high[third] > low[third] && (z <= low[third] || z >= high[third]));
     if (beside) return {1.0, 0.0};
-    return {room.from, ground ? bottom + ground->height(x, z) : high[1]};
+    return {room.from, ground ? bottom + ground->height(x, z) : high[up]};
   }
   SettlingRoom room;
+  std::size_t up, third;
   std::optional<Ground> ground;
   double bottom;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scene/couplings.hpp"
+#include "scene/sides.hpp"
 #include "start/outline.hpp"
 #include "start/region.hpp"
 
@@ -12,10 +13,9 @@ namespace {
 
 /// m, positive behind the side.
 std::function<double(const Vec3&)> depth_behind(const Domain& domain, const std::string& side) {
-  const bool upper = side == "right" || side == "top" || side == "front";
-  const std::size_t axis = side == "left" || side == "right" ? 0 : side == "bottom" || side == "top" ? 1 : 2;
+  const auto [axis, upper] = side_at(domain, side);
   const double place = domain.origin[axis] + (upper ? domain.size[axis] : 0.0);
-  return [=](const Vec3& x) { return upper ? x[axis] - place : place - x[axis]; };
+  return [axis = axis, upper = upper, place](const Vec3& x) { return upper ? x[axis] - place : place - x[axis]; };
 }
 
 /// Depths of shapes of facets are exact as far as the cells that hold the facets: these are not much smaller than the

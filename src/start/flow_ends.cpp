@@ -10,27 +10,6 @@
 
 namespace barchan {
 
-std::size_t axis_of(Side side) {
-  return side == Side::left || side == Side::right ? 0 : side == Side::bottom || side == Side::top ? 1 : 2;
-}
-
-Side side_of(Flank flank) {
-  switch (flank) {
-    case Flank::left: return Side::left;
-    case Flank::right: return Side::right;
-    case Flank::front: return Side::front;
-    case Flank::back: break;
-  }
-  return Side::back;
-}
-bool is_upper(Side side) { return side == Side::right || side == Side::top || side == Side::front; }
-
-std::string word_of(Side side) {
-  for (const Word& word : words_of<Side>)
-    if (word.meaning == static_cast<int>(side)) return std::string(word.word);
-  return "";
-}
-
 namespace {
 
 constexpr double layer_in_spacings = 20.0;  // of an outflow that does not say it; docs/method.md, Open sides
@@ -62,8 +41,8 @@ double usual_layer(const Scene& scene, const Phase& fluid) {
 FlowEnd make_end(const Scene& scene, const Phase& fluid, Side side, double layer) {
   FlowEnd end;
   end.side = side;
-  const std::size_t axis = axis_of(side);
-  end.place = scene.domain.origin[axis] + (is_upper(side) ? scene.domain.size[axis] : 0.0);
+  end.where = side_at(scene.domain, side);
+  end.place = scene.domain.origin[end.axis()] + (end.upper() ? scene.domain.size[end.axis()] : 0.0);
   end.layer = fluid.spacing * std::round(layer / fluid.spacing);
   end.length = end.layer + fluid.spacing * rows_beyond(scene, fluid);
   return end;

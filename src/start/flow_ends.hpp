@@ -9,31 +9,27 @@
 
 #include "scene/formula.hpp"
 #include "scene/scene.hpp"
+#include "scene/sides.hpp"
 #include "start/generate.hpp"
 #include "start/ground.hpp"
 #include "start/velocity_profile.hpp"
 
 namespace barchan {
 
-/// The axis of a side and whether it is the upper one.
-std::size_t axis_of(Side side);
-bool is_upper(Side side);
-Side side_of(Flank flank);
-/// "left"
-std::string word_of(Side side);
-
 struct FlowEnd {
   Side side{};
+  SideAt where;                      // of this domain
   const Inflow* inflow = nullptr;    // one of the two
   const Outflow* outflow = nullptr;  // of the scene
   double place = 0.0;                // m, coordinate of the side
   double layer = 0.0, length = 0.0;  // m, of the absorbing layer; of the whole zone
 
-  std::size_t axis() const { return axis_of(side); }
+  std::size_t axis() const { return where.axis; }
+  bool upper() const { return where.upper; }
   /// m, how far a place is beyond the side; negative: inside.
-  double beyond(double x) const { return is_upper(side) ? x - place : place - x; }
+  double beyond(double x) const { return upper() ? x - place : place - x; }
   /// The coordinate of a place so far beyond it.
-  double at(double beyond) const { return is_upper(side) ? place + beyond : place - beyond; }
+  double at(double beyond) const { return upper() ? place + beyond : place - beyond; }
 };
 
 /// The ends of a fluid, inflows first. They point into the scene.

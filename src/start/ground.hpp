@@ -13,7 +13,7 @@ class Ground {
   explicit Ground(const Scene& scene);  ///< of the first fill that is a bed; none: height 0
   Ground(const BedShape& bed, const Domain& domain);
   bool exists() const { return exists_; }
-  double height(double x, double z) const;    ///< m over the bottom of the domain
+  double height(double x, double z) const;    ///< m over the bottom of the domain; z: along the third axis
   double flat() const { return bed_.depth; }  ///< the same where there is no dune
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "scene/couplings.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 namespace {
@@ -121,7 +122,7 @@ std::vector<Vec3> rows_outside(const Scene& scene, const SidesShape& sides, doub
   const auto asked = [&](const char* name) {
     return std::find(sides.sides.begin(), sides.sides.end(), name) != sides.sides.end();
   };
-  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  const SideNames& names = side_names(scene.domain);
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
     const int layers = scene.domain.periodic[axis] ? 0 : sides.layers;
     const int cells = cells_along(scene, axis, spacing);

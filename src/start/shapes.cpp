@@ -9,6 +9,7 @@
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 #include "start/ball_surfaces.hpp"
 #include "start/fitted.hpp"
 #include "start/ground.hpp"
@@ -73,11 +74,12 @@ class RegionOf {
     region_.inside = [formula = std::make_shared<Formula>(shape.inside)](const Vec3& x) { return (*formula)(x) > 0.0; };
   }
   void operator()(const BedShape& bed) {
-    const double bottom = scene_.domain.origin[1], slack = 1e-9 * spacing_;
+    const std::size_t up = up_axis(scene_.domain), across = across_axis(scene_.domain);
+    const double bottom = scene_.domain.origin[up], slack = 1e-9 * spacing_;
     if (!bed.dune || bed.dune->form != DuneShape::Form::formula)
-      region_.upper[1] = std::min(region_.upper[1], bottom + bed.depth + (bed.dune ? bed.dune->height : 0.0));
+      region_.upper[up] = std::min(region_.upper[up], bottom + bed.depth + (bed.dune ? bed.dune->height : 0.0));
     region_.inside = [=, from = bed.from, ground = Ground(bed, scene_.domain)](const Vec3& x) {
-      return x[1] - bottom < ground.height(x[0], x[2]) - slack && x[1] - bottom > from;
+      return x[up] - bottom < ground.height(x[0], x[across]) - slack && x[up] - bottom > from;
     };
   }
   void operator()(const RemainderShape&) {}
@@ -226,13 +228,14 @@ void keep_the_rest(std::vector<Vec3>& places, const Scene& scene, std::size_t k,
   const bool over_ground = std::any_of(scene.fills.begin(), scene.fills.begin() + static_cast<std::ptrdiff_t>(k),
                                        [](const Fill& fill) { return std::holds_alternative<BedShape>(fill.shape); });
   const Ground ground(scene);
+  const std::size_t up = up_axis(scene.domain), across = across_axis(scene.domain);
   const double slack = 1e-9 * dx;
   const auto depth = depth_in_solids(scene, k, dx);
   std::erase_if(places, [&](const Vec3& x) { return depth(x) > 0.25 * dx; });
   const auto none = no_room_for_spheres(scene, k);
   if (none) std::erase_if(places, [&](const Vec3& x) { return none->at(x); });
   leave_out(places, occupied.by_all, [&](const Vec3& x) {
-    if (over_ground && x[1] - scene.domain.origin[1] < ground.height(x[0], x[2]) - slack) return true;
+    if (over_ground && x[up] - scene.domain.origin[up] < ground.height(x[0], x[across]) - slack) return true;
     return occupied.is_taken(x, dx, none ? 1.0 : rest_distance);
   });
 }
@@ -254,7 +257,8 @@ void keep_inside(const Scene& scene, std::size_t k, SettledGrains& grains) {
                        std::holds_alternative<RemainderShape>(shape);
   for (std::size_t d = 0; goes_on && d < static_cast<std::size_t>(scene.dimensions); ++d) {
     const double high = scene.domain.origin[d] + scene.domain.size[d];
-    if (d != 1 && region.upper[d] > high - spacing_of(scene, scene.fills[k])) region.upper[d] = high;
+    if (d != up_axis(scene.domain) && region.upper[d] > high - spacing_of(scene, scene.fills[k]))
+      region.upper[d] = high;
   }
   std::vector<Vec3>& places = grains.position;
   constexpr std::size_t gone = static_cast<std::size_t>(-1);

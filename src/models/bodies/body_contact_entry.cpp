@@ -8,6 +8,7 @@
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 
@@ -63,7 +64,7 @@ namespace {
 
 std::vector<BodySide> sides_of(const Scene& scene, const Layout& layout, const Phase& wall) {
   std::vector<BodySide> sides;
-  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  const SideNames& names = side_names(scene.domain);
   for (const Fill& fill : scene.fills)
     for (std::size_t axis = 0; fill.phase == wall.name && axis < static_cast<std::size_t>(layout.dimensions); ++axis)
       for (const bool high : {false, true}) {

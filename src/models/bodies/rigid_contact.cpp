@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "output/numbers.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 
@@ -132,7 +133,7 @@ void RigidContact::add_bodies(std::size_t phase, double reach, std::vector<Side>
 }
 
 void RigidContact::add_wall(std::size_t phase, double reach, std::vector<Side>& sides) {
-  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  const SideNames& names = side_names(scene_.domain);
   const auto add = [&](const ContactSurface& surface) {
     RigidBody still;
     still.dimensions = layout_.dimensions;

@@ -107,7 +107,7 @@ std::string place_text(const Vec3& x, int dimensions) {
 bool flows_through(const Scene& scene, const Phase& fluid, std::size_t axis, bool upper) {
   const auto ends = flow_ends(scene, fluid);
   return std::any_of(ends.begin(), ends.end(),
-                     [&](const FlowEnd& end) { return end.axis() == axis && is_upper(end.side) == upper; });
+                     [&](const FlowEnd& end) { return end.axis() == axis && end.upper() == upper; });
 }
 
 /// The place of a cell without a particle about it that is next to the fluid; empty when there is none. Space behind a

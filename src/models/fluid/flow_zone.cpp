@@ -298,8 +298,8 @@ void FlowZone::remove_and_create() {
   for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
     double last = lane_[lane].outermost;
     if (last < 0.0) last = end_.layer;
-    const bool enters = end_.inflow || (is_upper(end_.side) ? lane_[lane].velocity[end_.axis()] < 0.0
-                                                            : lane_[lane].velocity[end_.axis()] > 0.0);
+    const bool enters = end_.inflow || (end_.upper() ? lane_[lane].velocity[end_.axis()] < 0.0
+                                                     : lane_[lane].velocity[end_.axis()] > 0.0);
     while (enters && last + row_spacing(lane, last) <= end_.length * (1.0 + 1e-9)) {
       last += row_spacing(lane, last);
       Vec3 at = lanes_.place(lane);

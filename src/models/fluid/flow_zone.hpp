@@ -81,7 +81,7 @@ class FlowZone : public Model {
   };
 
   bool starts_otherwise(const PhaseParticles& p) const;
-  double outwards() const { return is_upper(end_.side) ? 1.0 : -1.0; }
+  double outwards() const { return end_.upper() ? 1.0 : -1.0; }
   void renew();
   void sort_out();
   void gather();

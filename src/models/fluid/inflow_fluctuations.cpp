@@ -73,7 +73,7 @@ Vec3 InflowFluctuations::operator()(const Vec3& x) const {
 
 void EnteringFluctuations::carry(const FlowLanes& lanes, const GivenVelocity& velocity, double time, double dt) {
   const std::size_t axis = end_.axis();
-  const double inwards = is_upper(end_.side) ? -1.0 : 1.0;
+  const double inwards = end_.upper() ? -1.0 : 1.0;
   const auto mean = [&](const auto& value) {
     double sum = 0.0;
     for (std::size_t k = 0; k < lanes.size(); ++k) {
@@ -99,7 +99,7 @@ Vec3 EnteringFluctuations::operator()(const Vec3& x, const Vec3& given) const {
   const double part = part_at(given);
   if (part == 0.0) return {};
   Vec3 at = x;
-  at[axis] -= (is_upper(end_.side) ? -1.0 : 1.0) * way_;
+  at[axis] -= (end_.upper() ? -1.0 : 1.0) * way_;
   Vec3 u = field_(at);
   u[axis] -= surplus_;
   return part * u;

@@ -12,6 +12,7 @@
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
 #include "scene/scene_files.hpp"
+#include "scene/sides.hpp"
 #include "start/ball_surfaces.hpp"
 #include "start/flow_ends.hpp"
 #include "start/random.hpp"
@@ -42,11 +43,15 @@ const FrameField* field_of(const Frame& frame, const char* name, int components)
 constexpr double slowest = 0.1;  // of the mean speed of a distribution
 
 /// That of the side; of a box the vertical one.
-std::size_t axis_of_influx(const Influx& influx) { return influx.box ? 1 : axis_of(side_of(*influx.side)); }
+std::size_t axis_of_influx(const Domain& domain, const Influx& influx) {
+  return influx.box ? up_axis(domain) : side_at(domain, *influx.side).axis;
+}
+
+bool is_upper(const Domain& domain, const Influx& influx) { return !influx.box && side_at(domain, *influx.side).upper; }
 
 std::string name_of(const Scene& scene, std::size_t influx) {
   const Influx& own = scene.influxes[influx];
-  if (!own.box) return own.phase + "_" + word_of(side_of(*own.side));
+  if (!own.box) return own.phase + "_" + word_of(*own.side);
   const auto before =
       std::count_if(scene.influxes.begin(), scene.influxes.begin() + static_cast<std::ptrdiff_t>(influx),
                     [&](const Influx& other) { return other.box && other.phase == own.phase; });
@@ -60,12 +65,13 @@ Arrivals::Arrivals(const Scene& scene, std::size_t influx, double slab)
       size_(*find_phase(scene, influx_.phase)->diameter()),
       density_(find_phase(scene, influx_.phase)->density),
       slab_(slab),
-      ground_(influx_.above.value_or(scene.domain.origin[1])),
-      top_(scene.domain.origin[1] + scene.domain.size[1]),
-      axis_(axis_of_influx(influx_)),
-      inwards_(influx_.box                        ? 0.0
-               : is_upper(side_of(*influx_.side)) ? -1.0
-                                                  : 1.0) {
+      up_(up_axis(scene.domain)),
+      ground_(influx_.above.value_or(scene.domain.origin[up_])),
+      top_(scene.domain.origin[up_] + scene.domain.size[up_]),
+      axis_(axis_of_influx(scene.domain, influx_)),
+      inwards_(influx_.box                       ? 0.0
+               : is_upper(scene.domain, influx_) ? -1.0
+                                                 : 1.0) {
   double mass = mass_of(0.5 * size_.mean) * size_.mean_cube();
   if (!influx_.file.empty()) {
     read_patterns(scene, influx);
@@ -82,7 +88,7 @@ Arrivals::Arrivals(const Scene& scene, std::size_t influx, double slab)
     const double steep = std::min(std::abs(influx_.angle) + 4.0 * influx_.angle_spread, 80.0);
     fastest_ = (*influx_.speed + 4.0 * influx_.speed_spread) / std::cos(steep * std::numbers::pi / 180.0);
   }
-  const std::size_t across = axis_ == 0 ? 2 : 0;
+  const std::size_t across = axis_ == 0 ? 3 - up_ : 0;
   const double width = scene.dimensions == 2 || influx_.box ? 1.0 : scene.domain.size[across];
   mean_wait_ = mass / (influx_.flux * width);
 }
@@ -115,7 +121,7 @@ void Arrivals::read_patterns(const Scene& scene, std::size_t influx) {
   double sum = 0.0;
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (frame.phase[i] != number) continue;
-    const double y = frame.points[3 * i + 1], radius = radii ? radii->values[i] : 0.5 * size_.mean;
+    const double y = frame.points[3 * i + up_], radius = radii ? radii->values[i] : 0.5 * size_.mean;
     const Vec3 v{velocity->values[3 * i], velocity->values[3 * i + 1], velocity->values[3 * i + 2]};
     const std::string which = "has particle " + std::to_string(frame.id[i]);
     if (!std::isfinite(y + v[0] + v[1] + v[2])) refuse(which + " at no finite place or velocity");
@@ -128,8 +134,8 @@ void Arrivals::read_patterns(const Scene& scene, std::size_t influx) {
     patterns_.push_back({y, radius, sum, v});
   }
   if (patterns_.empty())
-    refuse("has no grain of \"" + influx_.phase + "\" between y = " + brief(ground_) + " and " + brief(top_) +
-           " m that moves inwards through the side; expected grains in flight");
+    refuse("has no grain of \"" + influx_.phase + "\" between " + "xyz"[up_] + " = " + brief(ground_) + " and " +
+           brief(top_) + " m that moves inwards through the side; expected grains in flight");
 }
 
 Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
@@ -161,7 +167,7 @@ Arrivals::Grain Arrivals::operator()(std::int64_t n) const {
   const double speed = std::max(*influx_.speed + influx_.speed_spread * normal(random), slowest * *influx_.speed);
   const double angle = std::clamp(influx_.angle + influx_.angle_spread * normal(random), -80.0, 80.0);
   grain.velocity[axis_] = inwards_ * speed;
-  grain.velocity[1] = speed * std::tan(angle * std::numbers::pi / 180.0);
+  grain.velocity[up_] = speed * std::tan(angle * std::numbers::pi / 180.0);
   return grain;
 }
 
@@ -179,14 +185,14 @@ GrainSource::GrainSource(const Scene& scene, const Layout& layout, std::size_t i
       layout_(layout),
       influx_(scene.influxes[influx]),
       phase_(number_of(scene, influx_.phase)),
-      axis_(axis_of_influx(influx_)),
-      side_(influx_.box                        ? 0.5 * (influx_.box->min[axis_] + influx_.box->max[axis_])
-            : is_upper(side_of(*influx_.side)) ? layout.domain.high[axis_]
-                                               : layout.domain.low[axis_]),
+      up_(up_axis(scene.domain)),
+      axis_(axis_of_influx(scene.domain, influx_)),
+      side_(influx_.box                       ? 0.5 * (influx_.box->min[axis_] + influx_.box->max[axis_])
+            : is_upper(scene.domain, influx_) ? layout.domain.high[axis_]
+                                              : layout.domain.low[axis_]),
       arrivals_(scene, influx, layout.dimensions == 2 ? layout.slab : 1.0),
       name_(name_of(scene, influx)),
-      where_(influx_.box ? "into the box of influx." + std::to_string(influx)
-                         : "through " + word_of(side_of(*influx_.side))),
+      where_(influx_.box ? "into the box of influx." + std::to_string(influx) : "through " + word_of(*influx_.side)),
       by_particles_(scene.phases.size(), 0) {
   for (const Fill& fill : scene.fills) {
     const std::size_t wall = number_of(scene, fill.phase);
@@ -230,7 +236,7 @@ bool GrainSource::has_room(const Vec3& x, double radius) {
 /// m, a place along the side where a sphere has room between the sides of the
 /// domain.
 double GrainSource::across(double share, double radius) const {
-  const std::size_t axis = axis_ == 0 ? 2 : 0;
+  const std::size_t axis = axis_ == 0 ? 3 - up_ : 0;
   const double low = layout_.domain.low[axis] + (room_->has_side(axis, false) ? radius : 0.0),
                high = layout_.domain.high[axis] - (room_->has_side(axis, true) ? radius : 0.0);
   return low + share * std::max(high - low, 0.0);
@@ -308,8 +314,8 @@ bool GrainSource::is_taken(const Vec3& x, double radius) {
 Vec3 GrainSource::place_at_side(const Arrivals::Grain& grain, double age) const {
   Vec3 x{};
   x[axis_] = side_ + age * grain.velocity[axis_];
-  x[1] = grain.height + age * grain.velocity[1];
-  const std::size_t axis = axis_ == 0 ? 2 : 0;
+  x[up_] = grain.height + age * grain.velocity[up_];
+  const std::size_t axis = axis_ == 0 ? 3 - up_ : 0;
   if (layout_.dimensions == 3) x[axis] = across(grain.shares[0], grain.radius) + age * grain.velocity[axis];
   return x;
 }

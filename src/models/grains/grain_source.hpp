@@ -48,6 +48,7 @@ class Arrivals {
   const Influx& influx_;
   SphereSize size_;
   double density_, slab_;  // kg/m3, m
+  std::size_t up_;         // the axis of heights
   double ground_, top_;    // m, between which grains enter
   std::size_t axis_;
   double inwards_;  // 1 or -1; 0: into a box
@@ -90,7 +91,7 @@ class GrainSource : public Model {
   const Scene& scene_;
   const Layout& layout_;
   const Influx& influx_;
-  std::size_t phase_, axis_;
+  std::size_t phase_, up_, axis_;
   double side_;  // m; of a box its middle
   Arrivals arrivals_;
   std::string name_;   // "sand_left", "sand_poured"

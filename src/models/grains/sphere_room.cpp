@@ -9,6 +9,7 @@
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
+#include "scene/sides.hpp"
 #include "start/ball_surfaces.hpp"
 
 namespace barchan {
@@ -28,7 +29,7 @@ bool touch_as_spheres(const Layout& layout, std::size_t a, std::size_t b) {
 
 SphereRoom::SphereRoom(const Scene& scene, const Layout& layout, std::size_t phase, double reach)
     : layout_(layout), reach_(reach) {
-  const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+  const SideNames& names = side_names(scene.domain);
   std::array<double, 3> period{};
   for (std::size_t d = 0; d < 3; ++d)
     period[d] = layout.bounds.periodic[d] ? layout.bounds.high[d] - layout.bounds.low[d] : 0.0;

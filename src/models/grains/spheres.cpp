@@ -10,6 +10,7 @@
 #include "models/grains/pair_order.hpp"
 #include "models/grains/sphere_forces.hpp"
 #include "models/grains/sphere_room.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 
@@ -89,7 +90,7 @@ std::vector<SphereSearch::Side> Spheres::sides_with_spheres() const {
     if (!shape) continue;
     const auto kind =
         std::find_if(layout_.phases.begin(), layout_.phases.end(), [&](const auto& p) { return p.name == fill.phase; });
-    const char* const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
+    const SideNames& names = side_names(scene_.domain);
     for (std::uint16_t axis = 0; axis < layout_.dimensions; ++axis)
       for (const bool high : {false, true})
         if (std::find(shape->sides.begin(), shape->sides.end(), names[axis][high]) != shape->sides.end())

@@ -8,6 +8,7 @@
 #include "models/walls/wall_faces.hpp"
 #include "models/walls/wall_normals.hpp"
 #include "scene/couplings.hpp"
+#include "scene/sides.hpp"
 
 namespace barchan {
 
@@ -99,7 +100,7 @@ Wall::Wall(const Scene& scene, const Layout& layout, std::size_t number)
 namespace {
 
 bool is_walled(const Scene& scene, std::size_t axis, bool above) {
-  constexpr std::array<std::array<const char*, 2>, 3> names{{{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+  const SideNames& names = side_names(scene.domain);
   return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
     const auto* shape = std::get_if<SidesShape>(&fill.shape);
     return shape &&
