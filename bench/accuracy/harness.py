@@ -19,7 +19,7 @@ from barchan_bench.table import attempt, report, rows, tell  # noqa: E402, F401 
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"
 options = argparse.Namespace(program=None, runs=None, set=[], largest=200, verbose=False)  # cases.py fills it from its command line
-SECTIONS = ("fill", "force", "forcing", "marker", "motion", "probe", "profile", "grid", "wall-shear")  # lists of sections of a scene
+SECTIONS = ("fill", "force", "forcing", "marker", "motion", "probe", "gauge", "profile", "grid", "wall-shear")  # lists of sections of a scene
 
 
 def run_into(out, scene, overrides):

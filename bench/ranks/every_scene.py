@@ -40,7 +40,7 @@ def files(folder):
 def measured_at_once(name, every):
     """Overrides that let the instruments of a scene measure from its start, every so many seconds."""
     scene = tomllib.loads((ROOT / "scenes" / f"{name}.toml").read_text())
-    return [f"{kind}.{k}.{key}={value!r}" for kind in ("probe", "profile", "grid", "wall-shear", "saltation") for k, one in enumerate(scene.get(kind, []))
+    return [f"{kind}.{k}.{key}={value!r}" for kind in ("probe", "gauge", "profile", "grid", "wall-shear", "saltation") for k, one in enumerate(scene.get(kind, []))
             for key, value in (("start", 0.), ("every", every)) if key in one]
 
 

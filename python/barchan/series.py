@@ -9,7 +9,7 @@ from . import files
 from .errors import NoSeries, UnknownName, Unreadable, nearest, package
 from .tables import table
 
-KINDS = ("profile_", "probe_", "wall_shear_", "saltation_")
+KINDS = ("profile_", "probe_", "gauge_", "wall_shear_", "saltation_")
 
 
 def entries(pvd):

@@ -5,7 +5,7 @@
 
 #include "checks/checks.hpp"
 #include "scene/couplings.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/fitted.hpp"
 #include "start/outline.hpp"
 #include "start/region.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "checks/checks.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 namespace {

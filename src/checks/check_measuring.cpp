@@ -205,6 +205,10 @@ void check_measuring(const Scene& scene, const Report& report) {
     checker.common(m.probes, k, place("probe", k), false);
     checker.inside(m.probes[k].at, place("probe", k) + ".at");
   }
+  for (std::size_t k = 0; k < m.gauges.size(); ++k) {
+    checker.common(m.gauges, k, place("gauge", k), false);
+    checker.inside(m.gauges[k].at, place("gauge", k) + ".at");
+  }
   for (std::size_t k = 0; k < m.profiles.size(); ++k) {
     checker.common(m.profiles, k, place("profile", k), m.profiles[k].box.has_value());
     checker.profile(m.profiles[k], place("profile", k));

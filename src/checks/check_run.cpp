@@ -66,6 +66,7 @@ void check_names(const Scene& scene, const Report& report) {
     for (std::size_t k = 0; k < list.size(); ++k) check(section + std::to_string(k) + ".name", list[k].name);
   };
   check_all("probe.", scene.measuring.probes);
+  check_all("gauge.", scene.measuring.gauges);
   check_all("profile.", scene.measuring.profiles);
   check_all("grid.", scene.measuring.grids);
   check_all("wall-shear.", scene.measuring.wall_shears);

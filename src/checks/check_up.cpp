@@ -1,6 +1,6 @@
 // Where weight is along -z: what has its heights along y all the same.
 #include "checks/checks.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 

@@ -6,7 +6,7 @@
 
 #include "checks/checks.hpp"
 #include "scene/couplings.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/ball_surfaces.hpp"
 
 namespace barchan {

@@ -10,7 +10,7 @@
 #include "scene/formula.hpp"
 #include "scene/keys.hpp"
 #include "scene/nearest.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/lattice.hpp"
 
 namespace barchan {

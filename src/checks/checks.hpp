@@ -53,7 +53,7 @@ void check_bodies(const Scene& scene, const Report& report);
 /// Of rigid bodies: what may touch them, and what turns.
 void check_rigid(const Scene& scene, const Report& report);
 
-/// Where weight is along -z: what has its heights along y all the same (scene/sides.hpp).
+/// Where weight is along -z: what has its heights along y all the same (scene/side_names.hpp).
 void check_up(const Scene& scene, const Report& report);
 
 /// Of walls that a [[motion]] carries: shapes and partners that know no such wall.

@@ -6,6 +6,7 @@
 
 #include "models/fluid/relief.hpp"
 #include "scene/couplings.hpp"
+#include "scene/side_names.hpp"
 #include "start/generate.hpp"
 
 namespace barchan {
@@ -39,6 +40,21 @@ class Maker {
   Instrument probe(const Probe& p) const {
     Instrument i = common(p, InstrumentKind::probe, "probe");
     i.rows = i.points = {p.at};
+    return i;
+  }
+
+  /// Points every quarter of a spacing from the bottom to the top of the domain.
+  Instrument gauge(const Gauge& g) const {
+    Instrument i = common(g, InstrumentKind::gauge, "gauge");
+    i.axis = up_axis(scene_.domain);
+    i.rows = {g.at};
+    const double low = bounds_.low[i.axis], height = bounds_.high[i.axis] - low;
+    const double steps = std::ceil(4.0 * height / layout_.phases[i.phase].spacing);
+    for (double k = 0.0; k <= steps; ++k) {
+      Vec3 x = g.at;
+      x[i.axis] = low + k * height / steps;
+      i.points.push_back(x);
+    }
     return i;
   }
 
@@ -203,7 +219,8 @@ class Maker {
 
 std::vector<std::string> Instrument::files() const {
   switch (kind) {
-    case InstrumentKind::probe: return {stem + ".csv"};
+    case InstrumentKind::probe:
+    case InstrumentKind::gauge: return {stem + ".csv"};
     case InstrumentKind::grid: return {stem + ".vti"};
     case InstrumentKind::saltation: {
       std::vector<std::string> all{stem + ".csv", stem + ".vtp", stem + ".json"};
@@ -218,6 +235,7 @@ std::vector<Instrument> make_instruments(const Scene& scene, const Layout& layou
   const Maker maker(scene, layout);
   std::vector<Instrument> instruments;
   for (const Probe& p : scene.measuring.probes) instruments.push_back(maker.probe(p));
+  for (const Gauge& g : scene.measuring.gauges) instruments.push_back(maker.gauge(g));
   for (const Profile& p : scene.measuring.profiles) instruments.push_back(maker.profile(p));
   for (const Grid& g : scene.measuring.grids) instruments.push_back(maker.grid(g));
   for (const WallShear& w : scene.measuring.wall_shears) instruments.push_back(maker.wall_shear(w));
@@ -228,6 +246,7 @@ std::vector<Instrument> make_instruments(const Scene& scene, const Layout& layou
 std::string kind_name(InstrumentKind kind) {
   switch (kind) {
     case InstrumentKind::probe: return "probe";
+    case InstrumentKind::gauge: return "gauge";
     case InstrumentKind::line:
     case InstrumentKind::slices: return "profile";
     case InstrumentKind::grid: return "grid";
@@ -243,14 +262,14 @@ std::string to_text(const Instrument& i) {
                                                                                                : "points";
   char text[160];
   std::snprintf(text, sizeof text, "%zu %s, every %g s from %g s", i.rows.size(), rows, i.every, i.start);
-  if (i.kind == InstrumentKind::probe) std::snprintf(text, sizeof text, "every %g s", i.every);
+  if (i.in_time()) std::snprintf(text, sizeof text, "every %g s", i.every);
   return kind_name(i.kind) + " " + i.name + " (" + i.phase_name + ", " + text + ")";
 }
 
 std::vector<std::string> not_measured(const std::vector<Instrument>& instruments) {
   std::vector<std::string> words;
-  for (const InstrumentKind kind : {InstrumentKind::probe, InstrumentKind::line, InstrumentKind::grid,
-                                    InstrumentKind::wall_shear, InstrumentKind::saltation})
+  for (const InstrumentKind kind : {InstrumentKind::probe, InstrumentKind::gauge, InstrumentKind::line,
+                                    InstrumentKind::grid, InstrumentKind::wall_shear, InstrumentKind::saltation})
     if (std::none_of(instruments.begin(), instruments.end(),
                      [&](const Instrument& i) { return kind_name(i.kind) == kind_name(kind); }))
       words.push_back(kind_name(kind));

@@ -11,7 +11,7 @@
 
 namespace barchan {
 
-enum class InstrumentKind { probe, line, slices, grid, wall_shear, saltation };
+enum class InstrumentKind { probe, gauge, line, slices, grid, wall_shear, saltation };
 
 /// What says the shear stress of a wall.
 enum class ShearOf {
@@ -41,7 +41,7 @@ struct Instrument {
   KernelKind kernel = KernelKind::wendland_c2;
   double radius = 0;  // m, of the phase with itself; at a wall half as much again
 
-  // slices
+  // slices; of a gauge the axis of heights, along which its points stand, lowest first
   std::size_t axis = 1;
   Vec3 low{}, high{};  // m
 
@@ -70,10 +70,13 @@ struct Instrument {
   /// Numbers that a sample of a row has: velocity (or shear stress) by component, pressure; slices have the distance
   /// from the row's place before them.
   std::size_t quantities() const {
+    if (kind == InstrumentKind::gauge) return 1;      // the height of the surface
     if (kind == InstrumentKind::saltation) return 5;  // measurements_saltation.cpp
     if (over_sand()) return 2;                        // measurements_ground.cpp
     return static_cast<std::size_t>(dimensions) + (kind == InstrumentKind::slices ? 2 : 1);
   }
+  /// Followed in time, row by row, in a file of its own.
+  bool in_time() const { return kind == InstrumentKind::probe || kind == InstrumentKind::gauge; }
   /// Wall shear that the layers of a wind over sand say.
   bool over_sand() const { return kind == InstrumentKind::wall_shear && shear == ShearOf::layers; }
   /// Slices of grains: their flux is summed by row.

@@ -65,6 +65,26 @@ double slice_width(const Instrument& i) {
   return (i.high[i.axis] - i.low[i.axis]) / static_cast<double>(i.rows.size());
 }
 
+/// The height (m) where the fluid of a gauge's points ends: the lowest place at which the covered part of the kernel
+/// falls through half of its largest value. By the largest, since at a wall and in a thin layer the kernel is never
+/// full.
+Reading surface_over(const Instrument& gauge, const std::vector<Reading>& column) {
+  Reading surface;
+  for (const Reading& r : column) surface.fraction = std::max(surface.fraction, r.fraction);
+  if (!(surface.fraction >= least_fraction)) return surface;
+  const double half = 0.5 * surface.fraction;
+  std::size_t p = 0;
+  while (column[p].fraction < half) ++p;
+  while (p + 1 < column.size() && column[p + 1].fraction >= half) ++p;
+  const double height = gauge.points[p][gauge.axis];
+  surface.found = true;
+  surface.value[0] = height;
+  if (p + 1 < column.size())
+    surface.value[0] += (gauge.points[p + 1][gauge.axis] - height) * (column[p].fraction - half) /
+                        (column[p].fraction - column[p + 1].fraction);
+  return surface;
+}
+
 }  // namespace
 
 Measurements::Measurements(std::vector<Instrument> instruments, const Bounds& bounds, std::vector<double> densities)
@@ -93,14 +113,18 @@ Measurements::Measurements(std::vector<Instrument> instruments, const Bounds& bo
 
 void Measurements::open(const std::filesystem::path& directory, bool append, double until) {
   for (const Instrument& i : instruments_) {
-    if (i.kind != InstrumentKind::probe) continue;
+    if (!i.in_time()) continue;
     std::vector<std::string> columns{"time [s]"};
     for (const char* suffix : {"", "_mean", "_rms"}) {
+      if (i.kind == InstrumentKind::gauge) {
+        columns.push_back(std::string("height") + suffix + " [m]");
+        continue;
+      }
       for (int d = 0; d < i.dimensions; ++d)
         columns.push_back(std::string("velocity") + suffix + "_" + "xyz"[d] + " [m/s]");
       columns.push_back(std::string("pressure") + suffix + " [Pa]");
     }
-    columns.emplace_back("volume_fraction");
+    if (i.kind == InstrumentKind::probe) columns.emplace_back("volume_fraction");
     probes_.emplace_back(directory / i.files().front(), columns, append, until);
   }
 }
@@ -133,15 +157,16 @@ void Measurements::sample(const State& state) {
       continue;
     }
     read_points(k, state);
+    if (i.kind == InstrumentKind::gauge) readings_.assign(1, surface_over(i, readings_));
     if (averaged) take_points(k);
-    if (i.kind == InstrumentKind::probe && !probes_.empty()) write_probe(k, state.time);
+    if (i.in_time() && !probes_.empty()) write_probe(k, state.time);
   }
 }
 
-/// Probes are read from the beginning, the others from `start`.
+/// Probes and gauges are read from the beginning, the others from `start`.
 bool Measurements::due(std::size_t k, double time) {
   const Instrument& i = instruments_[k];
-  const double first = i.kind == InstrumentKind::probe ? 0.0 : i.start;
+  const double first = i.in_time() ? 0.0 : i.start;
   const double now = time * (1.0 + 1e-12) - first;
   if (now < static_cast<double>(memory_.due[k]) * i.every) return false;
   // Moments that a long step has passed over are left out.
@@ -255,8 +280,8 @@ void Measurements::write_probe(std::size_t k, double time) {
   for (std::size_t c = 0; c < q; ++c) row.push_back(now.found ? now.value[c] : nan);
   for (std::size_t c = 0; c < q; ++c) row.push_back(mean.count() > 0 ? mean.mean(c) : nan);
   for (std::size_t c = 0; c < q; ++c) row.push_back(mean.count() > 0 ? std::sqrt(mean.covariance(c, c)) : nan);
-  row.push_back(now.fraction);
-  probes_[k].row(row);  // probes are the first instruments
+  if (instruments_[k].kind == InstrumentKind::probe) row.push_back(now.fraction);
+  probes_[k].row(row);  // probes and gauges are the first instruments
 }
 
 Table Measurements::table(std::size_t k) {
@@ -309,7 +334,7 @@ void Measurements::write(const std::filesystem::path& directory, double time) {
   const Stopwatch stopwatch(seconds_);
   for (std::size_t k = 0; k < instruments_.size(); ++k) {
     const Instrument& i = instruments_[k];
-    if (i.kind == InstrumentKind::probe) continue;
+    if (i.in_time()) continue;
     Table t = table(k);
     t.time = time;
     if (i.kind == InstrumentKind::grid) {

@@ -138,7 +138,7 @@ bool is_measured(const std::string& file) {
   const auto is_one_of = [](std::string_view word, std::initializer_list<std::string_view> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
-  return is_one_of(kind, {"probe", "profile", "grid", "wall_shear", "saltation", "hops"}) &&
+  return is_one_of(kind, {"probe", "gauge", "profile", "grid", "wall_shear", "saltation", "hops"}) &&
          is_one_of(suffix, {".csv", ".vtp", ".vti", ".json"}) &&
          std::all_of(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(dot),
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });

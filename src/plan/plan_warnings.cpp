@@ -10,7 +10,7 @@
 #include "plan/plan.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/ball_surfaces.hpp"
 #include "start/flow_ends.hpp"
 #include "start/thin_wall.hpp"
@@ -335,6 +335,22 @@ void warn_of_another_up(const Scene& scene, Plan& plan) {
                             "turn the scene so that gravity is along -y or -z, as in [0, 0, -9.81]");
 }
 
+/// Where heights are along z, "back" is the upper side along y: who means the floor says "bottom".
+void warn_of_no_bottom(const Scene& scene, Plan& plan) {
+  if (scene.dimensions == 2 || up_axis(scene.domain) != 2) return;
+  const auto stands_at = [&](const char* side) {
+    return std::any_of(scene.fills.begin(), scene.fills.end(), [&](const Fill& fill) {
+      const auto* sides = std::get_if<SidesShape>(&fill.shape);
+      return sides && std::count(sides->sides.begin(), sides->sides.end(), side) > 0;
+    });
+  };
+  if (stands_at("back") && !stands_at("bottom"))
+    plan.warnings.emplace_back(
+        "domain.gravity: it is along -z, so that \"bottom\" is the lower side of z and \"back\" the upper side of y; a "
+        "wall "
+        "stands at \"back\" and none at \"bottom\"");
+}
+
 /// Grains that enter faster or more densely than in any wind: a flux in g, or a speed in mm/s. A liquid carries dense
 /// layers along its bed.
 void warn_of_influxes(const Scene& scene, Plan& plan) {
@@ -582,6 +598,7 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_late_instruments(scene, plan);
   warn_of_weight(scene, plan);
   warn_of_another_up(scene, plan);
+  warn_of_no_bottom(scene, plan);
   warn_of_influxes(scene, plan);
   warn_of_small_radius(scene, plan);
   warn_of_units(scene, plan);

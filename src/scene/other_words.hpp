@@ -148,7 +148,7 @@ inline constexpr std::array other_keys = {
     OtherWord{"", "source", "inflow", "of a fluid; of grains [[influx]]"},
     OtherWord{"", "emitter", "influx", ""},
     OtherWord{"", "sensor", "probe", ""},
-    OtherWord{"", "gauge", "probe", ""},
+    OtherWord{"", "wave-gauge", "gauge", ""},
     OtherWord{"", "simulation", "time", ""},
     OtherWord{"", "solver", "time", ""},
     OtherWord{"", "materials", "phases", ""},

@@ -152,6 +152,7 @@ constexpr std::pair<std::string_view, std::string_view> sections[] = {
     {"force", "`[[force]]`"},
     {"force.box", "`force.box`"},
     {"probe", "`[[probe]]`"},
+    {"gauge", "`[[gauge]]`"},
     {"profile", "`[[profile]]`"},
     {"profile.box", "`box = { ... }` of a profile"},
     {"grid", "`[[grid]]`"},

@@ -38,6 +38,7 @@ constexpr Key rows_of_keys[] = {
     {"", "marker", at<&Scene::markers>("none"), "", "Sets of particles of bodies or grains whose mean place is written to history.csv."},
     {"", "force", at<&Scene::force_meters>("none"), "", "Walls and bodies, or parts of them, whose force and torque are written to history.csv."},
     {"", "probe", measured<&Measuring::probes>("none"), "", "Places at which a fluid is followed in time."},
+    {"", "gauge", measured<&Measuring::gauges>("none"), "", "Places over which the height of a free surface is followed in time."},
     {"", "profile", measured<&Measuring::profiles>("none").like("name = \"crest\"\nphase = \"air\"\nfrom = [0.15, 0.03]\nto = [0.15, 0.1]"), "", "Averages over time along a line."},
     {"", "grid", measured<&Measuring::grids>("none"), "", "Averages over time on a regular grid."},
     {"", "wall-shear", measured<&Measuring::wall_shears>("none"), "", "Shear stress and pressure along a no-slip wall, averaged over time."},
@@ -359,6 +360,12 @@ constexpr Key rows_of_keys[] = {
     {"probe", "at", at<&Probe::at>(required).like("[0.3, 0.05]"), "m", "Place."},
     {"probe", "every", at<&Probe::every, Probe>("that of history.csv"), "s", "Time between samples.", positive},
     {"probe", "start", at<&Probe::start, Probe>(0.0), "s", "Time from which means and fluctuations are taken.", not_negative},
+
+    {"gauge", "name", at<&Gauge::name, Gauge>(required), "", "Letters, digits and underscores: it is written to gauge_NAME.csv."},
+    {"gauge", "phase", at<&Gauge::phase, Gauge>(required), "", "Fluid whose surface is followed."},
+    {"gauge", "at", at<&Gauge::at>(required).like("[0.3, 0]"), "m", "Place; its height does not count. The surface is the lowest one that has fluid below it and none above."},
+    {"gauge", "every", at<&Gauge::every, Gauge>("that of history.csv"), "s", "Time between samples.", positive},
+    {"gauge", "start", at<&Gauge::start, Gauge>(0.0), "s", "Time from which the mean and the fluctuation are taken.", not_negative},
 
     {"profile", "name", at<&Profile::name, Profile>(required), "", "Letters, digits and underscores: it is written to profile_NAME.csv and .vtp."},
     {"profile", "phase", at<&Profile::phase, Profile>(required), "", "Fluid that is measured; with box also grains."},

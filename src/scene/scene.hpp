@@ -403,6 +403,9 @@ struct Measured {
 struct Probe : Measured {
   Vec3 at{};  // m
 };
+struct Gauge : Measured {
+  Vec3 at{};  // m; its height does not count
+};
 struct Profile : Measured {
   Vec3 from{}, to{};            // m: points on a line,
   std::optional<BoxShape> box;  // or slices of a box
@@ -424,6 +427,7 @@ struct SaltationLayer : Measured {
 };
 struct Measuring {
   std::vector<Probe> probes;
+  std::vector<Gauge> gauges;
   std::vector<Profile> profiles;
   std::vector<Grid> grids;
   std::vector<WallShear> wall_shears;

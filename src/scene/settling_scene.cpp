@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scene/couplings.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 

@@ -108,7 +108,7 @@ template <>
 inline constexpr std::array words_of<Flank>{word("left", Flank::left), word("right", Flank::right),
                                             word("front", Flank::front), word("back", Flank::back)};
 
-/// A side of the domain: scene/sides.hpp says where it is.
+/// A side of the domain: scene/side_names.hpp says where it is.
 enum class Side { bottom, top, left, right, front, back };
 template <>
 inline constexpr std::array words_of<Side>{word("bottom", Side::bottom), word("top", Side::top),

@@ -13,7 +13,7 @@
 #include "engine/team.hpp"
 #include "scene/couplings.hpp"
 #include "scene/settling_scene.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "simulation/grains_file.hpp"
 #include "simulation/settle_room.hpp"
 #include "simulation/simulation.hpp"

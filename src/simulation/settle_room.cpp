@@ -8,7 +8,7 @@
 #include "output/numbers.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/ground.hpp"
 #include "start/shapes.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "scene/couplings.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/outline.hpp"
 #include "start/region.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "scene/formula.hpp"
 #include "scene/scene.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/generate.hpp"
 #include "start/ground.hpp"
 #include "start/velocity_profile.hpp"

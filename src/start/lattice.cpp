@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "scene/couplings.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 namespace {

@@ -9,7 +9,7 @@
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
 #include "scene/located.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/ball_surfaces.hpp"
 #include "start/fitted.hpp"
 #include "start/ground.hpp"

@@ -256,6 +256,66 @@ class Measuring(unittest.TestCase):
         self.assertEqual(len(read_csv(out / "profile_line.csv")["y [m]"]), 9)
 
 
+TANK = """dimensions = {dimensions}
+spacing = 0.025
+[domain]
+size = {size}
+gravity = {gravity}
+[phases.water]
+kind = "fluid"
+density = 1000
+sound-speed = 20
+[phases.tank]
+kind = "wall"
+slip = "free-slip"
+[interactions]
+water-water = {{}}
+water-tank = {{}}
+[[fill]]
+phase = "tank"
+shape = {{ sides = {walls} }}
+[[fill]]
+phase = "water"
+shape = {{ box = {{ min = {low}, max = {top} }} }}
+pressure = "hydrostatic"
+[[gauge]]
+name = "middle"
+phase = "water"
+at = {middle}
+[[gauge]]
+name = "wall"
+phase = "water"
+at = {wall}
+[time]
+end = 0.02
+"""
+
+
+class Gauges(unittest.TestCase):
+    """Water at rest is as deep as its fill: in the middle, at a wall, in a thin layer, and where weight is along -z."""
+
+    def depth_of(self, depth, **values):
+        dimensions = len(values["size"])
+        sides = ["left", "right", "bottom"] + ["front", "back"] * (dimensions == 3)
+        with tempfile.TemporaryDirectory() as place:
+            folder = pathlib.Path(place)
+            (folder / "s.toml").write_text(TANK.format(dimensions=dimensions, walls=json.dumps(sides), low=[0] * dimensions, **values))
+            subprocess.run([Measuring.program, "run", "s.toml", "--quiet", "--threads", "1"], cwd=folder, check=True)
+            for name in ("middle", "wall"):
+                table = read_csv(folder / "out" / "s" / f"gauge_{name}.csv")
+                self.assertGreater(len(table["time [s]"]), 5)
+                self.assertLess(numpy.abs(table["height [m]"] - depth).max(), 0.1 * 0.025, name)
+
+    def test_a_tank(self):
+        for depth in (0.3, 0.075):
+            with self.subTest(depth=depth):
+                self.depth_of(depth, size=[1, 0.5], gravity=[0, -9.81], top=[1, depth], middle=[0.5, 0], wall=[0, 0])
+
+    def test_three_dimensions(self):
+        self.depth_of(0.2, size=[0.5, 0.4, 0.3], gravity=[0, -9.81, 0], top=[0.5, 0.2, 0.3], middle=[0.25, 0, 0.15], wall=[0, 0, 0.15])
+        self.depth_of(0.2, size=[0.5, 0.3, 0.4], gravity=[0, 0, -9.81], top=[0.5, 0.3, 0.2], middle=[0.25, 0.15, 0], wall=[0, 0.15, 0])
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)

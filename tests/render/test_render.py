@@ -68,6 +68,7 @@ def changed_series(series, out, change):
         change(data, vtk_to_numpy(data.GetPointData().GetArray("velocity")), vtk_to_numpy(data.GetPoints().GetData()))
         writer = vtkXMLPolyDataWriter()
         writer.SetFileName(str(out / file.name))
+        writer.SetDataModeToBinary()   # the appended data of VTK 9.2 are not found by its own reader with a later expat
         writer.SetInputData(data)
         writer.Write()
     for name in (series.name, "run.json"):

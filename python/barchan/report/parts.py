@@ -328,7 +328,7 @@ def measured(g):
     out = ""
     samples = {(m.get("kind"), m.get("name")): m.get("samples") for m in g.run.get("measured", [])}
     for name, each in g.profiles.items():
-        kind = next(k for k in ("profile", "probe", "wall_shear", "saltation") if name.startswith(k + "_"))
+        kind = next(k for k in ("profile", "probe", "gauge", "wall_shear", "saltation") if name.startswith(k + "_"))
         label = f"{kind.replace('_', '-')} {name.removeprefix(kind + '_')}"
         count = samples.get((kind.replace("_", "-"), name.removeprefix(kind + "_")))
         shown = plots.instrument_plots(name, each)

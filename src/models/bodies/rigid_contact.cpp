@@ -6,7 +6,7 @@
 #include "base/errors.hpp"
 #include "output/numbers.hpp"
 #include "scene/located.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 

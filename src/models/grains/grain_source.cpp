@@ -12,7 +12,7 @@
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
 #include "scene/scene_files.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 #include "start/ball_surfaces.hpp"
 #include "start/flow_ends.hpp"
 #include "start/random.hpp"

@@ -10,7 +10,7 @@
 #include "models/grains/pair_order.hpp"
 #include "models/grains/sphere_forces.hpp"
 #include "models/grains/sphere_room.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 

@@ -8,7 +8,7 @@
 #include "models/walls/wall_faces.hpp"
 #include "models/walls/wall_normals.hpp"
 #include "scene/couplings.hpp"
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 namespace barchan {
 

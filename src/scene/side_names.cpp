@@ -1,4 +1,4 @@
-#include "scene/sides.hpp"
+#include "scene/side_names.hpp"
 
 #include "scene/words.hpp"
 
