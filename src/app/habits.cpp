@@ -11,7 +11,7 @@ namespace {
 
 /// What the options of the commands below are read into.
 struct Chosen {
-  std::string what, scene, name, from = "dune", shell;
+  std::string what, scene, name, from = "minimal", shell;
   bool names = false, json = false, markdown = false;
 };
 
@@ -34,7 +34,8 @@ void add_habits(CLI::App& app, int& status) {
   c_new->add_option("name", chosen->name, "the new scene: NAME.toml, a folder may stand before it")
       ->type_name("NAME")
       ->required();
-  c_new->add_option("--from", chosen->from, "the scene to copy (default dune)")->type_name("SCENE");
+  c_new->add_option("--from", chosen->from, "the scene to copy (default: minimal, with a comment at each key)")
+      ->type_name("SCENE");
   c_new->callback([chosen, &status] { status = make_new(chosen->name, chosen->from); });
 
   auto* c_schema = app.add_subcommand("schema", "print the JSON schema of a scene file");

@@ -24,10 +24,13 @@ struct Row {
 std::vector<Row> rows_of_scenes() {
   std::vector<Row> rows;
   for (const ShippedScene& scene : shipped_scenes())
-    rows.push_back(
-        {scene.name,
-         scene.title,
-         {{"name", scene.name}, {"title", scene.title}, {"state", scene.state}, {"file", scene.file.string()}}});
+    rows.push_back({scene.name,
+                    scene.shows.empty() ? scene.title : scene.shows,
+                    {{"name", scene.name},
+                     {"title", scene.title},
+                     {"shows", scene.shows},
+                     {"state", scene.state},
+                     {"file", scene.file.string()}}});
   return rows;
 }
 

@@ -70,7 +70,9 @@ int make_new(const std::string& name, const std::string& from) {
     write_whole_file(path, text);
     std::cout << "wrote " << path.string() << '\n';
   }
-  std::cout << "next: barchan plan " << file.string() << "; barchan run " << file.string() << '\n';
+  const bool plain = file.string().find(' ') == std::string::npos;
+  const std::string typed = plain ? file.string() : "'" + file.string() + "'";
+  std::cout << "next: barchan plan " << typed << "; barchan run " << typed << '\n';
   return 0;
 }
 

@@ -30,10 +30,29 @@ std::string text_of(const std::string& line, const std::string& key) {
   return begin == std::string::npos || end == std::string::npos ? "" : line.substr(begin + 1, end - begin - 1);
 }
 
+/// Goes on with the first sentence of a head that is read line by line; true when it is whole.
+bool takes_sentence(std::string& sentence, const std::string& line) {
+  if (!line.starts_with("# ")) return !sentence.empty();
+  sentence += (sentence.empty() ? "" : " ") + line.substr(2);
+  for (std::size_t at = sentence.find_first_of(".?"); at != std::string::npos;
+       at = sentence.find_first_of(".?", at + 1)) {
+    const auto begin = sentence.begin(), end = begin + static_cast<std::ptrdiff_t>(at);
+    const bool ends = at + 1 == sentence.size() || sentence[at + 1] == ' ';
+    if (!ends || std::string_view(sentence).substr(0, at).ends_with("et al") ||
+        std::count(begin, end, '(') != std::count(begin, end, ')'))
+      continue;
+    sentence.resize(sentence[at] == '?' ? at + 1 : at);
+    return true;
+  }
+  return false;
+}
+
 ShippedScene scene_of(const fs::path& file, const std::string& name) {
-  ShippedScene scene{name, file, "", ""};
+  ShippedScene scene{name, file, "", "", ""};
   std::istringstream stream = lines_of(file);
+  bool whole = false;
   for (std::string line; std::getline(stream, line) && !line.starts_with('[');) {
+    whole = whole || (!line.starts_with("#:") && takes_sentence(scene.shows, line));
     if (scene.title.empty()) scene.title = text_of(line, "title");
     if (scene.state.empty()) scene.state = text_of(line, "state");
   }

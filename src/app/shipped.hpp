@@ -11,6 +11,7 @@ struct ShippedScene {
   std::string name;  // as in `barchan run NAME`: dune, paper/dune, verification/couette
   std::filesystem::path file;
   std::string title, state;  // of the scene file
+  std::string shows;         // the first sentence of its head
 };
 
 struct ShippedState {

@@ -67,8 +67,10 @@ void check_box(const Scene& scene, const Influx& influx, const std::string& dott
       return report(dotted + ".box", "min and max are swapped along " + std::string(1, static_cast<char>('x' + d)) +
                                          "; expected min below max");
     if (!(high - low >= least) || !(high > low))
-      return report(dotted + ".box", "a grain of \"" + influx.phase + "\", " + number_text(least) +
-                                         " m across, has no room in it; expected a larger box");
+      return report(dotted + ".box",
+                    "a grain of \"" + influx.phase + "\", " + number_text(least) +
+                        " m across, has no room in it; expected a larger box" +
+                        (least > 0.1 * scene.domain.size[d] ? ", or a smaller diameter in metres" : ""));
   }
 }
 

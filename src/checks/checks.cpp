@@ -62,7 +62,11 @@ void check_side_names(const std::vector<std::string>& sides, const std::string& 
                       const Report& report) {
   if (report.touched(dotted)) return;  // a word is no side
   for (const std::string& side : sides) {
-    const std::size_t axis = side_at(scene.domain, side).axis;
+    const bool deep = scene.dimensions == 2 && (side == "front" || side == "back");
+    const std::size_t axis = deep ? 2
+                             : scene.dimensions == 2 && side != "left" && side != "right"
+                                 ? 1
+                                 : side_at(scene.domain, side).axis;
     if (axis == 2 && scene.dimensions == 2)
       report(dotted, "\"" + side + "\" needs three dimensions; expected \"bottom\", \"top\", \"left\" or \"right\"");
     else if (scene.domain.periodic[axis])

@@ -162,6 +162,7 @@ std::string to_json(const Plan& plan, const Scene& scene, const Estimate& estima
                    {"processor_seconds", estimate.processor_seconds},
                    {"particle_steps_per_second", estimate.particle_steps_per_second},
                    {"bytes", estimate.bytes}};
+  j["history"] = estimate.history;
   if (estimate.ranks) j["ranks"] = nlohmann::ordered_json::parse(to_json(*estimate.ranks));
   return j.dump(2) + "\n";
 }

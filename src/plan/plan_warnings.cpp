@@ -8,6 +8,7 @@
 #include "models/fluid/flow_zone.hpp"
 #include "output/numbers.hpp"
 #include "plan/plan.hpp"
+#include "plan/side_warnings.hpp"
 #include "scene/couplings.hpp"
 #include "scene/located.hpp"
 #include "scene/side_names.hpp"
@@ -510,34 +511,36 @@ void warn_of_numbers(const Scene& scene, Plan& plan) {
       plan.warnings.push_back("influx." + std::to_string(k) + " starts after time.end: nothing enters");
 }
 
-/// A side without a wall where others have one: what comes there stops the run.
-void warn_of_sides_without_a_wall(const Scene& scene, Plan& plan) {
-  if (norm(scene.domain.gravity) == 0.0) return;
-  std::vector<std::string> closed = scene.domain.open;
-  bool any = false;
-  for (const Fill& fill : scene.fills) {
-    const auto wall =
-        std::find_if(plan.phases.begin(), plan.phases.end(), [&](const PlanPhase& p) { return p.name == fill.phase; });
-    const auto* sides = std::get_if<SidesShape>(&fill.shape);
-    if (wall == plan.phases.end() || wall->moves()) continue;
-    if (!sides) return;  // its shape may be a vessel
-    any = true;
-    closed.insert(closed.end(), sides->sides.begin(), sides->sides.end());
+/// An atmosphere at the start: a free surface is at 0 Pa.
+void warn_of_start_pressure(const Scene& scene, Plan& plan) {
+  constexpr double large = 0.02;  // of rho c2: density is that much higher
+  for (std::size_t k = 0; k < scene.fills.size(); ++k) {
+    const Fill& fill = scene.fills[k];
+    const auto phase =
+        std::find_if(plan.phases.begin(), plan.phases.end(), [&](const auto& p) { return p.name == fill.phase; });
+    if (phase == plan.phases.end() || !phase->free_surface || fill.hydrostatic || fill.pressure.is_formula()) continue;
+    const double density = scene.phases[static_cast<std::size_t>(phase - plan.phases.begin())].density;
+    if (fill.pressure.value > large * density * phase->sound_speed * phase->sound_speed)
+      plan.warnings.push_back("fill." + std::to_string(k) + ".pressure: " + brief(fill.pressure.value) +
+                              " Pa at the start, and \"" + phase->name +
+                              "\" has a free surface, which is at 0 Pa: it bursts; pressures are differences from "
+                              "that of the air, expected \"hydrostatic\" or no such key");
   }
-  const auto guest = std::find_if(plan.phases.begin(), plan.phases.end(),
-                                  [](const PlanPhase& p) { return (p.free_surface || p.own_steps()) && p.count > 20; });
-  if (!any || guest == plan.phases.end() || !scene.inflows.empty() || !scene.outflows.empty() ||
-      !scene.influxes.empty() || !scene.domain.open.empty())
-    return;
-  std::string missing;
-  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
-    for (const std::string side : side_names(scene.domain)[d])
-      if (side != "top" && !scene.domain.periodic[d] && std::find(closed.begin(), closed.end(), side) == closed.end())
-        missing += (missing.empty() ? "\"" : ", \"") + side + "\"";
-  if (!missing.empty())
-    plan.warnings.push_back("domain: no wall at " + missing + ": \"" + guest->name +
-                            "\" that comes there stops the run; expected it among the sides of a wall, in domain.open, "
-                            "or a periodic axis");
+}
+
+/// Contacts of spheres do not count: what flies alone needs no step for them.
+void warn_of_long_step(Plan& plan) {
+  double least = 1e300;
+  std::string what;
+  for (const StepLimit& limit : plan.limits)
+    if (limit.value < least && !limit.name.starts_with("contact")) {
+      least = limit.value;
+      what = limit.name;
+    }
+  if (plan.fixed_step > 1.5 * least)
+    plan.warnings.push_back("time.step: " + brief(plan.fixed_step) + " s is " + brief(plan.fixed_step / least) +
+                            " times the step that the scene allows, " + brief(least) + " s (" + what +
+                            "): it will break down; leave the key out, and each step is as long as it may be");
 }
 
 /// What enters a fluid that fills its space, and cannot leave it.
@@ -606,7 +609,9 @@ void add_warnings(const Scene& scene, const std::vector<ParticleBlock>& blocks, 
   warn_of_no_weight(scene, plan);
   warn_of_numbers(scene, plan);
   warn_of_no_way_out(scene, plan);
-  warn_of_sides_without_a_wall(scene, plan);
+  add_side_warnings(scene, blocks, plan);
+  warn_of_start_pressure(scene, plan);
+  warn_of_long_step(plan);
   warn_of_few_layers(scene, plan);
   warn_outside_stable_ranges(scene, plan);
 }

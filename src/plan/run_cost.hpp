@@ -20,6 +20,7 @@ struct Estimate {
   MemoryNeed memory;                                         // of a run, measured; no parts: it was not
   double start_seconds = 0;                                  // s before the first step: particles are made, beds settle
   std::vector<std::pair<std::string, std::uint64_t>> pairs;  // directed pairs by entry
+  std::vector<std::string> history;                          // columns of history.csv
   std::optional<RankPlan> ranks;                             // of a run on several ranks; none: not asked for
 };
 

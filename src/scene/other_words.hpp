@@ -14,6 +14,18 @@ struct OtherWord {
 };
 
 inline constexpr std::array other_keys = {
+    OtherWord{"inflow", "flux", "", "grains enter by an [[influx]], a fluid with a velocity"},
+    OtherWord{"inflow", "box", "", "a fluid enters through a side; grains are poured by an [[influx]] with a box"},
+    OtherWord{"inflow", "file", "", "grains enter by an [[influx]]"},
+    OtherWord{"inflow", "speed", "velocity", ""},
+    OtherWord{"time", "start", "", "a run starts at 0; what is measured has a start of its own"},
+    OtherWord{"time", "begin", "", "a run starts at 0; what is measured has a start of its own"},
+    OtherWord{"fill.shape", "position", "move", "of a surface, in metres after scale and turn"},
+    OtherWord{"fill.shape", "offset", "move", "of a surface, in metres after scale and turn"},
+    OtherWord{"fill.shape", "translate", "move", "of a surface, in metres after scale and turn"},
+    OtherWord{"fill.shape", "translation", "move", "of a surface, in metres after scale and turn"},
+    OtherWord{"fill.shape", "rotate", "turn", "of a surface"},
+    OtherWord{"fill.shape", "rotation", "turn", "of a surface"},
     OtherWord{"phases:elastic", "nu", "poisson", ""},
     OtherWord{"phases:elastic", "e", "young", "in Pa"},
     OtherWord{"phases", "nu", "viscosity", "kinematic, in m2/s"},
@@ -202,6 +214,8 @@ inline constexpr std::array other_values = {
     OtherWord{"output.fields", "speed", "velocity", "ParaView shows its magnitude"},
     OtherWord{"output.fields", "force", "acceleration", "the force over the mass"},
     OtherWord{"output.fields", "rho", "density", ""},
+    OtherWord{"output.fields", "size", "radius", ""},
+    OtherWord{"output.fields", "diameter", "radius", ""},
     OtherWord{"output.fields", "p", "pressure", ""},
     OtherWord{"output.fields", "u", "velocity", ""},
 };

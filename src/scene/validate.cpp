@@ -93,6 +93,11 @@ class Validator {
     std::vector<std::string> names;
     for (const Key* key : keys_of(section))
       if (!is_kind(kind) || belongs_to_kind(*key, kind)) names.emplace_back(key->name);
+    if (const auto* inner = table[name.str()].as_table(); section.empty() && inner && inner->contains("kind")) {
+      problems_.add(name.source(), here,
+                    "no section of a scene; expected [phases." + here + "], since a phase has a kind");
+      return "";
+    }
     const OtherWord* other = kind.empty() ? nullptr : find_other(other_keys, section + ":" + kind, name.str());
     if (!other) other = find_other(other_keys, section, name.str());
     const bool of_kind = !other || other->ours.empty() || section.empty() ||
@@ -176,7 +181,11 @@ class Validator {
                       "not a name of a phase; expected a letter followed by letters, digits and underscores");
       const auto* entry = node.as_table();
       const bool from_override = name.source().path && name.source().path->starts_with("--set ");
+      const Key* const section_of_scene = find_key("", name.str());
       if (entry && from_override && !entry->contains("kind") && table.size() > 1) no_such_name(table, name, inner);
+      else if (entry && section_of_scene && !entry->contains("kind"))
+        problems_.add(name.source(), inner,
+                      "a section of the scene, and no phase; expected [" + std::string(text) + "] in its place");
       else if (entry) section(*entry, path, inner);
       else problems_.add(node.source(), inner, "found " + shown(node) + "; expected a section");
     }

@@ -112,6 +112,7 @@ Estimate measure(const Scene& scene, const Plan& plan, std::vector<ParticleBlock
   before -= of_blocks;
   Simulation simulation(scene, plan, std::move(blocks));
   simulation.check_start();
+  e.history = simulation.history().names;
   std::optional<RankMeasure> on_ranks;
   if (ranks > 0) on_ranks.emplace(simulation, ranks);
   Batches batches;

@@ -8,6 +8,7 @@
 #include "base/memory.hpp"
 #include "scene/couplings.hpp"
 #include "scene/formula.hpp"
+#include "scene/keys.hpp"
 #include "scene/located.hpp"
 #include "scene/side_names.hpp"
 #include "start/ball_surfaces.hpp"
@@ -168,6 +169,23 @@ void check_room(const Scene& scene, std::size_t k, double cells) {
                      "; expected a larger spacing or a smaller shape");
 }
 
+/// Refuses a shape that goes on beyond the domain, before its places are made. A wall may.
+void refuse_outside(const Scene& scene, std::size_t k, const Vec3& lower, const Vec3& upper) {
+  constexpr double slack = 2.0;  // spacings: round shapes have bounds one wider than they are
+  const Fill& fill = scene.fills[k];
+  const Phase* const phase = find_phase(scene, fill.phase);
+  if (!phase || phase->if_wall()) return;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimensions); ++axis) {
+    const double low = scene.domain.origin[axis], high = low + scene.domain.size[axis],
+                 dx = slack * spacing_of(scene, fill);
+    if (scene.domain.periodic[axis] || (lower[axis] > low - dx && upper[axis] < high + dx)) continue;
+    throw SceneError(located(scene, "fill." + std::to_string(k)) + ": the shape of phase \"" + fill.phase +
+                     "\" goes from " + number_text(lower[axis]) + " to " + number_text(upper[axis]) + " m along " +
+                     "xyz"[axis] + " and lies outside the domain, " + number_text(low) + " to " + number_text(high) +
+                     " m; expected a shape inside it");
+  }
+}
+
 /// Cells between two corners.
 double cells_between(const Scene& scene, const Vec3& lower, const Vec3& upper, double dx) {
   double cells = 1.0;
@@ -300,6 +318,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupie
     }
   } else if (fill.packing == Packing::relaxed) {
     const Solid region = region_of_fill(scene, k, 0.0);
+    refuse_outside(scene, k, region.lower, region.upper);
     check_room(scene, k, cells_between(scene, region.lower, region.upper, dx));
     places = relaxed_places(scene, k);
   } else if (const auto* points = std::get_if<PointsShape>(&fill.shape)) {
@@ -311,6 +330,7 @@ std::vector<Vec3> places_of(const Scene& scene, std::size_t k, Occupied& occupie
     std::erase_if(places, [&](const Vec3& x) { return occupied.outside.owner_near(x, dx, overlap_distance) >= 0; });
   } else {
     const ShapeRegion region = region_of_shape(scene, fill);
+    refuse_outside(scene, k, region.lower, region.upper);
     const double cells = cells_between(scene, region.lower, region.upper, dx);
     check_room(scene, k, cells);
     if (fill.packing == Packing::random) {

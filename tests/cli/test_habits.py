@@ -46,7 +46,7 @@ class Lists(Case):
         for name, scene in names.items():
             document = tomllib.loads(Path(scene["file"]).read_text())
             self.assertEqual(scene["title"], document["title"])
-            self.assertTrue(any(line.split() == [name, *scene["title"].split()] for line in lines), name)
+            self.assertTrue(any(line.split() == [name, *(scene["shows"] or scene["title"]).split()] for line in lines), name)
             for state in filter(None, scene["state"].split(",")):
                 self.assertIn(state.strip(), states)
         self.assertLessEqual(max(map(len, lines)), 100)
@@ -186,7 +186,7 @@ class Shells(Case):
         self.assertEqual(self.complete("completion", "b"), ["bash"])
         self.assertEqual(self.complete("run", "--instructions", "avx"), ["avx2", "avx512"])
         (self.folder / "mine.toml").write_text("")
-        self.assertEqual(sorted(self.complete("run", "m")), ["mine.toml"])
+        self.assertEqual(sorted(self.complete("run", "m")), ["mine.toml", "minimal"])
         self.assertIn("dune", self.complete("run", "du"))
         self.assertEqual(self.complete("run", "saltation", "--set", "phases.s"), ["phases.sand."])
         self.assertEqual(self.complete("run", "--threads", "1", "saltation", "--set", "constants."), ["constants.d=", "constants.scale="])

@@ -156,7 +156,16 @@ SCENES = [
     ("density = 1000", "density = 1000 kg/m3  # water; at \u201c20\u201d", "expected a number in units of SI, its unit in a comment"),
     ("spacing = 0.1", 'spacing = 0.1\ntitle = "My dam', 'expected a closing " in this line'),
     ("end = 0.01", "end = " + " ".join(["1"] * 200000), "not TOML"),   # a long line is answered, too
+    # sections and keys in another place
+    ("[phases.water]", "[water]", "expected [phases.water], since a phase has a kind"),
+    ("[interactions]", "[phases.interactions]", "phases.interactions: a section of the scene, and no phase; expected [interactions] in its place"),
+    ("end = 0.01", "end = 0.01\nstart = 0.005", "a run starts at 0"),
+    ("[time]", '[[inflow]]\nphase = "water"\nside = "left"\nflux = 1\n[time]', "grains enter by an [[influx]]"),
+    ("[time]", '[output]\nfields = ["size"]\n[time]', 'did you mean "radius"?'),
+    ("sides = [\"bottom\"]", 'surface = "tank.stl", position = [0, 0]', 'did you mean "move" (of a surface, in metres after scale and turn)?'),
     # places
+    ("max = [1, 0.5]", "max = [4, 4]", 'the shape of phase "water" goes from 0 to 4 m along x and lies outside the domain, 0 to 1 m'),
+    ("shape = { box = { min = [0, 0], max = [1, 0.5] } }", "shape = { disc = { centre = [0.5, 0.5], radius = 500 } }", "lies outside the domain, 0 to 1 m"),
     ("min = [0, 0], max = [1, 0.5]", "min = [1, 0.5], max = [0, 0]", "min and max are swapped along x"),
 ]
 
@@ -171,6 +180,10 @@ WARNED = [
     ("gravity = [0, -9.81]", "gravity = [0, -981]", "is 100 times that of the earth"),
     ("viscosity = 1e-6", "viscosity = 1e-6\nsound-speed = 1480", "times what the scene can reach"),
     ('sides = ["bottom"] }', 'sides = ["bottom", "left"] }', 'domain: no wall at "right"'),
+    ('sides = ["bottom"]', 'box = { min = [0.8, -0.2], max = [1, 0] }', 'domain: no wall at "left", "right", "bottom"'),
+    ('sides = ["bottom"]', 'box = { min = [30, 0], max = [31, 1] }', "phases.ground: all of it stands outside the domain, by 29"),
+    ("end = 0.01", "end = 0.01\nstep = 0.1", "time.step: 0.1 s is"),
+    ("max = [1, 0.5] } }", "max = [1, 0.5] } }\npressure = 101325", "has a free surface, which is at 0 Pa: it bursts"),
 ]
 
 

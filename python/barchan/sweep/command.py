@@ -1,14 +1,17 @@
 """barchan sweep SCENE --vary KEY=a:b:n ..."""
 
 import argparse
+import json
 import os
 import pathlib
 import shlex
+import subprocess
 import sys
 
 from .. import files
 from ..errors import OutputError, PackageMissing, SceneError, nearest
-from ..program import find_program
+from ..program import find_program, settings
+from ..tables import bare
 from . import results
 from .cases import combinations
 from .runner import Runner
@@ -54,6 +57,7 @@ def main(words):
     measures = [results.measure(text) for text in options.measure]
     cases = combinations(options.vary, options.set)
     out = pathlib.Path(options.out or f"out/{pathlib.Path(options.scene).stem}_sweep")
+    check_measures(measures, options.scene, cases[0])
     jobs = options.jobs or max(len(os.sched_getaffinity(0)) // options.threads, 1)
     lines, count = [], [0]
 
@@ -83,6 +87,19 @@ def main(words):
     for note in notes:
         print(f"barchan: warning: {note}", file=sys.stderr)
     return status_of(runner.stopped, lines, missing)
+
+
+def check_measures(measures, scene, case):
+    """Throws SceneError for a column that history.csv will not have, before anything runs. A scene that the program refuses is told by its run."""
+    if not measures:
+        return
+    planned = subprocess.run([find_program(), "plan", scene, "--json", *settings(case.settings)], capture_output=True, text=True)
+    if planned.returncode != 0:
+        return
+    names = [bare(full) for full in json.loads(planned.stdout).get("history", ())]
+    wrong = [f'--measure {column}: history.csv has no such column{nearest(column, names)}' for column, _ in measures if names and column not in names]
+    if wrong:
+        raise SceneError("\n".join(wrong) + f'; expected {", ".join(names)}')
 
 
 def write_page(out, options, words, lines, expected, keys, measures, notes):
