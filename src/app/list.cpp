@@ -61,15 +61,24 @@ std::vector<Row> rows_of_keys(const Scene* scene) {
   return rows;
 }
 
+/// A text of so many columns at most; where words are left out it ends with "...".
+std::string cut_at_word(const std::string& text, std::size_t columns) {
+  if (text.size() <= columns) return text;
+  const std::size_t space = text.rfind(' ', columns - 3);
+  std::string begin = text.substr(0, space == std::string::npos ? columns - 3 : space);
+  while (begin.ends_with(',') || begin.ends_with(':')) begin.pop_back();
+  return begin + "...";
+}
+
 void print(const std::vector<Row>& rows, bool names) {
-  constexpr std::size_t widest = 36;  // columns of names that stay aligned
+  constexpr std::size_t widest = 36, all = 100;  // columns: of names that stay aligned, of a line
   std::size_t width = 0;
   for (const Row& row : rows) width = std::max(width, std::min(row.name.size(), widest));
   for (const Row& row : rows) {
     if (names) std::cout << row.name << '\n';
     else
       std::cout << "  " << row.name << std::string(std::max(width, row.name.size()) - row.name.size() + 2, ' ')
-                << row.text << '\n';
+                << cut_at_word(row.text, all - 4 - std::max(width, row.name.size())) << '\n';
   }
 }
 
