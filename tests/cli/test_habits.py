@@ -46,9 +46,9 @@ class Lists(Case):
         for name, scene in names.items():
             document = tomllib.loads(Path(scene["file"]).read_text())
             self.assertEqual(scene["title"], document["title"])
-            shown = [" ".join(line.split()[1:]) for line in lines if line.split()[:1] == [name]]
-            self.assertEqual(len(shown), 1, name)
-            self.assertTrue(len(shown[0]) > 10 and (scene["shows"] or scene["title"]).startswith(shown[0].removesuffix("...")), shown)
+            said = [" ".join(line.split()[1:]) for line in lines if line.split()[:1] == [name]]
+            self.assertEqual(len(said), 1, name)
+            self.assertTrue(len(said[0]) > 10 and (scene["shows"] or scene["title"]).startswith(said[0].removesuffix("...")), said)
             for state in filter(None, scene["state"].split(",")):
                 self.assertIn(state.strip(), states)
         self.assertLessEqual(max(map(len, lines)), 100)
