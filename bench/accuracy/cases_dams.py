@@ -115,7 +115,7 @@ def dam_pressure(n):
         t = history["time [s]"] * math.sqrt(GRAVITY / H)
         for sensor, low in SENSORS.items():
             rows = sum(low < (j + .5) * dx < low + .09 for j in range(n))
-            p = history[f"{sensor}_force_x [N]"] / (rows * dx) / (1000 * GRAVITY * H)
+            p = history[f"{sensor}_force_x"] / (rows * dx) / (1000 * GRAVITY * H)
             report_pressure(f"pressure of a dam, middle of the sensor {low + .045:g} m high", scheme, n, t, p, seconds)
     both("pressure of a dam", n, case)
 
@@ -161,7 +161,7 @@ def dam_sensors(n):
         for seed in range(1, 6):
             scene, rows = sensors_scene(n, scheme, seed)
             (h,), seconds = run(scene, [], "water", files=("history.csv",))
-            runs.append((h["time [s]"] * math.sqrt(GRAVITY / .3), {z: h[f"at{z}_force_x [N]"] / high / (1000 * GRAVITY * .3) for z, high in rows.items()}))
+            runs.append((h["time [s]"] * math.sqrt(GRAVITY / .3), {z: h[f"at{z}_force_x"] / high / (1000 * GRAVITY * .3) for z, high in rows.items()}))
         name = "dam, sensors of Lobovsky et al."
         for z, measured in PEAKS.items():
             middle, low, high = (100 * m / COLUMN_PRESSURE for m in measured)

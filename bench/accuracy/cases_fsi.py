@@ -50,7 +50,7 @@ def measured(name, n):
         tip, before = h[f"tip_{axis} [m]"], h[f"before_{axis} [m]"]
         reach = (.6 - h["tip_x [m]"][0]) / (h["tip_x [m]"][0] - h["before_x [m]"][0])
         values[f"u_{axis}"] = 1e3 * (tip + reach * (tip - before) - place)[late]
-        force = h[f"cylinder_force_{axis} [N]"] + h[f"plate_force_{axis} [N]"]
+        force = h[f"cylinder_force_{axis}"] + h[f"plate_force_{axis}"]
         values["drag" if axis == "x" else "lift"] = numpy.convolve(force, numpy.ones(5) / 5, "same")[late]
     return t[late], values, seconds
 

@@ -201,12 +201,12 @@ def shot(fraction):
         energy, friction = budget.series(frames)
         closed = (energy + friction) / energy[0] - 1
         report(name, scheme, "", "energy + friction over the start, largest error", abs(closed).max(), .01, seconds)
-        kinetic = history["sand_kinetic_energy [J]"]
+        kinetic = history["sand_kinetic_energy"]
         lost = kinetic[0] - kinetic[-1]
         tell(name, scheme, "", "energy that the grain lost/its own; of it in the air; by friction; not accounted for",
              f"{lost / kinetic[0]:.4f}; {(energy[-1] - kinetic[-1]) / lost:.2f}; {friction[-1] / lost:.2f}; {-closed[-1] * energy[0] / lost:+.2f}",
              "", seconds)
-        momentum = history["momentum_x [kg m/s]"]
+        momentum = history["momentum_x"]
         tell(name, scheme, "", "momentum at the end/at the start - 1", f"{momentum[-1] / momentum[0] - 1:.1e}", "0", seconds)
         # dv/dt = -1/2 C rho v^2/(rho_s d): 1/v grows with t
         v = history["sand_mean_vx [m/s]"]

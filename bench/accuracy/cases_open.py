@@ -18,7 +18,7 @@ def drag_and_frequency(h, start, periodic):
     """Mean drag coefficient and frequency of the lift from `start` on, over whole periods of the lift, and how many they are."""
     t = h["time [s]"]
     late = t > start
-    t, drag, lift = t[late], 2 * h["cylinder_force_x [N]"][late], 2 * h["cylinder_force_y [N]"][late]
+    t, drag, lift = t[late], 2 * h["cylinder_force_x"][late], 2 * h["cylinder_force_y"][late]
     if not periodic:
         return drag.mean(), None, 0
     smooth = numpy.convolve(lift - lift.mean(), numpy.ones(9) / 9, "same")

@@ -276,7 +276,7 @@ def cylinder(re, blockage=1 / 18):
     (h,), seconds = run("cylinder", overrides, files=("history.csv",))
     t = h["time [s]"]
     late = t > (18 if re == 100 else 15)
-    t, drag, lift = t[late], 2 * h["cylinder_force_x [N]"][late], 2 * h["cylinder_force_y [N]"][late]
+    t, drag, lift = t[late], 2 * h["cylinder_force_x"][late], 2 * h["cylinder_force_y"][late]
     true_drag, true_strouhal = CYLINDER[re]
     name = f"cylinder, Re {re}"
     if true_strouhal:

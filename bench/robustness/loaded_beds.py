@@ -82,10 +82,10 @@ def measure(program, law, restitution):
         heights = sorted([y for q, y, _ in sand if abs(q - x) < .1 * D] + [y for q, y, _ in load if abs(q - x) < .1 * D])
         for below, above, force in zip(heights, heights[1:], FORCES[1:]):
             worst = max(worst, abs((D - above + below) / overlap(law, force, False) - 1))
-    stored = history["contacts_stored_energy [J]"][-1] * D   # J, in 2D of a slab as thick as a grain
+    stored = history["contacts_stored_energy"][-1] * D   # J, in 2D of a slab as thick as a grain
     share = .5 if law == "linear" else .4
     expected = STACKS * sum(share * force * overlap(law, force, i == 0) for i, force in enumerate(FORCES))
-    lost = history["contacts_lost_energy [J]"]
+    lost = history["contacts_lost_energy"]
     half = len(lost) // 2
     rate = abs(lost[-1] - lost[half]) / (history["time [s]"][-1] - history["time [s]"][half]) * D / stored
     name = f"loaded stacks, {law}"

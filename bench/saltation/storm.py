@@ -94,8 +94,8 @@ def measure(folder):
             airs.append(air)
     mass = report["particles"]["air"] * scene["phases"]["air"]["density"] * spacing**2
     put = mass * summed(t, column("air_held_acceleration_x [m/s2]")) + scene["phases"]["lid"]["shear-stress"][0] * ground.width * t
-    gained = column("momentum_x [kg m/s]")
-    by_grains = column("core_impulse_x [N s]"), column("lid_impulse_x [N s]")
+    gained = column("momentum_x")
+    by_grains = column("core_impulse_x"), column("lid_impulse_x")
     pressure = np.interp(t, times, summed(times, np.array(drag)))
     rest = put - (gained - gained[0]) - by_grains[0] - by_grains[1] - pressure
     sand = [frame["phase"] == frame.names.index("sand") for frame in frames]

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,18 @@ class HistoryRow {
   void add(std::string name, double value) {
     names.push_back(std::move(name));
     values.push_back(value);
+  }
+  /// In two dimensions all that belongs to a mass is of a metre of depth: "kg" becomes "kg/m", "N m" becomes "N".
+  void count_by_metre() {
+    constexpr std::pair<std::string_view, std::string_view> units[] = {
+        {" [kg]", " [kg/m]"},   {" [J]", " [J/m]"},       {" [N]", " [N/m]"},          {" [N m]", " [N]"},
+        {" [N s]", " [N s/m]"}, {" [kg m/s]", " [kg/s]"}, {" [kg m2/s]", " [kg m/s]"}};
+    for (std::string& name : names)
+      for (const auto& [of_all, of_a_metre] : units)
+        if (name.ends_with(of_all)) {
+          name.replace(name.size() - of_all.size(), of_all.size(), of_a_metre);
+          break;
+        }
   }
   /// Raises the value of a column that was added before, of which each phase knows its own largest value.
   void raise(std::size_t column, double value) { values[column] = std::max(values[column], value); }

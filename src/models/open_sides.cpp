@@ -81,13 +81,11 @@ std::array<std::array<bool, 2>, 3> open_sides_of_spheres(const Scene& scene, std
 }
 
 void add_passed(HistoryRow& row, const std::string& name_side_way, int dimensions, const PassedSide& passed) {
-  const bool flat = dimensions == 2;
-  row.add(name_side_way + (flat ? " [kg/m]" : " [kg]"), passed.mass);
+  row.add(name_side_way + " [kg]", passed.mass);
   row.add(name_side_way + "_number", static_cast<double>(passed.particles));
   for (int d = 0; d < dimensions; ++d)
-    row.add(name_side_way + "_momentum_" + "xyz"[d] + (flat ? " [kg/s]" : " [kg m/s]"),
-            passed.momentum[static_cast<std::size_t>(d)]);
-  row.add(name_side_way + "_energy" + (flat ? " [J/m]" : " [J]"), passed.energy);
+    row.add(name_side_way + "_momentum_" + "xyz"[d] + " [kg m/s]", passed.momentum[static_cast<std::size_t>(d)]);
+  row.add(name_side_way + "_energy [J]", passed.energy);
 }
 
 OpenSides::OpenSides(const Scene& scene, const Layout& layout, std::size_t phase)

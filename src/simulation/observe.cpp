@@ -202,6 +202,7 @@ HistoryRow Simulation::history() const {
   }
   for (const auto& model : models_)
     if (model->phase() < 0) model->history(row);
+  if (plan_.dimensions == 2) row.count_by_metre();
   return row;
 }
 

@@ -390,7 +390,7 @@ class Ranks(Folder):
                 text = LEAVING.format(scheme=scheme).replace("enclosed = false", "enclosed = false\nenergy-budget = true")
                 self.run_on(0, text, f"{scheme}-1")
                 header, *rows = (self.at / f"{scheme}-1/history.csv").read_text().splitlines()
-                taken = header.split(",").index("water_taken_by_open_sides [J]")
+                taken = header.split(",").index("water_taken_by_open_sides [J/m]")
                 self.assertGreater(float(rows[-1].split(",")[taken]), 1.0)
                 for n in (2, 3):
                     self.run_on(n, text, f"{scheme}-{n}")

@@ -133,7 +133,7 @@ TEST(TotalLagrangianBodies, APlateSwingsWithItsPeriodAndKeepsItsEnergy) {
     return sum;
   };
   const auto energy = [&] {
-    return sum_of({"plate_kinetic_energy [J]", "plate_strain_energy [J]", "plate_hourglass_energy [J]"});
+    return sum_of({"plate_kinetic_energy [", "plate_strain_energy [", "plate_hourglass_energy ["});
   };
   const auto tip = [&] { return sum_of({"tip_y [m]"}) - 0.1; };
   const double start = energy();
@@ -164,7 +164,8 @@ double sum_of(const Simulation& run, const std::vector<std::string>& wanted) {
   double sum = 0.0;
   std::size_t found = 0;
   for (std::size_t k = 0; k < names.size(); ++k)
-    if (std::find(wanted.begin(), wanted.end(), names[k]) != wanted.end()) {
+    if (std::any_of(wanted.begin(), wanted.end(),
+                    [&](const std::string& name) { return names[k].starts_with(name); })) {
       sum += row[k];
       ++found;
     }
@@ -173,14 +174,14 @@ double sum_of(const Simulation& run, const std::vector<std::string>& wanted) {
 }
 
 std::vector<std::string> energies_of(const std::string& body) {
-  return {body + "_kinetic_energy [J]", body + "_strain_energy [J]", body + "_hourglass_energy [J]"};
+  return {body + "_kinetic_energy [", body + "_strain_energy [", body + "_hourglass_energy ["};
 }
 
 TEST(TotalLagrangianBodies, RubberRingsBounceAndKeepMomentumAndEnergy) {
   Drive drive("rings", {"spacing=2e-3"});
   const Simulation& s = drive.simulation();
   const auto energy = [&] { return sum_of(s, energies_of("a")) + sum_of(s, energies_of("b")); };
-  const auto momentum = [&] { return sum_of(s, {"momentum_x [kg m/s]"}); };
+  const auto momentum = [&] { return sum_of(s, {"momentum_x ["}); };
   const double energy_before = energy(), momentum_before = momentum();
   const double scale =
       sum_of(s, {"a_mean_vx [m/s]"}) * drive.phase(0).mass() * static_cast<double>(drive.phase(0).size());
@@ -188,7 +189,7 @@ TEST(TotalLagrangianBodies, RubberRingsBounceAndKeepMomentumAndEnergy) {
   for (int k = 1; k <= 16; ++k) {
     drive.to(1e-3 * k);
     drift = std::max(drift, std::abs(momentum() - momentum_before) / scale);
-    stored = std::max(stored, sum_of(s, {"a_strain_energy [J]", "b_strain_energy [J]"}) / energy_before);
+    stored = std::max(stored, sum_of(s, {"a_strain_energy [", "b_strain_energy ["}) / energy_before);
   }
   const double kept = sum_of(s, {"b_mean_vx [m/s]"}) / 6.95;
   report("momentum over that of a ring", drift, 1e-12);
@@ -215,7 +216,7 @@ TEST(UpdatedLagrangianBodies, AnImpactWithViscosityKeepsMotionAndInternalEnergy)
   sets.emplace_back("phases.b.artificial-viscosity=0");
   Drive plain("verification/two_bars", sets);
   const auto of = [](Drive& drive, const std::string& what) {
-    return sum_of(drive.simulation(), {"a_" + what + "_energy [J]", "b_" + what + "_energy [J]"});
+    return sum_of(drive.simulation(), {"a_" + what + "_energy [", "b_" + what + "_energy ["});
   };
   const double before = of(viscous, "kinetic");
   double worst = 0.0, strained = 0.0, apart = 0.0;
@@ -262,7 +263,7 @@ TEST(UpdatedLagrangianBodies, ArtificialStressKeepsARubberRingWhole) {
   const Simulation& s = with.simulation();
   const double scale = 6.95 * with.phase(0).mass() * static_cast<double>(with.phase(0).size());
   report("speed of the ring afterwards over that before", sum_of(s, {"b_mean_vx [m/s]"}) / 6.95, 0.7);
-  EXPECT_LT(std::abs(sum_of(s, {"momentum_x [kg m/s]"})) / scale, 1e-12);
+  EXPECT_LT(std::abs(sum_of(s, {"momentum_x ["})) / scale, 1e-12);
   EXPECT_GT(sum_of(s, {"b_mean_vx [m/s]"}) / 6.95, 0.7) << "they bounce";
 }
 
@@ -402,7 +403,7 @@ TEST(TotalLagrangianBodies, DiscsPressedTogetherHaveThePressureOfHertz) {
     on_lower += felt(drive.phase(1), 1).first / times;
     const HistoryRow row = drive.simulation().history();
     for (std::size_t c = 0; c < row.names.size(); ++c)
-      if (row.names[c] == "motion_0_force_y [N]") held += row.values[c] / times;
+      if (row.names[c].starts_with("motion_0_force_y [")) held += row.values[c] / times;
   }
   EXPECT_NEAR(on_lower / load, -1.0, 1e-10);
   report("force on what holds the disc over P - 1", held / load - 1.0, 0.03);

@@ -20,7 +20,8 @@ double sum_of(const Simulation& run, const std::vector<std::string>& wanted) {
   double sum = 0.0;
   std::size_t found = 0;
   for (std::size_t k = 0; k < names.size(); ++k)
-    if (std::find(wanted.begin(), wanted.end(), names[k]) != wanted.end()) {
+    if (std::any_of(wanted.begin(), wanted.end(),
+                    [&](const std::string& name) { return names[k].starts_with(name); })) {
       sum += row[k];
       ++found;
     }
@@ -29,7 +30,7 @@ double sum_of(const Simulation& run, const std::vector<std::string>& wanted) {
 }
 
 double energy_of(const Simulation& run, const std::string& body) {
-  return sum_of(run, {body + "_kinetic_energy [J]", body + "_strain_energy [J]", body + "_hourglass_energy [J]"});
+  return sum_of(run, {body + "_kinetic_energy [", body + "_strain_energy [", body + "_hourglass_energy ["});
 }
 
 /// A clamped plate of steel, in mixed precision, whose tip begins with a small share of the wave speed (5,850 m/s).
@@ -65,9 +66,7 @@ TEST(TotalLagrangianBodies, ASquareThatTurnsKeepsItsAngularMomentumAndEnergy) {
       set.insert(set.end(), {"domain.periodic=[\"x\"]", "fill.0.velocity=[\"1-10*(y-0.1)\", \"10*(x-0.1)\"]"});
     Drive drive("verification/spinning_square", set);
     // A periodic domain has no centre of mass, and no column of the angular momentum.
-    const auto momentum = [&] {
-      return periodic ? 1.0 : sum_of(drive.simulation(), {"square_angular_momentum [kg m2/s]"});
-    };
+    const auto momentum = [&] { return periodic ? 1.0 : sum_of(drive.simulation(), {"square_angular_momentum ["}); };
     const double l = momentum(), e = energy_of(drive.simulation(), "square");
     drive.to(0.62831853);
     turning = std::max(turning, std::abs(momentum() / l - 1.0));
@@ -113,7 +112,7 @@ TEST(TotalLagrangianBodies, ABodyPressedThroughItselfIsStopped) {
 TEST(Rows, HaveTheMeanOfAForceThatAlternates) {
   Drive drive("gears", {"motion.1.torque=10000", "time.end=0.02"});
   Simulation& run = drive.simulation();
-  const auto turning = [&] { return sum_of(run, {"driven_angular_momentum [kg m2/s]"}); };
+  const auto turning = [&] { return sum_of(run, {"driven_angular_momentum ["}); };
   const double start = turning();
   double impulse = 0.0, size = 0.0;
   for (int row = 0; row < 60; ++row) {
@@ -121,7 +120,7 @@ TEST(Rows, HaveTheMeanOfAForceThatAlternates) {
     run.begin_row();
     run.step(1.0);
     run.step(1.0);
-    const double part = sum_of(run, {"driven_torque [N m]"}) * (run.time() - before);
+    const double part = sum_of(run, {"driven_torque ["}) * (run.time() - before);
     impulse += part;
     size += std::abs(part);
   }
@@ -191,7 +190,7 @@ TEST(BodyBudget, TellsOfAngularMomentumThatABodyDoesNotKeep) {
       report("angular momentum of a square that turned by 0.6 rad, drift", *drift, 1e-3);
       EXPECT_LT(*drift, 1e-3);
       // 10/s times sum m r^2 of N x N particles, m N^2 (N^2 - 1) dx^2/6, with N = 10, m = 0.1 kg, dx = 0.01 m.
-      EXPECT_NEAR(sum_of(run, {"body_angular_momentum [kg m2/s]"}), 0.165, 1e-3 * 0.165);
+      EXPECT_NEAR(sum_of(run, {"body_angular_momentum ["}), 0.165, 1e-3 * 0.165);
       EXPECT_TRUE(told(run).empty()) << told(run).front();
     } else {
       EXPECT_GT(*drift, 0.5);

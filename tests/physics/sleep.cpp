@@ -66,7 +66,8 @@ class Sleep : public ::testing::Test {
     const PhaseParticles& sand() const { return simulation.phases()[0]; }
     double of_history(const std::string& column) const {
       const auto names = simulation.history_columns();
-      const auto found = std::find(names.begin(), names.end(), column);
+      const auto found =
+          std::find_if(names.begin(), names.end(), [&](const std::string& each) { return each.starts_with(column); });
       EXPECT_NE(found, names.end()) << column;
       return simulation.history_row()[static_cast<std::size_t>(found - names.begin())];
     }
@@ -117,8 +118,7 @@ TEST_F(Sleep, ABedFallsAsleepAndItsPairsCostNothing) {
   EXPECT_LT(sleeps.pairs(), 0.2 * wakes.pairs());
   // What sleeps is still there: its contacts and what they store.
   EXPECT_NEAR(sleeps.of_history("contacts"), wakes.of_history("contacts"), 0.02 * grains);
-  EXPECT_NEAR(sleeps.of_history("contacts_stored_energy [J]") / wakes.of_history("contacts_stored_energy [J]"), 1.0,
-              0.02);
+  EXPECT_NEAR(sleeps.of_history("contacts_stored_energy [") / wakes.of_history("contacts_stored_energy ["), 1.0, 0.02);
   EXPECT_LT(sleeps.farthest(), 1e-2 * 1e-3);
 }
 

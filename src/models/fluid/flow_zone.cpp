@@ -399,9 +399,8 @@ void FlowZone::absorb() {
 // ---- history, state -------------------------------------------------------------------------------------------------
 
 void FlowZone::history(HistoryRow& row) const {
-  const std::string unit = w_->particles(fluid_).dimensions() == 2 ? " [kg/m]" : " [kg]";
-  row.add(name_ + "_in" + unit, entered_);
-  row.add(name_ + "_out" + unit, left_);
+  row.add(name_ + "_in [kg]", entered_);
+  row.add(name_ + "_out [kg]", left_);
 }
 
 void FlowZone::archive(Archive& a) {

@@ -251,10 +251,9 @@ void SpacingBorder::apply() {
 }
 
 void SpacingBorder::history(HistoryRow& row) const {
-  const std::string a_metre = layout_.dimensions == 2 ? "/m]" : "]";
-  row.add(name_ + "_to_fine [kg" + a_metre, passed_.to_fine);
-  row.add(name_ + "_to_coarse [kg" + a_metre, passed_.to_coarse);
-  row.add(name_ + "_loss [J" + a_metre, passed_.loss);
+  row.add(name_ + "_to_fine [kg]", passed_.to_fine);
+  row.add(name_ + "_to_coarse [kg]", passed_.to_coarse);
+  row.add(name_ + "_loss [J]", passed_.loss);
 }
 
 void SpacingBorder::archive(Archive& a) {
