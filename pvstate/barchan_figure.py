@@ -8,7 +8,11 @@ from paraview.simple import (AnnotateTimeFilter, AssignViewToLayout, CreateLayou
                              GetAnimationScene, PythonAnnotation, SetActiveView, Show, Text)
 
 from barchan_marks import INK, Marks, set_font
-from barchan_numbers import ticks
+from barchan_numbers import spaced_ticks
+
+# Sizes of letters in a picture 1600 pixels wide: those of the axes are 2 mm high in a picture 80 mm wide.
+HEADING, AXIS, NUMBERS = 31, 28, 27
+WIDTH_OF_A_LETTER = 0.6   # of its size
 
 
 class Figure(Marks):
@@ -91,8 +95,8 @@ class Figure(Marks):
         if self.plain:
             return (0, 0, 0, 0)
         if not self.series.two_dimensional:
-            return (40, 250, 40, 85)
-        return (140, 40, 185, 72) if self.wide else (140, 230, 95, 72)
+            return (150, 270, 120, 105)
+        return (165, 50, 212, 100) if self.wide else (165, 280, 95, 100)
 
     def _margins(self):
         return tuple(m * self.scale for m in self._margins_1600())
@@ -103,22 +107,26 @@ class Figure(Marks):
         if self.plain:
             self.around["title"] = title
             return
-        text = Text(registrationName="title", Text=title)
-        shown = Show(text, self.view)
-        set_font(shown, 26 * self.scale, Bold=0)
-        shown.WindowLocation = "Any Location"
-        shown.Position = [left / width, 1 - 0.68 * top / height]
-
         end = abs(self.series.times[-1])
         factor, unit, digits = self._clock_words()
         time = AnnotateTimeFilter(registrationName="time", Input=self.series.reader)
         time.Scale = factor
         time.Format = "t = {time:." + str(digits) + "f} " + unit
-        longest = len(f"t = {end * factor:.{digits}f} {unit}")
-        shown = Show(time, self.view)
-        set_font(shown, 24 * self.scale)
+        room = WIDTH_OF_A_LETTER * AXIS * self.scale * len(f"t = {end * factor:.{digits}f} {unit}")
+        from_right = min(right, 50 * self.scale) + room
+        self._words(time, width - from_right, height - 46 * self.scale, AXIS)
+
+        text = Text(registrationName="title", Text=title)
+        size = min(HEADING, (width - left - from_right) / (WIDTH_OF_A_LETTER * self.scale * max(len(title), 1)))   # one that fits
+        self._words(text, left, height - 46 * self.scale, size)
+
+    def _words(self, source, x, y, size):
+        """Words whose lower left corner stands at a pixel; `size` as in a picture 1600 pixels wide."""
+        shown = Show(source, self.view)
+        set_font(shown, size * self.scale)
         shown.WindowLocation = "Any Location"
-        shown.Position = [1 - (right + 14.5 * self.scale * longest) / width, 1 - 0.68 * top / height]
+        shown.Position = [x / self.size[0], y / self.size[1]]
+        return shown
 
     def _clock_words(self):
         """Factor, unit and digits of the times of the series."""
@@ -138,10 +146,7 @@ class Figure(Marks):
         words = PythonAnnotation(registrationName="time of the frame", Input=source)
         words.ArrayAssociation = "Field Data"
         words.Expression = "'t = %.6g s' % TimeValue[0]"
-        shown = Show(words, self.view)
-        set_font(shown, 24 * self.scale)
-        shown.WindowLocation = "Any Location"
-        shown.Position = [1 - (right + 250 * self.scale) / width, 1 - 0.68 * top / height]
+        self._words(words, width - right - 250 * self.scale, height - 46 * self.scale, AXIS)
 
     # -- camera
 
@@ -181,16 +186,21 @@ class Figure(Marks):
         axes.AxesToLabel = 3          # below and at the left
         axes.ShowGrid, axes.ShowTicks, axes.ShowEdges = 0, 1, 1
         axes.GridColor = INK
-        away = " " * max(0, round(6.5 * self.scale - 2.5))   # ParaView sets the title too near to the labels
-        axes.XTitle, axes.YTitle, axes.ZTitle = f"x ({unit})", f"y ({unit})" + away, ""
+        axes.XTitle = axes.YTitle = axes.ZTitle = ""   # ParaView would set them on the labels
         axes.DataScale = [1 / factor] * 3
         for axis, low, high in (("X", box[0], box[1]), ("Y", box[2], box[3])):
-            set_font(axes, 19 * self.scale, axis + "Label")
-            set_font(axes, 20 * self.scale, axis + "Title")
-            pixels = (high - low) / self.metres
-            places = ticks(low * factor, high * factor, min(8, max(2, pixels / (95 * self.scale))))
+            set_font(axes, NUMBERS * self.scale, axis + "Label")
+            pixels = (high - low) / self.metres / (NUMBERS * self.scale)   # in sizes of a letter
             setattr(axes, axis + "AxisUseCustomLabels", 1)
-            setattr(axes, axis + "AxisLabels", places)
+            setattr(axes, axis + "AxisLabels", spaced_ticks(low * factor, high * factor, pixels, upright=axis == "Y"))
+        width, height = self.size
+        left, right, bottom, top = self._margins()
+        x0, y1 = width / 2 + (box[0] - self.focus[0]) / self.metres, height / 2 + (box[3] - self.focus[1]) / self.metres
+        x1, y0 = width / 2 + (box[1] - self.focus[0]) / self.metres, height / 2 + (box[2] - self.focus[1]) / self.metres
+        words = f"x ({unit})"
+        half = 0.5 * WIDTH_OF_A_LETTER * AXIS * self.scale * len(words)
+        self._words(Text(registrationName="x axis", Text=words), (x0 + x1) / 2 - half, y0 - 86 * self.scale, AXIS)
+        self._words(Text(registrationName="y axis", Text=f"y ({unit})"), x0 - 22 * self.scale - 2 * half, y1 + 15 * self.scale, AXIS)
 
     def _directions(self):
         """Of a 3D picture: to the right, upwards, to the eye. Gravity points downwards; a strip along x is seen from its side."""

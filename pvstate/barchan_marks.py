@@ -187,6 +187,26 @@ output.SetLines(lines)
 output.PointData.append(np.concatenate([np.array(v) for v in speeds]), "speed")
 """
 
+RIM = """//VTK::Color::Impl
+float dist = dot(offsetVCVSOutput.xy, offsetVCVSOutput.xy);
+if (dist > 1.0) { discard; }
+if (dist > 0.74) { ambientColor *= 0.62; diffuseColor *= 0.62; }
+"""
+
+RING = """
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+centre = {centre!r}
+points, strips, corners = vtkPoints(), vtkCellArray(), 361
+strips.InsertNextCell(2 * corners)
+for angle in np.linspace(0.0, 2.0 * np.pi, corners):
+    for radius in ({inner!r}, {outer!r}):
+        strips.InsertCellPoint(points.InsertNextPoint(centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle), {z!r}))
+output.SetPoints(points)
+output.SetStrips(strips)
+"""
+
 
 def set_font(owner, size, prefix="", **more):
     """Font of a text, a colour bar or an axis; the properties of ParaView differ by a prefix only."""
@@ -221,29 +241,34 @@ class Marks:
     """The drawing half of a Figure, which has series, view, box, size, scale, metres (a pixel) and wide."""
 
     def particles(self, phase, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
-        """One phase as discs (balls in 3D). `radius` in spacings (None: touching, or overlapping where they are a
-        few pixels only; "whole": without gaps; "body": without gaps, and hardly beyond the body's edge); `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
-        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity, self.series.size(phase))
+        """One phase as discs (balls in 3D), grains each with its own radius where the frames have it. `radius` in spacings, of grains in their diameters
+        (None: touching, or overlapping where they are a few pixels only; "whole": without gaps; "body": without gaps, and hardly beyond the body's edge);
+        `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
+        size = self.series.size(phase) if self.series.phase_kinds[phase] == "grains" else None
+        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity, size)
 
     def dots(self, source, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0, size=None):
-        """As particles(), of any source of points; `size` (m) stands for the spacing. What is finer than three pixels is drawn with three."""
+        """As particles(), of any source of points; `size` (m) is the diameter of grains. Grains finer than three pixels are drawn with three; of larger
+        ones in 2D the rim is darker, so that each can be told from its neighbours."""
         flat = self.series.two_dimensional
         if radius == "whole":   # a fluid looks like the continuum that it stands for, and stays off the axes
             radius = 1.0 if self.pixels_per_spacing < 9 else 0.85
         if radius == "body":   # half the diagonal of a square of particles is 0.707, and packings have gaps up to that
             radius = 0.75 if flat else 0.62
+        pixels = (size or self.series.spacing) / self.metres
         if radius is None:
-            radius = 0.5 if self.pixels_per_spacing > 9 or not flat else 0.72
+            radius = 0.5 if pixels > (4 if size else 9) or not flat else 0.72
         shown = Show(source, self.view)
         shown.SetRepresentationType("Point Gaussian")
         shown.ShaderPreset = "Plain circle" if flat else "Sphere"
-        if size is None or size == self.series.spacing:
-            shown.GaussianRadius = radius * self.series.spacing
-        else:
-            shown.GaussianRadius = max(0.5 * size, 1.5 * self.metres)
+        shown.GaussianRadius = radius * self.series.spacing if size is None else max(radius * size, 1.5 * self.metres)
         shown.ScaleByArray = 0
-        if size is not None and self.series.has("radius") and radius == 0.5 and 0.5 * size > 3 * self.metres:   # each its own
-            shown.ScaleByArray, shown.SetScaleArray, shown.UseScaleFunction, shown.GaussianRadius = 1, ["POINTS", "radius"], 0, 1.0
+        if size is not None and self.series.has("radius") and pixels > 4:
+            shown.ScaleByArray, shown.SetScaleArray, shown.UseScaleFunction, shown.GaussianRadius = 1, ["POINTS", "radius"], 0, 2 * radius
+        if size is not None and flat and pixels > 7:
+            shown.ShaderPreset = "Custom"
+            shown.CustomTriangleScale = 3
+            shown.CustomShader = RIM
         shown.Opacity = opacity
         if flat:
             shown.Position = [0.0, 0.0, 0.05 * layer * self.series.spacing]
@@ -285,12 +310,28 @@ class Marks:
         if not self.series.two_dimensional and self.series.domain is not None:
             self.edges([float((min if side % 2 else max)(x, held)) for side, (x, held) in enumerate(zip(self.series.domain, self.box))])
         walls = [phase for phase in self.series.phases("wall") if phase not in drawn]
+        for phase in [phase for phase in walls if self.whole and self.series.two_dimensional]:
+            ring = self.series.ring(phase)
+            if ring:
+                self._ring(phase, ring, colour, layer)
+                walls.remove(phase)
         if walls and self.series.two_dimensional:
             others = [phase for phase in self.series.phases("fluid", "grains", "elastic", "rigid", "wall") if phase not in walls]
             self.field(walls, colour=colour, layer=layer, outline=0.5, others=others if self.whole else None)
         elif walls:
             for phase in walls:
                 self.particles(phase, radius=0.12, colour=colour, opacity=0.35)
+
+    def _ring(self, phase, ring, colour, layer):
+        """A wall that is a ring, (x, y, inner radius, outer radius) in metres."""
+        *centre, inner, outer = ring
+        band = ProgrammableFilter(registrationName="ring of " + self.series.phase_names[phase], Input=self.series.source(phase))
+        band.OutputDataSetType = "vtkPolyData"
+        band.Script = RING.format(centre=centre, inner=inner, outer=outer, z=0.05 * layer * self.series.spacing)
+        shown = Show(band, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
+        paint(shown, colour)
 
     def edges(self, box):
         """The edges of a box [x0, x1, y0, y1, z0, z1] in metres."""
@@ -362,8 +403,8 @@ class Marks:
         if pixels > room:
             speed = round_floor(speed * room / pixels)
             pixels = speed * metres_per_speed / self.metres
-        x = 0.72 * width if self.wide else width - 170 * self.scale
-        y = 26 * self.scale if self.wide else 0.13 * height
+        x = 0.74 * width if self.wide else width - 215 * self.scale
+        y = 26 * self.scale if self.wide else 0.1 * height
         place = self.place_of_pixel(x, y)
         velocity = [float(c) for c in speed * self.across]
         source = ProgrammableSource(registrationName="scale of the arrows")
@@ -374,9 +415,9 @@ class Marks:
         value = f"{speed:g}".replace("e-0", "e-")
         text = Text(registrationName="value of the arrow", Text=f"{name}: {value} m/s" if self.wide else f"{value} m/s")
         shown = Show(text, self.view)
-        set_font(shown, 19 * self.scale)
+        set_font(shown, 26 * self.scale)
         shown.WindowLocation = "Any Location"
-        shown.Position = [x / width, (y + 14 * self.scale) / height]
+        shown.Position = [x / width, (y + 18 * self.scale) / height]
 
     def mean_velocity(self, phases, fastest):
         """The mean velocity of fluids, whatever their spacings, in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
@@ -439,7 +480,7 @@ class Marks:
         if self.series.two_dimensional:
             low, high, _ = self.series.range_of(values)
             return self.by_values([self.field(phases, array, low, high, sources=sources)], "smooth", values, title)
-        shown = [self.dots(source, radius=0.5, array=array, component=None, size=self.series.size(phase)) for source, phase in zip(sources, phases)]
+        shown = [self.dots(source, radius=0.5, array=array, component=None) for source in sources]
         return self.by_values(shown, array, values, title)
 
     def rims(self, phases):
@@ -501,22 +542,22 @@ class Marks:
         for number, (name, colour) in enumerate(entries):
             text = Text(registrationName="name of " + name, Text=name)
             shown = Show(text, self.view)
-            set_font(shown, 22 * self.scale, Bold=1)
+            set_font(shown, 29 * self.scale, Bold=1)
             shown.Color = colour
             shown.WindowLocation = "Any Location"
             if self.wide:
                 shown.Position = [0.12 + x / width, 18 * self.scale / height]
-                x += (15 * len(name) + 40) * self.scale
+                x += (20 * len(name) + 40) * self.scale
             else:
-                shown.Position = [1 - 215 * self.scale / width, 0.6 - 40 * self.scale * number / height]
+                shown.Position = [1 - 255 * self.scale / width, 0.6 - 48 * self.scale * number / height]
 
     def _bar(self, bar, title, low, high):
         width, height = self.size
         bar.Title, bar.ComponentTitle = title, ""
         bar.WindowLocation = "Any Location"
-        set_font(bar, 20 * self.scale, "Title")
-        set_font(bar, 19 * self.scale, "Label")
-        bar.ScalarBarThickness = max(4, int(16 * self.scale))
+        set_font(bar, 27 * self.scale, "Title")
+        set_font(bar, 26 * self.scale, "Label")
+        bar.ScalarBarThickness = max(4, int(18 * self.scale))
         bar.DrawTickMarks, bar.DrawTickLabels = 1, 1
         bar.AddRangeLabels = 0
         bar.UseCustomLabels = 1
@@ -534,4 +575,4 @@ class Marks:
         else:
             bar.Orientation = "Vertical"
             bar.ScalarBarLength = 0.5
-            bar.Position = [1 - 165 * self.scale / width, 0.22]
+            bar.Position = [1 - 215 * self.scale / width, 0.22]

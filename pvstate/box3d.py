@@ -39,7 +39,7 @@ def behind(source, name):
     return part
 
 
-shown = [figure.dots(behind(series.source(phase), series.phase_names[phase]), radius=0.5, array="velocity", size=series.size(phase)) for phase in moving]
+shown = [figure.dots(behind(series.source(phase), series.phase_names[phase]), radius=0.5, array="velocity", size=series.size(phase) if series.phase_kinds[phase] == "grains" else None) for phase in moving]
 if shown:
     figure.colours(shown, "velocity", 0.0, series.top_speed(moving), series.speed_title(moving), preset="Viridis (matplotlib)")
 

@@ -25,7 +25,7 @@ if len(moving):
 top = nice_ceiling(max(lift, percentile(moving, 98)))
 
 # Arrows of hundreds of grains much finer than the air hide the grains: then the colour alone tells the speed.
-few = series.moving_at_once(grains, 0.2 * top) <= 100 or all(series.size(phase) == series.spacing for phase in grains)
+few = series.moving_at_once(grains, 0.2 * top) <= 100 or all(series.size(phase) > 0.75 * series.spacing for phase in grains)
 
 if flat:
     if series.phases("fluid"):
