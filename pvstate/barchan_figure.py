@@ -71,7 +71,7 @@ class Figure(Marks):
         else:
             extent = [np.ptp(self._corners() @ direction) for direction in self._directions()[:2]]
         aspect = extent[0] / max(extent[1], 1e-30)
-        self.wide = series.two_dimensional and aspect > 1.6
+        self.wide = aspect > (1.6 if series.two_dimensional else 2.4)
         wanted = os.environ.get("BARCHAN_SIZE", "")
         if not wanted:
             size = list(self.view.ViewSize)
@@ -95,7 +95,7 @@ class Figure(Marks):
         if self.plain:
             return (0, 0, 0, 0)
         if not self.series.two_dimensional:
-            return (150, 270, 120, 105)
+            return (190, 90, 235, 105) if self.wide else (190, 290, 130, 105)
         return (165, 50, 212, 100) if self.wide else (165, 280, 95, 100)
 
     def _margins(self):
@@ -238,8 +238,71 @@ class Figure(Marks):
         view.CameraParallelScale = 0.5 * height * metres
         view.CenterOfRotation = centre
         view.AxesGrid.Visibility = 0
-        view.OrientationAxesVisibility = 1
-        view.OrientationAxesLabelColor = INK
+
+    def _axes_3d(self):
+        """The edges of the domain, or of the part of it that the view holds, its floor, and an axis with numbers along three edges that nothing covers."""
+        box = np.array(self.box, dtype=float).reshape(3, 2)
+        if self.series.domain is not None:
+            domain = np.array(self.series.domain, dtype=float).reshape(3, 2)
+            box = np.stack([np.maximum(box[:, 0], domain[:, 0]), np.minimum(box[:, 1], domain[:, 1])], axis=1)
+        up = 2 if self.series.up == "z" else 1
+        unit, factor = ("mm", 1e3) if np.ptp(box, axis=1).max() < 1.0 else ("m", 1.0)
+        letter = NUMBERS * self.scale
+        screen = np.array([self.across, self.up])   # of a point: pixels to the right and upwards
+        middle = screen @ box.mean(axis=1) / self.metres
+        lines, taken = [], []   # taken: places of numbers, in pixels
+        for axis in range(3):
+            low, high = np.zeros((2, 3))
+            edges = []
+            for corner in range(4):
+                others = [other for other in range(3) if other != axis]
+                low, high = box[:, 0].copy(), box[:, 1].copy()
+                for number, other in enumerate(others):
+                    low[other] = high[other] = box[other, corner >> number & 1]
+                edges.append((low, high))
+                lines.append([low, high])
+            if self.plain:
+                continue
+            # Upwards the edge at the left; else the lowest one.
+            low, high = min(edges, key=lambda edge: (screen @ (edge[0] + edge[1]))[0 if axis == up else 1])
+            begin, end = screen @ low / self.metres, screen @ high / self.metres
+            length = float(np.linalg.norm(end - begin))
+            if length < 2 * letter:
+                continue
+            away = np.array([-(end - begin)[1], (end - begin)[0]]) / length
+            away *= np.sign(away @ ((begin + end) / 2 - middle)) or 1.0
+            deepest = 0.0
+
+            def set_text(words, at, size):
+                """Beside a place of the edge; returns how far it reaches from the edge, in pixels."""
+                half = 0.5 * np.array([WIDTH_OF_A_LETTER * size * len(words), size])
+                reach = float(np.abs(away) @ half)
+                self._words_in_space(words, at + (self.across * away[0] + self.up * away[1]) * (set_text.from_edge + reach) * self.metres, size)
+                return set_text.from_edge + 2 * reach
+            set_text.from_edge = 0.55 * letter
+            upright = abs(away[0]) > abs(away[1])
+            for place in spaced_ticks(low[axis] * factor, high[axis] * factor, length / letter, upright=upright):
+                at = low.copy()
+                at[axis] = place / factor
+                point = screen @ at / self.metres + away * letter
+                if any(np.linalg.norm(point - other) < 1.8 * letter for other in taken):   # where two axes meet
+                    continue
+                taken.append(point)
+                lines.append([at, at + (self.across * away[0] + self.up * away[1]) * 0.3 * letter * self.metres])
+                deepest = max(deepest, set_text(f"{place:g}", at, letter))
+            set_text.from_edge = deepest + 0.2 * letter
+            set_text(f"{'xyz'[axis]} ({unit})", (low + high) / 2, AXIS * self.scale)
+        self.floor(box - 2 * self.metres * (np.arange(3) == up)[:, None], up)   # below the edges
+        self.lines(lines)
+
+    def _words_in_space(self, words, place, size):
+        """Words whose middle is at a place (m) of a 3D scene."""
+        place = place - (self.across * 0.5 * WIDTH_OF_A_LETTER * size * len(words) + self.up * 0.4 * size) * self.metres
+        text = Text(registrationName="axis: " + words, Text=words)
+        shown = Show(text, self.view)
+        set_font(shown, size)
+        shown.TextPropMode = "Billboard 3D Text"
+        shown.BillboardPosition = [float(x) for x in place]
 
     def place_of_pixel(self, x, y):
         """The point (m) of the picture's plane at x pixels from the left and y from below."""
@@ -249,7 +312,9 @@ class Figure(Marks):
     # -- end
 
     def finish(self):
-        """Shows the last frame: a film begins where it likes, a first look should see something."""
+        """Draws the axes of a 3D scene and shows the last frame: a film begins where it likes, a first look should see something."""
+        if not self.series.two_dimensional:
+            self._axes_3d()   # now: ParaView puts names of its own, max among them, into the state that has a programmed source
         self.view.ViewTime = self.series.times[-1]
         scene = GetAnimationScene()
         scene.UpdateAnimationUsingDataTimeSteps()

@@ -4,7 +4,7 @@ import math
 import os
 
 import numpy as np
-from paraview.simple import (Box, Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
+from paraview.simple import (Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, Plane, ProgrammableFilter,
                              ProgrammableSource, Show, Text)
 
 from barchan_numbers import bar_ticks, round_floor
@@ -14,6 +14,7 @@ WALL = [0.38, 0.38, 0.40]
 GROUND = [0.55, 0.42, 0.25]         # walls of a scene with grains: of one family with the sand
 BODY = [0.55, 0.57, 0.60]
 FAINT_AIR = [0.80, 0.87, 0.93]
+FLOOR = [0.93, 0.93, 0.92]          # of the box of a 3D scene
 INK = [0.13, 0.13, 0.15]
 MARK = [0.835, 0.369, 0.0]          # vermilion of Okabe & Ito, Color Universal Design (2008)
 # Grains at rest have the colour of sand; the faster, the darker (luminance falls all the way).
@@ -305,10 +306,8 @@ class Marks:
         return shown
 
     def walls(self, layer=3, drawn=()):
-        """Walls, in the colour of the ground where the scene has grains; in 3D faint, with the edges of the domain."""
+        """Walls, in the colour of the ground where the scene has grains; in 3D faint."""
         colour = GROUND if self.series.has_grains else WALL
-        if not self.series.two_dimensional and self.series.domain is not None:
-            self.edges([float((min if side % 2 else max)(x, held)) for side, (x, held) in enumerate(zip(self.series.domain, self.box))])
         walls = [phase for phase in self.series.phases("wall") if phase not in drawn]
         for phase in [phase for phase in walls if self.whole and self.series.two_dimensional]:
             ring = self.series.ring(phase)
@@ -333,14 +332,30 @@ class Marks:
         shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
         paint(shown, colour)
 
-    def edges(self, box):
-        """The edges of a box [x0, x1, y0, y1, z0, z1] in metres."""
-        outline = Box(registrationName="domain")
-        outline.XLength, outline.YLength, outline.ZLength = (box[2 * a + 1] - box[2 * a] for a in range(3))
-        outline.Center = [(box[2 * a] + box[2 * a + 1]) / 2 for a in range(3)]
-        shown = Show(outline, self.view)
-        shown.SetRepresentationType("Outline")
-        shown.AmbientColor = shown.DiffuseColor = INK
+    def lines(self, lines):
+        """Straight lines in a 3D scene, each from a place to another (m)."""
+        source = ProgrammableSource(registrationName="edges")
+        source.OutputDataSetType = "vtkPolyData"
+        source.Script = WAYS.format(ways=[[list(map(float, place)) for place in line] for line in lines], speeds=[[0.0] * len(line) for line in lines])
+        shown = Show(source, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.LineWidth = max(1.0, 2.2 * self.scale)
+        shown.Ambient, shown.Diffuse = 1.0, 0.0
+        paint(shown, INK)
+
+    def floor(self, box, up):
+        """The lower side of a box, [[x0, x1], [y0, y1], [z0, z1]] in metres, as a quiet plane."""
+        plane = Plane(registrationName="floor")
+        corner = [float(side[0]) for side in box]
+        plane.Origin = corner
+        for name, axis in (("Point1", 0), ("Point2", 3 - up)):
+            far = list(corner)
+            far[axis] = float(box[axis][1])
+            setattr(plane, name, far)
+        shown = Show(plane, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
+        paint(shown, FLOOR)
 
     def bodies(self, layer=3, drawn=()):
         """Elastic and rigid bodies without a value of their own; in 2D their outline is filled."""

@@ -411,8 +411,8 @@ class Series:
             least, most = points.min(axis=0) - size / 2, points.max(axis=0) + size / 2
             wall = self.phase_kinds[phase] == "wall"
             loose = np.ones((2, 3), dtype=bool)
-            if self.domain is not None and (not wall or self.two_dimensional):
-                beyond = 2 * self.spacing if wall else 0.0   # where it stands beyond a side
+            if self.domain is not None:
+                beyond = 2 * self.spacing if wall and self.two_dimensional else 0.0   # where it stands beyond a side
                 low_side, high_side = self.domain[0::2], self.domain[1::2]
                 near = 0.6 * max(size, self._distance(phase))
                 loose = np.array([least > low_side + near, most < high_side - near])
