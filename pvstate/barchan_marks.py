@@ -26,6 +26,7 @@ FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 
 SMOOTH = """
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkClipPolyData
 from vtkmodules.vtkFiltersGeometry import vtkImageDataGeometryFilter
@@ -106,30 +107,39 @@ clip.SetInputConnection(surface.GetOutputPort())
 clip.SetValue({outline})
 clip.Update()
 output.ShallowCopy(clip.GetOutput())
+if output.GetNumberOfPoints():   # the last row may lie beyond the upper edge
+    places = np.array(output.Points)
+    places[:, 1] = np.minimum(places[:, 1], y0 + far[1] * step)
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(places, deep=True))
+    output.SetPoints(points)
 """
 
 MEAN_VELOCITY = """
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.util.numpy_support import numpy_to_vtk
-x0, y0, side, columns, rows, fastest, widths = {x0!r}, {y0!r}, {side!r}, {columns}, {rows}, {fastest!r}, {widths!r}
-areas, sums = np.zeros(columns * rows), np.zeros((columns * rows, 3))
+x0, y0, sides, columns, rows, fastest, widths = {x0!r}, {y0!r}, {sides!r}, {columns}, {rows}, {fastest!r}, {widths!r}
+areas, sums, places = np.zeros(columns * rows), np.zeros((columns * rows, 3)), np.zeros((columns * rows, 2))
 for particles, lengths in zip(inputs, widths):
     if not particles.GetNumberOfPoints():
         continue
     x = np.asarray(particles.Points)
     velocity = np.asarray(particles.PointData["velocity"])
     area = (np.asarray(particles.PointData["smoothing_length"]) * lengths) ** 2
-    column, row = ((x[:, k] - o) / side + 1e-5 for k, o in ((0, x0), (1, y0)))   # a row of a lattice on an edge is in one cell
+    column, row = ((x[:, k] - o) / sides[k] + 1e-5 for k, o in ((0, x0), (1, y0)))   # a row of a lattice on an edge is in one cell
     inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
     inside &= (velocity ** 2).sum(axis=1) < fastest ** 2   # not a number is not below
     velocity, area = velocity[inside], area[inside]
     cell = row[inside].astype(int) * columns + column[inside].astype(int)
     areas += np.bincount(cell, area, columns * rows)
+    places += np.stack([np.bincount(cell, area * x[inside, k], columns * rows) for k in range(2)], axis=1)
     sums += np.stack([np.bincount(cell, area * velocity[:, k], columns * rows) for k in range(3)], axis=1)
-full = np.flatnonzero(areas > 0.65 * side ** 2)   # with less its middle may lie in a wall
+full = np.flatnonzero(areas > 0.65 * sides[0] * sides[1])   # with less its middle may lie in a wall
 if len(full):
-    centre = np.stack([x0 + (full % columns + 0.5) * side, y0 + (full // columns + 0.5) * side, 0.0 * full], axis=1)
+    centre = np.stack([x0 + (full % columns + 0.5) * sides[0], y0 + (full // columns + 0.5) * sides[1], 0.0 * full], axis=1)
+    part = areas[full] < 0.9 * sides[0] * sides[1]   # of a cell: there the arrow stands in the fluid's middle
+    centre[part, :2] = (places[full] / areas[full, None])[part]
     points = vtkPoints()
     points.SetData(numpy_to_vtk(centre, deep=True))
     output.SetPoints(points)
@@ -262,7 +272,7 @@ class Marks:
         shown = Show(source, self.view)
         shown.SetRepresentationType("Point Gaussian")
         shown.ShaderPreset = "Plain circle" if flat else "Sphere"
-        shown.GaussianRadius = radius * self.series.spacing if size is None else max(radius * size, 1.5 * self.metres)
+        shown.GaussianRadius = radius * self.series.spacing if size is None else max(radius * size, (1.5 if flat else 2.2) * self.metres)
         shown.ScaleByArray = 0
         if size is not None and self.series.has("radius") and pixels > 4:
             shown.ScaleByArray, shown.SetScaleArray, shown.UseScaleFunction, shown.GaussianRadius = 1, ["POINTS", "radius"], 0, 2 * radius
@@ -435,7 +445,7 @@ class Marks:
         shown.Position = [x / width, (y + 18 * self.scale) / height]
 
     def mean_velocity(self, phases, fastest):
-        """The mean velocity of fluids, whatever their spacings, in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
+        """The mean velocity of fluids, whatever their spacings, in nearly square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
         each cell of which they fill more than half, particles faster than `fastest` (m/s) left aside. Returns the filter and the cells' side in metres."""
         x0, x1, y0, y1 = self.box[:4]
         across = max(min(40, (x1 - x0) / self.metres / 32), 4)
@@ -443,7 +453,7 @@ class Marks:
         columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)
         mean = ProgrammableFilter(registrationName="mean velocity", Input=[self.series.source(phase) for phase in phases])
         mean.OutputDataSetType = "vtkPolyData"
-        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows, fastest=float(fastest),
+        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, sides=((x1 - x0) / columns, (y1 - y0) / rows), columns=columns, rows=rows, fastest=float(fastest),
                                            widths=[self.series.width_in_lengths(phase) for phase in phases])
         return mean, side
 
@@ -493,7 +503,9 @@ class Marks:
         """Fluids coloured by an array, by_values(): in 2D as a smooth field, in 3D as balls. `sources`: filters of these phases that have the array."""
         sources = sources or [self.series.source(phase) for phase in phases]
         if self.series.two_dimensional:
-            low, high, _ = self.series.range_of(values)
+            low, high, signed = self.series.range_of(values)
+            if signed:   # without a rim a fluid of a value near zero would vanish on white
+                self.field(phases, colour=BODY, layer=-1, outline=0.1)
             return self.by_values([self.field(phases, array, low, high, sources=sources)], "smooth", values, title)
         shown = [self.dots(source, radius=0.5, array=array, component=None) for source in sources]
         return self.by_values(shown, array, values, title)
@@ -515,16 +527,21 @@ class Marks:
     def others(self, drawn):
         """The phases that carry no colour: walls dark, bodies grey, grains in the colour of sand, fluids faint. `drawn` are left out."""
         flat = self.series.two_dimensional
-        for phase in self.series.phases("fluid"):
-            if phase not in drawn and flat:
-                self.field([phase], colour=FAINT_AIR)
-            elif phase not in drawn:
-                self.particles(phase, radius=0.12, colour=FAINT_AIR)
+        fluids = [phase for phase in self.series.phases("fluid") if phase not in drawn]
+        if flat:
+            self.faint(fluids)
+        for phase in [] if flat else fluids:
+            self.particles(phase, radius=0.12, colour=FAINT_AIR)
         for phase in self.series.phases("grains"):
             if phase not in drawn:
                 self.particles(phase, colour=SAND, layer=4)
         self.bodies(drawn=drawn)
         self.walls(drawn=drawn)
+
+    def faint(self, phases):
+        """Fluids of a 2D scene as a faint area, which reaches under the grains: their surface is no edge of the fluid."""
+        if phases:
+            self.field(phases, colour=FAINT_AIR, outline=0.04 if self.series.has_grains else 0.25)
 
     def colours(self, representations, array, low, high, title, preset=None, points=None, bar=True):
         """One colour map for these representations, and its bar."""
@@ -555,14 +572,14 @@ class Marks:
         width, height = self.size
         x = 0.0
         for number, (name, colour) in enumerate(entries):
-            text = Text(registrationName="name of " + name, Text=name)
+            text = Text(registrationName="name of " + name, Text="\u25cf " + name)
             shown = Show(text, self.view)
             set_font(shown, 29 * self.scale, Bold=1)
             shown.Color = colour
             shown.WindowLocation = "Any Location"
             if self.wide:
                 shown.Position = [0.12 + x / width, 18 * self.scale / height]
-                x += (20 * len(name) + 40) * self.scale
+                x += (20 * len(name) + 80) * self.scale
             else:
                 shown.Position = [1 - 255 * self.scale / width, 0.6 - 48 * self.scale * number / height]
 
