@@ -138,7 +138,7 @@ for particles, lengths in zip(inputs, widths):
 full = np.flatnonzero(areas > 0.65 * sides[0] * sides[1])   # with less its middle may lie in a wall
 if len(full):
     centre = np.stack([x0 + (full % columns + 0.5) * sides[0], y0 + (full // columns + 0.5) * sides[1], 0.0 * full], axis=1)
-    part = areas[full] < 0.9 * sides[0] * sides[1]   # of a cell: there the arrow stands in the fluid's middle
+    part = areas[full] < 0.8 * sides[0] * sides[1]   # of a cell: there the arrow stands in the fluid's middle
     centre[part, :2] = (places[full] / areas[full, None])[part]
     points = vtkPoints()
     points.SetData(numpy_to_vtk(centre, deep=True))
@@ -505,8 +505,8 @@ class Marks:
         if self.series.two_dimensional:
             low, high, signed = self.series.range_of(values)
             if signed:   # without a rim a fluid of a value near zero would vanish on white
-                self.field(phases, colour=BODY, layer=-1, outline=0.1)
-            return self.by_values([self.field(phases, array, low, high, sources=sources)], "smooth", values, title)
+                self.field(phases, colour=BODY, layer=-1, outline=0.02)
+            return self.by_values([self.field(phases, array, low, high, sources=sources, outline=0.1 if signed else 0.25)], "smooth", values, title)
         shown = [self.dots(source, radius=0.5, array=array, component=None) for source in sources]
         return self.by_values(shown, array, values, title)
 

@@ -13,15 +13,16 @@ figure = Figure(series, series.title + ": grains taking off", window=series.clos
 flat = series.two_dimensional
 grains = series.phases("grains")
 # The top of the scale, also the speed of the longest arrows: what nearly all moving grains stay below, but no less than what
-# lifts a grain by its own size, so that a bed at rest looks at rest.
+# lifts a grain by its own size, so that a bed at rest looks at rest. A grain moves if it has a tenth of what lifts it by a spacing.
+spacing_lift = math.sqrt(2 * 9.81 * series.spacing)
 lift = math.sqrt(2 * 9.81 * min((series.size(phase) for phase in grains), default=series.spacing))
 # Not counted: grains three times as fast as the fluids, which drive them, or twenty times as fast as half of the others.
 speeds = series.speeds(grains)
-moving = speeds[speeds > 0.1 * lift]
+moving = speeds[speeds > 0.1 * spacing_lift]
 if series.phases("fluid") and len(moving):
-    moving = moving[moving <= max(lift, 3 * series.top_speed(series.phases("fluid")))]
+    moving = moving[moving <= max(spacing_lift, 3 * series.top_speed(series.phases("fluid")))]
 if len(moving):
-    moving = moving[moving <= 20 * max(lift, np.median(moving))]
+    moving = moving[moving <= 20 * max(spacing_lift, np.median(moving))]
 top = nice_ceiling(max(lift, percentile(moving, 98)))
 
 # Arrows of hundreds of grains much finer than the air hide the grains: then the colour alone tells the speed.
