@@ -95,7 +95,7 @@ class Figure(Marks):
         if self.plain:
             return (0, 0, 0, 0)
         if not self.series.two_dimensional:
-            return (190, 90, 235, 105) if self.wide else (190, 290, 130, 105)
+            return (205, 90, 235, 105) if self.wide else (205, 290, 130, 105)
         return (165, 50, 212, 100) if self.wide else (165, 280, 95, 100)
 
     def _margins(self):
@@ -250,8 +250,8 @@ class Figure(Marks):
         letter = NUMBERS * self.scale
         screen = np.array([self.across, self.up])   # of a point: pixels to the right and upwards
         middle = screen @ box.mean(axis=1) / self.metres
-        lines, taken = [], []   # taken: places of numbers, in pixels
-        for axis in range(3):
+        lines, taken = [], []   # taken: places of the numbers of other axes, in pixels
+        for axis in sorted(range(3), key=lambda axis: axis != up):
             low, high = np.zeros((2, 3))
             edges = []
             for corner in range(4):
@@ -271,7 +271,7 @@ class Figure(Marks):
                 continue
             away = np.array([-(end - begin)[1], (end - begin)[0]]) / length
             away *= np.sign(away @ ((begin + end) / 2 - middle)) or 1.0
-            deepest = 0.0
+            deepest, own = 0.0, []
 
             def set_text(words, at, size):
                 """Beside a place of the edge; returns how far it reaches from the edge, in pixels."""
@@ -285,11 +285,12 @@ class Figure(Marks):
                 at = low.copy()
                 at[axis] = place / factor
                 point = screen @ at / self.metres + away * letter
-                if any(np.linalg.norm(point - other) < 1.8 * letter for other in taken):   # where two axes meet
+                if any(np.linalg.norm(point - other) < 1.5 * letter for other in taken):   # where two axes meet
                     continue
-                taken.append(point)
+                own.append(point)
                 lines.append([at, at + (self.across * away[0] + self.up * away[1]) * 0.3 * letter * self.metres])
                 deepest = max(deepest, set_text(f"{place:g}", at, letter))
+            taken += own
             set_text.from_edge = deepest + 0.2 * letter
             set_text(f"{'xyz'[axis]} ({unit})", (low + high) / 2, AXIS * self.scale)
         self.floor(box - 2 * self.metres * (np.arange(3) == up)[:, None], up)   # below the edges

@@ -447,7 +447,8 @@ class Marks:
     def mean_velocity(self, phases, fastest):
         """The mean velocity of fluids, whatever their spacings, in nearly square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
         each cell of which they fill more than half, particles faster than `fastest` (m/s) left aside. Returns the filter and the cells' side in metres."""
-        x0, x1, y0, y1 = self.box[:4]
+        held = self.series.bounds(phases)   # not that of the walls: a row of cells that is half in a wall would have arrows here and there
+        x0, x1, y0, y1 = (f(a, b) for f, a, b in zip((max, min, max, min), self.box[:4], held[:4]))
         across = max(min(40, (x1 - x0) / self.metres / 32), 4)
         side = max((x1 - x0) / round(across), 3 * self.series.spacing)
         columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)

@@ -376,7 +376,7 @@ class Series:
             if not all(len(part) for part in parts):
                 return None
             inner, outer = [part.min() for part in parts], [part.max() for part in parts]
-            if np.ptp(inner) > spacing or np.ptp(outer) > spacing:
+            if np.ptp(inner) > spacing or np.ptp(outer) > spacing or min(inner) < 0.6 * max(outer) or sectors < 12:   # corners, or no hole
                 return None
             rings.append([*middle, min(inner) - spacing / 2, max(outer) + spacing / 2])
         rings = np.array(rings)
