@@ -15,6 +15,11 @@ HEADING, AXIS, NUMBERS = 31, 28, 27
 WIDTH_OF_A_LETTER = 0.6   # of its size
 
 
+def scale_of(width):
+    """Of letters, lines and margins in a picture `width` pixels wide, against one of 1600."""
+    return min(max(width / 1600.0, 0.35), 2.5)
+
+
 class Figure(Marks):
     """One render view laid out as a figure: title and time above, the data with axes, the colour bar below or beside."""
 
@@ -30,7 +35,7 @@ class Figure(Marks):
         self.view = self._empty_view()
         Figure.last = self
         self.size = self._size(window, walls)
-        self.scale = min(max(self.size[0] / 1600.0, 0.35), 2.5)   # of letters and lines
+        self.scale = scale_of(self.size[0])
         view = self.view
         view.SuppressRendering = 1   # until finish()
         view.UseColorPaletteForBackground = 0
@@ -78,7 +83,7 @@ class Figure(Marks):
         else:
             width, _, height = wanted.partition("x")
             width = int(width)
-            unit = width / 1600.0
+            unit = scale_of(width)
             if height:
                 size = [width, int(height)]
             else:   # the height that the data fill

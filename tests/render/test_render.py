@@ -68,6 +68,7 @@ def changed_series(series, out, change):
         change(data, vtk_to_numpy(data.GetPointData().GetArray("velocity")), vtk_to_numpy(data.GetPoints().GetData()))
         writer = vtkXMLPolyDataWriter()
         writer.SetFileName(str(out / file.name))
+        writer.SetDataModeToBinary()   # ParaView 5.11 loses itself in some files with raw data behind the XML
         writer.SetInputData(data)
         writer.Write()
     for name in (series.name, "run.json"):
