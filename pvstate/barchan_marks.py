@@ -135,7 +135,7 @@ for particles, lengths in zip(inputs, widths):
     areas += np.bincount(cell, area, columns * rows)
     places += np.stack([np.bincount(cell, area * x[inside, k], columns * rows) for k in range(2)], axis=1)
     sums += np.stack([np.bincount(cell, area * velocity[:, k], columns * rows) for k in range(3)], axis=1)
-full = np.flatnonzero(areas > 0.65 * sides[0] * sides[1])   # with less its middle may lie in a wall
+full = np.flatnonzero(areas > 0.5 * sides[0] * sides[1])
 if len(full):
     centre = np.stack([x0 + (full % columns + 0.5) * sides[0], y0 + (full // columns + 0.5) * sides[1], 0.0 * full], axis=1)
     part = areas[full] < 0.8 * sides[0] * sides[1]   # of a cell: there the arrow stands in the fluid's middle

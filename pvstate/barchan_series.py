@@ -452,6 +452,9 @@ class Series:
         """A window [x0, x1, y0, y1] on the surface of the grains, about its highest place; all of the scene without grains."""
         grains = self.phases("grains") or [k for k, kind in enumerate(self.phase_kinds) if kind == "grains"]
         everything = self.bounds(self.phases("fluid", "grains", "elastic", "rigid") or [0])
+        if self.domain is not None:   # a bed on the ground has no room below it
+            everything[0::2] = np.maximum(everything[0::2], self.domain[0::2]).tolist()
+            everything[1::2] = np.minimum(everything[1::2], self.domain[1::2]).tolist()
         first = self._samples[0]
         bed = first["points"][np.isin(first["phase"], grains)]
         if not len(bed) or not self.two_dimensional:
