@@ -218,7 +218,7 @@ def plot(r):
         axes[1, 1].plot(p["grain_stress"], p["height"], color=colour, label=label)
         axes[1, 1].plot(p["air_stress"], p["height"], color=colour, ls=":")
         axes[1, 1].plot([a + b for a, b in zip(p["air_stress"], p["grain_stress"])], p["height"], color=colour, lw=0.6, ls="-.")
-    for axis, title in zip(axes.flat, ("(a) flux; dashed: measured (Creyssels et al. 2009)", "(b) flux by height", "(c) wind", "(d) stress: grains full, air dotted, sum dash-dotted")):
+    for axis, title in zip(axes.flat, ("(a) dashed: Creyssels et al. 2009", "(b) flux by height", "(c) wind", "(d) grains full, air dotted, sum dash-dotted")):
         axis.set_title(title, fontsize=12.5, loc="left")
     axes[0, 0].set(xlabel="time [s]", ylabel="flux [g/m/s]")
     axes[0, 1].set(xlabel="height over the bed [d]", ylabel="flux [kg/m2/s]", xlim=(0, 200))
