@@ -15,7 +15,7 @@ top = series.top_speed(fluids)
 
 flat = series.two_dimensional
 if fluids:
-    shown = [figure.field(fluids, "velocity", 0.0, top)] if flat else [figure.particles(phase, radius=0.25, array="velocity") for phase in fluids]
+    shown = [figure.field(fluids, "velocity", 0.0, top, outline=0.1 if series.has_grains else 0.25)] if flat else [figure.particles(phase, radius=0.25, array="velocity") for phase in fluids]
     figure.colours(shown, "smooth" if flat else "velocity", 0.0, top, series.speed_title(fluids), preset="Viridis (matplotlib)")
 if flat:
     figure.walls(layer=2)

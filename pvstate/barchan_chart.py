@@ -27,17 +27,17 @@ class Chart:
             self.view.ViewSize = [int(width) // 2 * 2, int(height or 0.6 * int(width)) // 2 * 2]
         self.scale = min(max(self.view.ViewSize[0] / 1600.0, 0.5), 2.5)
         view = self.view
-        view.ChartTitle, view.ChartTitleFontSize = title, int(26 * self.scale)
+        view.ChartTitle, view.ChartTitleFontSize = title, int(32 * self.scale)
         view.ChartTitleColor = INK
         for axis, words in (("Left", y_title), ("Bottom", x_title)):
             setattr(view, axis + "AxisTitle", words)
-            setattr(view, axis + "AxisTitleFontSize", int(22 * self.scale))
-            setattr(view, axis + "AxisLabelFontSize", int(20 * self.scale))
+            setattr(view, axis + "AxisTitleFontSize", int(29 * self.scale))
+            setattr(view, axis + "AxisLabelFontSize", int(27 * self.scale))
             for part in ("Title", "Label"):
                 if os.path.isfile(FONT):
                     setattr(view, f"{axis}Axis{part}FontFamily", "File")
                     setattr(view, f"{axis}Axis{part}FontFile", FONT)
-        view.LegendFontSize = int(20 * self.scale)
+        view.LegendFontSize = int(27 * self.scale)
         view.LegendLocation = "TopRight"
         self._number = 0
 

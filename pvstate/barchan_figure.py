@@ -8,7 +8,16 @@ from paraview.simple import (AnnotateTimeFilter, AssignViewToLayout, CreateLayou
                              GetAnimationScene, PythonAnnotation, SetActiveView, Show, Text)
 
 from barchan_marks import INK, Marks, set_font
-from barchan_numbers import ticks
+from barchan_numbers import spaced_ticks
+
+# Sizes of letters in a picture 1600 pixels wide: those of the axes are 2 mm high in a picture 80 mm wide.
+HEADING, AXIS, NUMBERS = 31, 28, 27
+WIDTH_OF_A_LETTER = 0.6   # of its size
+
+
+def scale_of(width):
+    """Of letters, lines and margins in a picture `width` pixels wide, against one of 1600."""
+    return min(max(width / 1600.0, 0.35), 2.5)
 
 
 class Figure(Marks):
@@ -26,7 +35,7 @@ class Figure(Marks):
         self.view = self._empty_view()
         Figure.last = self
         self.size = self._size(window, walls)
-        self.scale = min(max(self.size[0] / 1600.0, 0.35), 2.5)   # of letters and lines
+        self.scale = scale_of(self.size[0])
         view = self.view
         view.SuppressRendering = 1   # until finish()
         view.UseColorPaletteForBackground = 0
@@ -67,14 +76,14 @@ class Figure(Marks):
         else:
             extent = [np.ptp(self._corners() @ direction) for direction in self._directions()[:2]]
         aspect = extent[0] / max(extent[1], 1e-30)
-        self.wide = series.two_dimensional and aspect > 1.6
+        self.wide = aspect > (1.6 if series.two_dimensional else 2.4)
         wanted = os.environ.get("BARCHAN_SIZE", "")
         if not wanted:
             size = list(self.view.ViewSize)
         else:
             width, _, height = wanted.partition("x")
             width = int(width)
-            unit = width / 1600.0
+            unit = scale_of(width)
             if height:
                 size = [width, int(height)]
             else:   # the height that the data fill
@@ -91,8 +100,8 @@ class Figure(Marks):
         if self.plain:
             return (0, 0, 0, 0)
         if not self.series.two_dimensional:
-            return (40, 250, 40, 85)
-        return (140, 40, 185, 72) if self.wide else (140, 230, 95, 72)
+            return (205, 90, 235, 105) if self.wide else (205, 290, 130, 105)
+        return (165, 50, 212, 100) if self.wide else (165, 280, 95, 100)
 
     def _margins(self):
         return tuple(m * self.scale for m in self._margins_1600())
@@ -103,22 +112,26 @@ class Figure(Marks):
         if self.plain:
             self.around["title"] = title
             return
-        text = Text(registrationName="title", Text=title)
-        shown = Show(text, self.view)
-        set_font(shown, 26 * self.scale, Bold=0)
-        shown.WindowLocation = "Any Location"
-        shown.Position = [left / width, 1 - 0.68 * top / height]
-
         end = abs(self.series.times[-1])
         factor, unit, digits = self._clock_words()
         time = AnnotateTimeFilter(registrationName="time", Input=self.series.reader)
         time.Scale = factor
         time.Format = "t = {time:." + str(digits) + "f} " + unit
-        longest = len(f"t = {end * factor:.{digits}f} {unit}")
-        shown = Show(time, self.view)
-        set_font(shown, 24 * self.scale)
+        room = WIDTH_OF_A_LETTER * AXIS * self.scale * len(f"t = {end * factor:.{digits}f} {unit}")
+        from_right = min(right, 50 * self.scale) + room
+        self._words(time, width - from_right, height - 46 * self.scale, AXIS)
+
+        text = Text(registrationName="title", Text=title)
+        size = min(HEADING, (width - left - from_right) / (WIDTH_OF_A_LETTER * self.scale * max(len(title), 1)))   # one that fits
+        self._words(text, left, height - 46 * self.scale, size)
+
+    def _words(self, source, x, y, size):
+        """Words whose lower left corner stands at a pixel; `size` as in a picture 1600 pixels wide."""
+        shown = Show(source, self.view)
+        set_font(shown, size * self.scale)
         shown.WindowLocation = "Any Location"
-        shown.Position = [1 - (right + 14.5 * self.scale * longest) / width, 1 - 0.68 * top / height]
+        shown.Position = [x / self.size[0], y / self.size[1]]
+        return shown
 
     def _clock_words(self):
         """Factor, unit and digits of the times of the series."""
@@ -138,10 +151,7 @@ class Figure(Marks):
         words = PythonAnnotation(registrationName="time of the frame", Input=source)
         words.ArrayAssociation = "Field Data"
         words.Expression = "'t = %.6g s' % TimeValue[0]"
-        shown = Show(words, self.view)
-        set_font(shown, 24 * self.scale)
-        shown.WindowLocation = "Any Location"
-        shown.Position = [1 - (right + 250 * self.scale) / width, 1 - 0.68 * top / height]
+        self._words(words, width - right - 250 * self.scale, height - 46 * self.scale, AXIS)
 
     # -- camera
 
@@ -181,16 +191,21 @@ class Figure(Marks):
         axes.AxesToLabel = 3          # below and at the left
         axes.ShowGrid, axes.ShowTicks, axes.ShowEdges = 0, 1, 1
         axes.GridColor = INK
-        away = " " * max(0, round(6.5 * self.scale - 2.5))   # ParaView sets the title too near to the labels
-        axes.XTitle, axes.YTitle, axes.ZTitle = f"x ({unit})", f"y ({unit})" + away, ""
+        axes.XTitle = axes.YTitle = axes.ZTitle = ""   # ParaView would set them on the labels
         axes.DataScale = [1 / factor] * 3
         for axis, low, high in (("X", box[0], box[1]), ("Y", box[2], box[3])):
-            set_font(axes, 19 * self.scale, axis + "Label")
-            set_font(axes, 20 * self.scale, axis + "Title")
-            pixels = (high - low) / self.metres
-            places = ticks(low * factor, high * factor, min(8, max(2, pixels / (95 * self.scale))))
+            set_font(axes, NUMBERS * self.scale, axis + "Label")
+            pixels = (high - low) / self.metres / (NUMBERS * self.scale)   # in sizes of a letter
             setattr(axes, axis + "AxisUseCustomLabels", 1)
-            setattr(axes, axis + "AxisLabels", places)
+            setattr(axes, axis + "AxisLabels", spaced_ticks(low * factor, high * factor, pixels, upright=axis == "Y"))
+        width, height = self.size
+        left, right, bottom, top = self._margins()
+        x0, y1 = width / 2 + (box[0] - self.focus[0]) / self.metres, height / 2 + (box[3] - self.focus[1]) / self.metres
+        x1, y0 = width / 2 + (box[1] - self.focus[0]) / self.metres, height / 2 + (box[2] - self.focus[1]) / self.metres
+        words = f"x ({unit})"
+        half = 0.5 * WIDTH_OF_A_LETTER * AXIS * self.scale * len(words)
+        self._words(Text(registrationName="x axis", Text=words), (x0 + x1) / 2 - half, y0 - 86 * self.scale, AXIS)
+        self._words(Text(registrationName="y axis", Text=f"y ({unit})"), x0 - 22 * self.scale - 2 * half, y1 + 15 * self.scale, AXIS)
 
     def _directions(self):
         """Of a 3D picture: to the right, upwards, to the eye. Gravity points downwards; a strip along x is seen from its side."""
@@ -228,8 +243,72 @@ class Figure(Marks):
         view.CameraParallelScale = 0.5 * height * metres
         view.CenterOfRotation = centre
         view.AxesGrid.Visibility = 0
-        view.OrientationAxesVisibility = 1
-        view.OrientationAxesLabelColor = INK
+
+    def _axes_3d(self):
+        """The edges of the domain, or of the part of it that the view holds, its floor, and an axis with numbers along three edges that nothing covers."""
+        box = np.array(self.box, dtype=float).reshape(3, 2)
+        if self.series.domain is not None:
+            domain = np.array(self.series.domain, dtype=float).reshape(3, 2)
+            box = np.stack([np.maximum(box[:, 0], domain[:, 0]), np.minimum(box[:, 1], domain[:, 1])], axis=1)
+        up = 2 if self.series.up == "z" else 1
+        unit, factor = ("mm", 1e3) if np.ptp(box, axis=1).max() < 1.0 else ("m", 1.0)
+        letter = NUMBERS * self.scale
+        screen = np.array([self.across, self.up])   # of a point: pixels to the right and upwards
+        middle = screen @ box.mean(axis=1) / self.metres
+        lines, taken = [], []   # taken: places of the numbers of other axes, in pixels
+        for axis in sorted(range(3), key=lambda axis: axis != up):
+            low, high = np.zeros((2, 3))
+            edges = []
+            for corner in range(4):
+                others = [other for other in range(3) if other != axis]
+                low, high = box[:, 0].copy(), box[:, 1].copy()
+                for number, other in enumerate(others):
+                    low[other] = high[other] = box[other, corner >> number & 1]
+                edges.append((low, high))
+                lines.append([low, high])
+            if self.plain:
+                continue
+            # Upwards the edge at the left; else the lowest one.
+            low, high = min(edges, key=lambda edge: (screen @ (edge[0] + edge[1]))[0 if axis == up else 1])
+            begin, end = screen @ low / self.metres, screen @ high / self.metres
+            length = float(np.linalg.norm(end - begin))
+            if length < 2 * letter:
+                continue
+            away = np.array([-(end - begin)[1], (end - begin)[0]]) / length
+            away *= np.sign(away @ ((begin + end) / 2 - middle)) or 1.0
+            deepest, own = 0.0, []
+
+            def set_text(words, at, size):
+                """Beside a place of the edge; returns how far it reaches from the edge, in pixels."""
+                half = 0.5 * np.array([WIDTH_OF_A_LETTER * size * len(words), size])
+                reach = float(np.abs(away) @ half)
+                self._words_in_space(words, at + (self.across * away[0] + self.up * away[1]) * (set_text.from_edge + reach) * self.metres, size)
+                return set_text.from_edge + 2 * reach
+            set_text.from_edge = 0.55 * letter
+            upright = abs(away[0]) > abs(away[1])
+            for place in spaced_ticks(low[axis] * factor, high[axis] * factor, length / letter, upright=upright):
+                at = low.copy()
+                at[axis] = place / factor
+                point = screen @ at / self.metres + away * letter
+                if any(np.linalg.norm(point - other) < 1.5 * letter for other in taken):   # where two axes meet
+                    continue
+                own.append(point)
+                lines.append([at, at + (self.across * away[0] + self.up * away[1]) * 0.3 * letter * self.metres])
+                deepest = max(deepest, set_text(f"{place:g}", at, letter))
+            taken += own
+            set_text.from_edge = deepest + 0.2 * letter
+            set_text(f"{'xyz'[axis]} ({unit})", (low + high) / 2, AXIS * self.scale)
+        self.floor(box - 2 * self.metres * (np.arange(3) == up)[:, None], up)   # below the edges
+        self.lines(lines)
+
+    def _words_in_space(self, words, place, size):
+        """Words whose middle is at a place (m) of a 3D scene."""
+        place = place - (self.across * 0.5 * WIDTH_OF_A_LETTER * size * len(words) + self.up * 0.4 * size) * self.metres
+        text = Text(registrationName="axis: " + words, Text=words)
+        shown = Show(text, self.view)
+        set_font(shown, size)
+        shown.TextPropMode = "Billboard 3D Text"
+        shown.BillboardPosition = [float(x) for x in place]
 
     def place_of_pixel(self, x, y):
         """The point (m) of the picture's plane at x pixels from the left and y from below."""
@@ -239,7 +318,9 @@ class Figure(Marks):
     # -- end
 
     def finish(self):
-        """Shows the last frame: a film begins where it likes, a first look should see something."""
+        """Draws the axes of a 3D scene and shows the last frame: a film begins where it likes, a first look should see something."""
+        if not self.series.two_dimensional:
+            self._axes_3d()   # now: ParaView puts names of its own, max among them, into the state that has a programmed source
         self.view.ViewTime = self.series.times[-1]
         scene = GetAnimationScene()
         scene.UpdateAnimationUsingDataTimeSteps()

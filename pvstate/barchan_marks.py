@@ -4,7 +4,7 @@ import math
 import os
 
 import numpy as np
-from paraview.simple import (Box, Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, ProgrammableFilter,
+from paraview.simple import (Calculator, ColorBy, GetColorTransferFunction, GetScalarBar, Glyph, Plane, ProgrammableFilter,
                              ProgrammableSource, Show, Text)
 
 from barchan_numbers import bar_ticks, round_floor
@@ -14,6 +14,7 @@ WALL = [0.38, 0.38, 0.40]
 GROUND = [0.55, 0.42, 0.25]         # walls of a scene with grains: of one family with the sand
 BODY = [0.55, 0.57, 0.60]
 FAINT_AIR = [0.80, 0.87, 0.93]
+FLOOR = [0.93, 0.93, 0.92]          # of the box of a 3D scene
 INK = [0.13, 0.13, 0.15]
 MARK = [0.835, 0.369, 0.0]          # vermilion of Okabe & Ito, Color Universal Design (2008)
 # Grains at rest have the colour of sand; the faster, the darker (luminance falls all the way).
@@ -25,6 +26,7 @@ FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 
 SMOOTH = """
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkClipPolyData
 from vtkmodules.vtkFiltersGeometry import vtkImageDataGeometryFilter
@@ -105,30 +107,39 @@ clip.SetInputConnection(surface.GetOutputPort())
 clip.SetValue({outline})
 clip.Update()
 output.ShallowCopy(clip.GetOutput())
+if output.GetNumberOfPoints():   # the last row may lie beyond the upper edge
+    places = np.array(output.Points)
+    places[:, 1] = np.minimum(places[:, 1], y0 + far[1] * step)
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(places, deep=True))
+    output.SetPoints(points)
 """
 
 MEAN_VELOCITY = """
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.util.numpy_support import numpy_to_vtk
-x0, y0, side, columns, rows, fastest, widths = {x0!r}, {y0!r}, {side!r}, {columns}, {rows}, {fastest!r}, {widths!r}
-areas, sums = np.zeros(columns * rows), np.zeros((columns * rows, 3))
+x0, y0, sides, columns, rows, fastest, widths = {x0!r}, {y0!r}, {sides!r}, {columns}, {rows}, {fastest!r}, {widths!r}
+areas, sums, places = np.zeros(columns * rows), np.zeros((columns * rows, 3)), np.zeros((columns * rows, 2))
 for particles, lengths in zip(inputs, widths):
     if not particles.GetNumberOfPoints():
         continue
     x = np.asarray(particles.Points)
     velocity = np.asarray(particles.PointData["velocity"])
     area = (np.asarray(particles.PointData["smoothing_length"]) * lengths) ** 2
-    column, row = ((x[:, k] - o) / side + 1e-5 for k, o in ((0, x0), (1, y0)))   # a row of a lattice on an edge is in one cell
+    column, row = ((x[:, k] - o) / sides[k] + 1e-5 for k, o in ((0, x0), (1, y0)))   # a row of a lattice on an edge is in one cell
     inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
     inside &= (velocity ** 2).sum(axis=1) < fastest ** 2   # not a number is not below
     velocity, area = velocity[inside], area[inside]
     cell = row[inside].astype(int) * columns + column[inside].astype(int)
     areas += np.bincount(cell, area, columns * rows)
+    places += np.stack([np.bincount(cell, area * x[inside, k], columns * rows) for k in range(2)], axis=1)
     sums += np.stack([np.bincount(cell, area * velocity[:, k], columns * rows) for k in range(3)], axis=1)
-full = np.flatnonzero(areas > 0.65 * side ** 2)   # with less its middle may lie in a wall
+full = np.flatnonzero(areas > 0.5 * sides[0] * sides[1])
 if len(full):
-    centre = np.stack([x0 + (full % columns + 0.5) * side, y0 + (full // columns + 0.5) * side, 0.0 * full], axis=1)
+    centre = np.stack([x0 + (full % columns + 0.5) * sides[0], y0 + (full // columns + 0.5) * sides[1], 0.0 * full], axis=1)
+    part = areas[full] < 0.8 * sides[0] * sides[1]   # of a cell: there the arrow stands in the fluid's middle
+    centre[part, :2] = (places[full] / areas[full, None])[part]
     points = vtkPoints()
     points.SetData(numpy_to_vtk(centre, deep=True))
     output.SetPoints(points)
@@ -187,6 +198,26 @@ output.SetLines(lines)
 output.PointData.append(np.concatenate([np.array(v) for v in speeds]), "speed")
 """
 
+RIM = """//VTK::Color::Impl
+float dist = dot(offsetVCVSOutput.xy, offsetVCVSOutput.xy);
+if (dist > 1.0) { discard; }
+if (dist > 0.74) { ambientColor *= 0.62; diffuseColor *= 0.62; }
+"""
+
+RING = """
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+centre = {centre!r}
+points, strips, corners = vtkPoints(), vtkCellArray(), 361
+strips.InsertNextCell(2 * corners)
+for angle in np.linspace(0.0, 2.0 * np.pi, corners):
+    for radius in ({inner!r}, {outer!r}):
+        strips.InsertCellPoint(points.InsertNextPoint(centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle), {z!r}))
+output.SetPoints(points)
+output.SetStrips(strips)
+"""
+
 
 def set_font(owner, size, prefix="", **more):
     """Font of a text, a colour bar or an axis; the properties of ParaView differ by a prefix only."""
@@ -221,29 +252,34 @@ class Marks:
     """The drawing half of a Figure, which has series, view, box, size, scale, metres (a pixel) and wide."""
 
     def particles(self, phase, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0):
-        """One phase as discs (balls in 3D). `radius` in spacings (None: touching, or overlapping where they are a
-        few pixels only; "whole": without gaps; "body": without gaps, and hardly beyond the body's edge); `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
-        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity, self.series.size(phase))
+        """One phase as discs (balls in 3D), grains each with its own radius where the frames have it. `radius` in spacings, of grains in their diameters
+        (None: touching, or overlapping where they are a few pixels only; "whole": without gaps; "body": without gaps, and hardly beyond the body's edge);
+        `colour` for all, or `array` to colour by; a higher `layer` is in front. Returns the representation."""
+        size = self.series.size(phase) if self.series.phase_kinds[phase] == "grains" else None
+        return self.dots(self.series.source(phase), radius, colour, array, component, layer, opacity, size)
 
     def dots(self, source, radius=None, colour=None, array=None, component="Magnitude", layer=0, opacity=1.0, size=None):
-        """As particles(), of any source of points; `size` (m) stands for the spacing. What is finer than three pixels is drawn with three."""
+        """As particles(), of any source of points; `size` (m) is the diameter of grains. Grains finer than three pixels are drawn with three; of larger
+        ones in 2D the rim is darker, so that each can be told from its neighbours."""
         flat = self.series.two_dimensional
         if radius == "whole":   # a fluid looks like the continuum that it stands for, and stays off the axes
             radius = 1.0 if self.pixels_per_spacing < 9 else 0.85
         if radius == "body":   # half the diagonal of a square of particles is 0.707, and packings have gaps up to that
             radius = 0.75 if flat else 0.62
+        pixels = (size or self.series.spacing) / self.metres
         if radius is None:
-            radius = 0.5 if self.pixels_per_spacing > 9 or not flat else 0.72
+            radius = 0.5 if pixels > (4 if size else 9) or not flat else 0.72
         shown = Show(source, self.view)
         shown.SetRepresentationType("Point Gaussian")
         shown.ShaderPreset = "Plain circle" if flat else "Sphere"
-        if size is None or size == self.series.spacing:
-            shown.GaussianRadius = radius * self.series.spacing
-        else:
-            shown.GaussianRadius = max(0.5 * size, 1.5 * self.metres)
+        shown.GaussianRadius = radius * self.series.spacing if size is None else max(radius * size, (1.5 if flat else 2.2) * self.metres)
         shown.ScaleByArray = 0
-        if size is not None and self.series.has("radius") and radius == 0.5 and 0.5 * size > 3 * self.metres:   # each its own
-            shown.ScaleByArray, shown.SetScaleArray, shown.UseScaleFunction, shown.GaussianRadius = 1, ["POINTS", "radius"], 0, 1.0
+        if size is not None and self.series.has("radius") and pixels > 4:
+            shown.ScaleByArray, shown.SetScaleArray, shown.UseScaleFunction, shown.GaussianRadius = 1, ["POINTS", "radius"], 0, 2 * radius
+        if size is not None and flat and pixels > 7:
+            shown.ShaderPreset = "Custom"
+            shown.CustomTriangleScale = 3
+            shown.CustomShader = RIM
         shown.Opacity = opacity
         if flat:
             shown.Position = [0.0, 0.0, 0.05 * layer * self.series.spacing]
@@ -280,11 +316,14 @@ class Marks:
         return shown
 
     def walls(self, layer=3, drawn=()):
-        """Walls, in the colour of the ground where the scene has grains; in 3D faint, with the edges of the domain."""
+        """Walls, in the colour of the ground where the scene has grains; in 3D faint."""
         colour = GROUND if self.series.has_grains else WALL
-        if not self.series.two_dimensional and self.series.domain is not None:
-            self.edges([float((min if side % 2 else max)(x, held)) for side, (x, held) in enumerate(zip(self.series.domain, self.box))])
         walls = [phase for phase in self.series.phases("wall") if phase not in drawn]
+        for phase in [phase for phase in walls if self.whole and self.series.two_dimensional]:
+            ring = self.series.ring(phase)
+            if ring:
+                self._ring(phase, ring, colour, layer)
+                walls.remove(phase)
         if walls and self.series.two_dimensional:
             others = [phase for phase in self.series.phases("fluid", "grains", "elastic", "rigid", "wall") if phase not in walls]
             self.field(walls, colour=colour, layer=layer, outline=0.5, others=others if self.whole else None)
@@ -292,14 +331,41 @@ class Marks:
             for phase in walls:
                 self.particles(phase, radius=0.12, colour=colour, opacity=0.35)
 
-    def edges(self, box):
-        """The edges of a box [x0, x1, y0, y1, z0, z1] in metres."""
-        outline = Box(registrationName="domain")
-        outline.XLength, outline.YLength, outline.ZLength = (box[2 * a + 1] - box[2 * a] for a in range(3))
-        outline.Center = [(box[2 * a] + box[2 * a + 1]) / 2 for a in range(3)]
-        shown = Show(outline, self.view)
-        shown.SetRepresentationType("Outline")
-        shown.AmbientColor = shown.DiffuseColor = INK
+    def _ring(self, phase, ring, colour, layer):
+        """A wall that is a ring, (x, y, inner radius, outer radius) in metres."""
+        *centre, inner, outer = ring
+        band = ProgrammableFilter(registrationName="ring of " + self.series.phase_names[phase], Input=self.series.source(phase))
+        band.OutputDataSetType = "vtkPolyData"
+        band.Script = RING.format(centre=centre, inner=inner, outer=outer, z=0.05 * layer * self.series.spacing)
+        shown = Show(band, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
+        paint(shown, colour)
+
+    def lines(self, lines):
+        """Straight lines in a 3D scene, each from a place to another (m)."""
+        source = ProgrammableSource(registrationName="edges")
+        source.OutputDataSetType = "vtkPolyData"
+        source.Script = WAYS.format(ways=[[list(map(float, place)) for place in line] for line in lines], speeds=[[0.0] * len(line) for line in lines])
+        shown = Show(source, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.LineWidth = max(1.0, 2.2 * self.scale)
+        shown.Ambient, shown.Diffuse = 1.0, 0.0
+        paint(shown, INK)
+
+    def floor(self, box, up):
+        """The lower side of a box, [[x0, x1], [y0, y1], [z0, z1]] in metres, as a quiet plane."""
+        plane = Plane(registrationName="floor")
+        corner = [float(side[0]) for side in box]
+        plane.Origin = corner
+        for name, axis in (("Point1", 0), ("Point2", 3 - up)):
+            far = list(corner)
+            far[axis] = float(box[axis][1])
+            setattr(plane, name, far)
+        shown = Show(plane, self.view)
+        shown.SetRepresentationType("Surface")
+        shown.Ambient, shown.Diffuse, shown.Specular = 1.0, 0.0, 0.0
+        paint(shown, FLOOR)
 
     def bodies(self, layer=3, drawn=()):
         """Elastic and rigid bodies without a value of their own; in 2D their outline is filled."""
@@ -362,8 +428,8 @@ class Marks:
         if pixels > room:
             speed = round_floor(speed * room / pixels)
             pixels = speed * metres_per_speed / self.metres
-        x = 0.72 * width if self.wide else width - 170 * self.scale
-        y = 26 * self.scale if self.wide else 0.13 * height
+        x = 0.74 * width if self.wide else width - 215 * self.scale
+        y = 26 * self.scale if self.wide else 0.1 * height
         place = self.place_of_pixel(x, y)
         velocity = [float(c) for c in speed * self.across]
         source = ProgrammableSource(registrationName="scale of the arrows")
@@ -374,20 +440,21 @@ class Marks:
         value = f"{speed:g}".replace("e-0", "e-")
         text = Text(registrationName="value of the arrow", Text=f"{name}: {value} m/s" if self.wide else f"{value} m/s")
         shown = Show(text, self.view)
-        set_font(shown, 19 * self.scale)
+        set_font(shown, 26 * self.scale)
         shown.WindowLocation = "Any Location"
-        shown.Position = [x / width, (y + 14 * self.scale) / height]
+        shown.Position = [x / width, (y + 18 * self.scale) / height]
 
     def mean_velocity(self, phases, fastest):
-        """The mean velocity of fluids, whatever their spacings, in square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
+        """The mean velocity of fluids, whatever their spacings, in nearly square cells, 40 in the box's width if that makes them 32 pixels wide; one point in
         each cell of which they fill more than half, particles faster than `fastest` (m/s) left aside. Returns the filter and the cells' side in metres."""
-        x0, x1, y0, y1 = self.box[:4]
+        held = self.series.bounds(phases)   # not that of the walls: a row of cells that is half in a wall would have arrows here and there
+        x0, x1, y0, y1 = (f(a, b) for f, a, b in zip((max, min, max, min), self.box[:4], held[:4]))
         across = max(min(40, (x1 - x0) / self.metres / 32), 4)
         side = max((x1 - x0) / round(across), 3 * self.series.spacing)
         columns, rows = max(round((x1 - x0) / side), 1), max(round((y1 - y0) / side), 1)
         mean = ProgrammableFilter(registrationName="mean velocity", Input=[self.series.source(phase) for phase in phases])
         mean.OutputDataSetType = "vtkPolyData"
-        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, side=side, columns=columns, rows=rows, fastest=float(fastest),
+        mean.Script = MEAN_VELOCITY.format(x0=x0, y0=y0, sides=((x1 - x0) / columns, (y1 - y0) / rows), columns=columns, rows=rows, fastest=float(fastest),
                                            widths=[self.series.width_in_lengths(phase) for phase in phases])
         return mean, side
 
@@ -437,9 +504,11 @@ class Marks:
         """Fluids coloured by an array, by_values(): in 2D as a smooth field, in 3D as balls. `sources`: filters of these phases that have the array."""
         sources = sources or [self.series.source(phase) for phase in phases]
         if self.series.two_dimensional:
-            low, high, _ = self.series.range_of(values)
-            return self.by_values([self.field(phases, array, low, high, sources=sources)], "smooth", values, title)
-        shown = [self.dots(source, radius=0.5, array=array, component=None, size=self.series.size(phase)) for source, phase in zip(sources, phases)]
+            low, high, signed = self.series.range_of(values)
+            if signed:   # without a rim a fluid of a value near zero would vanish on white
+                self.field(phases, colour=BODY, layer=-1, outline=0.02)
+            return self.by_values([self.field(phases, array, low, high, sources=sources, outline=0.1 if signed else 0.25)], "smooth", values, title)
+        shown = [self.dots(source, radius=0.5, array=array, component=None) for source in sources]
         return self.by_values(shown, array, values, title)
 
     def rims(self, phases):
@@ -459,16 +528,21 @@ class Marks:
     def others(self, drawn):
         """The phases that carry no colour: walls dark, bodies grey, grains in the colour of sand, fluids faint. `drawn` are left out."""
         flat = self.series.two_dimensional
-        for phase in self.series.phases("fluid"):
-            if phase not in drawn and flat:
-                self.field([phase], colour=FAINT_AIR)
-            elif phase not in drawn:
-                self.particles(phase, radius=0.12, colour=FAINT_AIR)
+        fluids = [phase for phase in self.series.phases("fluid") if phase not in drawn]
+        if flat:
+            self.faint(fluids)
+        for phase in [] if flat else fluids:
+            self.particles(phase, radius=0.12, colour=FAINT_AIR)
         for phase in self.series.phases("grains"):
             if phase not in drawn:
                 self.particles(phase, colour=SAND, layer=4)
         self.bodies(drawn=drawn)
         self.walls(drawn=drawn)
+
+    def faint(self, phases):
+        """Fluids of a 2D scene as a faint area, which reaches under the grains: their surface is no edge of the fluid."""
+        if phases:
+            self.field(phases, colour=FAINT_AIR, outline=0.04 if self.series.has_grains else 0.25)
 
     def colours(self, representations, array, low, high, title, preset=None, points=None, bar=True):
         """One colour map for these representations, and its bar."""
@@ -499,24 +573,24 @@ class Marks:
         width, height = self.size
         x = 0.0
         for number, (name, colour) in enumerate(entries):
-            text = Text(registrationName="name of " + name, Text=name)
+            text = Text(registrationName="name of " + name, Text="\u25cf " + name)
             shown = Show(text, self.view)
-            set_font(shown, 22 * self.scale, Bold=1)
+            set_font(shown, 29 * self.scale, Bold=1)
             shown.Color = colour
             shown.WindowLocation = "Any Location"
             if self.wide:
                 shown.Position = [0.12 + x / width, 18 * self.scale / height]
-                x += (15 * len(name) + 40) * self.scale
+                x += (20 * len(name) + 80) * self.scale
             else:
-                shown.Position = [1 - 215 * self.scale / width, 0.6 - 40 * self.scale * number / height]
+                shown.Position = [1 - 255 * self.scale / width, 0.6 - 48 * self.scale * number / height]
 
     def _bar(self, bar, title, low, high):
         width, height = self.size
         bar.Title, bar.ComponentTitle = title, ""
         bar.WindowLocation = "Any Location"
-        set_font(bar, 20 * self.scale, "Title")
-        set_font(bar, 19 * self.scale, "Label")
-        bar.ScalarBarThickness = max(4, int(16 * self.scale))
+        set_font(bar, 27 * self.scale, "Title")
+        set_font(bar, 26 * self.scale, "Label")
+        bar.ScalarBarThickness = max(4, int(18 * self.scale))
         bar.DrawTickMarks, bar.DrawTickLabels = 1, 1
         bar.AddRangeLabels = 0
         bar.UseCustomLabels = 1
@@ -534,4 +608,4 @@ class Marks:
         else:
             bar.Orientation = "Vertical"
             bar.ScalarBarLength = 0.5
-            bar.Position = [1 - 165 * self.scale / width, 0.22]
+            bar.Position = [1 - 215 * self.scale / width, 0.22]

@@ -32,6 +32,16 @@ def ticks(low, high, count=6):
     return [k * step for k in range(first, int(math.floor(high / step + 1e-9)) + 1)]
 
 
+def spaced_ticks(low, high, room, upright=False):
+    """Round numbers from low to high, up to eight and so few that each has its place along an axis that is `room` letters long."""
+    for count in range(8, 0, -1):
+        places = ticks(low, high, count)
+        needed = 1.7 if upright else 0.62 * max((len(f"{p:g}") for p in places), default=0) + 1.4
+        if len(places) < 2 or room * (places[1] - places[0]) / (high - low) >= needed:
+            break
+    return places if len(places) < 2 or room * (places[1] - places[0]) / (high - low) >= needed else places[:1]
+
+
 def bar_ticks(low, high):
     """As ticks(), but with one at each end where a round step allows it."""
     for count in (5, 4, 6, 3, 7, 8):

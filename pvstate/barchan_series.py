@@ -119,7 +119,8 @@ class Series:
 
     def __init__(self, path, arrays=()):
         self.path = path
-        self._arrays = tuple(arrays)
+        self._arrays = tuple(dict.fromkeys((*arrays, "radius")))
+        self._distances = {}            # m, by phase
         self.name = os.path.splitext(os.path.basename(path))[0]
         self.reader = open_reader(path, self.name)
         self.times = [float(t) for t in np.atleast_1d(self.reader.TimestepValues)] or [0.0]
@@ -336,20 +337,50 @@ class Series:
         return np.linalg.norm(velocity, axis=1) if len(velocity) else np.zeros(0)
 
     def size(self, phase):
-        """The spacing (m) of a phase; of grains of another size that size, as the particles' radius or smoothing length says (a smoothing length of grains is a radius)."""
+        """The spacing (m) of a phase; of grains their diameter: of the largest as the particles' radius says, else the spacing, or where they have another
+        size the diameter in their smoothing length (a smoothing length of grains is the largest radius)."""
         if self.phase_kinds[phase] != "grains":
             return self.spacing
-        r = self.values("radius" if self.has("radius") else "smoothing_length", [phase])
+        known = self.values("radius", [phase]) if self.has("radius") else np.zeros(0)
+        if (known > 0).any():
+            return float(2 * known.max())
+        r = self.values("smoothing_length", [phase])
         r = r[r > 0]
-        return float(2 * r.max()) if len(r) and abs(2 * r.max() / self.spacing - 1) > 0.15 else self.spacing
+        return float(2 * r.max()) if len(r) and abs(2 * r.max() / self.spacing - 1) > 0.25 else self.spacing
 
     def _distance(self, phase):
         """Of the particles of a phase at the start from their three nearest ones, the median of the means (m): its spacing, on a lattice or not."""
+        if phase not in self._distances:
+            self._distances[phase] = self._measured_distance(phase)
+        return self._distances[phase]
+
+    def _measured_distance(self, phase):
         points = self._samples[0]["points"][self._samples[0]["phase"] == phase]
         if len(points) < 4:
             return self.size(phase)
         squares = (((points - probe) ** 2).sum(axis=1) for probe in points[np.linspace(0, len(points) - 1, min(len(points), 200)).astype(int)])
         return float(np.median([np.sqrt(np.sort(np.partition(s, 3)[:4])[1:]).mean() for s in squares]))
+
+    def ring(self, phase):
+        """(x, y, inner radius, outer radius) in metres of a wall of a 2D scene that is a closed ring and stays where it is, else None."""
+        rings = []
+        for sample in self._samples:
+            points = sample["points"][sample["phase"] == phase][:, :2]
+            if len(points) < 24:
+                return None
+            middle, spacing = points.mean(axis=0), self._distance(phase)
+            radius, angle = np.hypot(*(points - middle).T), np.arctan2(*(points - middle).T)
+            sectors = max(int(2 * np.pi * radius.mean() / (4 * spacing)), 6)
+            sector = ((angle / (2 * np.pi) + 0.5) * sectors).astype(int) % sectors
+            parts = [radius[sector == k] for k in range(sectors)]
+            if not all(len(part) for part in parts):
+                return None
+            inner, outer = [part.min() for part in parts], [part.max() for part in parts]
+            if np.ptp(inner) > spacing or np.ptp(outer) > spacing or min(inner) < 0.6 * max(outer) or sectors < 12:   # corners, or no hole
+                return None
+            rings.append([*middle, min(inner) - spacing / 2, max(outer) + spacing / 2])
+        rings = np.array(rings)
+        return [float(x) for x in rings.mean(axis=0)] if len(rings) and np.ptp(rings, axis=0).max() < 0.5 * self._distance(phase) else None
 
     def width_in_lengths(self, phase):
         """The spacing of a phase, in its smoothing lengths."""
@@ -368,21 +399,31 @@ class Series:
         return nice_ceiling(percentile(self.speeds(phases), share))
 
     def bounds(self, phases):
-        """[x0, x1, y0, y1, z0, z1] in metres with half a spacing around, over the sampled frames; within the domain, of walls in 2D two
-        spacings beyond it."""
+        """[x0, x1, y0, y1, z0, z1] in metres over the sampled frames. Particles at a side of the domain end there, walls that go on beyond it in 2D two
+        spacings farther; else there is room about the particles, so that a free surface or a body does not end at the edge of the picture."""
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        free = np.zeros((2, 3), dtype=bool)   # whether a lower or an upper bound has room to come
         for phase in phases:
             points = self.values("points", [phase])
             if not len(points):
                 continue
-            least, most = points.min(axis=0) - self.spacing / 2, points.max(axis=0) + self.spacing / 2
+            size = self.size(phase)
+            least, most = points.min(axis=0) - size / 2, points.max(axis=0) + size / 2
             wall = self.phase_kinds[phase] == "wall"
-            if self.domain is not None and (not wall or self.two_dimensional):
-                beyond = 2 * self.spacing if wall else 0.0   # where it stands beyond a side
+            loose = np.ones((2, 3), dtype=bool)
+            if self.domain is not None:
+                beyond = 2 * self.spacing if wall and self.two_dimensional else 0.0   # where it stands beyond a side
                 low_side, high_side = self.domain[0::2], self.domain[1::2]
-                least = np.maximum(least, low_side - beyond * (points.min(axis=0) < low_side))
-                most = np.minimum(most, high_side + beyond * (points.max(axis=0) > high_side))
+                near = 0.6 * max(size, self._distance(phase))
+                loose = np.array([least > low_side + near, most < high_side - near])
+                least = np.where(loose[0], least, np.where(points.min(axis=0) < low_side, np.maximum(least, low_side - beyond), low_side))
+                most = np.where(loose[1], most, np.where(points.max(axis=0) > high_side, np.minimum(most, high_side + beyond), high_side))
+            free[0] = np.where(least < low, loose[0], free[0] & (loose[0] | (least > low)))
+            free[1] = np.where(most > high, loose[1], free[1] & (loose[1] | (most < high)))
             low, high = np.minimum(low, least), np.maximum(high, most)
+        if self.domain is not None and (low <= high).all():
+            room = 1.5 * self.spacing + 0.015 * (high - low)[:2 if self.two_dimensional else 3].max()
+            low, high = low - room * free[0], high + room * free[1]
         if not (low <= high).all():
             low, high = np.full(3, -self.spacing / 2), np.full(3, self.spacing / 2)
         if self.two_dimensional:
@@ -411,6 +452,9 @@ class Series:
         """A window [x0, x1, y0, y1] on the surface of the grains, about its highest place; all of the scene without grains."""
         grains = self.phases("grains") or [k for k, kind in enumerate(self.phase_kinds) if kind == "grains"]
         everything = self.bounds(self.phases("fluid", "grains", "elastic", "rigid") or [0])
+        if self.domain is not None:   # a bed on the ground has no room below it
+            everything[0::2] = np.maximum(everything[0::2], self.domain[0::2]).tolist()
+            everything[1::2] = np.minimum(everything[1::2], self.domain[1::2]).tolist()
         first = self._samples[0]
         bed = first["points"][np.isin(first["phase"], grains)]
         if not len(bed) or not self.two_dimensional:

@@ -15,8 +15,7 @@ if series.two_dimensional:
 moving = series.phases("fluid", "grains", "elastic", "rigid")
 held = series.bounds(moving or [0])
 box = [float(x) for x in series.domain] if series.domain is not None else held
-room = 0.08 * max(box[1] - box[0], box[3] - box[2], box[5] - box[4])   # for the numbers at the axes
-figure = Figure(series, series.title, box=[x + (room if side % 2 else -room) for side, x in enumerate(box)])
+figure = Figure(series, series.title, box=box)
 axis, _, place = os.environ.get("BARCHAN_CUT", "y" if series.up == "z" else "z").partition("=")
 if axis not in ("x", "y", "z", "none"):
     raise Wrong(f"BARCHAN_CUT={axis}: expected x, y, z or none, or a place such as z=0.01")
@@ -39,20 +38,8 @@ def behind(source, name):
     return part
 
 
-shown = [figure.dots(behind(series.source(phase), series.phase_names[phase]), radius=0.5, array="velocity", size=series.size(phase)) for phase in moving]
+shown = [figure.dots(behind(series.source(phase), series.phase_names[phase]), radius=0.5, array="velocity", size=series.size(phase) if series.phase_kinds[phase] == "grains" else None) for phase in moving]
 if shown:
     figure.colours(shown, "velocity", 0.0, series.top_speed(moving), series.speed_title(moving), preset="Viridis (matplotlib)")
 
-figure.edges(box)
-axes = figure.view.AxesGrid
-axes.Visibility = 1
-milli = max(box[2 * a + 1] - box[2 * a] for a in range(3)) < 1.0
-axes.UseCustomBounds, axes.CustomBounds = 1, box
-axes.DataScale = [1e-3] * 3 if milli else [1.0] * 3
-axes.XTitle, axes.YTitle, axes.ZTitle = (f"{a} ({'mm' if milli else 'm'})" for a in "xyz")
-axes.ShowGrid = 0
-for name in "XYZ":
-    for part, size in (("Label", 17), ("Title", 19)):
-        setattr(axes, f"{name}{part}FontSize", max(6, int(size * figure.scale)))
-        setattr(axes, f"{name}{part}Color", INK)
 figure.finish()

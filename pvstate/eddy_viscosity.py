@@ -9,8 +9,9 @@ series = start(__file__, "eddy_viscosity")
 series.need("eddy_viscosity")
 figure = Figure(series, series.title + ": viscosity of the eddies")
 fluids = series.phases("fluid")
-values = 1e6 * series.values("eddy_viscosity", fluids)
-sources = [series.calculated(series.source(phase), "eddies", "1e6*eddy_viscosity") for phase in fluids]   # mm2/s: short numbers at the colour bar
-figure.fluids(fluids, "eddies", values, "viscosity of the eddies, mm²/s", sources)
+values = series.values("eddy_viscosity", fluids)
+factor, unit = (1e6, "mm²/s") if percentile(values, 99.5) <= 1e-3 else (1.0, "m²/s")   # short numbers at the colour bar
+sources = [series.calculated(series.source(phase), "eddies", f"{factor!r}*eddy_viscosity") for phase in fluids]
+figure.fluids(fluids, "eddies", factor * values, f"viscosity of the eddies, {unit}", sources)
 figure.others(fluids)
 figure.finish()

@@ -23,10 +23,14 @@ if len(series.times) < 2 or not moving:
     raise Wrong(f"{series.path}: trajectories need two frames and something that moves")
 ways, speeds = series.ways(moving, number)
 box = series.bounds(series.phases("fluid", "grains", "elastic", "rigid", "wall"))
+places = np.concatenate(ways)
+room = 1.5 * series.spacing + 0.015 * float(np.ptp(places, axis=0).max())
 for axis in range(2 if series.two_dimensional else 3):   # the view holds the ways too
-    along = np.concatenate([way[:, axis] for way in ways])
-    box[2 * axis] = min(box[2 * axis], float(along.min()) - series.spacing / 2)
-    box[2 * axis + 1] = max(box[2 * axis + 1], float(along.max()) + series.spacing / 2)
+    box[2 * axis] = min(box[2 * axis], float(places[:, axis].min()) - room)
+    box[2 * axis + 1] = max(box[2 * axis + 1], float(places[:, axis].max()) + room)
+if series.two_dimensional:   # ways along one line have room beside them
+    lack = 0.4 * (box[3] - box[2]) - (box[1] - box[0])
+    box[0], box[1] = box[0] - max(lack, 0) / 2, box[1] + max(lack, 0) / 2
 figure = Figure(series, series.title + ": trajectories", box=box)
 figure.others([])
 lines = figure.paths(ways, speeds)

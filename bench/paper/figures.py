@@ -21,9 +21,11 @@ import harness  # noqa: E402
 from barchan_bench import ROOT, page as pages, store  # noqa: E402
 
 plt = pages.pyplot()
+plt.rcParams["font.size"] = 13   # a figure is 11 inches wide: 12 pixels where it is shown with 800
 GALLERY = ROOT / "docs/gallery"
 MOVES = .01    # m/s: slower grains count as at rest
 EARLY, LATE = 14e-3, 30e-3  # s, figure 10: the first grains leave; the end of the run
+SAND = "#c8a165"
 DUNE_TIMES = (2e-3, 20e-3, 40e-3, 70e-3)  # s, figure 14
 
 
@@ -45,7 +47,7 @@ def cubic(r, h):
 def kernels():
     """Figure 3: the kernel and its slope for four smoothing lengths; the area under each is one."""
     r = numpy.linspace(0, 2, 2001)
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6), layout="constrained")
     numbers = []
     for h, style in zip((1, .75, .5, .25), ("-", "--", "-.", ":")):
         w = cubic(r, h)
@@ -146,7 +148,7 @@ def dune(frames, early, wind):
         if part is not None:
             axis.plot(1e3 * part.x[:, 0], 1e3 * part.x[:, 1], ".", color=colour, markersize=size, label=name)
     axis.set(xlabel="x, mm", ylabel="y, mm", aspect="equal")
-    axis.legend(loc="lower center", bbox_to_anchor=(.5, 1), markerscale=5, fontsize=7, ncols=4, frameon=False)
+    axis.legend(loc="lower center", bbox_to_anchor=(.5, 1), markerscale=5, ncols=4, frameon=False)
     save(figure, "dune_start")
 
     crest, half = wind.dune["at"], wind.dune["length"] / 2
@@ -156,6 +158,10 @@ def dune(frames, early, wind):
     for axis, f in zip(axes, (early, frames[-1])):
         air = cases_wind.only(f, "air")
         drawn = axis.scatter(1e3 * air.x[:, 0], 1e3 * air.x[:, 1], c=air["velocity"][:, 0], s=1.2, cmap="viridis", vmin=0, vmax=26)
+        sand = cases_wind.only(f, "sand")
+        axis.scatter(1e3 * sand.x[:, 0], 1e3 * sand.x[:, 1], s=2.2, color=SAND, lw=0)
+        along = numpy.linspace(0, .16, 321)
+        axis.fill_between(1e3 * along, 1e3 * (ground(along) - 3e-4), color=SAND, lw=0)
         axis.set(title=f"air, speed along x at {1e3 * f.time:.1f} ms", ylabel="y, mm", aspect="equal", xlim=(0, 160))
         places = {"upstream": crest - half - .03, "windward": crest - half / 2, "crest": crest, "leeward": crest + half / 2, "behind": crest + half + .01,
                   "far": crest + half + .06}

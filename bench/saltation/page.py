@@ -205,7 +205,9 @@ def linear(means):
 
 def plot(r):
     """docs/saltation.png, from what `flux` of cases.py measured."""
-    figure, axes = barchan_bench.page.pyplot().subplots(2, 2, figsize=(10, 8))
+    pyplot = barchan_bench.page.pyplot()
+    pyplot.rcParams["font.size"] = 12.5
+    figure, axes = pyplot.subplots(2, 2, figsize=(10, 8.5))
     colours = ["#0072b2", "#d55e00", "#009e73"]
     for row, colour in zip((row for row in r["runs"] if row["seed"] == 1), colours):
         label = f"u* = {row['u']} m/s"
@@ -216,12 +218,14 @@ def plot(r):
         axes[1, 0].semilogy(p["wind"], [max(h, 1e-2) for h in p["height"]], color=colour, label=label)
         axes[1, 1].plot(p["grain_stress"], p["height"], color=colour, label=label)
         axes[1, 1].plot(p["air_stress"], p["height"], color=colour, ls=":")
-        axes[1, 1].plot([a + b for a, b in zip(p["air_stress"], p["grain_stress"])], p["height"], color=colour, lw=0.6, ls="--")
-    axes[0, 0].set(xlabel="time [s]", ylabel="flux [g/m/s]", title="dashed: Creyssels et al. 2009")
+        axes[1, 1].plot([a + b for a, b in zip(p["air_stress"], p["grain_stress"])], p["height"], color=colour, lw=0.6, ls="-.")
+    for axis, title in zip(axes.flat, ("(a) dashed: Creyssels et al. 2009", "(b) flux by height", "(c) wind", "(d) grains full, air dotted, sum dash-dotted")):
+        axis.set_title(title, fontsize=12.5, loc="left")
+    axes[0, 0].set(xlabel="time [s]", ylabel="flux [g/m/s]")
     axes[0, 1].set(xlabel="height over the bed [d]", ylabel="flux [kg/m2/s]", xlim=(0, 200))
     axes[1, 0].set(xlabel="wind [m/s]", ylabel="height over the bed [d]", ylim=(0.3, 400))
-    axes[1, 1].set(xlabel="stress over rho u*^2: grains (full), air (dotted), sum (dashed)", ylabel="height over the bed [d]", ylim=(0, 60), xlim=(0, 1.3))
-    axes[0, 0].legend()
+    axes[1, 1].set(xlabel="stress over rho u*^2", ylabel="height over the bed [d]", ylim=(0, 60), xlim=(0, 1.3))
+    axes[0, 1].legend()
     figure.tight_layout()
     figure.savefig(DOCS / "saltation.png", dpi=90)
 

@@ -4,6 +4,7 @@
     /usr/bin/python3 bench/saltation/tunnel.py build/barchan --out /tmp/tunnel               runs the scene four times, two at once, each with other grains that enter (influx.0.seed);
                                                                                              writes results/tunnel.csv and the pictures docs/gallery/dune_tunnel*.png
     /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --from 0.3 --to 0.6    measures the runs that are there between two times
+    /usr/bin/python3 bench/saltation/tunnel.py none --out /tmp/tunnel --draw                 draws the first run that is there, and writes no results
 
 Means of the frames between two times (the last second, if none are given). Wind at a place: mean of the air's particles within 1 cm of it, by height over the ground. u*: slope of
 a line through the mean speed over the logarithm of the height, 2 to 10 cm over the bed. Flux: mass by length times speed along the wind of all grains, in parts of 3 cm; its error is that of
@@ -33,6 +34,7 @@ SECTIONS = (0.05, 0.6)  # m, between which the momentum of the air is summed
 STRESS = (0.05, 0.1, 0.158, 0.2, 0.24, 0.28, 0.302, 0.33, 0.36, 0.4, 0.45, 0.5, 0.55, 0.6)  # m, where the stress of the ground is told
 BORDER = 0.07  # m, above it the air is coarser
 TOP = 0.12  # m, of the picture
+GROUND_COLOUR, SAND_COLOUR = "#c8a165", "#5a3a12"
 
 
 class Ground:
@@ -217,7 +219,11 @@ def picture(means, ground):
     """The tunnel at one moment: the air as a smooth field, its bubble behind the dune, the sand."""
     plt = page.pyplot()
     from matplotlib.tri import LinearTriInterpolator, Triangulation
-    figure, axes = plt.subplots(figsize=(10, 2.5), layout="constrained")
+    from matplotlib.colors import ListedColormap
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+    plt.rcParams["font.size"] = 15
+    figure, axes = plt.subplots(figsize=(10, 3.2), layout="constrained")
     x, u, spacing = means.whole[:, :2], means.whole[:, 2:], means.spacing
     xs = np.linspace(0, ground.length, 661)
     bed = ground.height(xs)
@@ -227,13 +233,16 @@ def picture(means, ground):
     grid = np.meshgrid(xs, ys)
     field = LinearTriInterpolator(Triangulation(*places.T), speeds)(*grid)
     field = np.ma.masked_where(grid[1] < ground.height(grid[0]), field)
-    drawn = axes.pcolormesh(xs * 100, ys * 100, field, cmap="Blues", vmin=0, vmax=math.ceil(speeds.max()), shading="gouraud", rasterized=True)
-    figure.colorbar(drawn, ax=axes, label="wind along x, m/s", pad=.01, aspect=14)
-    back = axes.contour(xs * 100, ys * 100, field, levels=[-.1], colors="crimson", linewidths=1.2, linestyles="solid")
-    axes.clabel(back, fmt="backward", fontsize=8)
-    axes.fill_between(xs * 100, bed * 100, 0, color="#c8a165", lw=0)
+    low, high = min(math.floor(field.min()), -1), math.ceil(speeds.max())
+    backward = np.linspace([0.80, 0.36, 0.30], [0.93, 0.69, 0.63], 32 * -low)[:, :3]   # red up to zero: backward air is seen at once
+    colours = ListedColormap(np.concatenate([backward, plt.get_cmap("Blues")(np.linspace(0.04, 1, 32 * high))[:, :3]]))
+    drawn = axes.pcolormesh(xs * 100, ys * 100, field, cmap=colours, vmin=low, vmax=high, shading="nearest", rasterized=True)
+    figure.colorbar(drawn, ax=axes, label="wind along x, m/s", pad=.01, aspect=11, shrink=.8, ticks=range(low - low % 2, high + 1, 2))
+    axes.fill_between(xs * 100, bed * 100, 0, color=GROUND_COLOUR, lw=0)
     sand = means.sand
-    axes.scatter(sand.x[:, 0] * 100, sand.x[:, 1] * 100, s=2.2, color="#5a3a12", lw=0)
+    axes.scatter(sand.x[:, 0] * 100, sand.x[:, 1] * 100, s=2.2, color=SAND_COLOUR, lw=0)
+    axes.legend(handles=[Patch(color=colours(16)), Line2D([], [], color=SAND_COLOUR, marker="o", ls=""), Patch(color=GROUND_COLOUR)],
+                labels=["backward air", "grains", "fixed sand"], loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
     axes.set(aspect="equal", xlim=(0, ground.length * 100), ylim=(0, TOP * 100), xlabel="x, cm", ylabel="height, cm")
     figure.savefig(PICTURE, dpi=140)
     plt.close(figure)
@@ -242,12 +251,14 @@ def picture(means, ground):
 def plots(means, ground, result):
     """Flux along x and the wind at four places."""
     plt = page.pyplot()
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(9, 7), height_ratios=[1, 1.4])
+    plt.rcParams["font.size"] = 12.5
+    figure, (top, bottom) = plt.subplots(2, 1, figsize=(9, 8), height_ratios=[1, 1.25])
     parts = (np.arange(len(result["flux_g_m_s"])) + 0.5) * PART
     top.errorbar(parts, result["flux_g_m_s"], result["flux_error"], marker="o")
     top.axhline(SATURATED, color="grey", ls="--", label="saturated at u* = 0.5 m/s, Creyssels et al. 2009")
-    top.fill_between(parts, 60 * (ground.height(parts) - ground.bed) / ground.height_of_dune, color="tan", alpha=.3, label="dune, without scale")
-    top.set(xlim=(0, ground.length), ylim=(0, None), xlabel="x, m", ylabel="flux, g/m/s", title=f"means of {means.times[0]:.2f} to {means.times[1]:.2f} s")
+    xs = np.linspace(0, ground.length, 661)
+    top.fill_between(xs, 60 * (ground.height(xs) - ground.bed) / ground.height_of_dune, color="tan", alpha=.3, label="dune, without scale")
+    top.set(xlim=(0, ground.length), ylim=(0, 85), xlabel="x, m", ylabel="flux, g/m/s", title=f"means of {means.times[0]:.2f} to {means.times[1]:.2f} s")
     top.legend()
     for name, place in (("10 cm before the toe", ground.toe - .1), ("crest", ground.crest), ("5 cm behind the slip face", ground.end + .05), ("far behind", ground.length - .06)):
         height, speeds = means.wind(place)
@@ -256,7 +267,7 @@ def plots(means, ground, result):
     bottom.plot(entering[1], entering[0] - ground.bed, "k--", label="enters")
     bottom.axvline(0, color="grey", lw=.7)
     bottom.set(yscale="log", ylim=(1e-3, .26), xlabel="mean wind, m/s", ylabel="height over the ground, m")
-    bottom.legend()
+    bottom.legend(loc="lower center", bbox_to_anchor=(0.47, 1.0), ncols=2, frameon=False)
     figure.tight_layout()
     figure.savefig(PLOTS, dpi=100)
     plt.close(figure)
@@ -268,6 +279,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("/tmp/barchan_tunnel"))
     parser.add_argument("--from", dest="begin", type=float)
     parser.add_argument("--to", dest="end", type=float)
+    parser.add_argument("--draw", action="store_true", help="the pictures alone")
     options = parser.parse_args()
     seeds = range(1, RUNS + 1)
     if options.barchan != "none":
@@ -281,7 +293,10 @@ def main():
         measured = measure(folder, max(end - 0.5, 0) if options.begin is None else options.begin, end)
         runs.append(measured[2])
         shown = shown or measured
-    store.keep(RESULT, {"runs": runs})
+        if options.draw:
+            break
+    if not options.draw:
+        store.keep(RESULT, {"runs": runs})
     picture(*shown[:2])
     plots(*shown)
     for name in runs[0]:

@@ -392,9 +392,11 @@ def draw(results):
     known = {f.name: f for f in families()}
     maps = [(name, pair) for name in results for pair in known[name].maps]
     rows = sum(len(known[n].directions) for n in results)
-    figure = pyplot.figure(figsize=(13, .26 * rows + 4.2 * math.ceil(len(maps) / 3) + 1.6))
-    grid = figure.add_gridspec(1 + math.ceil(len(maps) / 3), 3, height_ratios=[.26 * rows] + [4.0] * math.ceil(len(maps) / 3), hspace=.16, wspace=.32)
-    axes = figure.add_subplot(grid[0, :])
+    across = 2   # maps beside each other
+    below = math.ceil(len(maps) / across)
+    figure = pyplot.figure(figsize=(8, .23 * rows + 3.9 * below + 1))   # 800 pixels: letters of 10 points have 14
+    first, *others = figure.subfigures(2, 1, height_ratios=[.23 * rows + 1, 3.9 * below])
+    axes = first.add_axes((.53, .6 / (.23 * rows + 1), .45, 1 - 1.2 / (.23 * rows + 1)))
     labels, row = [], 0
     for name in results:
         for direction in known[name].directions:
@@ -402,7 +404,7 @@ def draw(results):
                 base = direction.default if direction.default > 0 else max(direction.values) / 10
                 x = math.log10(p["at"][0] / base) if p["at"][0] > 0 else None
                 x = -3.4 if x is None or x < -3.2 else min(x, 3.2)
-                axes.plot(x, row, marker="o" if worst(p["words"]) == "stable" else "s", color=WORDS[worst(p["words"])], markersize=6, linestyle="")
+                axes.plot(x, row, marker="o" if worst(p["words"]) == "stable" else "s", color=WORDS[worst(p["words"])], markersize=5, linestyle="")
             labels.append(f"{name}: {direction.name} ({direction.default:.3g})")
             row += 1
         axes.axhline(row - .5, color="0.8", linewidth=.8)
@@ -410,24 +412,24 @@ def draw(results):
     for factor in (1 / MARGIN, MARGIN):
         axes.axvline(math.log10(factor), color=BLACK, linewidth=.6, linestyle=":")
     axes.set(yticks=range(row), ylim=(row - .5, -.5), xlim=(-3.6, 3.4), xticks=[-3.4, -3, -2, -1, 0, 1, 2, 3],
-             xticklabels=["0", "1/1000", "1/100", "1/10", "default", "10", "100", "1000"],
-             title="Each dot: the worst of the runs at one value, as a factor of the default (its number in brackets; of 0: a tenth of the largest);\n"
-                   f"dotted: the factor {MARGIN}")
-    axes.set_yticklabels(labels, fontsize=7.5)
+             xticklabels=["0", "", "1/100", "1/10", "1", "10", "100", "1000"])
+    first.text(.5, 1 - .1 / (.23 * rows + 1), "Each dot: the worst of the runs at one value, as a factor of the default (its number in\n"
+               f"brackets; of 0: a tenth of the largest); dotted: the factor {MARGIN}", ha="center", va="top", fontsize=11)
+    axes.set_yticklabels(labels, fontsize=9)
     axes.legend(handles=[Line2D([], [], marker="o" if w == "stable" else "s", color=c, linestyle="", label=w) for w, c in WORDS.items()], ncol=6,
-                loc="upper center", bbox_to_anchor=(.5, -.025 * 60 / rows), frameon=False)
+                loc="upper center", bbox_to_anchor=(-.1, -.3 / (.23 * rows)), frameon=False)
     for k, (name, (a, b)) in enumerate(maps):
-        axes = figure.add_subplot(grid[1 + k // 3, k % 3])
+        axes = others[0].add_axes((.1 + .5 * (k % across), (below - k // across - 1) / below + .8 / (3.9 * below), .38, 2.7 / (3.9 * below)))
         points = [p for p in results[name] if p["of"] == [a, b]]
         xs, ys = sorted({p["at"][0] for p in points}), sorted({p["at"][1] for p in points})
         for p in points:
             axes.plot(xs.index(p["at"][0]), ys.index(p["at"][1]), marker="o" if worst(p["words"]) == "stable" else "s",
-                      color=WORDS[worst(p["words"])], markersize=9, linestyle="")
-        axes.set_title(name, fontsize=10)
+                      color=WORDS[worst(p["words"])], markersize=8, linestyle="")
+        axes.set_title(name, fontsize=11)
         axes.set_xlabel(a), axes.set_ylabel(b)
-        axes.set_xticks(range(len(xs)), [f"{v:.3g}" for v in xs], fontsize=7, rotation=60)
-        axes.set_yticks(range(len(ys)), [f"{v:.3g}" for v in ys], fontsize=7)
-    figure.savefig(PICTURE, dpi=90, bbox_inches="tight")
+        axes.set_xticks(range(len(xs)), [f"{v:.3g}" for v in xs], fontsize=9, rotation=60)
+        axes.set_yticks(range(len(ys)), [f"{v:.3g}" for v in ys], fontsize=9)
+    figure.savefig(PICTURE, dpi=100, pil_kwargs={"optimize": True})
 
 
 def tables():
