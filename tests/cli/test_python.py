@@ -428,15 +428,17 @@ class Stepping(Case):
             sim.run()
             self.assertTrue(sim.ended)
             self.assertAlmostEqual(sim.time, 0.06, 12)
-            with self.assertRaisesRegex(barchan.Mistake, "has ended, at t = 0.06 s"):
+            with self.assertRaisesRegex(barchan.UsageError, "has ended, at t = 0.06 s"):
                 sim.step()
             last = sim["velocity", "water"]
         self.assertTrue(barchan.compare(ran, sim.series))
         self.assertEqual((self.folder / "ran/history.csv").read_bytes(), (self.folder / "stepped/history.csv").read_bytes())
         self.assertTrue((sim.series[-1]["velocity", "water"][:, :2] == last.astype(numpy.float32)).all() or
                         numpy.allclose(sim.series[-1]["velocity", "water"][:, :2], last, rtol=1e-6, atol=1e-9))
-        with self.assertRaisesRegex(barchan.Mistake, "is closed"):
-            sim["velocity", "water"]
+        for act in (lambda: sim["velocity", "water"], sim.step, sim.run, lambda: sim.run(call=print), lambda: sim.history, lambda: sim.phases, lambda: sim.controls.update(pull=1)):
+            with self.assertRaisesRegex(barchan.UsageError, "is closed, at t = 0.06 s.*restart="):
+                act()
+        self.assertIs(sim.close(), sim.series)
 
     def test_a_control_acts_from_the_next_step_on(self):
         with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
@@ -462,18 +464,30 @@ class Stepping(Case):
         with self.assertRaisesRegex(barchan.SceneError, "another scene"):  # it would not count: the checkpoint has the control
             barchan.Simulation(PUSHED, out=self.folder / "out", restart="latest", set={"controls.pull": 5, "time.end": 0.1})
 
-    def test_mistakes_have_names(self):
+    def test_a_call_after_each_step(self):
         with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
-            with self.assertRaisesRegex(barchan.UnknownName, 'no control .pul.; did you mean "pull"'):
-                sim.controls["pul"] = 1
-            with self.assertRaisesRegex(barchan.UnknownName, "no phase"):
-                sim["velocity", "air"]
-            with self.assertRaisesRegex(barchan.UnknownName, "no field"):
-                sim["radius", "water"]
-            with self.assertRaisesRegex(barchan.Mistake, "several phases"):
-                sim["velocity"]
-            with self.assertRaisesRegex(barchan.Mistake, "every"):
-                sim.run(call=print)
+            seen = []
+            sim.run(until=0.01, call=lambda s: seen.append((s.steps, s.time)))
+            self.assertEqual([steps for steps, _ in seen], list(range(1, len(seen) + 1)))
+            self.assertTrue(seen[-2][1] < 0.01 * (1 - 1e-12) <= seen[-1][1])
+            sim.run(call=lambda s: s.steps < len(seen) + 3)
+            self.assertEqual(sim.steps, len(seen) + 3)
+
+    def test_wrong_calls_have_names(self):
+        with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
+            self.assertEqual((str(sim.controls), repr(sim.controls)), ("{'pull': 0.0}",) * 2)
+            for act, words in ((lambda: sim.controls["pul"], 'no control "pul"; did you mean "pull"\\?; it has pull'), (lambda: sim["velocity", "air"], 'no phase "air".*it has water, plates'),
+                               (lambda: sim["radius", "water"], 'no field "radius".*it has id, .*velocity')):
+                with self.assertRaisesRegex(barchan.UnknownName, words):
+                    act()
+            for act, words in ((lambda: sim["velocity"], "several phases"), (lambda: sim.run(call=print, every=0), "every: expected"), (lambda: sim.run(every=.1), "every: expected"),
+                               (lambda: sim.run(call=print, every=math.nan), "every: nan"), (lambda: sim.run(until="soon"), "until: 'soon' is no finite number"),
+                               (lambda: sim.run(call=3), "call: expected a function"), (lambda: sim.step(-1), "count: expected"), (lambda: sim.step(1.5), "count: expected"),
+                               (lambda: sim.controls.update(pull=math.nan), "'pull': nan is no finite"), (lambda: sim.controls.pop("pull"), "cannot be deleted")):
+                with self.assertRaisesRegex(ValueError, words) as caught:
+                    act()
+                self.assertIsInstance(caught.exception, barchan.UsageError)
+            self.assertEqual((sim.steps, sim.controls["pull"]), (0, 0))
             self.assertEqual(sorted(sim["id", "water"]), list(sim["id", "water"]))
         with self.assertRaisesRegex(barchan.SceneError, "unknown key"):
             barchan.Simulation({**PUSHED, "colour": 1}, out=self.folder / "none")
