@@ -45,21 +45,25 @@ def about(folder):
     run = run if isinstance(run, dict) else {}
     said = run.get("scene") if isinstance(run.get("scene"), dict) else {}
     gravity = said.get("gravity")
-    gravity = numpy.array(gravity, float) if isinstance(gravity, list) and len(gravity) == 3 and all(isinstance(g, (int, float)) for g in gravity) else None
+    gravity = numpy.array(gravity, float) if isinstance(gravity, list) and len(gravity) == 3 and all(map(_is_finite, gravity)) else None
     fields = run.get("fields") if isinstance(run.get("fields"), dict) else {}
     phases = (run_scene.unchanged(folder, run) or {}).get("phases", {})
     diameters = {name: mean for name, phase in phases.items() if isinstance(phase, dict) and (mean := _mean(phase.get("diameter"))) is not None} if isinstance(phases, dict) else {}
     slab = said.get("slab")
-    if not (isinstance(slab, (int, float)) and slab > 0):
+    if not (_is_finite(slab) and slab > 0):
         slab = max(diameters.values(), default=None)   # the largest mean diameter, as src/models/catalogue.cpp has it
     spacing = said.get("spacing")
-    return About(folder, gravity, {name: "radius" in of for name, of in fields.items() if isinstance(of, list)}, diameters, slab, spacing if isinstance(spacing, (int, float)) else 0.0)
+    return About(folder, gravity, {name: "radius" in of for name, of in fields.items() if isinstance(of, list)}, diameters, slab, spacing if _is_finite(spacing) else 0.0)
+
+
+def _is_finite(value):
+    return isinstance(value, (int, float)) and abs(value) < 1e300
 
 
 def _mean(diameter):
     """The mean diameter (m) that `diameter` of a phase of a scene gives; of a sieve curve without a mean that which half of the mass passes. None for what is no number."""
     mean = diameter.get("mean") if isinstance(diameter, dict) else diameter
-    if isinstance(mean, (int, float)) and mean > 0:
+    if _is_finite(mean) and mean > 0:
         return float(mean)
     try:
         corners = diameter["sieve"]
@@ -75,6 +79,7 @@ def bed(frame, phase, width=None, up=None, known=None):
     In slices one diameter high, over which each grain is spread by its own height, the bed of a column goes from its lowest full slice upwards until two slices follow each other that
     are less than a third as full as the bed; the surface is where the last half full slice is passed. What is higher is in flight. Where less than two slices are full, the height is the mean top of
     the grains that lie there: those at most one and a half diameters above the ground that move up or down slower than after a fall of a quarter of a diameter.
+    A thick bed without ground below, over the outlet of a hopper, counts where the beds next to it reach its height.
 
     Throws SceneError where diameters differ and the frame has no field `radius`, UsageError where nothing says what is up, UnknownName for a phase that is not there."""
     known = about(frame.path.parent if frame.path else ".") if known is None else known
@@ -108,15 +113,24 @@ def bed(frame, phase, width=None, up=None, known=None):
     height, base, tops = numpy.full(columns, numpy.nan), y - radius, y + radius
     order = numpy.argsort(column, kind="stable")
     begins = numpy.searchsorted(column[order], numpy.arange(columns + 1))
+    hanging = {}   # thick beds without ground below: over the outlet of a hopper
     for c in numpy.flatnonzero(numpy.isfinite(bottom)):
         first, last = _run(filled[c], full)
+        surface = _surface(filled[c], last - 1, 0.5 * full) * diameter + bottom[c] if last - first > 1 else numpy.nan
         if last - first > 1 and under.reaches(c, bottom[c] + first * diameter, width, last - first >= THICK):   # `width`: a slope of 45 degrees fills its lowest slices in part
-            row, k, half = filled[c], last - 1, 0.5 * full
-            height[c] = bottom[c] + diameter * (k + 0.5 + (row[k] - half) / (row[k] - (row[last] if last < len(row) else 0.0)))
+            height[c] = surface
         else:
             lying = order[begins[c]:begins[c + 1]]
             lying = lying[slow[lying] & under.reaches(c, base[lying])]
             height[c] = tops[lying].mean() if len(lying) else numpy.nan
+            if last - first >= THICK and not len(lying):
+                hanging[c] = (bottom[c] + first * diameter, surface)
+    held = list(hanging)
+    while held:   # those that the beds next to them hold, from the sides inwards
+        found = [c for c in held if any(0 <= k < columns and bottom[k] < hanging[c][1] and hanging[c][0] < height[k] for k in (c - 1, c + 1))]
+        for c in found:
+            height[c] = hanging[c][1]
+        held = [c for c in held if c not in found] if found else []
     solid = numpy.bincount(column, volume, columns) / (width * deep)
     return Bed(low + (numpy.arange(columns) + 0.5) * width, height, solid, width, float(volume.sum()))
 
@@ -197,6 +211,12 @@ def _run(row, full):
     ends = numpy.flatnonzero(weak[:-1] & weak[1:])
     ends = ends[ends > half[0]]
     return int(half[0]), int(half[half < ends[0]][-1] if len(ends) else half[-1]) + 1
+
+
+def _surface(row, last, half):
+    """Where, in slices, the fullness passes `half` above the middle of the slice `last`."""
+    above = row[last + 1] if last + 1 < len(row) else 0.0
+    return last + 0.5 + (row[last] - half) / (row[last] - above)
 
 
 class _Ground:

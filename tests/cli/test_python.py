@@ -308,6 +308,16 @@ class Beds(Case):
             stream = numpy.column_stack([.02 + .01 * some.random(grains), .015 + .2 * some.random(grains), numpy.zeros(grains)])
             self.assertTrue(numpy.allclose(self.frame([*flat, *stream]).bed("sand").height, alone, atol=.2 * r))
 
+    def test_a_bed_over_an_outlet(self):
+        """Grains over the outlet of a hopper, with nothing below them, have the height of the neighbouring columns."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")   # an instrument starts later
+            ran = barchan.run(ROOT / "scenes/hopper_belt.toml", out=self.folder / "out", set={"time.end": 1e-4, "output.every": 1e-4, "output.fields": ["radius"]}, threads=1)
+        bed = ran[0].bed("sand")
+        there = bed.solid > 0
+        self.assertTrue((abs(bed.height[there] - 0.155) < 2e-3).all(), bed.height[there])
+        self.assertTrue(numpy.isnan(bed.height[~there]).all())
+
     def test_a_layer_of_one_grain(self):
         """Its height is the top of the grains: dense, with gaps, on a slope, and next to a deep bed."""
         r = 5e-4

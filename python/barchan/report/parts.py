@@ -100,7 +100,7 @@ QUESTIONS = (
 
 def question(message):
     """A link to the entry of docs/faq.md for a message of the program, "" where there is no such entry. The page of a package without docs/ has the name of the entry alone."""
-    heading = next((heading for begin, heading in QUESTIONS if re.match(begin, message)), None)
+    heading = next((heading for begin, heading in QUESTIONS if re.match(begin, message[:2000])), None)  # of a stranger's text no more
     if heading is None:
         return ""
     anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
@@ -187,7 +187,7 @@ def halves(times, values):
 def judged(values):
     """SETTLED, CHANGES or SHORT for rows (n,) at equal distances in time.
 
-    CHANGES: the means of the two halves differ by more than two standard errors, of which each is s sqrt(tau/n) of its half, with the standard deviation s about its own mean and the
+    CHANGES: the means of the two halves differ by more than STEADY of the mean and two standard errors, of which each is s sqrt(tau/n) of its half, with the standard deviation s about its own mean and the
     integrated autocorrelation time tau (`autocorrelation_time`). SHORT: there are fewer than FEWEST_TIMES such times, so that error is not to be trusted; the values change all the same
     if the means of the four quarters only rise or only fall. SETTLED: all else, and values that stay within STEADY of their mean."""
     first, second = numpy.array_split(values, 2)
