@@ -16,7 +16,7 @@ import typing
 if typing.TYPE_CHECKING:  # for editors; __getattr__ does it
     from . import scene, shapes  # noqa: F401
     from .errors import (BarchanError, Breakdown, Mistake, NoSeries, OutputError, PackageMissing, ProgramNotFound, SceneError, Stopped, UnknownName,  # noqa: F401
-                         Unreadable)
+                         Unreadable, UsageError)
     from .frame import Frame, Grid  # noqa: F401
     from .program import Difference, RunWarning, compare, find_program, generate, plan, run, schema, version  # noqa: F401
     from .series import Series, open  # noqa: F401
@@ -25,7 +25,7 @@ if typing.TYPE_CHECKING:  # for editors; __getattr__ does it
     from .tables import Table, table  # noqa: F401
 
 _NAMES = {
-    "errors": "BarchanError Breakdown Mistake NoSeries OutputError PackageMissing ProgramNotFound SceneError Stopped UnknownName Unreadable",
+    "errors": "BarchanError Breakdown Mistake NoSeries OutputError PackageMissing ProgramNotFound SceneError Stopped UnknownName Unreadable UsageError",
     "frame": "Frame Grid",
     "program": "Difference RunWarning compare find_program generate plan run schema version",
     "series": "Series open",

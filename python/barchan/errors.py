@@ -21,6 +21,10 @@ class SceneError(BarchanError, ValueError):
     status = 2
 
 
+class UsageError(BarchanError, ValueError):
+    """A call that is wrong, or that comes at the wrong time: the message says what was expected."""
+
+
 class Breakdown(BarchanError, RuntimeError):
     """Status 3: the run broke down. `series`: the good frames (barchan.Series), None if there are none."""
     status = 3

@@ -103,8 +103,8 @@ class Frame:
         self.arrays = {name: values[chosen] for name, values in self.arrays.items()}
         return self
 
-    def bed(self, phase, width=None, up="y"):
-        """The surface of the bed of a phase of spheres along x, and how much lies there (barchan.bed.Bed)."""
+    def bed(self, phase, width=None, up=None):
+        """The surface of the bed of a phase of spheres along x, and how much lies there (barchan.bed.Bed, with the arguments of barchan.bed.bed). Throws SceneError, UsageError."""
         from .bed import bed
         return bed(self, phase, width, up)
 

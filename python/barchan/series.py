@@ -122,13 +122,13 @@ class Series:
             raise NoSeries(f"{self.pvd} lists no frame yet")
         return pandas.concat([frame.to_pandas() for frame in frames], keys=[frame.time for frame in frames], names=["time"]).swaplevel().sort_index()
 
-    def bed(self, phase, width=None, every=1):
-        """The surface of the bed of a phase of spheres as one pandas.DataFrame: a row for each time (s) and place x (m), with height and solid (m) as Frame.bed() has them; against
-        gravity, as run.json says it."""
+    def bed(self, phase, width=None, every=1, up=None):
+        """The surface of the bed of a phase of spheres as one pandas.DataFrame: a row for each time (s) and place x (m), with height and solid (m) and the arguments of Frame.bed().
+        Throws SceneError, UsageError."""
         pandas = package("pandas", "python3-pandas", "bed()")
-        gravity = self.run.get("scene", {}).get("gravity") or [0, 0, 0]
-        up = "z" if abs(gravity[2]) > max(abs(gravity[0]), abs(gravity[1])) else "y"
-        beds = [(frame.time, frame.bed(phase, width, up)) for frame in self[::every]]
+        from .bed import about, bed
+        known = about(self.folder)
+        beds = [(frame.time, bed(frame, phase, width, up, known)) for frame in self[::every]]
         if not beds:
             raise NoSeries(f"{self.pvd} lists no frame yet")
         tables = [pandas.DataFrame({"height": bed.height, "solid": bed.solid}, index=pandas.Index(bed.x, name="x")) for _, bed in beds]

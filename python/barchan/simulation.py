@@ -1,6 +1,7 @@
 """Steps a run from Python: reads fields between steps, changes the controls of the scene, stops."""
 
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -9,12 +10,12 @@ from collections.abc import MutableMapping
 
 import numpy
 
-from .errors import Breakdown, Mistake, ProgramNotFound, SceneError, Stopped, UnknownName, error_of, nearest
+from .errors import Breakdown, Mistake, ProgramNotFound, SceneError, Stopped, UnknownName, UsageError, error_of
 from .program import _SceneFile, _series, _warn, _warnings_of, find_program, settings
 
 
 class Controls(MutableMapping):
-    """The numbers of [controls] by their names. Setting one acts from the next step on."""
+    """The numbers of [controls] by their names. Setting one acts from the next step on. Throws UnknownName, which lists the controls, and UsageError for what is no finite number."""
 
     def __init__(self, simulation, values):
         self._simulation, self._values = simulation, values
@@ -23,11 +24,14 @@ class Controls(MutableMapping):
         return self._values[self._known(name)]
 
     def __setitem__(self, name, value):
-        self._simulation._ask({"do": "control", "name": self._known(name), "value": float(value)})
+        self._simulation._ask({"do": "control", "name": self._known(name), "value": _finite(value, f"the control {name!r}")})
         self._values[name] = float(value)
 
     def __delitem__(self, name):
-        raise Mistake("a control of the scene stays")
+        raise UsageError(f"the control {self._known(name)!r} cannot be deleted: it belongs to the scene")
+
+    def __repr__(self):
+        return repr(dict(self._values))
 
     def __iter__(self):
         return iter(self._values)
@@ -37,8 +41,19 @@ class Controls(MutableMapping):
 
     def _known(self, name):
         if name not in self._values:
-            raise UnknownName(f"the scene has no control {name!r}{nearest(name, list(self._values))}")
+            raise UnknownName.of("control", name, self._values, "the scene")
         return name
+
+
+def _finite(value, what):
+    """The value as a float. Throws UsageError for what is no finite number."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise UsageError(f"{what}: {value!r} is no finite number")
+    return number
 
 
 class Simulation:
@@ -54,7 +69,7 @@ class Simulation:
     """
 
     def __init__(self, scene, out=None, set=None, threads=None, restart=None, instructions=None, name="scene", program=None):
-        """Starts it, and waits before the first step. Arguments as of `barchan.run`. Throws SceneError, Mistake, ProgramNotFound."""
+        """Starts it, and waits before the first step. Arguments as of `barchan.run`. Throws SceneError, Mistake, ProgramNotFound; afterwards wrong calls throw UsageError or UnknownName."""
         out = None if out is None else pathlib.Path(out)
         self._file = _SceneFile(scene, out or pathlib.Path("out") / name, name)
         self.out = out or pathlib.Path("out") / self._file.path.stem
@@ -93,31 +108,36 @@ class Simulation:
         phases = self._state["phases"]
         if phase is None:
             if len(phases) > 1:
-                raise Mistake(f"the scene has several phases: expected sim[{field!r}, PHASE] with one of {', '.join(phases)}")
+                raise UsageError(f"the scene has several phases: expected sim[{field!r}, PHASE] with one of {', '.join(phases)}")
             phase = next(iter(phases))
         if phase not in phases:
-            raise UnknownName(f"the scene has no phase {phase!r}{nearest(phase, list(phases))}")
-        if field not in phases[phase]["fields"]:
-            raise UnknownName(f"the phase {phase!r} has no field {field!r}{nearest(field, phases[phase]['fields'])}")
+            raise UnknownName.of("phase", phase, phases, "the scene")
+        if field != "id" and field not in phases[phase]["fields"]:
+            raise UnknownName.of("field", field, ["id", *(name for name in phases[phase]["fields"] if name != "id")], f"the phase {phase!r}")
         heading = self._ask({"do": "array", "phase": phase, "field": field})
         values = numpy.frombuffer(self._answers.read(heading["bytes"]), dtype=heading["type"])
         return values if heading["columns"] == 1 else values.reshape(heading["rows"], heading["columns"])
 
     def step(self, count=1):
-        """Makes `count` steps, fewer where the scene ends."""
+        """Makes `count` steps, fewer where the scene ends. Throws UsageError after the end of the scene and after close()."""
+        if not _finite(count, "count") >= 0 or int(count) != count:
+            raise UsageError(f"count: expected a whole number of steps, 0 or more, found {count!r}")
         self._go({"do": "steps", "count": int(count)})
 
     def run(self, until=None, every=None, call=None):
-        """Steps to the time `until` (s; the end of the scene), to the end of the step in which it lies. Every `every` seconds it calls `call(self)`, and stops when that
-        returns False."""
-        until = float("inf") if until is None else float(until)
+        """Steps to the time `until` (s; default: the end of the scene), to the end of the step in which it lies. With `call` it calls `call(self)` every `every` seconds of the run, or after
+        each step without `every`, and stops when that returns False. Throws UsageError for wrong arguments, after the end of the scene and after close()."""
+        until = 1e300 if until is None or until == math.inf else _finite(until, "until")
+        if call is not None and not callable(call):
+            raise UsageError(f"call: expected a function of the simulation, found {call!r}")
+        if every is not None and (call is None or not _finite(every, "every") > 0):
+            raise UsageError("every: expected the seconds of the run between two calls, above 0, and a function `call`")
+        self._open()
         if call is None:
-            return self._go({"do": "until", "time": min(until, 1e300)})
-        if not every or not every > 0:
-            raise Mistake("expected every > 0, the seconds of the run between two calls")
-        k = int(self.time / every) + 1
+            return self._go({"do": "until", "time": until})
+        k = int(self.time / every) + 1 if every else 0
         while not self.ended and self.time < until * (1 - 1e-12):
-            self._go({"do": "until", "time": min(k * every, until)})
+            self._go({"do": "until", "time": min(k * every, until)} if every else {"do": "steps", "count": 1})
             k += 1
             if call(self) is False:
                 return None
@@ -137,8 +157,9 @@ class Simulation:
         self.close()
 
     def _go(self, request):
+        self._open()
         if self.ended:
-            raise Mistake(f"the run has ended, at t = {self.time:g} s: expected a scene with a later time.end")
+            raise UsageError(f"the run has ended, at t = {self.time:g} s: expected a scene with a later time.end")
         self._state.update(self._ask(request))
         self.time, self.steps, self.ended = self._state["time"], self._state["steps"], self._state["ended"]
 
@@ -146,9 +167,13 @@ class Simulation:
         self._state = self._ask({"do": "state"})
         self.time, self.steps, self.ended = self._state["time"], self._state["steps"], self._state["ended"]
 
-    def _ask(self, request):
+    def _open(self):
+        """Throws UsageError after close() and after the end of the program."""
         if self._process.returncode is not None:
-            raise Mistake("the simulation is closed: expected a new one")
+            raise UsageError(f"the simulation is closed, at t = {self.time:g} s: its frames are in `series`; to step on, start barchan.Simulation(..., restart=\"latest\")")
+
+    def _ask(self, request):
+        self._open()
         try:
             os.write(self._requests, (json.dumps(request) + "\n").encode())
         except BrokenPipeError:

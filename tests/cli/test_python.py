@@ -26,6 +26,7 @@ ROOT = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else pathlib.Path(__file__)
 sys.path.insert(0, str(ROOT / "python"))
 os.environ["BARCHAN_PROGRAM"] = str(PROGRAM)
 import barchan  # noqa: E402
+from barchan.frame import write_particles  # noqa: E402
 
 BALLS = {  # two discs that fall on a floor
     "title": 'Two "balls"', "spacing": 0.02, "domain": {"size": [0.4, 0.4], "gravity": [0, -9.81]},
@@ -190,7 +191,7 @@ class Reading(Case):
         places = numpy.column_stack([x[chosen], y[chosen], 0 * x[chosen]])
         places = numpy.concatenate([places, [[0.1, 0.09, 0]]])
         file = self.folder / "slope.vtp"
-        barchan.frame.write_particles(file, places, "sand", radius=numpy.full(len(places), r))
+        write_particles(file, places, "sand", radius=numpy.full(len(places), r))
         bed = barchan.Frame(file).bed("sand", width=8e-3)
         self.assertAlmostEqual(bed.volume / (len(places) * 4 / 3 * numpy.pi * r ** 3 / (2 * r)), 1, places=12)
         self.assertAlmostEqual(bed.solid.sum() * bed.width / bed.volume, 1, places=12)
@@ -218,6 +219,118 @@ class Reading(Case):
         self.assertEqual(one["velocity_y"].iloc[-1], first["velocity"][0, 1])
         self.assertEqual(len(series.tracks("ball", every=2).loc[first["id"][0]]), (len(series) + 1) // 2)
         self.assertEqual(len(series.tracks()), sum(len(frame) for frame in series))
+
+
+class Beds(Case):
+    """Beds of grains: what is up, radii, the slab of 2D, what lies and what falls."""
+
+    SAND = {"kind": "grains", "density": 2000, "diameter": {"mean": 0.01, "spread": 0.4}, "stiffness": 1e5, "restitution": 0.3, "friction": 0.5}
+    POURED = {  # two phases of grains of different sizes; one is poured
+        "spacing": 0.01, "dimensions": 2, "domain": {"size": [0.4, 0.6], "gravity": [0, -9.81], "open": ["top"]},
+        "phases": {"sand": SAND, "floor": {"kind": "wall"}},
+        "interactions": {"sand-floor": {"law": "linear"}, "sand-sand": {"law": "linear"}},
+        "fill": [{"phase": "floor", "shape": {"sides": ["bottom", "left", "right"]}}, {"phase": "sand", "shape": {"box": {"min": [0.02, 0.01], "max": [0.38, 0.1]}}}],
+        "influx": [{"phase": "sand", "box": {"min": [0.15, 0.5], "max": [0.25, 0.58]}, "flux": 20}],
+        "time": {"end": 0.3, "largest-speed": 5}, "output": {"every": 0.1, "history-every": 0.1, "fields": ["radius"]},
+    }
+
+    def frame(self, x, r=5e-4, **arrays):
+        file = self.folder / "made.vtp"
+        write_particles(file, numpy.asarray(x, float), "sand", **({"radius": numpy.full(len(x), r)} | arrays))
+        return barchan.Frame(file)
+
+    def test_up_is_against_gravity(self):
+        """A flat bed in 3D, 3 diameters high along z, in a box 20 long along y."""
+        d = 1e-3
+        x = numpy.stack(numpy.meshgrid(*(d * (.5 + numpy.arange(n)) for n in (20, 20, 3))), -1).reshape(-1, 3)
+        frame = self.frame(x)
+        with self.assertRaisesRegex(barchan.UsageError, 'no run.json.*up="y" or up="z"'):
+            frame.bed("sand")
+        self.assertTrue(numpy.allclose(frame.bed("sand", up="z").height, 3 * d, atol=.1 * d))
+        for gravity, words in (([-9.81, 0, 0], "gravity is along -x"), ([0, 9.81, 0], r"gravity is along \+y")):
+            (self.folder / "run.json").write_text(json.dumps({"scene": {"gravity": gravity}}))
+            with self.assertRaisesRegex(barchan.UsageError, words):
+                frame.bed("sand")
+        (self.folder / "run.json").write_text(json.dumps({"scene": {"gravity": [1, 0, -9.81]}}))
+        self.assertTrue(numpy.allclose(frame.bed("sand").height, 3 * d, atol=.1 * d))
+        self.assertTrue((frame.bed("sand", up="y").height > 15 * d).all())
+        with self.assertRaisesRegex(barchan.UsageError, "up='x': expected"):
+            frame.bed("sand", up="x")
+
+    def test_radii_that_are_not_in_the_frame(self):
+        scene = {**self.POURED, "time": {**self.POURED["time"], "end": 1e-3}, "output": {"every": 1e-3}}
+        ran = barchan.run(scene, out=self.folder / "out", name="poured", threads=1)
+        with self.assertRaisesRegex(barchan.SceneError, r'diameters of "sand" differ.*output.fields = \["radius"\]'):
+            ran[-1].bed("sand")
+        # a frame without run.json: its bed is fuller than equal spheres can be
+        packed = numpy.stack(numpy.meshgrid(.01 * numpy.arange(40), .01 * numpy.arange(10), [0]), -1).reshape(-1, 3)
+        with self.assertRaisesRegex(barchan.SceneError, r'more than spheres of one diameter.*output.fields = \["radius"\]'):
+            self.frame(packed, radius=numpy.zeros(len(packed)), smoothing_length=numpy.full(len(packed), .007)).bed("sand")
+        self.assertGreater(self.frame(packed, radius=numpy.zeros(len(packed)), smoothing_length=numpy.full(len(packed), .005)).bed("sand").volume, 0)  # one diameter, next to a phase with sizes
+
+    def test_volume_and_height_of_poured_grains(self):
+        """The mass is that of the history, with the scene and without; the height is that of the bed and not of the stream."""
+        ran = barchan.run(self.POURED, out=self.folder / "out", name="poured", threads=1)
+        mass = ran.history["sand_mass"]
+        for k, frame in enumerate(ran):
+            self.assertAlmostEqual(frame.bed("sand").volume * 2000 / mass[k], 1, delta=1e-9)
+        last = ran[-1]
+        self.assertGreater(last["position", "sand"][:, 1].max(), 0.4)
+        bed = last.bed("sand")
+        self.assertTrue(((bed.height > 0.025) & (bed.height < 0.09)).all(), bed.height)
+        (ran.folder / "poured.toml").unlink()
+        self.assertAlmostEqual(last.bed("sand").volume * 2000 / mass[-1], 1, delta=1e-9)  # of the mass in history.csv
+        (ran.folder / "history.csv").unlink()
+        self.assertAlmostEqual(last.bed("sand").volume * 2000 / mass[-1], 1, delta=.05)   # of the mean of the frame's diameters
+
+    def test_the_slab_is_that_of_the_largest_grains(self):
+        """A phase of small grains lies in the slab of the large ones."""
+        phases = {"big": {**self.SAND, "diameter": 0.02}, "small": {**self.SAND, "diameter": {"mean": 0.008, "log-normal": 0.2}}}
+        scene = {**self.POURED, "phases": {**phases, "floor": {"kind": "wall"}}, "interactions": {f"{a}-{b}": {"law": "linear"} for a in phases for b in (*phases, "floor") if a <= b or b == "floor"},
+                 "time": {"end": 1e-3, "largest-speed": 2}, "output": {"every": 1e-3, "fields": ["radius"]},
+                 "fill": [self.POURED["fill"][0], {"phase": "big", "shape": {"points": [[0.1, 0.3]]}}, {"phase": "small", "shape": {"box": {"min": [0.02, 0.01], "max": [0.38, 0.1]}}}]}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")   # small grains fill less of the slab
+            ran = barchan.run({k: v for k, v in scene.items() if k != "influx"}, out=self.folder / "out", name="two", threads=1)
+        energy, small = ran.history["small_kinetic_energy"][-1], ran[-1].of("small")
+        fast = (small["velocity"] ** 2).sum(axis=1)
+        self.assertLess(numpy.ptp(fast), 1e-6 * fast.max())   # all fall alike, so the mass follows from the energy
+        self.assertAlmostEqual(ran[-1].bed("small").volume * 2000 / (2 * energy / fast.mean()), 1, delta=.01)
+
+    def test_a_stream_is_not_the_bed(self):
+        """A bed of ten rows under a dilute stream: the height is that without the stream."""
+        r, some = 5e-4, numpy.random.default_rng(1)
+        x, y = numpy.meshgrid(numpy.arange(60) * 2 * r, numpy.arange(12) * 3 ** .5 * r)
+        x[1::2] += r
+        flat = numpy.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+        alone = self.frame(flat).bed("sand").height
+        for grains in (50, 250, 500):
+            stream = numpy.column_stack([.02 + .01 * some.random(grains), .015 + .2 * some.random(grains), numpy.zeros(grains)])
+            self.assertTrue(numpy.allclose(self.frame([*flat, *stream]).bed("sand").height, alone, atol=.2 * r))
+
+    def test_a_bed_over_an_outlet(self):
+        """Grains over the outlet of a hopper, with nothing below them, have the height of the neighbouring columns."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")   # an instrument starts later
+            ran = barchan.run(ROOT / "scenes/hopper_belt.toml", out=self.folder / "out", set={"time.end": 1e-4, "output.every": 1e-4, "output.fields": ["radius"]}, threads=1)
+        bed = ran[0].bed("sand")
+        there = bed.solid > 0
+        self.assertTrue((abs(bed.height[there] - 0.155) < 2e-3).all(), bed.height[there])
+        self.assertTrue(numpy.isnan(bed.height[~there]).all())
+
+    def test_a_layer_of_one_grain(self):
+        """Its height is the top of the grains: dense, with gaps, on a slope, and next to a deep bed."""
+        r = 5e-4
+        x = numpy.arange(100) * 2 * r
+        for step, slope in ((1, 0), (3, 0), (1, .3), (1, .5)):
+            places = numpy.column_stack([x[::step], slope * x[::step], 0 * x[::step]])
+            bed = self.frame(places).bed("sand")
+            self.assertTrue((abs(bed.height - slope * bed.x - r) < 1.5 * r).all(), (step, slope, bed.height))
+        a, b = numpy.meshgrid(numpy.arange(60) * 2 * r, numpy.arange(12) * 3 ** .5 * r)
+        deep = numpy.column_stack([a.ravel(), b.ravel(), 0 * a.ravel()])
+        layer = numpy.column_stack([.06 + x[:40], 0 * x[:40] + .7 * r, 0 * x[:40]])
+        height = self.frame([*deep, *layer]).bed("sand").height
+        self.assertTrue((abs(height[17:] - 1.7 * r) < .5 * r).all(), height)
 
 
 class Running(Case):
@@ -325,15 +438,17 @@ class Stepping(Case):
             sim.run()
             self.assertTrue(sim.ended)
             self.assertAlmostEqual(sim.time, 0.06, 12)
-            with self.assertRaisesRegex(barchan.Mistake, "has ended, at t = 0.06 s"):
+            with self.assertRaisesRegex(barchan.UsageError, "has ended, at t = 0.06 s"):
                 sim.step()
             last = sim["velocity", "water"]
         self.assertTrue(barchan.compare(ran, sim.series))
         self.assertEqual((self.folder / "ran/history.csv").read_bytes(), (self.folder / "stepped/history.csv").read_bytes())
         self.assertTrue((sim.series[-1]["velocity", "water"][:, :2] == last.astype(numpy.float32)).all() or
                         numpy.allclose(sim.series[-1]["velocity", "water"][:, :2], last, rtol=1e-6, atol=1e-9))
-        with self.assertRaisesRegex(barchan.Mistake, "is closed"):
-            sim["velocity", "water"]
+        for act in (lambda: sim["velocity", "water"], sim.step, sim.run, lambda: sim.run(call=print), lambda: sim.history, lambda: sim.phases, lambda: sim.controls.update(pull=1)):
+            with self.assertRaisesRegex(barchan.UsageError, "is closed, at t = 0.06 s.*restart="):
+                act()
+        self.assertIs(sim.close(), sim.series)
 
     def test_a_control_acts_from_the_next_step_on(self):
         with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
@@ -359,18 +474,30 @@ class Stepping(Case):
         with self.assertRaisesRegex(barchan.SceneError, "another scene"):  # it would not count: the checkpoint has the control
             barchan.Simulation(PUSHED, out=self.folder / "out", restart="latest", set={"controls.pull": 5, "time.end": 0.1})
 
-    def test_mistakes_have_names(self):
+    def test_a_call_after_each_step(self):
         with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
-            with self.assertRaisesRegex(barchan.UnknownName, 'no control .pul.; did you mean "pull"'):
-                sim.controls["pul"] = 1
-            with self.assertRaisesRegex(barchan.UnknownName, "no phase"):
-                sim["velocity", "air"]
-            with self.assertRaisesRegex(barchan.UnknownName, "no field"):
-                sim["radius", "water"]
-            with self.assertRaisesRegex(barchan.Mistake, "several phases"):
-                sim["velocity"]
-            with self.assertRaisesRegex(barchan.Mistake, "every"):
-                sim.run(call=print)
+            seen = []
+            sim.run(until=0.01, call=lambda s: seen.append((s.steps, s.time)))
+            self.assertEqual([steps for steps, _ in seen], list(range(1, len(seen) + 1)))
+            self.assertTrue(seen[-2][1] < 0.01 * (1 - 1e-12) <= seen[-1][1])
+            sim.run(call=lambda s: s.steps < len(seen) + 3)
+            self.assertEqual(sim.steps, len(seen) + 3)
+
+    def test_wrong_calls_have_names(self):
+        with barchan.Simulation(PUSHED, out=self.folder / "out", threads=1) as sim:
+            self.assertEqual((str(sim.controls), repr(sim.controls)), ("{'pull': 0.0}",) * 2)
+            for act, words in ((lambda: sim.controls["pul"], 'no control "pul"; did you mean "pull"\\?; it has pull'), (lambda: sim["velocity", "air"], 'no phase "air".*it has water, plates'),
+                               (lambda: sim["radius", "water"], 'no field "radius".*it has id, .*velocity')):
+                with self.assertRaisesRegex(barchan.UnknownName, words):
+                    act()
+            for act, words in ((lambda: sim["velocity"], "several phases"), (lambda: sim.run(call=print, every=0), "every: expected"), (lambda: sim.run(every=.1), "every: expected"),
+                               (lambda: sim.run(call=print, every=math.nan), "every: nan"), (lambda: sim.run(until="soon"), "until: 'soon' is no finite number"),
+                               (lambda: sim.run(call=3), "call: expected a function"), (lambda: sim.step(-1), "count: expected"), (lambda: sim.step(1.5), "count: expected"),
+                               (lambda: sim.controls.update(pull=math.nan), "'pull': nan is no finite"), (lambda: sim.controls.pop("pull"), "cannot be deleted")):
+                with self.assertRaisesRegex(ValueError, words) as caught:
+                    act()
+                self.assertIsInstance(caught.exception, barchan.UsageError)
+            self.assertEqual((sim.steps, sim.controls["pull"]), (0, 0))
             self.assertEqual(sorted(sim["id", "water"]), list(sim["id", "water"]))
         with self.assertRaisesRegex(barchan.SceneError, "unknown key"):
             barchan.Simulation({**PUSHED, "colour": 1}, out=self.folder / "none")

@@ -99,7 +99,8 @@ class Reports(unittest.TestCase):
         self.assertEqual((page.open, page.wrong), ([], []))
         self.assertEqual(len(page.ids), len(set(page.ids)))
         for source in page.sources:
-            self.assertRegex(source, r"^(data:(image/(png|jpeg)|video/mp4);base64,|#)", source[:80])
+            if not source.startswith((ROOT / "docs/faq.md").as_uri() + "#"):
+                self.assertRegex(source, r"^(data:(image/(png|jpeg)|video/mp4);base64,|#)", source[:80])
         references = re.findall(r"url\(([^)]*)\)|@import([^;]*)", re.sub(r"<pre>.*?</pre>", "", text, flags=re.S))
         self.assertTrue(all(where.startswith("#") and not imported for where, imported in references))
         for each in [s[1:] for s in page.sources if s.startswith("#")] + [where[1:] for where, _ in references]:
@@ -155,6 +156,32 @@ class Reports(unittest.TestCase):
         self.assertIn("2 warnings of the program", page.text[:800])
         self.assertRegex(page.text, "The run went back 2 times.* 900 0.1 768 0.5 it was too fast")
         self.assertIn("The run was stopped by a signal at 0.02 s of 0.02 s, after", page.text)
+
+    def test_a_warning_leads_to_its_question(self):
+        faq, asked = (ROOT / "docs/faq.md").read_text(), (
+            ('interactions.a-b: under the cubic spline particles pair with more than 2.4 spacings', "under-the-cubic-spline-particles-pair"),
+            ('9 particles of "water", 0.5 % of its mass at the start, left through the open side (top)', "particles-left-through-the-open-side"),
+            ('"air" was pulled with 1.4 Pa, a mean over the last tenth', "the-wind-pulls-much-harder-than-the-scene-says"),
+            ('the ground took 1.4 Pa from "air"', "the-ground-takes-more-than-the-wind-that-the-scene-states"),
+            ('the flux of "sand" still grows at the outflow', "the-ground-takes-more-than-the-wind-that-the-scene-states"),
+            ("the ground is dry", None))
+        self.copy("asked", warnings=[warning for warning, _ in asked])
+        page = self.report("asked", "--no-plan")
+        links = [source.split("#")[1] for source in page.sources if source.startswith("file:")]
+        self.assertEqual(links, [anchor for _, anchor in asked if anchor])
+        for _, heading in parts.QUESTIONS:
+            self.assertIn(f"\n## {heading}\n", faq)
+        self.assertEqual([s for s in self.report("broken", "--no-plan").sources if s.startswith("file:")],
+                         [(ROOT / "docs/faq.md").as_uri() + "#a-body-passed-a-wall-or-a-particle-left-the-domain"])
+
+    def test_how_to_cite(self):
+        run = json.loads((self.folder / "hop/run.json").read_text())
+        text = self.report("hop", "--no-plan").text
+        title = re.search(r'^title: "(.*)"$', (ROOT / "CITATION.cff").read_text(), re.M)[1]
+        self.assertIn(f"The Barchan developers: {title}, version {run['version']} (commit {run['commit']}). Method: A. Halik, R. Imin, M. Geni, A. Jin, Y. Mou (2015): Numerical Modeling", text)
+        from unittest import mock
+        with mock.patch.object(parts, "shared", lambda name: None):   # an installation without documents
+            self.assertIn("The Barchan developers: Barchan, version", self.report("hop", "--no-plan").text)
 
     def test_damage_is_said_and_the_rest_is_shown(self):
         folder = self.folder / "damaged"
@@ -267,21 +294,52 @@ class Parts(unittest.TestCase):
         history = Table({"time [s]": t, "a_force_x [N]": drag, "a_force_y [N]": lift, "a_flux [kg/s]": t, "b_flux [kg/s]": 1e-14 * t})
         scene = {"dimensions": 2, "phases": {"water": {"kind": "fluid", "density": 2.}, "a": {"kind": "wall"}}}
         g = gather.Gathered(pathlib.Path("."), "n", {}, state="ended", scene=scene, history=history, plan={"dimensions": 2})
-        mean, deviation, is_settled = parts.halves(t, drag)
+        mean, deviation, state = parts.halves(t, drag)
         self.assertAlmostEqual(mean, .7, places=3)
         self.assertAlmostEqual(deviation, .01 / 2 ** .5, places=3)
-        self.assertTrue(is_settled)
-        self.assertFalse(parts.halves(t, t)[2])
+        self.assertEqual(state, "settled")
         self.assertAlmostEqual(parts.strouhal(t, lift, 1., 1.), .165, places=4)
         self.assertIsNone(parts.strouhal(t, numpy.random.default_rng(1).normal(size=len(t)), 1., 1.))
         page = parts.means(g, (1., 1.))
         self.assertIn("<td class=\"n\">0.165</td>", page)
         self.assertEqual(page.count(">0.6999<"), 2)   # Cd = F/(1/2 rho U^2 L), with a density of 2
+        self.assertRegex(page, "<b>Cd</b></td><td[^>]*><code>a_force_x</code>.*<b>Cl</b></td><td[^>]*><code>a_force_y</code>")
+        self.assertIn("taken as x", page)
+        g.history = Table({**history, "water_mean_vx [m/s]": 0 * t, "water_mean_vy [m/s]": 0 * t - .9})   # it flows downwards
+        page = parts.means(g, (1., 1.))
+        self.assertRegex(page, "<b>Cd</b></td><td[^>]*><code>a_force_y</code>.*<b>Cl</b></td><td[^>]*><code>a_force_x</code>")
+        self.assertIn("-y, the mean velocity of &quot;water&quot;", page)
+        g.history = Table({name: values for name, values in history.items() if "force" not in name})
+        self.assertIn("the scene has no [[force]]", parts.means(g, (1., 1.)))
+        self.assertNotIn("[[force]]", parts.means(g))
+        g.history = Table({name: values[:9] for name, values in history.items()})
+        self.assertIn("fewer than 16 rows", parts.means(g, (1., 1.)))
+        g.history = history
+        page = parts.means(g, (1., 1.))
         self.assertNotIn("b_flux", page)
         self.assertLess(page.index("a_force_x"), page.index("a_flux"))
         self.assertEqual((page.count("settled"), page.count("still changes")), (4, 1))
         scene["phases"]["air"] = {"kind": "fluid", "density": 1.}
         self.assertIn("not one fluid alone", parts.means(g, (1., 1.)))
+
+    def test_settled_or_not(self):
+        """Of a sine, a ramp, noise, noise with a trend, a short record and a decay; the autocorrelation time is that of bench."""
+        sys.path.insert(0, str(ROOT / "bench"))
+        from barchan_bench import statistics
+        some = numpy.random.default_rng(4)
+        noise = some.normal(size=2000)
+        slow = numpy.convolve(some.normal(size=2200), numpy.exp(-numpy.arange(200) / 10))[200:2200]
+        for values in (noise, slow, numpy.sin(numpy.linspace(0, 30, 500)), numpy.ones(9), noise[:2]):
+            self.assertAlmostEqual(parts.autocorrelation_time(values), statistics.autocorrelation_time(values), places=9)
+        t = numpy.linspace(0, 1, 2000)
+        state = lambda values: parts.halves(t, values)[2]
+        for phase in numpy.linspace(0, 6, 13):
+            self.assertEqual(state(numpy.sin(10 * numpy.pi * t + phase)), "settled")            # five periods about 0
+            self.assertNotEqual(state(1210 + 345 * numpy.sin(4 * numpy.pi * t + phase)), "settled")  # 1210 +- 244, one period in the second half
+        self.assertEqual([state(each) for each in (t, numpy.exp(-2 * t), noise + 3 * t, slow + 30 * t)], ["still changes"] * 4)
+        self.assertEqual([state(each) for each in (noise, slow, 1210 + 244 * noise, 1 - numpy.exp(-12 * t), 0 * t)], ["settled"] * 5)
+        self.assertNotEqual(parts.halves(numpy.linspace(0, .1, 60), 1210 + 244 * slow[:60] / slow.std())[2], "settled")
+        self.assertIsNone(parts.halves(t[:10], t[:10]))
 
     def test_states(self):
         for reason, expected in (("end", ("ended", 0)), ("TERMINATE", ("ended", 0)), ("breakdown: x", ("broken", 3)), ("output failed: x", ("failed", 4)), ("SIGINT", ("stopped", 130)), ("", ("killed", None))):

@@ -12,12 +12,12 @@ import tomllib
 
 from .. import files, program
 from ..errors import BarchanError, NoSeries, SceneError, Unreadable
+from ..run_scene import MOST_OF_A_SCENE, belongs, candidates, with_settings
 from ..series import Series, Tables, open as open_series
 from .shapes import RUN, SALTATION, fitting
 
 STATUS = {"end": 0, "TERMINATE": 0, "breakdown": 3, "output failed": 4, "SIGHUP": 129, "SIGINT": 130, "SIGQUIT": 131, "SIGTERM": 143, "SIGXCPU": 152}
 MOST_SECONDS_OF_PLAN = 120
-MOST_OF_A_SCENE = 16 << 20  # bytes, as the program has it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -165,8 +165,7 @@ def read_tables(g):
 
 
 def read_scene(g, named=None):
-    """The text of the scene. run.json may be another person's and name any file, so a file counts only if it is a scene that lies in the folder of the run, or one whose checksum run.json
-    states: who wrote that has read the file before. Or a person has `named` it."""
+    """The text of the scene: of a file that belongs to the run (run_scene.py), or that a person has `named`."""
     said = g.run.get("scene", {}).get("file", "")
     g.scene_file = said
     if named is not None:
@@ -177,10 +176,9 @@ def read_scene(g, named=None):
         return
     if not said:
         return
-    places = [pathlib.Path(said)] + [above / said for above in g.folder.absolute().parents] + [g.folder / pathlib.PurePath(said).name]
-    there = [place for place in dict.fromkeys(places) if files.is_file(place)]
+    there = candidates(g.folder, said)
     for place in there:
-        if belongs(g, place):
+        if belongs(g.folder, place, g.run.get("scene", {}).get("sha256", "")):
             try:
                 return show_scene(g, place)
             except Unreadable as error:
@@ -190,20 +188,6 @@ def read_scene(g, named=None):
         g.remarks.append(f"the scene's file {said} is no longer there: {lost}")
     elif g.scene_text is None:
         g.remarks.append(f"{said} is no scene in the folder of the run, nor has it the checksum that run.json states (it was changed, or it is another file): {lost}")
-
-
-def belongs(g, place):
-    """Whether a file that run.json names lies in the folder of the run, or has the checksum that run.json states."""
-    try:
-        files.below(g.folder, place)
-        return True
-    except Unreadable:
-        pass
-    checksum = g.run.get("scene", {}).get("sha256", "")
-    try:
-        return len(checksum) == 64 and place.suffix == ".toml" and hashlib.sha256(files.content(place, MOST_OF_A_SCENE)).hexdigest() == checksum
-    except Unreadable:
-        return False
 
 
 def show_scene(g, place):
@@ -221,25 +205,6 @@ def show_scene(g, place):
     checksum = g.run.get("scene", {}).get("sha256")
     if checksum and checksum != hashlib.sha256(content).hexdigest():
         g.remarks.append(f"{place} was changed after the run began, or is another file: text and plan on this page are those of the file as it is now")
-
-
-def with_settings(scene, settings):
-    """The document with the settings KEY=VALUE of the command line, as the program applies them; what does not fit is left out (the program has refused it)."""
-    for each in settings:
-        key, _, text = each.partition("=")
-        try:
-            value = tomllib.loads(f"value = {text}")["value"]
-        except tomllib.TOMLDecodeError:
-            value = text.strip()  # a word without quotation marks
-        *path, last = key.strip().split(".")
-        try:
-            at = scene
-            for part in path:
-                at = at[int(part)] if isinstance(at, list) else at.setdefault(part, {})
-            at[int(last) if isinstance(at, list) else last] = value
-        except (LookupError, ValueError, TypeError, AttributeError):
-            continue
-    return scene
 
 
 def read_plan(g):

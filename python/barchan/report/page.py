@@ -47,7 +47,7 @@ def make(g, film=False, stream=None):
     sections = [("Means", lambda: parts.means(g, stream), "means"), ("What drives the flow", lambda: parts.wind(g), "wind"), ("Pictures", lambda: parts.show_pictures(g) + parts.show_films(g, film), "pictures"),
                 ("Measured", lambda: parts.measured(g), "measured"), ("History", lambda: parts.budgets(g) + parts.history(g), "history"),
                 ("What ran: phases and their matrix", lambda: parts.matrix(g), "matrix"), ("How the time went", lambda: parts.schedule(g), "time"),
-                ("Program, machine, scene", lambda: parts.about(g), "about")]
+                ("Program, machine, scene", lambda: parts.about(g), "about"), ("How to cite", lambda: parts.citation(g), "cite")]
     sections = [(heading, attempt(g, heading, body), anchor) for heading, body, anchor in sections]
     there = [(heading, body, anchor) for heading, body, anchor in sections if body]
     nav = "<nav>" + "".join(f'<a href="#{anchor}">{parts.esc(heading.split(":")[0])}</a>' for heading, _, anchor in there) + "</nav>"

@@ -2,11 +2,13 @@
 
 import html
 import math
+import pathlib
 import re
 
 import numpy
 
 from . import pictures, plots
+from .. import files
 from ..tables import bare
 
 SENTENCE = {"ended": "ended", "running": "is still running", "killed": "was killed, or its machine stopped", "broken": "broke down", "stopped": "was stopped by a signal",
@@ -67,7 +69,7 @@ def ending(g):
         now = float(rows[-1]) if len(rows) else now
         far = "" if now is None else f"; it has come to {number(now)} s" + (f" of {number(end)} s" if end is not None else "")
     head = f"The run {SENTENCE[g.state]}{far}." + (f" Exit status {g.status}." if g.status is not None else "")
-    why = "" if g.state in ("ended", "running") else f"<br>{esc(reason)}"
+    why = "" if g.state in ("ended", "running") else f"<br>{esc(reason)}{question(reason)}"
     if g.state in ("killed", "stopped"):
         why += "<br>It goes on with <code>barchan run SCENE --restart latest</code>."
     out = [f'<div class="notice {kind}"><b>{head}</b>{why}</div>']
@@ -80,8 +82,38 @@ def warnings(g):
     """The warnings of the program."""
     said = g.run.get("warnings") or [] if g.run.get("warnings") is not None else (g.plan or {}).get("warnings", [])
     if said:
-        return f'<div class="notice warn"><b>{len(said)} warning{"s" * (len(said) > 1)} of the program</b><ul>' + "".join(f"<li>{esc(w)}</li>" for w in said) + "</ul></div>"
+        return f'<div class="notice warn"><b>{len(said)} warning{"s" * (len(said) > 1)} of the program</b><ul>' + "".join(f"<li>{esc(w)}{question(w)}</li>" for w in said) + "</ul></div>"
     return '<div class="notice good">The program gave no warning.</div>' if g.run and g.state != "running" else ""
+
+
+# How a message begins, after the numbers and names that change, and the entry of docs/faq.md that explains it.
+QUESTIONS = (
+    (r"interactions\.\S+: under the cubic spline particles pair", "Under the cubic spline particles pair"),
+    (r'\d+ particles? of "[^"]*".* left through the open side', "Particles left through the open side"),
+    (r'"[^"]*" was pulled with ', "The wind pulls much harder than the scene says"),
+    (r"the ground took ", "The ground takes more than the wind that the scene states"),
+    (r'the flux of "[^"]*" still grows at the outflow', "The ground takes more than the wind that the scene states"),
+    (r"(breakdown: )?(particle|body) .* (passed the wall|escaped through)", "A body passed a wall, or a particle left the domain"),
+    (r"(breakdown: )?particle .*density .* is out of bounds", "The density is out of bounds"),
+)
+
+
+def question(message):
+    """A link to the entry of docs/faq.md for a message of the program, "" where there is no such entry. The page of a package without docs/ has the name of the entry alone."""
+    heading = next((heading for begin, heading in QUESTIONS if re.match(begin, message[:2000])), None)  # of a stranger's text no more
+    if heading is None:
+        return ""
+    anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+    page = shared("docs/faq.md")
+    text = f"docs/faq.md: {heading}"
+    return f' (<a href="{esc(page.as_uri())}#{anchor}">{esc(text)}</a>)' if page else f" ({esc(text)})"
+
+
+def shared(name):
+    """A file of the source tree, or of the documents of an installation (PREFIX/share/doc/barchan); None where neither is there."""
+    here = pathlib.Path(__file__).resolve().parents  # of ROOT/python/barchan/report, PREFIX/share/barchan/python/barchan/report
+    places = (here[3] / name, here[4] / "doc/barchan" / name.removeprefix("docs/"))
+    return next((place for place in places if place.is_file()), None)
 
 
 def remarks(g):
@@ -138,21 +170,56 @@ def asked_friction_velocity(g, phase):
 MEANS = r".*(_force_[xyz]|_torque(_[xyz])?|_flux|mean_v[xyz]|_equivalent_friction_velocity|_bed_friction_velocity|mean_pressure)$"
 
 
+FEWEST_TIMES = 20   # autocorrelation times of a window that is judged
+STEADY = 0.01       # share of the mean below which a change does not count
+SETTLED, CHANGES, SHORT = "settled", "still changes", "too short to say"
+
+
 def halves(times, values):
-    """Mean and standard deviation over the second half of the time, and whether they have settled: the means of its own halves differ by less than a tenth of the mean
-    or a quarter of the deviation. None with less than eight rows there."""
+    """Mean and standard deviation over the second half of the time, the window, and whether they have settled: SETTLED, CHANGES or SHORT (`judged`). None with less than eight rows there."""
     late = times >= 0.5 * (times[0] + times[-1])
     chosen = values[late & numpy.isfinite(values)]
     if len(chosen) < 8:
         return None
-    first, second = chosen[:len(chosen) // 2].mean(), chosen[len(chosen) // 2:].mean()
-    return float(chosen.mean()), float(chosen.std()), bool(abs(first - second) <= max(0.1 * abs(chosen.mean()), 0.25 * chosen.std()))
+    return float(chosen.mean()), float(chosen.std()), judged(chosen)
+
+
+def judged(values):
+    """SETTLED, CHANGES or SHORT for rows (n,) at equal distances in time.
+
+    CHANGES: the means of the two halves differ by more than STEADY of the mean and two standard errors, of which each is s sqrt(tau/n) of its half, with the standard deviation s about its own mean and the
+    integrated autocorrelation time tau (`autocorrelation_time`). SHORT: there are fewer than FEWEST_TIMES such times, so that error is not to be trusted; the values change all the same
+    if the means of the four quarters only rise or only fall. SETTLED: all else, and values that stay within STEADY of their mean."""
+    first, second = numpy.array_split(values, 2)
+    difference, scale = abs(first.mean() - second.mean()), STEADY * abs(values.mean())
+    if difference <= scale and values.std() <= scale:
+        return SETTLED
+    tau = max(autocorrelation_time(half) for half in (first, second))
+    error = math.sqrt(sum(half.var() * tau / len(half) for half in (first, second)))
+    if len(values) < FEWEST_TIMES * max(tau, autocorrelation_time(values)):
+        steps = numpy.diff([quarter.mean() for quarter in numpy.array_split(values, 4)])
+        return CHANGES if difference > max(2 * error, scale) and ((steps > 0).all() or (steps < 0).all()) else SHORT
+    return CHANGES if difference > max(2 * error, scale) else SETTLED
+
+
+def autocorrelation_time(values):
+    """Integrated autocorrelation time of rows (n,), in rows, 1 for independent values: 1 + 2 sum rho(k), up to the first lag k that is five times the sum so far (Madras & Sokal 1988,
+    J. Stat. Phys. 50, 109, window with c = 5). bench/barchan_bench/statistics.py has the same as a loop; here the products are made by a Fourier transform."""
+    x = values - values.mean()
+    if not x.any():
+        return 1.0
+    power = abs(numpy.fft.rfft(x, 2 * len(x))) ** 2
+    rho = numpy.fft.irfft(power)[:len(x)]
+    total = 2 * numpy.cumsum(rho / rho[0]) - 1
+    ends = numpy.flatnonzero(numpy.arange(len(x)) >= 5 * total)
+    ends = ends[ends > 0]
+    return max(float(total[ends[0] if len(ends) else -1]), 1.0)
 
 
 def means(g, stream=None):
     """Means over the second half of the run; with `stream`, (speed in m/s, length in m), the coefficients of every force too."""
     if g.history is None or g.history.length < 16:
-        return ""
+        return '<p class="hint">No coefficients: history.csv has fewer than 16 rows.</p>' if stream else ""
     times = g.history["time [s]"]
     rows = []
     for full, values in sorted(g.history.items(), key=lambda item: "_force_" not in item[0]):
@@ -163,32 +230,48 @@ def means(g, stream=None):
     return out + (coefficients(g, times, *stream) if stream else "")
 
 
-def settled(is_settled):
-    return '<span class="chip good">settled</span>' if is_settled else '<span class="chip warn">still changes</span>'
+def settled(state):
+    return f'<span class="chip {"good" if state == SETTLED else "plain" if state == SHORT else "warn"}">{state}</span>'
 
 
 def coefficients(g, times, speed, length):
-    """Force over 1/2 rho U^2 A, A = L by metre of depth in 2D and pi L^2/4 in 3D, and the Strouhal number f L/U of what changes its sign about its mean."""
-    density = fluid_density(g)
-    if density is None:
+    """Cd along the flow and Cl across: force over 1/2 rho U^2 A, A = L by metre of depth in 2D and pi L^2/4 in 3D, and the Strouhal number f L/U of what changes its sign about its mean."""
+    forces = {full: re.fullmatch(r"(.*)_force_([xyz])", bare(full)) for full in g.history}
+    forces = {full: found for full, found in forces.items() if found}
+    if not forces:
+        return '<p class="hint">No coefficients: the scene has no [[force]], so history.csv has no column of a force. Add [[force]] with the phase of the body.</p>'
+    fluid = only_fluid(g)
+    if fluid is None:
         return '<p class="hint">No coefficients: the scene has not one fluid alone.</p>'
-    area = length if (g.plan or {}).get("dimensions", g.said("dimensions")) == 2 else math.pi / 4 * length ** 2
+    name, density = fluid
+    along, sign, why = flow_axis(g, times, name, speed)
+    two = (g.plan or {}).get("dimensions", g.said("dimensions")) == 2
+    area = length if two else math.pi / 4 * length ** 2
     rows = []
-    for full, values in g.history.items():
-        if not re.fullmatch(r".*_force_[xyz]", bare(full)):
-            continue
-        c = values / (0.5 * density * speed ** 2 * area)
-        if found := halves(times, c):
-            rows.append([f"<code>{esc(bare(full))}</code>", number(found[0]), number(found[1]), number(float(numpy.ptp(c[times >= 0.5 * (times[0] + times[-1])])) / 2),
-                         number(strouhal(times, c, speed, length)), settled(found[2])])
-    note = f'<p class="hint">Speed {number(speed)} m/s, length {number(length)} m, density {number(density)} kg/m3; second half of the run.</p>'
-    return "<h3>Coefficients of force</h3>" + rows_table(("force", "mean", "standard deviation", "half of the range", "Strouhal number", ""), rows) + note if rows else ""
+    for full, found in sorted(forces.items(), key=lambda item: item[1][2] != along):
+        c = g.history[full] / (0.5 * density * speed ** 2 * area) * (sign if found[2] == along else 1)
+        if of := halves(times, c):
+            rows.append([f"<b>{'Cd' if found[2] == along else 'Cl'}</b>", f"<code>{esc(bare(full))}</code>", number(of[0]), number(of[1]),
+                         number(float(numpy.ptp(c[times >= 0.5 * (times[0] + times[-1])])) / 2), number(strouhal(times, c, speed, length)), settled(of[2])])
+    note = (f'<p class="hint">C = F/(1/2 rho U^2 A): U = {number(speed)} m/s, A = {"L" if two else "pi L^2/4"} with L = {number(length)} m{" by metre of depth" if two else ""}, '
+            f"rho = {number(density)} kg/m3; second half of the run. Cd is along the flow, {esc(why)}, Cl across.</p>")
+    return "<h3>Coefficients of force</h3>" + rows_table(("", "force", "mean", "standard deviation", "half of the range", "Strouhal number", ""), rows) + note if rows else ""
 
 
-def fluid_density(g):
-    """kg/m3, of the only fluid of the scene; None: there are none or several."""
-    found = [p.get("density") for p in (g.scene or {}).get("phases", {}).values() if isinstance(p, dict) and p.get("kind") == "fluid"]
-    return float(found[0]) if len(found) == 1 and isinstance(found[0], (int, float)) else None
+def flow_axis(g, times, fluid, speed):
+    """The axis of the flow, its sign, and how it was found: that of the largest mean velocity of the fluid in the second half, else x."""
+    late = times >= 0.5 * (times[0] + times[-1])
+    found = {axis: float(numpy.nanmean(g.history[f"{fluid}_mean_v{axis}"][late])) for axis in "xyz" if f"{fluid}_mean_v{axis}" in g.history}
+    axis = max(found, key=lambda each: abs(found[each]), default="x")
+    if not found or not abs(found[axis]) > 0.1 * speed:
+        return "x", 1, f'taken as x: "{fluid}" has no mean velocity of a tenth of U'
+    return axis, 1 if found[axis] > 0 else -1, f'{"+" if found[axis] > 0 else "-"}{axis}, the mean velocity of "{fluid}"'
+
+
+def only_fluid(g):
+    """Name and density (kg/m3) of the only fluid of the scene; None: there are none or several."""
+    found = [(name, p.get("density")) for name, p in (g.scene or {}).get("phases", {}).items() if isinstance(p, dict) and p.get("kind") == "fluid"]
+    return (found[0][0], float(found[0][1])) if len(found) == 1 and isinstance(found[0][1], (int, float)) else None
 
 
 def strouhal(times, values, speed, length):
@@ -365,3 +448,29 @@ def about(g):
     if g.scene_text:
         out += f'<details{" open" if len(g.scene_text) < 1500 else ""}><summary>The scene file ({len(g.scene_text.splitlines())} lines)</summary><pre>{esc(g.scene_text)}</pre></details>'
     return out
+
+
+def citation(g):
+    """A text that names the program, its version and the article of its method, to be copied; from CITATION.cff where it is there."""
+    file = shared("CITATION.cff")
+    text = files.text(file) if file else 'title: Barchan\nauthors:\n  - name: The Barchan developers\n'
+    own, _, reference = text.partition("\nreferences:")
+    version = g.run.get("version") or field_of(own, "version")
+    commit = f" (commit {g.run['commit']})" if g.run.get("commit") else ""
+    lines = [f"{people(own)}: {field_of(own, 'title')}" + (f", version {version}{commit}." if version else ".")]
+    if reference:
+        lines.append(f"Method: {people(reference)} ({field_of(reference, 'year')}): {field_of(reference, 'title')}.")
+    return f"<pre>{esc(chr(10).join(lines))}</pre>"
+
+
+def field_of(text, key):
+    """The value of a key of CITATION.cff, "" where there is none."""
+    found = re.search(rf'^[ -]*{key}:\s*"?(.*?)"?\s*$', text, re.M)
+    return found[1] if found else ""
+
+
+def people(text):
+    """The names of the authors of a part of CITATION.cff."""
+    block = re.search(r"^ *authors:\n((?: *- .*\n?)+)", text, re.M)
+    names = [each for line in (block[1].splitlines() if block else ()) for each in (re.search(r'name: *"?([^"]*?)"?$', line), re.search(r"family-names: *(.*?), *given-names: *(.*?)\}", line)) if each]
+    return ", ".join(" ".join(reversed(each.groups())) for each in names)
