@@ -126,7 +126,7 @@ class Reading(Case):
         mass = 2000 * math.pi / 6 * .02 ** 2  # of a sphere by metre of depth, in a slab one diameter thick
         self.assertGreater(len(t), 9)
         self.assertLess(abs(energy - 2 * .5 * mass * (9.81 * t) ** 2).max() / energy.max(), .02)
-        self.assertEqual((series.history.unit("ball_kinetic_energy"), series.run["end_reason"]), ("J", "end"))
+        self.assertEqual((series.history.unit("ball_kinetic_energy"), series.run["end_reason"]), ("J/m", "end"))
         self.assertEqual((dict(series.profiles), series.grids, series.bad), ({}, {}, None))
 
     def test_a_row_that_was_cut_off_is_left_out(self):
