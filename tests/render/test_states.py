@@ -31,13 +31,13 @@ RUNS = {
     "hop": ("hop", ["time.end=0.06", "output.every=2e-3"]),
     "hill": ("rushil", ["time.end=1e-3", "output.every=1e-3", "output.walls=true"]),
     "column": ("two_phase_column", ["time.end=2e-3", "output.every=1e-3"]),
-    "influx": ("sand_influx", ["time.end=0.02", "output.every=0.01",
+    "influx": ("sand_influx", ["time.end=0.02", "output.every=0.01", 'output.fields=["radius"]',
                                'saltation=[{ name = "sand", phase = "sand", every = 1e-3 }]']),
 }
 # A state, the run, and whether a golden picture stands beside it.
 PICTURES = [("airflow", "hill", True), ("pressure", "column", True), ("density", "column", False), ("stress", "bars", True), ("von_mises", "bars", False), ("motion", "sphere", False),
             ("eddy_viscosity", "layer", True), ("profiles", "poiseuille", False), ("grid", "poiseuille", False), ("wall_shear", "poiseuille", False),
-            ("flux", "influx", False), ("grains", "influx", False), ("phases", "column", True), ("trajectories", "hop", True), ("box3d", "sphere", True)]
+            ("flux", "influx", False), ("grains", "influx", False), ("sizes", "influx", False), ("phases", "column", True), ("trajectories", "hop", True), ("box3d", "sphere", True)]
 STATES = {path.stem for path in (SOURCE / "pvstate").glob("*.py") if not path.stem.startswith(("barchan_", "render_"))}
 
 
