@@ -153,7 +153,7 @@ class InWater(unittest.TestCase):
 
     def test_the_mass_of_what_leaves_falls(self):
         rows = self.told("run", "--threads", "1", density=1000, buoyancy="true")[1]
-        mass = [float(row.split(",")[rows[0].split(",").index("sand_mass [kg/m]")]) for row in rows[1:]]
+        mass = [float(row.split(",")[rows[0].split(",").index("sand_mass [kg]")]) for row in rows[1:]]
         self.assertAlmostEqual(mass[0] / (2 * 2650 * 3.141592653589793 / 6 * 1e-9), 1, places=9)
         self.assertAlmostEqual(mass[-1] / mass[0], 0.5, places=9)
 

@@ -440,7 +440,7 @@ TEST(Measurements, ThePlanSaysWhatIsMeasuredAndWhatIsNot) {
   const Plan plan = make_plan(scene, generate(scene));
   const std::string text = to_text(plan, scene);
   EXPECT_NE(text.find("measured profile p (air, 2 slices, every 1e-09 s from 0 s)\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("not measured probe, grid, wall-shear, saltation\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("not measured probe, gauge, grid, wall-shear, saltation\n"), std::string::npos) << text;
   const Scene plain = parse_scene(square_text, "s.toml");
   EXPECT_TRUE(make_plan(plain, generate(plain)).instruments.empty());
 }
