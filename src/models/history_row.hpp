@@ -19,7 +19,7 @@ class HistoryRow {
   /// In two dimensions all that belongs to a mass is of a metre of depth: "kg" becomes "kg/m", "N m" becomes "N".
   void count_by_metre() {
     constexpr std::pair<std::string_view, std::string_view> units[] = {
-        {" [kg]", " [kg/m]"},   {" [J]", " [J/m]"},       {" [N]", " [N/m]"},          {" [N m]", " [N]"},
+        {" [kg]", " [kg/m]"},   {" [J]", " [J/m]"},       {" [N]", " [N/m]"},         {" [N m]", " [N]"},
         {" [N s]", " [N s/m]"}, {" [kg m/s]", " [kg/s]"}, {" [kg m2/s]", " [kg m/s]"}};
     for (std::string& name : names)
       for (const auto& [of_all, of_a_metre] : units)

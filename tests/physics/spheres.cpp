@@ -350,11 +350,10 @@ largest-speed = 2
     const auto end = momenta();
     const double left = value(*run, "sand_kinetic_energy [") + value(*run, "rotation_energy [");
     EXPECT_GT(value(*run, "contacts_lost_energy ["), 0.2 * energy);
-    report(
-        "budget of rough spheres, " + law,
-        std::abs((left + value(*run, "contacts_lost_energy [") + value(*run, "contacts_stored_energy [")) / energy -
-                 1.0),
-        0.01);
+    report("budget of rough spheres, " + law,
+           std::abs((left + value(*run, "contacts_lost_energy [") + value(*run, "contacts_stored_energy [")) / energy -
+                    1.0),
+           0.01);
     EXPECT_NEAR(left + value(*run, "contacts_lost_energy [") + value(*run, "contacts_stored_energy ["), energy,
                 0.01 * energy);
     const double scale = std::sqrt(2.0 * energy * 2650.0 * 2e-6);
