@@ -149,7 +149,7 @@ void check_flow_ends(const Scene& scene, const Report& report) {
         report(dotted + ".velocity", "no velocity; expected { log-profile = ... } or { profile = ... }");
       if (report.has(log) && report.has(profile))
         report(profile, "a second wind after log-profile; expected one of the two");
-      if (report.has(profile) && side_at(scene.domain, scene.inflows[k].side).axis == 1)
+      if (report.has(profile) && side_at(scene.domain, scene.inflows[k].side).axis == up_axis(scene.domain))
         report(profile, "a profile is by height, and \"" + word_of(scene.inflows[k].side) +
                             "\" has one height; expected a side that cuts the ground, or formulas");
     }

@@ -355,6 +355,7 @@ void warn_of_no_bottom(const Scene& scene, Plan& plan) {
 /// Grains that enter faster or more densely than in any wind: a flux in g, or a speed in mm/s. A liquid carries dense
 /// layers along its bed.
 void warn_of_influxes(const Scene& scene, Plan& plan) {
+  const std::size_t up = up_axis(scene.domain);
   constexpr double fastest = 100.0;  // m/s
   constexpr double liquid = 100.0;   // kg/m3
   bool is_wind = true;
@@ -369,8 +370,8 @@ void warn_of_influxes(const Scene& scene, Plan& plan) {
       constexpr double full = 0.25;
       double room = 1.0;
       for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimensions); ++d)
-        if (d != 1) room *= influx.box->max[d] - influx.box->min[d];
-      const double height = influx.box->max[1] - influx.box->min[1];
+        if (d != up) room *= influx.box->max[d] - influx.box->min[d];
+      const double height = influx.box->max[up] - influx.box->min[up];
       const double speed = std::max(norm(influx.velocity), std::sqrt(2.0 * norm(scene.domain.gravity) * height));
       const double most = full * find_phase(scene, influx.phase)->density * room * speed;
       if (influx.flux > most)
@@ -380,8 +381,8 @@ void warn_of_influxes(const Scene& scene, Plan& plan) {
                                 "velocity, or less");
     }
     if (!influx.speed || !influx.decay_height) continue;
-    const double bottom = scene.domain.origin[1], h = *influx.decay_height;
-    const double room = bottom + scene.domain.size[1] - influx.above.value_or(bottom);
+    const double bottom = scene.domain.origin[up], h = *influx.decay_height;
+    const double room = bottom + scene.domain.size[up] - influx.above.value_or(bottom);
     // Of a flux that falls as exp(-y/h): its density over that of the grains, at y = 0.
     const double share =
         influx.flux / (*influx.speed * h * -std::expm1(-room / h)) / find_phase(scene, influx.phase)->density;
@@ -499,7 +500,8 @@ void warn_of_numbers(const Scene& scene, Plan& plan) {
   for (std::size_t k = 0; k < plan.phases.size(); ++k) {
     const PlanPhase& p = plan.phases[k];
     if (!p.flows() || !scene.phases[k].fluid().sound_speed || !(plan.largest_speed > 0.0)) continue;
-    const double falls = std::sqrt(2.0 * norm(scene.domain.gravity) * scene.domain.size[1]);  // m/s, through the domain
+    const double falls = std::sqrt(2.0 * norm(scene.domain.gravity) *
+                                   scene.domain.size[up_axis(scene.domain)]);  // m/s, through the domain
     const double fastest = std::max(plan.largest_speed, falls);
     if (p.sound_speed > too_stiff * fastest)
       plan.warnings.push_back("phases." + p.name + ".sound-speed: " + brief(p.sound_speed) + " m/s is " +
