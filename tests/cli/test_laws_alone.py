@@ -133,6 +133,13 @@ template <int Dim> void one_pair() {
   all.take(Law::template without_kink<double>(s), 1.0, 1.0, 1.0, {});
 }
 template void one_pair<2>(); template void one_pair<3>();""",
+    "turning_sphere": """
+template <std::size_t Dim> void turned() {
+  std::array<double, barchan::spins(Dim)> spin{};
+  const std::array<double, Dim> through{};
+  barchan::TurningSphere{1.0, 1.0, 1.0, 1.0}.turn<Dim>(spin, through, 1.0);
+}
+template void turned<2>(); template void turned<3>();""",
     "kept_drag": """
 template <std::size_t Dim> void kept() {
   const std::array<double, Dim> v{};

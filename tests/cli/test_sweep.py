@@ -179,7 +179,7 @@ class Sweeps(unittest.TestCase):
 
     def test_wrong_commands(self):
         for words, status, said in (([], 2, "nothing to vary"), (["--vary", "a=1:2:x"], 2, "expected FROM:TO:NUMBER"),
-                                    (["--vary", "time.ende=1,2"], 2, "time.ende"), (["--vary", "time.end=0.01,0.02", "--measure", "grain_mean_vy"], 2, "did you mean"),
+                                    (["--vary", "time.ende=1,2"], 2, "time.ende"), (["--vary", "time.end=0.01,0.02", "--measure", "grain_mean_vw"], 2, "did you mean"),
                                     (["--vary", "time.end=0.01", "-j", "0"], 2, "1 or more")):
             ended = self.sweep(*words)
             self.assertEqual(ended.returncode, status, words)
