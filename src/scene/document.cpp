@@ -276,7 +276,7 @@ std::string remedy(std::string_view text, unsigned line, std::string_view said) 
   if (whole.starts_with("//") || whole.starts_with("%") || whole.starts_with(";") || whole.starts_with("/*"))
     return "; a comment begins with #";
   if (whole.starts_with(".[")) return "; expected the line without the full stop at its beginning";
-  if (const std::string meant = slip_of(whole, said); !meant.empty()) return meant;
+  if (std::string meant = slip_of(whole, said); !meant.empty()) return meant;
   const std::string_view value = value_in_line(text, line);
   const std::size_t end = std::min(value.find_first_not_of("+-.0123456789eE"), value.size());
   const std::size_t unit = std::min(value.find_first_not_of(' ', end), value.size());

@@ -49,7 +49,7 @@ PhaseRules sphere_rules(const PlanPhase& p, double bound, const std::string& giv
   r.stops_at_sides = true;
   r.one = "grain";
   r.remedy = [name = p.name, given](Fault fault, double speed, double most) {
-    const std::string key = "phases." + name + "." + sphere_stiffness_keys(" or .");
+    std::string key = "phases." + name + "." + sphere_stiffness_keys(" or .");
     switch (fault) {
       case Fault::passed_wall: return "raise " + (given.empty() ? "time.largest-speed, " + key : given);
       case Fault::too_fast:
